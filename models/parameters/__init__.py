@@ -1,0 +1,12 @@
+"""Every parameter once: frozen, validated, with unit, range and source."""
+
+from .array import COLS_MAX, ROWS_MAX, ArrayParameters
+from .checks import ParameterError, check_choice, check_int, check_real
+from .chip import DIVIDERS, LANES, ChipParameters
+from .electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
+from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, AmpTiming, FrameParameters, Window
+from .optics import OpticsParameters
+from .sensor import SensorParameters
+from .tile import PixelType, TileParameters
+
+__all__ = [name for name in dir() if not name.startswith("_")]

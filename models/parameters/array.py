@@ -1,0 +1,21 @@
+"""Size of the pixel array [Jayasuriya2017, Sec. 3.5.1]."""
+
+from dataclasses import dataclass
+
+from .checks import check_int, check_real
+
+ROWS_MAX, COLS_MAX = 1024, 1536     # 256 tiles each way: tile addresses are 8 bits
+
+
+@dataclass(frozen=True)
+class ArrayParameters:
+    """rows: 1..1024 pixels; cols: 1..1536 pixels (tiles at the far edges may be partial); pitch: 1e-7..1e-3 m."""
+
+    rows: int = 384
+    cols: int = 384
+    pitch: float = 10e-6
+
+    def __post_init__(self):
+        check_int("rows", self.rows, 1, ROWS_MAX)
+        check_int("cols", self.cols, 1, COLS_MAX)
+        check_real("pitch", self.pitch, 1e-7, 1e-3)

@@ -1,0 +1,30 @@
+"""What is fixed in the digital chip when it is built."""
+
+from dataclasses import dataclass
+
+from .checks import check_choice, check_int, check_real
+
+LANES = (1, 2, 4, 8, 16, 32)
+DIVIDERS = ("radix2", "radix4", "pipelined", "cordic")
+
+
+@dataclass(frozen=True)
+class ChipParameters:
+    """lanes: converters side by side, a power of two in 1..32.
+    divider: variant of the quadrature divider on the readout path.
+    n_frac: fraction bits of its ratio, 4..16.  cordic_iterations: 4..16.
+    f_clk: system clock, 1e3..1e9 Hz.
+    """
+
+    lanes: int = 8
+    divider: str = "radix4"
+    n_frac: int = 8
+    cordic_iterations: int = 10
+    f_clk: float = 10e6
+
+    def __post_init__(self):
+        check_choice("lanes", self.lanes, LANES)
+        check_choice("divider", self.divider, DIVIDERS)
+        check_int("n_frac", self.n_frac, 4, 16)
+        check_int("cordic_iterations", self.cordic_iterations, 4, 16)
+        check_real("f_clk", self.f_clk, 1e3, 1e9)

@@ -1,0 +1,72 @@
+"""From photocurrent to 8-bit code, in SI units, and where the noise enters."""
+
+from dataclasses import dataclass
+
+from .checks import check_int, check_real
+
+ELEMENTARY_CHARGE = 1.602176634e-19     # C
+
+
+@dataclass(frozen=True)
+class ElectricalParameters:
+    """One photodiode pair, its amplifier and its converter.
+
+    white_current: photocurrent of one diode of a flat white scene, 1e-15..1e-3 A.
+    full_well: charge one diode holds between common-mode resets, 100..1e9 electrons.
+    difference_gain: programmable gain of the difference before conversion, 0.25..64.
+    read_noise: rms, 0..1e5 electrons a diode and read.
+    dark_current: 0..1e-6 A a diode.
+    gain_fpn, offset_fpn: rms of the fixed pattern: relative, 0..0.5, and in electrons, 0..1e5.
+    f_mod: time-of-flight modulation frequency, 1e5..1e9 Hz.
+    """
+
+    white_current: float = 0.25e-9
+    full_well: float = 1e5
+    difference_gain: float = 4.0
+    read_noise: float = 30.0
+    dark_current: float = 1e-15
+    gain_fpn: float = 0.002
+    offset_fpn: float = 20.0
+    f_mod: float = 20e6
+
+    def __post_init__(self):
+        check_real("white_current", self.white_current, 1e-15, 1e-3)
+        check_real("full_well", self.full_well, 100, 1e9)
+        check_real("difference_gain", self.difference_gain, 0.25, 64)
+        check_real("read_noise", self.read_noise, 0, 1e5)
+        check_real("dark_current", self.dark_current, 0, 1e-6)
+        check_real("gain_fpn", self.gain_fpn, 0, 0.5)
+        check_real("offset_fpn", self.offset_fpn, 0, 1e5)
+        check_real("f_mod", self.f_mod, 1e5, 1e9)
+
+    @property
+    def lsb_electrons(self):
+        """Electrons a code of the sum of a pair (both wells full = code 255)."""
+        return 2 * self.full_well / 255
+
+
+@dataclass(frozen=True)
+class ConverterParameters:
+    """The imperfections of one successive-approximation lane, in units of its LSB.
+
+    inl: peak of a smooth bow of the DAC, 0..4 LSB.  dnl: rms step error, 0..1 LSB.
+    offset: rms over lanes of the comparator's offset, 0..16 LSB.
+    noise: rms of the comparator at each decision, 0..16 LSB.
+    ktc: rms of the sampling capacitor's kT/C noise, 0..16 LSB.
+    seed: of every draw above, 0..2**32-1.
+    """
+
+    inl: float = 0.0
+    dnl: float = 0.0
+    offset: float = 0.0
+    noise: float = 0.0
+    ktc: float = 0.0
+    seed: int = 1
+
+    def __post_init__(self):
+        check_real("inl", self.inl, 0, 4)
+        check_real("dnl", self.dnl, 0, 1)
+        check_real("offset", self.offset, 0, 16)
+        check_real("noise", self.noise, 0, 16)
+        check_real("ktc", self.ktc, 0, 16)
+        check_int("seed", self.seed, 0, 2**32 - 1)

@@ -1,0 +1,83 @@
+"""What is configured for a frame: the contents of the chip's registers, by their meaning."""
+
+from dataclasses import dataclass, fields
+
+from .checks import ParameterError, check_choice, check_int
+
+MODES = ("edge", "image", "raw", "tof")     # in the order of the register's code
+SAMPLES_PER_PIXEL = {"edge": 1, "image": 1, "raw": 2, "tof": 4}
+ALL_TYPES = (1 << 24) - 1
+
+
+@dataclass(frozen=True)
+class AmpTiming:
+    """Durations of the amplifier's phases in cycles, each 1..65535 (guard too), and n_cm, 0..255 common-mode resets."""
+
+    t_reset: int = 32
+    t_int: int = 512
+    t_cm: int = 16
+    t_settle: int = 16
+    t_read: int = 16
+    t_guard: int = 2
+    n_cm: int = 0
+
+    def __post_init__(self):
+        for f in fields(self):
+            check_int(f.name, getattr(self, f.name), 0 if f.name == "n_cm" else 1,
+                      255 if f.name == "n_cm" else 65535)
+
+
+@dataclass(frozen=True)
+class Window:
+    """Tiles to read, inclusive: 0 <= row0 <= row1 <= 255 and 0 <= col0 <= col1 <= 255."""
+
+    row0: int
+    row1: int
+    col0: int
+    col1: int
+
+    def __post_init__(self):
+        for axis in ("row", "col"):
+            low, high = getattr(self, f"{axis}0"), getattr(self, f"{axis}1")
+            check_int(f"window {axis}0", low, 0, 255)
+            check_int(f"window {axis}1", high, 0, 255)
+            if low > high:
+                raise ParameterError(f"window {axis}0..{axis}1 = {low}..{high}: must not be inverted")
+
+
+@dataclass(frozen=True)
+class FrameParameters:
+    """One frame's configuration.
+
+    mode: 'edge' (difference), 'image' (sum), 'raw' (both diodes) or 'tof' (four taps).
+    window: tiles to read.  mask: bit t set = pixel type t is read, 1..2**24-1.
+    threshold: 0..127 codes; only edge mode uses it; 0 converts everything.
+    decimation: log2 of the tile step, 0..3 (every 1, 2, 4 or 8 tiles, from the window's corner).
+    phase: in tof mode, send (phase, amplitude) from the divider in place of the taps.
+    noise_floor: 0..255, amplitude under which the divider's phase is not valid.
+    overlap: integrate the next row while this one converts.
+    test_pattern: a digital pattern in place of the comparators.
+    frame_number: 0..65535.
+    """
+
+    window: Window
+    mode: str = "edge"
+    mask: int = ALL_TYPES
+    threshold: int = 10
+    decimation: int = 0
+    phase: bool = False
+    noise_floor: int = 0
+    overlap: bool = True
+    test_pattern: bool = False
+    frame_number: int = 0
+    timing: AmpTiming = AmpTiming()
+
+    def __post_init__(self):
+        check_choice("mode", self.mode, MODES)
+        check_int("mask", self.mask, 1, ALL_TYPES)
+        check_int("threshold", self.threshold, 0, 127)
+        check_int("decimation", self.decimation, 0, 3)
+        check_int("noise_floor", self.noise_floor, 0, 255)
+        check_int("frame_number", self.frame_number, 0, 65535)
+        if self.phase and self.mode != "tof":
+            raise ParameterError(f"phase = True: needs mode 'tof', not {self.mode!r}")

@@ -1,0 +1,48 @@
+"""The whole sensor: one object from which model, RTL, netlist, layout and documents are built."""
+
+from dataclasses import dataclass
+
+from .array import ArrayParameters
+from .chip import ChipParameters
+from .checks import ParameterError
+from .electrical import ConverterParameters, ElectricalParameters
+from .frame import Window
+from .optics import OpticsParameters
+from .tile import TileParameters
+
+
+@dataclass(frozen=True)
+class SensorParameters:
+    """The thesis's sensor by default: 384 x 384 pixels in tiles of 4 x 6, f/1.2, eight lanes."""
+
+    tile: TileParameters = TileParameters()
+    array: ArrayParameters = ArrayParameters()
+    optics: OpticsParameters = OpticsParameters()
+    electrical: ElectricalParameters = ElectricalParameters()
+    converter: ConverterParameters = ConverterParameters()
+    chip: ChipParameters = ChipParameters()
+
+    def __post_init__(self):
+        if max(self.tile_rows, self.tile_cols) > 256:
+            raise ParameterError(f"array = {self.array.rows} x {self.array.cols}: must be at most 256 x 256 tiles")
+
+    @property
+    def tile_rows(self):
+        """Tiles down the array, the last perhaps partial."""
+        return -(-self.array.rows // self.tile.rows)
+
+    @property
+    def tile_cols(self):
+        """Tiles across the array, the last perhaps partial."""
+        return -(-self.array.cols // self.tile.cols)
+
+    @property
+    def full_window(self):
+        return Window(0, self.tile_rows - 1, 0, self.tile_cols - 1)
+
+    def check_window(self, window):
+        """Raise ParameterError unless ``window`` lies in the array."""
+        for axis, count in (("row", self.tile_rows), ("col", self.tile_cols)):
+            last = getattr(window, f"{axis}1")
+            if last >= count:
+                raise ParameterError(f"window {axis}1 = {last}: must be in 0..{count - 1} (tiles)")
