@@ -1,0 +1,1 @@
+"""The digital chip in PyMTL3: one folder a block, each at FL, CL where cycles matter, and RTL."""
