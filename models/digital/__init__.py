@@ -1,0 +1,1 @@
+"""Bit-true models of everything digital: what the RTL must equal, bit for bit."""

@@ -1,0 +1,101 @@
+"""The scan: which pixels a frame reads and in which order (docs/chip.md, Scan order)."""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from models.parameters import SAMPLES_PER_PIXEL, FrameParameters, ParameterError, TileParameters
+
+
+@dataclass(frozen=True)
+class Step:
+    """One conversion step: every enabled lane converts the pixel at (row, 6 * (L * group + lane) + k)."""
+
+    row: int
+    k: int
+    group: int
+    sub: int
+    enable: int     # bit l = lane l converts
+
+
+@dataclass(frozen=True)
+class Scan:
+    """The order of rows, steps and samples of one frame.
+
+    rows, cols: size of the array in pixels. lanes: converters, a power of two.
+    Raises ParameterError when the window lies outside the array or nothing is left to read.
+    """
+
+    rows: int
+    cols: int
+    lanes: int
+    frame: FrameParameters
+    tile: TileParameters = TileParameters()
+
+    def __post_init__(self):
+        window, tile = self.frame.window, self.tile
+        for axis, size, step in (("row", self.rows, tile.rows), ("col", self.cols, tile.cols)):
+            last = -(-size // step) - 1
+            if getattr(window, f"{axis}1") > last:
+                raise ParameterError(f"window {axis}1 = {getattr(window, axis + '1')}: must be in 0..{last} (tiles)")
+        if not self.row_list.size:
+            raise ParameterError(f"mask = {self.frame.mask:#08x}: must select a pixel type that lies in the window")
+
+    @property
+    def subs(self):
+        """Samples of one pixel: 1, 2 (raw) or 4 (tof)."""
+        return SAMPLES_PER_PIXEL[self.frame.mode]
+
+    @cached_property
+    def row_list(self):
+        """Rows that are read, ascending: int array."""
+        w, tile = self.frame.window, self.tile
+        tiles = np.arange(w.row0, w.row1 + 1, 1 << self.frame.decimation)
+        rows = (tile.rows * tiles[:, None] + np.arange(tile.rows)).ravel()
+        wanted = np.array([bool(self.columns_of(r)) for r in range(tile.rows)])
+        return rows[(rows < self.rows) & wanted[rows % tile.rows]]
+
+    def columns_of(self, row):
+        """Unmasked in-tile columns k of a row that exist in the window's first tile: tuple."""
+        base = (row % self.tile.rows) * self.tile.cols
+        first = self.tile.cols * self.frame.window.col0
+        return tuple(k for k in range(self.tile.cols)
+                     if self.frame.mask >> self.tile.order[base + k] & 1 and first + k < self.cols)
+
+    def steps(self, row):
+        """Steps of one row, in order: list of Step (with an empty ``enable`` only where the array ends)."""
+        w, lanes = self.frame.window, self.lanes
+        stride = 1 << self.frame.decimation
+        groups = range(w.col0 // lanes, w.col1 // lanes + 1, max(1, stride // lanes))
+        out = []
+        for k in self.columns_of(row):
+            for group in groups:
+                tiles = [lanes * group + lane for lane in range(lanes)]
+                enable = sum(1 << lane for lane, t in enumerate(tiles)
+                             if w.col0 <= t <= w.col1 and (t - w.col0) % stride == 0
+                             and self.tile.cols * t + k < self.cols)
+                out += [Step(row, k, group, sub, enable) for sub in range(self.subs)]
+        return out
+
+    def row_samples(self, row):
+        """Columns and sub-samples of one row's samples in the order of the stream: two int arrays.
+
+        With ``frame.phase`` the sub-samples are 0 (phase) and 1 (amplitude).
+        """
+        return _row_samples(self, row % self.tile.rows)
+
+
+@lru_cache(maxsize=64)
+def _row_samples(scan, row):
+    cols, subs = [], []
+    for step in scan.steps(row):
+        lanes = [lane for lane in range(scan.lanes) if step.enable >> lane & 1]
+        columns = [scan.tile.cols * (scan.lanes * step.group + lane) + step.k for lane in lanes]
+        if not scan.frame.phase:
+            cols += columns
+            subs += [step.sub] * len(columns)
+        elif step.sub == 0:
+            cols += [c for c in columns for _ in range(2)]
+            subs += [0, 1] * len(columns)
+    return np.array(cols, np.int64), np.array(subs, np.int64)
