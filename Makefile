@@ -1,0 +1,68 @@
+# Talbot: the open design flow for angle-sensitive-pixel image sensors. `make` alone lists the targets.
+.DEFAULT_GOAL := help
+SHELL := /bin/bash
+PYTHON ?= python3
+VENV := .venv
+PY := $(VENV)/bin/python
+READY := $(VENV)/.ready
+
+# Arguments of `make sim`, each also an option of `python -m talbot sim`
+SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
+sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) '$($(o))'))
+
+.PHONY: help
+help:  ## this list
+	@echo "Talbot: from the optics of an angle-sensitive pixel to its byte stream. Targets:"
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
+	@echo "Arguments of sim: $(SIM_OPTIONS)   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
+
+$(READY): requirements.lock pyproject.toml flow/setup/venv.sh
+	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)'
+	@touch $@
+
+.PHONY: setup
+setup: $(READY)  ## the Python environment in .venv, from the lock file
+
+.PHONY: sim
+sim: $(READY)  ## a scene through the golden models and the chip's Verilog: build/sim/<scene>/report.html
+	@$(PY) -m talbot sim $(sim_arguments)
+
+.PHONY: sim-help
+sim-help: $(READY)  ## the arguments of make sim, explained
+	@$(PY) -m talbot sim --help
+
+.PHONY: test
+test: $(READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores)
+	@$(PY) -m pytest -n auto --dist loadfile
+
+.PHONY: verilog
+verilog: $(READY)  ## build/verilog/<top>.v, linted
+	@$(PY) -m rtl.export --out build/verilog --check
+
+.PHONY: tradeoff
+tradeoff: $(READY)  ## error against run time: tables and plots in build/tradeoff/
+	@$(PY) -m talbot tradeoff
+
+.PHONY: stability
+stability: $(READY)  ## stiff and extreme cases: bound against measured
+	@$(PY) -m talbot stability
+
+.PHONY: formats
+formats: $(READY)  ## stream formats and scan orders compared: build/formats/
+	@$(PY) -m flow.formats
+
+.PHONY: sizes
+sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
+	@$(PY) -m flow.sizes
+
+.PHONY: bench
+bench: $(READY)  ## speed and memory (pytest-benchmark)
+	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
+
+.PHONY: tools
+tools:  ## Icarus, a native Verilator and Yosys from Debian's packages (needs root)
+	@bash flow/setup/tools.sh
+
+.PHONY: clean
+clean:  ## remove build/ (the simulators' cache too)
+	rm -rf build

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys.
+set -euo pipefail
+packages=(iverilog verilator yosys)
+
+if ! command -v apt-get >/dev/null; then
+    echo "tools: apt-get = not found: install ${packages[*]} with this system's own package manager" >&2
+    exit 2
+fi
+if [ "$(id -u)" -ne 0 ]; then
+    echo "tools: user = $(id -un): must be root; run: sudo apt-get install ${packages[*]}" >&2
+    exit 2
+fi
+apt-get update -qq
+apt-get install -y --no-install-recommends "${packages[@]}"

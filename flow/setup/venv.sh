@@ -1,0 +1,22 @@
+#!/usr/bin/env bash
+# The Python environment: venv.sh PYTHON FOLDER. Every package at the version and hash of requirements.lock.
+set -euo pipefail
+python=$1 folder=$2
+
+fail() { echo "setup: $*" >&2; exit 2; }
+
+"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
+    || fail "python = '$python': must be Python 3.11 or later (make PYTHON=/path/to/python3)"
+command -v g++ >/dev/null || fail "g++ = not found: a C++ compiler is needed (Debian: apt-get install g++)"
+
+if [ ! -x "$folder/bin/python" ]; then
+    echo "setup: making $folder"
+    # Debian splits ensurepip off Python; virtualenv brings a pip of its own.
+    "$python" -m venv "$folder" 2>/dev/null || { rm -rf "$folder"; "$python" -m virtualenv -q "$folder"; } 2>/dev/null \
+        || fail "venv = unavailable in '$python': install python3-venv (Debian: apt-get install python3-venv) or virtualenv"
+fi
+
+echo "setup: installing the locked packages"
+"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+echo "setup: ready"

@@ -1,0 +1,1 @@
+"""What spans blocks: harnesses, exhaustive runs, two simulators."""

@@ -1,0 +1,162 @@
+// A frame in the simulator: the chip, the analog front end and a host that plays SPI transfers
+// and takes the byte stream. Everything is synchronous to `clk`, so that the same file runs in
+// Verilator (clocked by main.cpp) and in Icarus (clocked by clock.sv).
+//
+//   +script=FILE   what the host does, bytes:  01          wait for the end of a frame
+//                                              02 n b...   an SPI transfer of n bytes
+//                                              00          stop
+//   +miso=FILE     every byte that came back over SPI
+//   +stream=FILE   every byte that left the chip
+//   +stall=P       the link is not ready in P of 256 cycles, pseudo-random
+//   +samples=FILE, +converter=FILE   see pixels/afe.sv
+`default_nettype none
+
+module Bench #(
+    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
+) (
+    input  wire        clk,
+    input  wire        reset,
+    output reg         done,
+    output wire [9:0]  row
+);
+  localparam int HALF_BIT = 8;          // cycles of half an SPI clock
+
+  // ---- chip and front end ----
+  reg sclk, csn, mosi;
+  wire miso;
+  wire [7:0] link_data;
+  wire link_val, frame_sync;
+  reg  link_rdy;
+  wire [8*LANES-1:0] dac;
+  wire [LANES-1:0] comparator, en;
+  wire hold, unsigned_;
+  wire [1:0] mode, sub;
+  wire [7:0] group;
+  wire [2:0] k;
+  wire [`BALANCE_BITS-1:0] balance;
+
+  AspChip chip (
+      .clk(clk), .reset(reset), .sclk(sclk), .csn(csn), .mosi(mosi), .miso(miso),
+      .link_data(link_data), .link_val(link_val), .link_rdy(link_rdy), .frame_sync(frame_sync),
+      .dac(dac), .hold(hold), .unsigned_(unsigned_), .mode(mode), .row(row), .group(group), .k(k), .sub(sub),
+      .en(en), .balance(balance), .comparator(comparator),
+      /* verilator lint_off PINCONNECTEMPTY */
+      .pixel_reset(), .shutter(), .ref_ctl(), .integrate(), .cm_reset(), .read(), .sample(), .tap(), .amp_row(),
+      .busy()
+      /* verilator lint_on PINCONNECTEMPTY */
+  );
+
+  Afe #(.ROWS(ROWS), .COLS(COLS), .LANES(LANES), .TILE_ROWS(TILE_ROWS), .TILE_COLS(TILE_COLS), .TAPS(TAPS)) afe (
+      .clk(clk), .mode(mode), .row(row), .group(group), .k(k), .sub(sub), .en(en), .balance(balance),
+      .hold(hold), .dac(dac), .unsigned_(unsigned_), .comparator(comparator)
+  );
+
+  // ---- files ----
+  integer script, miso_file, stream_file;
+  integer stall;
+  reg [8*512-1:0] name;
+  initial begin
+    if (!$value$plusargs("script=%s", name)) $fatal(1, "+script=FILE is missing");
+    script = $fopen(name, "rb");
+    if (script == 0) $fatal(1, "+script: cannot be read");
+    if (!$value$plusargs("miso=%s", name)) $fatal(1, "+miso=FILE is missing");
+    miso_file = $fopen(name, "wb");
+    if (miso_file == 0) $fatal(1, "+miso: cannot be written");
+    if (!$value$plusargs("stream=%s", name)) $fatal(1, "+stream=FILE is missing");
+    stream_file = $fopen(name, "wb");
+    if (stream_file == 0) $fatal(1, "+stream: cannot be written");
+    if (!$value$plusargs("stall=%d", stall)) stall = 0;
+  end
+
+  // ---- link ----
+  reg [31:0] lfsr;
+  reg was_sync, ended;
+  always @(posedge clk) begin
+    if (reset) begin
+      lfsr <= 32'h1;
+      link_rdy <= 1'b0;
+      was_sync <= 1'b0;
+      ended <= 1'b0;
+    end else begin
+      lfsr <= {lfsr[30:0], lfsr[31] ^ lfsr[21] ^ lfsr[1] ^ lfsr[0]};
+      link_rdy <= {24'b0, lfsr[7:0]} >= stall;
+      was_sync <= frame_sync;
+      ended <= waiting & (ended | (was_sync & ~frame_sync));
+      if (link_val & link_rdy) $fwrite(stream_file, "%c", link_data);
+    end
+  end
+
+  // ---- host ----
+  localparam [1:0] FETCH = 0, SHIFT = 1, WAIT = 2, GAP = 3;
+  reg [1:0] state;
+  reg [7:0] left, divider;
+  reg [7:0] out, in;
+  reg [3:0] bits;
+  integer code;
+  wire waiting = state == WAIT;
+
+  always @(posedge clk) begin
+    if (reset) begin
+      state <= FETCH;
+      sclk <= 1'b0;
+      csn <= 1'b1;
+      mosi <= 1'b0;
+      done <= 1'b0;
+      left <= 8'd0;
+      divider <= 8'd0;
+      bits <= 4'd0;
+      out <= 8'd0;
+      in <= 8'd0;
+    end else case (state)
+      FETCH: if (!done) begin
+        code = $fgetc(script);
+        if (code == 1) state <= WAIT;
+        else if (code == 2) begin
+          code = $fgetc(script);
+          left <= code[7:0] - 8'd1;
+          code = $fgetc(script);
+          out <= {code[6:0], 1'b0};
+          mosi <= code[7];
+          csn <= 1'b0;
+          bits <= 4'd0;
+          divider <= 8'd0;
+          state <= SHIFT;
+        end else begin
+          done <= 1'b1;
+          $fclose(stream_file);
+          $fclose(miso_file);
+        end
+      end
+      WAIT: if (ended) state <= FETCH;
+      SHIFT: begin      // mode 0: the slave samples on the rising edge, both shift on the falling
+        divider <= divider == HALF_BIT - 1 ? 8'd0 : divider + 8'd1;
+        if (divider == HALF_BIT - 1) begin
+          sclk <= ~sclk;
+          if (!sclk) begin
+            in <= {in[6:0], miso};
+            bits <= bits + 4'd1;
+          end else if (bits == 4'd8) begin
+            $fwrite(miso_file, "%c", in);
+            bits <= 4'd0;
+            if (left == 8'd0) state <= GAP;
+            else begin
+              code = $fgetc(script);
+              left <= left - 8'd1;
+              out <= {code[6:0], 1'b0};
+              mosi <= code[7];
+            end
+          end else begin
+            mosi <= out[7];
+            out <= {out[6:0], 1'b0};
+          end
+        end
+      end
+      GAP: begin
+        divider <= divider + 8'd1;
+        csn <= divider >= HALF_BIT;
+        if (divider == 4 * HALF_BIT) state <= FETCH;
+      end
+    endcase
+  end
+endmodule
+`default_nettype wire

@@ -1,0 +1,67 @@
+// Clocks Bench in Verilator until it is done; writes what it took to +stats=FILE as JSON.
+// With tracing compiled in, +waves=FILE +waves_row0=N +waves_row1=N dump the cycles that convert those rows.
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include "VBench.h"
+#include "verilated.h"
+#ifdef WAVES
+#include "verilated_vcd_c.h"
+#endif
+
+static long argument(VerilatedContext& context, const char* name, long fallback) {
+  const char* text = context.commandArgsPlusMatch(name);
+  return text && *text ? std::atol(text + std::strlen(name) + 1) : fallback;
+}
+
+static const char* path(VerilatedContext& context, const char* name) {
+  static char text[4096];
+  const char* match = context.commandArgsPlusMatch(name);
+  if (!match || !*match) return nullptr;
+  std::snprintf(text, sizeof text, "%s", match + std::strlen(name) + 1);
+  return text;
+}
+
+int main(int argc, char** argv) {
+  VerilatedContext context;
+  context.commandArgs(argc, argv);
+  const unsigned long long limit = argument(context, "max_cycles=", 1000000000L);
+  VBench top{&context};
+#ifdef WAVES
+  const unsigned row0 = argument(context, "waves_row0=", 0), row1 = argument(context, "waves_row1=", 0);
+  VerilatedVcdC waves;
+  context.traceEverOn(true);
+  top.trace(&waves, 99);
+  waves.open(path(context, "waves="));
+#endif
+  unsigned long long cycles = 0;
+  const auto start = std::chrono::steady_clock::now();
+  top.reset = 1;
+  while (!top.done && !context.gotFinish() && cycles < limit) {
+    top.clk = 0;
+    top.eval();
+#ifdef WAVES
+    const bool dump = top.row >= row0 && top.row <= row1;
+    if (dump) waves.dump(2 * cycles);
+#endif
+    top.clk = 1;
+    top.eval();
+#ifdef WAVES
+    if (dump) waves.dump(2 * cycles + 1);
+#endif
+    if (++cycles == 4) top.reset = 0;
+  }
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+  top.final();
+#ifdef WAVES
+  waves.close();
+#endif
+  if (const char* name = path(context, "stats=")) {
+    std::FILE* stats = std::fopen(name, "w");
+    if (!stats) return 3;
+    std::fprintf(stats, "{\"cycles\": %llu, \"seconds\": %.9f, \"done\": %d}\n", cycles, spent.count(), top.done);
+    std::fclose(stats);
+  }
+  return top.done ? 0 : 4;
+}
