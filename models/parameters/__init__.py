@@ -4,6 +4,7 @@ from .array import COLS_MAX, ROWS_MAX, ArrayParameters
 from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import DIVIDERS, LANES, ChipParameters
 from .electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
+from .energy import EnergyParameters
 from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, AmpTiming, FrameParameters, Window
 from .optics import OpticsParameters
 from .sensor import SensorParameters

@@ -1,0 +1,52 @@
+"""Text of the command line -> validated values. Every refusal names the field, the value and the range."""
+
+from models.parameters import ALL_TYPES, ParameterError, Window
+
+TYPE_GROUPS = {"all": ALL_TYPES, "low": 0x0000FF, "mid": 0x00FF00, "high": 0xFF0000,
+               "cosine": 0x555555, "sine": 0xAAAAAA}
+
+
+def pixel_types(text):
+    """Mask of pixel types from '0xFF00FF', group names ('low,high') or type numbers ('0,2,5'): int."""
+    mask = 0
+    for word in text.split(","):
+        word = word.strip().lower()
+        if word in TYPE_GROUPS:
+            mask |= TYPE_GROUPS[word]
+        elif word.startswith("0x"):
+            mask |= _number("types", word, 1, ALL_TYPES, base=16)
+        else:
+            mask |= 1 << _number("types", word, 0, 23, hint=f"a type, 0x<mask> or one of {', '.join(TYPE_GROUPS)}")
+    return mask
+
+
+def window(text, full):
+    """Window in tiles from 'row0:row1,col0:col1', inclusive; 'full' or '' is the whole array."""
+    if text in ("", "full"):
+        return full
+    rows, comma, cols = text.partition(",")
+    if not comma:
+        raise ParameterError(f"window = {text!r}: must be row0:row1,col0:col1 in tiles, inclusive")
+    row0, row1 = span("window rows", rows, 0, full.row1)
+    col0, col1 = span("window cols", cols, 0, full.col1)
+    return Window(row0, row1, col0, col1)
+
+
+def span(field, text, low, high):
+    """Two integers 'a:b' (or one, 'a'), each in low..high, not inverted: tuple."""
+    first, colon, last = text.partition(":")
+    a = _number(field, first, low, high)
+    b = _number(field, last, low, high) if colon else a
+    if a > b:
+        raise ParameterError(f"{field} = {text!r}: must not be inverted, {low} <= first <= last <= {high}")
+    return a, b
+
+
+def _number(field, text, low, high, base=10, hint=None):
+    try:
+        value = int(text, base)
+    except ValueError:
+        value = None
+    if value is None or not low <= value <= high:
+        raise ParameterError(f"{field} = {text!r}: must be {hint or 'an integer'} in {low}..{high}")
+    return value
