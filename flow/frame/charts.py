@@ -1,0 +1,62 @@
+"""Charts of the report as SVG text (Matplotlib, no display)."""
+
+import io
+import re
+
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
+
+
+def _svg(figure):
+    FigureCanvasSVG(figure)
+    out = io.StringIO()
+    figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None})
+    text = out.getvalue()
+    return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg"):], count=1)
+
+
+def bars(parts, unit, title):
+    """Horizontal bars, one a part, with value and share; ``parts``: dict name -> value."""
+    total = sum(parts.values())
+    figure = Figure(figsize=(4.6, 0.42 * len(parts) + 0.7))
+    axes = figure.add_subplot()
+    names = list(parts)[::-1]
+    axes.barh(names, [parts[n] for n in names], color=[COLOURS[i % len(COLOURS)] for i in range(len(names))][::-1])
+    for i, name in enumerate(names):
+        share = f"  ({100 * parts[name] / total:.0f} %)" if total else ""
+        axes.text(parts[name], i, f" {parts[name]:,.4g} {unit}{share}", va="center", fontsize=8)
+    axes.set_xlim(0, 1.55 * max(parts.values(), default=1) or 1)
+    axes.set_title(title, fontsize=10, loc="left")
+    axes.xaxis.set_visible(False)
+    for side in ("top", "right", "bottom"):
+        axes.spines[side].set_visible(False)
+    axes.tick_params(labelsize=9)
+    return _svg(figure)
+
+
+def curves(series, x_label, y_label, title, log_x=False, log_y=False, mark=None):
+    """Lines with markers. ``series``: dict name -> list of (x, y, label or ''); ``mark``: one (x, y) to circle."""
+    figure = Figure(figsize=(4.6, 3.1))
+    axes = figure.add_subplot()
+    for i, (name, points) in enumerate(series.items()):
+        axes.plot([p[0] for p in points], [p[1] for p in points], "o-", color=COLOURS[i % len(COLOURS)],
+                  label=name, markersize=4)
+        for x, y, label in points:
+            if label:
+                axes.annotate(label, (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)
+    if mark:
+        axes.plot(*mark, "o", markersize=12, fillstyle="none", color="#c9574b")
+    if log_x:
+        axes.set_xscale("log")
+    if log_y:
+        axes.set_yscale("log")
+    if len(series) > 1:
+        axes.legend(fontsize=8, frameon=False)
+    axes.set_xlabel(x_label, fontsize=9)
+    axes.set_ylabel(y_label, fontsize=9)
+    axes.set_title(title, fontsize=10, loc="left")
+    axes.grid(alpha=0.25)
+    axes.tick_params(labelsize=8)
+    return _svg(figure)
