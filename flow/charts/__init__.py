@@ -1,20 +1,28 @@
-"""Charts of the report as SVG text (Matplotlib, no display)."""
+"""Charts (Matplotlib, no display): `bars` and `curves` make a figure, `svg` and `save` put it out."""
 
 import io
 import re
 
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
 COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 
-def _svg(figure):
+def svg(figure):
+    """SVG text of a figure, to stand in a page."""
     FigureCanvasSVG(figure)
     out = io.StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None})
     text = out.getvalue()
     return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg"):], count=1)
+
+
+def save(figure, path):
+    """Write a figure as a PNG."""
+    FigureCanvasAgg(figure)
+    figure.savefig(path, format="png", dpi=130, bbox_inches="tight")
 
 
 def bars(parts, unit, title):
@@ -33,7 +41,7 @@ def bars(parts, unit, title):
     for side in ("top", "right", "bottom"):
         axes.spines[side].set_visible(False)
     axes.tick_params(labelsize=9)
-    return _svg(figure)
+    return figure
 
 
 def curves(series, x_label, y_label, title, log_x=False, log_y=False, mark=None):
@@ -59,4 +67,4 @@ def curves(series, x_label, y_label, title, log_x=False, log_y=False, mark=None)
     axes.set_title(title, fontsize=10, loc="left")
     axes.grid(alpha=0.25)
     axes.tick_params(labelsize=8)
-    return _svg(figure)
+    return figure

@@ -1,0 +1,57 @@
+"""What a user asks for in one run, validated before anything is computed."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from models.parameters import (ALL_TYPES, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
+                               SensorParameters, Window, check_int, check_real)
+
+
+@dataclass(frozen=True)
+class FrameRequest:
+    """One run of the main job.
+
+    scene: a name of models.scene.scenes or an image file. depth: a file, or None.
+    focus: disparity of the focal plane (px a view step), or None for the scene's own.
+    noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
+    out: folder for the results, or None for build/sim/<scene>.
+    """
+
+    sensor: SensorParameters
+    frame: FrameParameters
+    scene: str = "motorcycle"
+    depth: str | None = None
+    focus: float | None = None
+    noise: float = 1.0
+    seed: int = 1
+    waves: tuple | None = None
+    out: Path | None = None
+
+    def __post_init__(self):
+        self.sensor.check_window(self.frame.window)
+        check_real("noise", self.noise, 0, 100)
+        check_int("seed", self.seed, 0, 2**32 - 1)
+        if self.focus is not None:
+            check_real("focus", self.focus, -100, 100)
+        if self.waves and self.waves[1] >= self.sensor.array.rows:
+            raise ParameterError(f"waves = {self.waves[0]}:{self.waves[1]}: rows must be in "
+                                 f"0..{self.sensor.array.rows - 1}")
+
+    @property
+    def name(self):
+        """Name of the scene without folder and suffix."""
+        return Path(self.scene).stem
+
+    @property
+    def folder(self):
+        return Path(self.out) if self.out else Path("build/sim") / self.name
+
+
+def request(rows=384, cols=384, lanes=8, window=None, mask=ALL_TYPES, **rest):
+    """A FrameRequest for an array of ``rows`` x ``cols``; ``window``: function of the full window, or None."""
+    sensor = SensorParameters(array=ArrayParameters(rows=rows, cols=cols), chip=ChipParameters(lanes=lanes))
+    full: Window = sensor.full_window
+    own = {name: rest.pop(name) for name in ("scene", "depth", "focus", "noise", "seed", "waves", "out")
+           if name in rest}
+    frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)
+    return FrameRequest(sensor=sensor, frame=frame, **own)
