@@ -1,0 +1,25 @@
+"""Files that pixels/afe.sv loads: big-endian 64-bit words, as $fread fills them."""
+
+import numpy as np
+
+from .converter import Converter
+
+
+def write_samples(path, samples):
+    """Write diode values, float64 (taps, rows, cols, 2): word ((tap * rows + row) * cols + col) * 2 + diode."""
+    with open(path, "wb") as file:
+        file.write(np.ascontiguousarray(samples, ">f8").data)
+
+
+def write_converter(path, front_end):
+    """Write gain and imperfections of a FrontEnd.
+
+    Words: gain, noise_scale, ktc_scale (float64), seed (integer), offset of every lane, then for every lane
+    256 bipolar levels, and for every lane 256 unipolar levels (float64).
+    """
+    c = front_end.converter or Converter.ideal(front_end.lanes)
+    with open(path, "wb") as file:
+        file.write(np.array([front_end.gain, c.noise_scale, c.ktc_scale], ">f8").tobytes())
+        file.write(np.array([c.seed], ">u8").tobytes())
+        file.write(c.offset.astype(">f8").tobytes())
+        file.write(c.levels.astype(">f8").tobytes())

@@ -1,0 +1,71 @@
+"""Diode pairs -> held values -> codes, for a whole frame: the NumPy twin of pixels/afe.sv."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.digital.sar import convert
+from models.parameters import MODES, ParameterError, TileParameters, check_choice, check_int, check_real
+
+from .converter import Converter
+from .trim import trim_gain
+
+
+@dataclass(frozen=True, eq=False)
+class FrontEnd:
+    """gain: of the difference before conversion, 0.25..64.
+    trim: register value of every pixel type, -512..511 (models/afe/trim.py).
+    lanes: converters; tile column t belongs to lane t mod lanes.
+    converter: their imperfections, or None for ideal ones.
+    """
+
+    gain: float
+    trim: tuple
+    lanes: int = 8
+    converter: Converter | None = None
+    tile: TileParameters = TileParameters()
+
+    def __post_init__(self):
+        check_real("gain", self.gain, 0.25, 64)
+        check_int("lanes", self.lanes, 1, 32)
+        trim_gain(self.trim)
+        if len(self.trim) != self.tile.n_types:
+            raise ParameterError(f"trim = {len(self.trim)} values: must be one a pixel type, {self.tile.n_types}")
+        if self.converter is not None and self.converter.lanes != self.lanes:
+            raise ParameterError(f"converter = {self.converter.lanes} lanes: must be {self.lanes}")
+
+    def values(self, samples, mode):
+        """Values ahead of the sample-and-hold, in LSB: float64 (subs, rows, cols).
+
+        samples: float64 (taps, rows, cols, 2), diode a and b of every pixel, a + b = 255 when both wells are full.
+        mode: edge, gain * (a - b * g); image, a + b; raw, 2 a and 2 b; tof, a + b of each tap.
+        Raises ParameterError for a bad shape, mode or number of taps, and for samples that are not finite.
+        """
+        check_choice("mode", mode, MODES)
+        samples = np.asarray(samples)
+        if samples.ndim != 4 or samples.shape[3] != 2 or samples.dtype != np.float64:
+            raise ParameterError(f"samples = {samples.dtype} {samples.shape}: must be float64 (taps, rows, cols, 2)")
+        if samples.shape[0] < (4 if mode == "tof" else 1):
+            raise ParameterError(f"taps = {samples.shape[0]}: must be 4 in mode 'tof'")
+        if not np.isfinite(samples).all():
+            raise ParameterError("samples = nan or infinity: must be finite")
+        a, b = samples[0, ..., 0], samples[0, ..., 1]
+        if mode == "edge":
+            g = trim_gain(self.trim)[self.tile.type_map(*a.shape)]
+            return (self.gain * (a - b * g))[None]
+        if mode == "image":
+            return (a + b)[None]
+        if mode == "raw":
+            return np.stack([2.0 * a, 2.0 * b])
+        return samples[:4, ..., 0] + samples[:4, ..., 1]
+
+    def convert(self, samples, mode, threshold=0):
+        """The codes of a whole frame: Conversion of arrays (subs, rows, cols). Arguments as in `values`, `convert`.
+
+        The noise of a sample is drawn for its number (sub * rows + row) * cols + col: it does not depend on the
+        window, the mask or the order in which samples are read.
+        """
+        v = self.values(samples, mode)
+        lane = np.arange(v.shape[2]) // self.tile.cols % self.lanes
+        index = np.arange(v.size).reshape(v.shape)
+        return convert(v, mode != "edge", threshold, self.converter, lane, index)
