@@ -1,0 +1,24 @@
+"""The configuration and the status as packed structs, generated from the register map."""
+
+from functools import cache
+
+from pymtl3 import Bits1, Bits64, mk_bits, mk_bitstruct
+
+from models.parameters.registers import register_map
+
+
+@cache
+def chip_config():
+    """ChipConfig: every configuration field by its name, and `trims`, pixel type 0 in the lowest bits."""
+    chip = register_map()
+    fields = {f.name: mk_bits(f.width) for f in chip.configuration if f.name != "trim"}
+    return mk_bitstruct("ChipConfig", fields | {"trims": mk_bits(sum(f.width for f in chip.trims))})
+
+
+@cache
+def chip_status():
+    """ChipStatus: busy, one-cycle strobes for the sticky bits that the chip sets, and the counters."""
+    chip = register_map()
+    strobes = [f.name for f in chip.fields if f.access == "w1c" and f.name != "refused"]
+    return mk_bitstruct("ChipStatus", {"busy": Bits1, **{name: Bits1 for name in strobes},
+                                       **{f.name: Bits64 for f in chip.counters}})

@@ -1,0 +1,83 @@
+"""The register file at functional level: models.digital.registers behind the pins."""
+
+from pymtl3 import Bits8, Component, InPort, OutPort, update_ff
+from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+
+from models.digital.registers import ADDRESS_MAX, RegisterBank
+from models.parameters.registers import register_map
+
+from .config import chip_config, chip_status
+
+
+class RegFileFL(Component):
+    """Same ports and same bytes as RegFile; the pins are taken without synchronisers, some cycles earlier."""
+
+    def construct(s, last_row=95, last_col=63):
+        Config = chip_config()
+        s.sclk = InPort()
+        s.csn = InPort()
+        s.mosi = InPort()
+        s.miso = OutPort()
+        s.status = InPort(chip_status())
+        s.cfg = OutPort(Config)
+        s.start = OutPort()
+        s.loop = SendIfcRTL(Bits8)
+
+        s.bank = RegisterBank({"row1": last_row, "col1": last_col})
+        s.was_high = s.command = None
+        s.bits, s.out = [], 0
+
+        chip = register_map()
+        counters = [f.name for f in chip.counters]
+        names = [f.name for f in chip.configuration if f.name != "trim"]
+
+        def configuration():
+            trims = sum(s.bank.value(f.key) << f.width * i for i, f in enumerate(chip.trims))
+            return Config(*(s.bank.value(name) for name in names), trims)
+
+        def falling():
+            if s.bits or s.command is None or s.command & 0x80:
+                s.out = s.out << 1 & 0xFF if s.bits else 0
+            else:
+                s.out = s.bank.read(s.command, int(s.status.busy),
+                                    [int(getattr(s.status, name)) for name in counters])
+
+        def rising():
+            s.bits.append(int(s.mosi))
+            if len(s.bits) == 8:
+                byte, s.bits = int("".join(map(str, s.bits)), 2), []
+                if s.command is None:
+                    s.command = byte
+                    return
+                if s.command & 0x80:
+                    s.bank.write(s.command & 0x7F, byte, bool(s.status.busy), bool(s.loop.val))
+                if s.command & 0x7F != ADDRESS_MAX:
+                    s.command += 1
+
+        @update_ff
+        def behave():
+            high = bool(s.sclk)
+            if s.reset:
+                s.bank.__init__({"row1": last_row, "col1": last_col})
+            if s.reset or s.csn:
+                s.bits, s.command, s.out = [], None, 0
+            elif high and not s.was_high:
+                rising()
+            elif s.was_high and not high:
+                falling()
+            s.was_high = high
+            for name in ("done", "cfg_err", "amp_err"):
+                if getattr(s.status, name) and not s.reset:
+                    s.bank.set(name)
+            start, loop = s.bank.take()
+            s.start <<= start
+            if loop is not None:
+                s.loop.val <<= 1
+                s.loop.msg <<= loop
+            elif s.reset or s.loop.rdy:
+                s.loop.val <<= 0
+            s.cfg <<= configuration()
+            s.miso <<= s.out >> 7
+
+    def line_trace(s):
+        return f"{s.csn}{s.sclk}{s.mosi}{s.miso} start={s.start}"

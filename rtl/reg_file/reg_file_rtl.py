@@ -1,0 +1,189 @@
+"""The register file: bytes over SPI to configuration, start strobe and status (models/parameters/registers)."""
+
+from pymtl3 import (Bits1, Bits3, Bits6, Bits7, Bits8, Bits10, Bits64, Component, InPort, OutPort, Wire, concat, connect, mk_bits,
+                    update, update_ff)
+from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+
+from models.parameters.registers import register_map
+
+from .config import chip_config, chip_status
+from .spi_slave_rtl import SpiSlave
+
+
+def packed(image, first, last):
+    """Bytes ``first``..``last`` of a dict address -> byte as one integer, little-endian."""
+    return sum(image.get(a, 0) << 8 * (a - first) for a in range(first, last + 1))
+
+
+class RegFile(Component):
+    """Configuration, locked while status.busy; see README.md.
+
+    last_row, last_col: last tile row and column of the array, the reset values of row1 and col1.
+    """
+
+    def construct(s, last_row=95, last_col=63):
+        chip = register_map()
+        resets = chip.image(chip.configuration, {"row1": last_row, "col1": last_col})
+        first, last = min(resets), max(resets)
+        n_bytes = last - first + 1
+        Image = mk_bits(8 * n_bytes)
+        RESET = Image(packed(resets, first, last))
+        WRITABLE = Image(packed(chip.writable(), first, last))
+        FIRST, LAST = Bits7(first), Bits7(last)
+        ID, VERSION = Bits8(chip["id"].reset), Bits8(chip["version"].reset)
+        A_ID, A_VERSION = Bits7(chip["id"].byte), Bits7(chip["version"].byte)
+        A_START, A_STATUS, A_LOOP = (Bits7(chip[n].byte) for n in ("start", "busy", "loop_back"))
+        A_CYCLES, A_MADE, A_LEFT_OUT = (Bits7(f.byte) for f in chip.counters)
+        LAST_COUNTER = Bits7(chip.counters[-1].byte + 7)
+        START_BIT = chip["start"].shift
+        CLEARED_BY_START = Bits8(sum(1 << chip[n].shift for n in ("done", "cfg_err", "amp_err")))
+
+        s.sclk = InPort()
+        s.csn = InPort()
+        s.mosi = InPort()
+        s.miso = OutPort()
+        s.status = InPort(chip_status())
+        s.cfg = OutPort(chip_config())
+        s.start = OutPort()
+        s.loop = SendIfcRTL(Bits8)
+
+        s.spi = SpiSlave()
+        s.image = Wire(Image)           # the configuration's bytes, the lowest address in the lowest bits
+        s.written = Wire(Image)         # ... with the byte that is written now
+        s.writable = Wire(Image)
+        s.snapshot = Wire(64)           # the counter whose first byte was read last
+        s.sticky = Wire(8)              # sticky bits at their places in the status byte
+        s.events = Wire(8)              # what sets them
+        s.state = Wire(8)               # the bits that are not sticky
+        s.have_command = Wire()
+        s.writing = Wire()
+        s.address = Wire(7)
+        s.offset = Wire(7)              # of the address in the image, in bytes
+        s.index = Wire(10)          # ... in bits
+        s.counter_index = Wire(6)
+        s.write = Wire()
+        s.starting = Wire()
+        s.in_image = Wire()
+        s.refused = Wire()
+
+        s.spi.sclk //= s.sclk
+        s.spi.csn //= s.csn
+        s.spi.mosi //= s.mosi
+        s.miso //= s.spi.miso
+        s.writable //= WRITABLE
+        low = 0
+        for f in chip.configuration:
+            bit = 8 * (f.address - first) + f.lsb
+            if f.name == "trim":
+                connect(s.cfg.trims[low:low + f.width], s.image[bit:bit + f.width])
+                low += f.width
+            else:
+                connect(getattr(s.cfg, f.name), s.image[bit:bit + f.width])
+        sources = {"busy": (s.state, s.status.busy), "done": (s.events, s.status.done),
+                   "cfg_err": (s.events, s.status.cfg_err), "amp_err": (s.events, s.status.amp_err),
+                   "refused": (s.events, s.refused)}
+        placed = {(vector, chip[name].shift): signal for name, (vector, signal) in sources.items()}
+        for vector in (s.events, s.state):
+            for bit in range(8):
+                connect(vector[bit], placed.get((vector, bit), Bits1(0)))
+
+        @update
+        def up_decode():
+            s.offset @= s.address - FIRST
+            s.index @= concat(s.offset, Bits3(0))
+            s.counter_index @= concat(s.address[0:3], Bits3(0))
+            s.in_image @= (s.address >= FIRST) & (s.address <= LAST)
+            s.write @= s.spi.rx_val & s.have_command & s.writing
+            s.starting @= s.write & (s.address == A_START) & s.spi.rx[START_BIT]
+            s.refused @= (s.status.busy & (s.starting | (s.write & s.in_image))
+                          | s.loop.val & s.write & (s.address == A_LOOP))
+
+        @update
+        def up_read():
+            s.spi.tx @= Bits8(0)
+            if s.spi.tx_take & s.have_command & ~s.writing:
+                if s.in_image:
+                    s.spi.tx @= s.image[s.index:s.index + Bits10(8)]
+                elif s.address == A_CYCLES:
+                    s.spi.tx @= s.status.cycles[0:8]
+                elif s.address == A_MADE:
+                    s.spi.tx @= s.status.conversions_made[0:8]
+                elif s.address == A_LEFT_OUT:
+                    s.spi.tx @= s.status.conversions_left_out[0:8]
+                elif (s.address > A_CYCLES) & (s.address <= LAST_COUNTER):
+                    s.spi.tx @= s.snapshot[s.counter_index:s.counter_index + Bits6(8)]
+                elif s.address == A_STATUS:
+                    s.spi.tx @= s.sticky | s.state
+                elif s.address == A_ID:
+                    s.spi.tx @= ID
+                elif s.address == A_VERSION:
+                    s.spi.tx @= VERSION
+
+        @update_ff
+        def up_transfer():
+            if s.reset | ~s.spi.selected:
+                s.have_command <<= Bits1(0)
+                s.writing <<= Bits1(0)
+                s.address <<= Bits7(0)
+            elif s.spi.rx_val:
+                s.have_command <<= Bits1(1)
+                if ~s.have_command:
+                    s.writing <<= s.spi.rx[7]
+                    s.address <<= s.spi.rx[0:7]
+                elif s.address != Bits7(127):
+                    s.address <<= s.address + Bits7(1)
+
+        @update
+        def up_written():
+            s.written @= s.image
+            if s.write & s.in_image & ~s.status.busy:
+                for i in range(n_bytes):
+                    if s.offset == Bits7(i):
+                        s.written[i * 8:i * 8 + 8] @= s.spi.rx & s.writable[i * 8:i * 8 + 8]
+
+        @update_ff
+        def up_image():
+            if s.reset:
+                s.image <<= RESET
+            else:
+                s.image <<= s.written
+
+        @update_ff
+        def up_snapshot():
+            if s.reset:
+                s.snapshot <<= Bits64(0)
+            elif s.spi.tx_take & s.have_command & ~s.writing:
+                if s.address == A_CYCLES:
+                    s.snapshot <<= s.status.cycles
+                elif s.address == A_MADE:
+                    s.snapshot <<= s.status.conversions_made
+                elif s.address == A_LEFT_OUT:
+                    s.snapshot <<= s.status.conversions_left_out
+
+        @update_ff
+        def up_status():
+            if s.reset:
+                s.start <<= Bits1(0)
+                s.sticky <<= Bits8(0)
+            else:
+                s.start <<= s.starting & ~s.status.busy
+                if s.starting & ~s.status.busy:
+                    s.sticky <<= s.sticky & ~CLEARED_BY_START | s.events
+                elif s.write & (s.address == A_STATUS):
+                    s.sticky <<= s.sticky & ~s.spi.rx | s.events
+                else:
+                    s.sticky <<= s.sticky | s.events
+
+        @update_ff
+        def up_loop():
+            if s.reset:
+                s.loop.val <<= Bits1(0)
+                s.loop.msg <<= Bits8(0)
+            elif s.write & (s.address == A_LOOP) & ~s.loop.val:
+                s.loop.val <<= Bits1(1)
+                s.loop.msg <<= s.spi.rx
+            elif s.loop.rdy:
+                s.loop.val <<= Bits1(0)
+
+    def line_trace(s):
+        return f"{s.spi.line_trace()} {s.address} {'w' if s.write else '.'}{s.spi.rx} start={s.start}"

@@ -1,0 +1,71 @@
+"""SPI slave, mode 0, oversampled by the system clock: bits to bytes and back."""
+
+from pymtl3 import Bits1, Bits2, Bits3, Bits8, Component, InPort, OutPort, Wire, concat, update, update_ff
+
+
+class SpiSlave(Component):
+    """Bytes in as strobes, bytes out on demand; MSB first.
+
+    rx, rx_val: a whole byte came in (one cycle). tx is taken at the falling edge that follows it, when
+    tx_take is high. selected: csn is low. sclk at most clk / 8.
+    """
+
+    def construct(s):
+        s.sclk = InPort()
+        s.csn = InPort()
+        s.mosi = InPort()
+        s.miso = OutPort()
+        s.selected = OutPort()
+        s.rx = OutPort(8)
+        s.rx_val = OutPort()
+        s.tx = InPort(8)
+        s.tx_take = OutPort()
+
+        # Two flip-flops against metastability; a third holds sclk of the cycle before.
+        s.sclk_sync = Wire(3)
+        s.csn_sync = Wire(2)
+        s.mosi_sync = Wire(2)
+        s.rise = Wire()
+        s.fall = Wire()
+        s.count = Wire(3)
+        s.shift_in = Wire(7)
+        s.shift_out = Wire(8)
+
+        s.miso //= s.shift_out[7]
+
+        @update
+        def up_edges():
+            s.selected @= ~s.csn_sync[1]
+            s.rise @= s.selected & s.sclk_sync[1] & ~s.sclk_sync[2]
+            s.fall @= s.selected & ~s.sclk_sync[1] & s.sclk_sync[2]
+            s.rx @= concat(s.shift_in, s.mosi_sync[1])
+            s.rx_val @= s.rise & (s.count == Bits3(7))
+            s.tx_take @= s.fall & (s.count == Bits3(0))
+
+        @update_ff
+        def up_sync():
+            if s.reset:
+                s.sclk_sync <<= Bits3(0)
+                s.csn_sync <<= Bits2(3)
+                s.mosi_sync <<= Bits2(0)
+            else:
+                s.sclk_sync <<= concat(s.sclk_sync[0:2], s.sclk)
+                s.csn_sync <<= concat(s.csn_sync[0], s.csn)
+                s.mosi_sync <<= concat(s.mosi_sync[0], s.mosi)
+
+        @update_ff
+        def up_shift():
+            if s.reset | ~s.selected:
+                s.count <<= Bits3(0)
+                s.shift_in <<= 0
+                s.shift_out <<= Bits8(0)
+            elif s.rise:
+                s.count <<= s.count + Bits3(1)
+                s.shift_in <<= concat(s.shift_in[0:6], s.mosi_sync[1])
+            elif s.tx_take:
+                s.shift_out <<= s.tx
+            elif s.fall:
+                s.shift_out <<= concat(s.shift_out[0:7], Bits1(0))
+
+    def line_trace(s):
+        return f"{s.csn}{s.sclk}{s.mosi}{s.miso} {s.count}"

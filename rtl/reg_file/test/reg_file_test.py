@@ -1,0 +1,226 @@
+"""RegFile at every level: an SPI host against the register map and the golden bank."""
+
+from dataclasses import replace
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from models.digital.registers import ADDRESS_MAX, RegisterBank
+from models.parameters import MODES, AmpTiming, FrameParameters, Window
+from models.parameters.registers import (command, decode_status, frame_writes, read_transfer, register_map,
+                                         status_transfers, write_transfers)
+from rtl.reg_file import RegFile, RegFileFL, chip_config
+from rtl.testbench import build
+
+from .spi_host import SpiHost
+
+CHIP = register_map()
+FIRST = min(CHIP.writable())
+LAST_ROW, LAST_COL = 2, 2       # a small array's, so that these resets are not the map's
+SETTINGS = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+
+
+class Bench:
+    """One simulated register file with its SPI host; collects start strobes and loop-back bytes."""
+
+    def __init__(self, sim, half=4):
+        self.sim, self.starts, self.loop = sim, 0, []
+        sim.loop.rdy @= 1
+        sim.status @= type(sim.status)()
+        sim.reset @= 1
+        sim.sim_tick()
+        sim.reset @= 0
+        self.spi = SpiHost(sim, self.tick, half)
+
+    def tick(self):
+        sim = self.sim
+        sim.sim_eval_combinational()
+        if sim.loop.val and sim.loop.rdy:
+            self.loop.append(int(sim.loop.msg))
+        sim.sim_tick()
+        self.starts += int(sim.start)
+
+    def status(self, **fields):
+        """Drive the status inputs: fields by name, the rest 0."""
+        status = type(self.sim.status)()
+        for name, value in fields.items():
+            setattr(status, name, type(getattr(status, name))(value))
+        self.sim.status @= status
+
+    def read(self, address, count=1):
+        return self.spi.transfer(read_transfer(address, count))[1:]
+
+    def write(self, writes):
+        for transfer in write_transfers(writes):
+            self.spi.transfer(transfer)
+
+    def value(self, name):
+        return int(getattr(self.sim.cfg, name))
+
+
+class TestFL:
+    component, verilog = RegFileFL, False
+    sim = None
+
+    def bench(self, half=4):
+        cls = type(self)
+        if cls.__dict__.get("sim") is None:
+            cls.sim = build(self.component(LAST_ROW, LAST_COL), self.verilog, "RegFile")
+        return Bench(cls.sim, half)
+
+    def test_reset_values(self):
+        bench = self.bench()
+        expected = RegisterBank({"row1": LAST_ROW, "col1": LAST_COL})
+        for name in (f.name for f in CHIP.configuration if f.name != "trim"):
+            assert bench.value(name) == expected.value(name), name
+        assert bench.value("trims") == 0
+        assert bench.read(0, 4) == bytes((CHIP["id"].reset, CHIP["version"].reset, 0, 0))
+
+    def test_a_frame_is_written_and_read_back(self):
+        bench = self.bench()
+        frame = FrameParameters(Window(1, 200, 3, 250), "tof", 0x8001FE, 127, 3, True, 255, False, True, 0xBEEF,
+                                AmpTiming(1, 65535, 0x1234, 2, 3, 0xFF00, 255))
+        trims = [(-1) ** t * (21 * t + 7) for t in range(24)]
+        writes = frame_writes(frame, trims)
+        bench.write(writes)
+        assert MODES[bench.value("mode")] == "tof" and bench.value("decimation") == 3
+        for name in ("mask", "threshold", "noise_floor", "frame_number", "phase", "overlap", "test_pattern"):
+            assert bench.value(name) == getattr(frame, name), name
+        for name in ("row0", "row1", "col0", "col1"):
+            assert bench.value(name) == getattr(frame.window, name), name
+        for name in ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm"):
+            assert bench.value(name) == getattr(frame.timing, name), name
+        width = CHIP.trims[0].width
+        for t, trim in enumerate(trims):
+            assert bench.value("trims") >> width * t & (1 << width) - 1 == trim % (1 << width), t
+        read = bench.read(FIRST, max(CHIP.writable()) - FIRST + 1)
+        assert all(read[address - FIRST] == byte for address, byte in writes)
+
+    def test_start_is_one_strobe(self):
+        bench = self.bench()
+        bench.spi.transfer(command("start"))
+        assert bench.starts == 1
+        assert bench.read(CHIP["start"].byte) == b"\0"
+
+    def test_busy_locks_the_configuration(self):
+        bench = self.bench()
+        before = bench.read(FIRST, 8)
+        bench.status(busy=1)
+        bench.write([(FIRST + i, byte ^ 0xFF) for i, byte in enumerate(before)])
+        assert bench.read(FIRST, 8) == before
+        assert bench.read(CHIP["busy"].byte)[0] == 1 << CHIP["refused"].shift | 1 << CHIP["busy"].shift
+        bench.spi.transfer(command("refused"))
+        assert bench.read(CHIP["busy"].byte)[0] == 1 << CHIP["busy"].shift
+        bench.spi.transfer(command("start"))
+        assert bench.starts == 0
+        bench.status()
+        assert bench.read(CHIP["busy"].byte)[0] == 1 << CHIP["refused"].shift
+        bench.spi.transfer(command("start"))
+        assert bench.starts == 1
+        assert bench.read(CHIP["busy"].byte)[0] == 1 << CHIP["refused"].shift, "a start keeps refused"
+
+    def test_sticky_bits(self):
+        bench = self.bench()
+        for name in ("done", "cfg_err", "amp_err"):
+            bench.status(**{name: 1})
+            bench.tick()
+            bench.status()
+        both = [1 << CHIP[n].shift for n in ("done", "cfg_err", "amp_err")]
+        assert bench.read(CHIP["busy"].byte)[0] == sum(both)
+        bench.spi.transfer(command("cfg_err"))
+        assert bench.read(CHIP["busy"].byte)[0] == both[0] + both[2]
+        bench.spi.transfer(command("start"))
+        assert bench.read(CHIP["busy"].byte)[0] == 0
+
+    def test_counters_are_taken_at_their_first_byte(self):
+        bench = self.bench()
+        counters = {f.name: 0x0123456789ABCDEF * (i + 1) & (1 << 64) - 1 for i, f in enumerate(CHIP.counters)}
+        bench.status(**counters)
+        replies = [bench.spi.transfer(t) for t in status_transfers()]
+        flags = dict.fromkeys(("busy", "done", "cfg_err", "amp_err", "refused"), False)
+        assert decode_status(replies) == flags | counters
+        first = CHIP.counters[0]
+        bench.read(first.byte, 3)
+        bench.status(cycles=0)
+        assert bench.read(first.byte + 1, 7) == counters["cycles"].to_bytes(8, "little")[1:]
+        assert bench.read(first.byte, 8) == bytes(8)
+
+    def test_a_cut_transfer_writes_whole_bytes_only(self):
+        bench = self.bench()
+        a = CHIP["t_int"].byte
+        for cut in (3, 8, 12, 15, 16, 23):
+            bench.write([(a, 0x11), (a + 1, 0x22)])
+            bench.spi.transfer(bytes((0x80 | a, 0x55, 0x66)), cut)
+            assert bench.read(a, 2) == (b"\x55\x22" if cut >= 16 else b"\x11\x22"), cut
+
+    def test_loop_back(self):
+        bench = self.bench()
+        address = CHIP["loop_back"].byte
+        bench.spi.transfer(bytes((0x80 | address, *range(5, 10))))
+        assert bench.loop == list(range(5, 10))
+        bench.sim.loop.rdy @= 0
+        bench.spi.transfer(bytes((0x80 | address, 77, 78)))
+        assert bench.read(CHIP["busy"].byte)[0] == 1 << CHIP["refused"].shift
+        bench.sim.loop.rdy @= 1
+        bench.spi.wait(4)
+        assert bench.loop[5:] == [77], "the byte that found no room is refused, not the one before it"
+
+    def test_half_bits_of_any_length(self):
+        for half in (4, 5, 8, 13):
+            bench = self.bench(half)
+            bench.write([(FIRST + 2, half)])
+            assert bench.read(FIRST + 2)[0] == half
+
+    def test_any_transfers(self):
+        """Any bytes at any address, whole or cut, with and without busy: as the golden bank says."""
+        a_transfer = st.tuples(st.binary(min_size=1, max_size=6), st.integers(0, 7), st.booleans())
+
+        @SETTINGS
+        @given(st.lists(a_transfer, min_size=1, max_size=6))
+        def check(transfers):
+            bench = self.bench()
+            bank = RegisterBank({"row1": LAST_ROW, "col1": LAST_COL})
+            starts = 0
+            for data, missing, busy in transfers:
+                bench.status(busy=busy, cycles=1, conversions_made=2, conversions_left_out=3)
+                got = bench.spi.transfer(data, 8 * len(data) - missing)
+                whole = data[:len(data) - (missing > 0)]
+                want = self.expected(bank, whole, busy)
+                assert got == want[:len(whole)]
+                starts += bank.take()[0]
+            assert bench.starts == starts
+            assert bench.value("trims") == sum(bank.value(f.key) << f.width * i for i, f in enumerate(CHIP.trims))
+
+        check()
+
+    @staticmethod
+    def expected(bank, data, busy):
+        """What the golden bank answers to whole bytes ``data``."""
+        out = bytearray(1)
+        address = data[0] & 0x7F if data else 0
+        for byte in data[1:]:
+            if data[0] & 0x80:
+                bank.write(address, byte, busy, False)
+                out.append(0)
+            else:
+                out.append(bank.read(address, busy, [1, 2, 3]))
+            address = min(address + 1, ADDRESS_MAX)
+        return bytes(out)
+
+
+class TestRTL(TestFL):
+    component = RegFile
+
+
+class TestVerilog(TestRTL):
+    verilog = True
+
+
+def test_the_bank_resets_to_the_default_frame():
+    """The map's resets are the defaults of models.parameters for the default sensor."""
+    from models.parameters import SensorParameters
+
+    frame = FrameParameters(SensorParameters().full_window)
+    assert dict(frame_writes(frame)) == CHIP.image(CHIP.configuration)
+    assert dict(frame_writes(replace(frame, threshold=11))) != CHIP.image(CHIP.configuration)
+    assert chip_config().nbits == sum(f.width for f in CHIP.configuration)
