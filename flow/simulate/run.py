@@ -14,11 +14,13 @@ WAIT, TRANSFER, STOP = b"\x01", b"\x02", b"\x00"
 @dataclass(frozen=True)
 class FrameRun:
     """stream: bytes that left the chip. miso: bytes that came back over SPI.
+    activity: cycles that each pin of the front end was high (bench.sv).
     cycles: clock cycles of the simulation, SPI included. seconds: wall clock of the clock loop.
     """
 
     stream: bytes
     miso: bytes
+    activity: dict
     cycles: int
     seconds: float
 
@@ -44,7 +46,7 @@ def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000
         folder = Path(folder)
         (folder / "script").write_bytes(script)
         arguments = [f"+script={folder / 'script'}", f"+miso={folder / 'miso'}", f"+stream={folder / 'stream'}",
-                     f"+stats={folder / 'stats'}", f"+samples={samples}", f"+converter={converter}",
+                     f"+stats={folder / 'stats'}", f"+activity={folder / 'activity'}", f"+samples={samples}", f"+converter={converter}",
                      f"+stall={stall}", f"+max_cycles={max_cycles}"]
         if waves:
             arguments += [f"+waves={waves[0]}", f"+waves_row0={waves[1]}", f"+waves_row1={waves[2]}"]
@@ -55,4 +57,5 @@ def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000
                             f"{' (no frame end)' if result.returncode == 4 else ''}: {tail}")
         stats = json.loads((folder / "stats").read_text())
         return FrameRun((folder / "stream").read_bytes(), (folder / "miso").read_bytes(),
+                        json.loads((folder / "activity").read_text()),
                         stats["cycles"], stats["seconds"])

@@ -7,6 +7,7 @@
 //                                              00          stop
 //   +miso=FILE     every byte that came back over SPI
 //   +stream=FILE   every byte that left the chip
+//   +activity=FILE how many cycles each pin of the front end was high, and the link moved a byte
 //   +stall=P       the link is not ready in P of 256 cycles, pseudo-random
 //   +samples=FILE, +converter=FILE   see pixels/afe.sv
 `default_nettype none
@@ -27,6 +28,7 @@ module Bench #(
   wire [7:0] link_data;
   wire link_val, frame_sync;
   reg  link_rdy;
+  wire pixel_reset, integrate, cm_reset, read, busy;
   wire [8*LANES-1:0] dac;
   wire [LANES-1:0] comparator, en;
   wire hold, unsigned_;
@@ -40,9 +42,10 @@ module Bench #(
       .link_data(link_data), .link_val(link_val), .link_rdy(link_rdy), .frame_sync(frame_sync),
       .dac(dac), .hold(hold), .unsigned_(unsigned_), .mode(mode), .row(row), .group(group), .k(k), .sub(sub),
       .en(en), .balance(balance), .comparator(comparator),
+      .pixel_reset(pixel_reset), .integrate(integrate), .cm_reset(cm_reset), .read(read), .
+      .busy(busy),
       /* verilator lint_off PINCONNECTEMPTY */
-      .pixel_reset(), .shutter(), .ref_ctl(), .integrate(), .cm_reset(), .read(), .sample(), .tap(), .amp_row(),
-      .busy()
+      .shutter(), .ref_ctl(), .sample(), .tap(), .amp_row()
       /* verilator lint_on PINCONNECTEMPTY */
   );
 
@@ -67,6 +70,34 @@ module Bench #(
     if (stream_file == 0) $fatal(1, "+stream: cannot be written");
     if (!$value$plusargs("stall=%d", stall)) stall = 0;
   end
+
+  // ---- activity ----
+  reg [31:0] n_busy, n_reset, n_integrate, n_cm, n_read, n_dark, n_hold, n_bytes;
+  integer activity;
+  always @(posedge clk) begin
+    if (reset) begin
+      n_busy <= 0; n_reset <= 0; n_integrate <= 0; n_cm <= 0; n_read <= 0; n_dark <= 0; n_hold <= 0; n_bytes <= 0;
+    end else if (busy) begin
+      n_busy <= n_busy + 1;
+      if (pixel_reset) n_reset <= n_reset + 1;
+      else if (integrate) n_integrate <= n_integrate + 1;
+      else if (cm_reset) n_cm <= n_cm + 1;
+      else if (read) n_read <= n_read + 1;
+      else n_dark <= n_dark + 1;
+      if (hold) n_hold <= n_hold + 1;
+      if (link_val & link_rdy) n_bytes <= n_bytes + 1;
+    end
+  end
+  task automatic write_activity;
+    if ($value$plusargs("activity=%s", name)) begin
+      activity = $fopen(name, "w");
+      $fwrite(activity, "{\"busy\": %0d, \"pixel_reset\": %0d, \"integrate\": %0d, \"cm_reset\": %0d, ",
+              n_busy, n_reset, n_integrate, n_cm);
+      $fwrite(activity, "\"read\": %0d, \"waiting\": %0d, \"steps\": %0d, \"bytes\": %0d}\n",
+              n_read, n_dark, n_hold, n_bytes);
+      $fclose(activity);
+    end
+  endtask
 
   // ---- link ----
   reg [31:0] lfsr;
@@ -125,6 +156,7 @@ module Bench #(
           done <= 1'b1;
           $fclose(stream_file);
           $fclose(miso_file);
+          write_activity;
         end
       end
       WAIT: if (ended) state <= FETCH;
