@@ -1,0 +1,133 @@
+"""`python -m rtl.export`: one readable Verilog file a top, the same bytes from run to run, linted.
+
+What PyMTL translates gets module names without parameters in them, paths relative to the repository, and
+types named as in the sources.
+"""
+
+import argparse
+import os
+import re
+import sys
+import tempfile
+import warnings
+from pathlib import Path
+
+from pymtl3.passes.backends.verilog import VerilogTranslationPass
+
+from models.parameters import (DIVIDERS, ArrayParameters, ChipParameters, ParameterError, SensorParameters,
+                               TileParameters)
+from rtl.lint import LintError, lint
+from rtl.tops import TOPS, build_top
+
+ROOT = Path(__file__).parents[1]
+COLUMNS = "200"     # PyMTL folds lines at the terminal's width
+
+
+def module_names(top, name):
+    """Module name of every component below the elaborated ``top``: dict component -> str.
+
+    A class's name; where a design holds a class with several parameter sets, the later ones (in the order
+    of their instance names) are numbered: Queue, Queue_2.
+    """
+    names, sets, taken = {top: name}, {}, {name}
+    for component in sorted(top.get_all_components(), key=repr):
+        if component is top:
+            continue
+        cls = type(component).__name__
+        key = (cls, repr(component._dsl.args), repr(sorted(component._dsl.kwargs.items())))
+        if key not in sets:
+            number = 1
+            while (candidate := cls if number == 1 else f"{cls}_{number}") in taken:
+                number += 1
+            sets[key] = candidate
+            taken.add(candidate)
+        names[component] = sets[key]
+    return names
+
+
+def tidy(text):
+    """PyMTL's Verilog without absolute paths, hashed type names and one-bit loop counters."""
+    text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
+    text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
+    text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
+    text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)
+    for struct in sorted(set(re.findall(r"\b(\w+?)__[0-9a-f]{16}\b", text))):
+        hashed = set(re.findall(rf"\b{struct}__[0-9a-f]{{16}}\b", text))
+        if len(hashed) == 1:
+            text = text.replace(hashed.pop(), struct)
+    lines = [line.rstrip() for line in text.splitlines()]
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
+
+
+def translate(name, sensor):
+    """The Verilog of top ``name`` for ``sensor``, as text. Raises ParameterError."""
+    top = build_top(name, sensor)
+    top.elaborate()
+    for component, module in module_names(top, name).items():
+        component.set_metadata(VerilogTranslationPass.explicit_module_name, module)
+    top.set_metadata(VerilogTranslationPass.enable, True)
+    before, columns = Path.cwd(), os.environ.get("COLUMNS")
+    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore")     # PyMTL3 3.1.17's translator warns about its own code
+        os.chdir(folder)                    # it writes into the working directory
+        os.environ["COLUMNS"] = COLUMNS
+        try:
+            top.apply(VerilogTranslationPass())
+            return tidy(Path(top.get_metadata(VerilogTranslationPass.translated_filename)).read_text())
+        finally:
+            os.chdir(before)
+            if columns is None:
+                os.environ.pop("COLUMNS")
+            else:
+                os.environ["COLUMNS"] = columns
+
+
+def write(path, text):
+    """Write ``text`` so that ``path`` is whole or as it was."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f".{path.name}.part-{os.getpid()}")
+    try:
+        part.write_text(text)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def arguments():
+    sensor = SensorParameters()
+    parser = argparse.ArgumentParser(prog="python -m rtl.export", description=__doc__.splitlines()[0])
+    parser.add_argument("--top", action="append", choices=TOPS, help="a top (may be repeated); default: every one")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "verilog", help="folder of the files")
+    parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")
+    parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down (%(default)s)")
+    parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across (%(default)s)")
+    parser.add_argument("--lanes", type=int, default=sensor.chip.lanes, help="converters (%(default)s)")
+    parser.add_argument("--divider", default=sensor.chip.divider, help=f"one of {', '.join(DIVIDERS)} (%(default)s)")
+    parser.add_argument("--n-frac", type=int, default=sensor.chip.n_frac, help="fraction bits (%(default)s)")
+    parser.add_argument("--iterations", type=int, default=sensor.chip.cordic_iterations, help="of CORDIC (%(default)s)")
+    return parser
+
+
+def sensor_of(options):
+    """SensorParameters of the command line's options. Raises ParameterError."""
+    return SensorParameters(
+        tile=TileParameters(), array=ArrayParameters(options.rows, options.cols),
+        chip=ChipParameters(options.lanes, options.divider, options.n_frac, options.iterations))
+
+
+def main(argv=None):
+    options = arguments().parse_args(argv)
+    try:
+        sensor = sensor_of(options)
+        for name in options.top or TOPS:
+            path = options.out / f"{name}.v"
+            write(path, translate(name, sensor))
+            print(f"{path}{': ' + ', '.join(lint(path, name)) if options.check else ''}")
+    except (ParameterError, LintError, OSError) as error:
+        print(f"rtl.export: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,74 @@
+"""Exported Verilog: the same bytes from run to run and place to place, accepted by the tools that must take it."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
+from rtl.export import main, tidy, translate
+from rtl.lint import LintError, lint
+from rtl.tops import TOPS
+
+ROOT = Path(__file__).parents[2]
+SMALL = SensorParameters(array=ArrayParameters(9, 20), chip=ChipParameters(lanes=2))
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    """Every top of the default sensor in one folder, from a process of its own with another hash seed and width."""
+    out = tmp_path_factory.mktemp("exported")
+    subprocess.run([sys.executable, "-m", "rtl.export", "--out", out], cwd=ROOT, check=True, capture_output=True,
+                   env=dict(os.environ, PYTHONHASHSEED="7", COLUMNS="40"))
+    return out
+
+
+@pytest.mark.parametrize("name", TOPS)
+def test_the_same_bytes_every_time(exported, name):
+    text = (exported / f"{name}.v").read_text()
+    assert text == translate(name, SensorParameters())
+    assert str(ROOT) not in text and "site-packages" not in text
+
+
+@pytest.mark.parametrize("name", TOPS)
+def test_readable_names_and_flat_ports(exported, name):
+    text = (exported / f"{name}.v").read_text()
+    modules = re.findall(r"(?m)^module (\w+)", text)
+    assert modules[-1] == name and len(set(modules)) == len(modules)
+    assert not [m for m in modules if "__" in m]
+    assert not re.findall(r"(?m)^\s*(?:input|output)\b.*\[\d+:\d+\]\s*,?$", text), "an unpacked-array port"
+
+
+@pytest.mark.parametrize("name", TOPS)
+def test_lint_clean(exported, name):
+    assert "Verilator clean" in lint(exported / f"{name}.v", name)
+
+
+def test_lint_finds_what_is_wrong(tmp_path):
+    path = tmp_path / "Wide.v"
+    path.write_text("module Wide (input logic [7:0] a, output logic [3:0] b);\n  assign b = a;\nendmodule\n")
+    with pytest.raises(LintError, match="WIDTHTRUNC"):
+        lint(path, "Wide")
+
+
+def test_a_part_keeps_its_name_until_it_is_whole(tmp_path, capsys):
+    assert main(["--top", "RegFile", "--out", str(tmp_path), "--rows", "9"]) == 0
+    assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
+    assert (tmp_path / "RegFile.v").read_text() == translate("RegFile", SensorParameters(array=ArrayParameters(9, 384)))
+    assert main(["--top", "RegFile", "--out", str(tmp_path), "--lanes", "3"]) == 2
+    assert "lanes = 3: must be one of" in capsys.readouterr().err
+    assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
+
+
+def test_unknown_top():
+    with pytest.raises(ParameterError, match="top = 'Nothing'"):
+        translate("Nothing", SMALL)
+
+
+def test_tidy_keeps_two_types_of_one_name_apart():
+    a, b = "Msg__0123456789abcdef", "Msg__fedcba9876543210"
+    assert tidy(f"{a} x; {b} y;\n") == f"{a} x; {b} y;\n"
+    assert tidy(f"{a} x; {a} y;\n") == "Msg x; Msg y;\n"
