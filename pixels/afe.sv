@@ -1,0 +1,129 @@
+// The analog front end of a whole frame in real numbers: pixel values, trimmed difference amplifier, and for every
+// lane sample-and-hold, DAC and comparator. The twin of models/afe, sample for sample; see README.md.
+//
+//   +samples=FILE     diode values of every pixel (models/afe/files.py, write_samples)
+//   +converter=FILE   gain and imperfections (write_converter)
+/* verilator lint_off DECLFILENAME */      // the module is spelt as the chip's are
+/* verilator lint_off UNUSEDPARAM */        // TILE_ROWS belongs to the geometry that every module is given
+`default_nettype none
+`ifndef BALANCE_BITS
+`define BALANCE_BITS 10
+`endif
+
+module Afe #(
+    parameter int ROWS = 384, COLS = 384, LANES = 8, TILE_ROWS = 4, TILE_COLS = 6, TAPS = 1
+) (
+    input  wire                            clk,
+    input  wire        [1:0]               mode,        // 0 edge, 1 image, 2 raw, 3 tof
+    input  wire        [9:0]               row,
+    input  wire        [7:0]               group,       // lane l is at tile column LANES * group + l
+    input  wire        [2:0]               k,           // column in the tile
+    input  wire        [1:0]               sub,         // raw: diode; tof: tap
+    input  wire        [LANES-1:0]         en,
+    input  wire signed [`BALANCE_BITS-1:0] balance,     // capacitor ratio 1 + balance / 512
+    input  wire                            hold,        // the enabled lanes sample at the end of this cycle
+    input  wire        [8*LANES-1:0]       dac,
+    input  wire                            unsigned_,   // DAC range 0..255, else -128..127 in offset binary
+    output wire        [LANES-1:0]         comparator
+);
+  localparam int FRAME = ROWS * COLS * 2;               // words of one tap
+  localparam int HEAD = 4, LEVELS = HEAD + LANES, WORDS = LEVELS + 512 * LANES;
+  localparam bit [3:0] KTC = 15;                        // decision number of the kT/C draw
+
+  // ---- files ----
+  reg [63:0] samples[0:TAPS*FRAME-1];
+  reg [63:0] words[0:WORDS-1];
+  real gain, noise_scale, ktc_scale;
+  reg [31:0] key;
+  reg noisy;
+  integer file, bytes;
+  reg [8*512-1:0] name;
+  initial begin
+    if (!$value$plusargs("samples=%s", name)) $fatal(1, "+samples=FILE is missing");
+    file = $fopen(name, "rb");
+    if (file == 0) $fatal(1, "+samples: cannot be read");
+    bytes = $fread(samples, file);
+    if (bytes == 0 || bytes % (8 * FRAME) != 0) $fatal(1, "+samples: not whole taps of ROWS x COLS x 2 words");
+    $fclose(file);
+    if (!$value$plusargs("converter=%s", name)) $fatal(1, "+converter=FILE is missing");
+    file = $fopen(name, "rb");
+    if (file == 0) $fatal(1, "+converter: cannot be read");
+    bytes = $fread(words, file);
+    if (bytes != 8 * WORDS) $fatal(1, "+converter: not for this number of lanes");
+    $fclose(file);
+    gain = $bitstoreal(words[0]);
+    noise_scale = $bitstoreal(words[1]);
+    ktc_scale = $bitstoreal(words[2]);
+    key = mix(words[3][31:0]);
+    noisy = noise_scale != 0.0 || ktc_scale != 0.0;
+  end
+
+  // ---- noise: a hash in place of a generator, models/afe/noise.py ----
+  function automatic [31:0] mix(input [31:0] seed);
+    reg [31:0] x;
+    begin
+      x = seed ^ (seed >> 16);
+      x = x * 32'h7FEB352D;
+      x = x ^ (x >> 15);
+      x = x * 32'h846CA68B;
+      mix = x ^ (x >> 16);
+    end
+  endfunction
+
+  function automatic integer counts(input [27:0] index, input [3:0] number);
+    reg [31:0] h;
+    begin
+      h = mix(key ^ {index, number});
+      counts = int'(h[7:0]) + int'(h[15:8]) + int'(h[23:16]) + int'(h[31:24]) - 510;
+    end
+  endfunction
+
+  reg [3:0] next_decision;
+  always @(posedge clk)
+    if (noisy) begin
+      if (hold) next_decision <= 4'd1;
+      else if (next_decision != KTC - 4'd1) next_decision <= next_decision + 4'd1;
+    end
+
+  // ---- lanes ----
+  function automatic real level(input integer lane, input range, input [7:0] code);
+    level = $bitstoreal(words[LEVELS+256*(range?LANES+lane : lane)+int'(code)]);
+  endfunction
+
+  function automatic [27:0] pixel(input integer lane, input [1:0] tap);    // of the position at the pins
+    pixel = 28'((int'(tap) * ROWS + int'(row)) * COLS + (LANES * int'(group) + lane) * TILE_COLS + int'(k));
+  endfunction
+
+  function automatic real value(input integer lane);
+    real a, b;
+    integer word;
+    begin
+      word = 2 * int'(pixel(lane, mode == 2'd3 ? sub : 2'd0));
+      a = $bitstoreal(samples[word]);
+      b = $bitstoreal(samples[word+1]);
+      case (mode)
+        2'd0: value = gain * (a - b * (1.0 + $itor(balance) / 512.0));
+        2'd2: value = 2.0 * (sub[0] ? b : a);
+        default: value = a + b;
+      endcase
+    end
+  endfunction
+
+  for (genvar l = 0; l < LANES; l++) begin : lane
+    real held, noise;
+    reg [27:0] index;
+    initial begin
+      held = 0.0;
+      noise = 0.0;
+      index = 28'd0;
+    end
+    always @(posedge clk)
+      if (hold && en[l]) begin
+        held <= value(l) + (noisy ? ktc_scale * $itor(counts(pixel(l, sub), KTC)) : 0.0) + $bitstoreal(words[HEAD+l]);
+        index <= pixel(l, sub);
+        if (noisy) noise <= noise_scale * $itor(counts(pixel(l, sub), 4'd0));
+      end else if (noisy) noise <= noise_scale * $itor(counts(index, next_decision));
+    assign comparator[l] = held + noise >= level(l, unsigned_, dac[8*l+:8]);
+  end
+endmodule
+`default_nettype wire
