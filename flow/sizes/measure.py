@@ -1,0 +1,68 @@
+"""A Verilog file -> its cells, by synthesis."""
+
+import json
+import re
+import shutil
+import subprocess
+import tempfile
+from collections import Counter
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+LIBRARY = ROOT / "cells" / "gates.lib"
+FLIP_FLOP = "DFF"
+
+
+class SizeError(RuntimeError):
+    """Yosys is missing, or refused a file."""
+
+
+@dataclass(frozen=True)
+class Size:
+    """Of one top, everything below it included.
+
+    cells: all standard cells. flip_flops: those that hold state. gates: NAND2 equivalents, all together.
+    flip_flop_gates: those of the flip-flops. by_type: cells of each type.
+    """
+
+    top: str
+    cells: int
+    flip_flops: int
+    gates: float
+    flip_flop_gates: float
+    by_type: dict
+
+
+@cache
+def areas():
+    """Area of every cell of the library in NAND2 equivalents: dict name -> float."""
+    pairs = re.findall(r"cell \((\w+)\)\s*{\s*area : ([\d.]+);", LIBRARY.read_text())
+    return {name: float(area) for name, area in pairs}
+
+
+def synthesize(path, top):
+    """Cells of each type of module ``top`` in the Verilog file ``path``, flattened: Counter. Raises SizeError."""
+    if not shutil.which("yosys"):
+        raise SizeError("yosys: not found; install it (Debian and Ubuntu: apt-get install yosys, or make tools as root)")
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        report = Path(folder) / "stat.json"
+        script = (f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {LIBRARY}; "
+                  f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
+                  f"tee -q -o {report} stat -json")
+        result = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
+        if result.returncode:
+            tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])
+            raise SizeError(f"yosys refused {path}:\n{tail}")
+        return Counter(json.loads(report.read_text())["design"]["num_cells_by_type"])
+
+
+def measure(path, top):
+    """Size of module ``top`` in the Verilog file ``path``. Raises SizeError."""
+    counts = synthesize(path, top)
+    unknown = sorted(set(counts) - set(areas()))
+    if unknown:
+        raise SizeError(f"{top}: cells that {LIBRARY.name} does not have: {', '.join(unknown)}")
+    return Size(top, sum(counts.values()), counts[FLIP_FLOP], sum(areas()[c] * n for c, n in counts.items()),
+                areas()[FLIP_FLOP] * counts[FLIP_FLOP], dict(sorted(counts.items())))

@@ -1,0 +1,57 @@
+"""Sizes: known circuits count what they must, a missing tool is named."""
+
+import json
+import shutil
+
+import pytest
+
+from flow.sizes.__main__ import main
+from flow.sizes.measure import SizeError, areas, measure
+
+needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
+
+KNOWN = """
+module Known (input clk, input a, input b, output reg q, output y);
+  assign y = ~(a & b);
+  always @(posedge clk) q <= y;
+endmodule
+"""
+
+
+@needs_yosys
+def test_known_circuit(tmp_path):
+    path = tmp_path / "Known.v"
+    path.write_text(KNOWN)
+    size = measure(path, "Known")
+    assert size.by_type == {"DFF": 1, "NAND2": 1}
+    assert (size.cells, size.flip_flops, size.gates, size.flip_flop_gates) == (2, 1, 7.0, 6.0)
+
+
+@needs_yosys
+def test_refused_file(tmp_path):
+    path = tmp_path / "Bad.v"
+    path.write_text("module Bad (input a\n")
+    with pytest.raises(SizeError, match="yosys refused"):
+        measure(path, "Bad")
+
+
+@needs_yosys
+def test_command_writes_both_files(tmp_path, capsys):
+    assert main(["RegFile", "--out", str(tmp_path), "--rows", "8"]) == 0
+    size, = json.loads((tmp_path / "sizes.json").read_text())
+    assert size["top"] == "RegFile"
+    assert size["cells"] == sum(size["by_type"].values())
+    assert size["gates"] == sum(areas()[cell] * n for cell, n in size["by_type"].items())
+    assert "| RegFile |" in (tmp_path / "sizes.md").read_text() and "| RegFile |" in capsys.readouterr().out
+
+
+def test_missing_yosys(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    assert main(["RegFile", "--out", str(tmp_path / "out")]) == 2
+    assert "yosys: not found; install it" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_bad_option(tmp_path, capsys):
+    assert main(["RegFile", "--out", str(tmp_path / "out"), "--lanes", "3"]) == 2
+    assert "lanes = 3" in capsys.readouterr().err
