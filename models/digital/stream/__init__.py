@@ -1,0 +1,10 @@
+"""The byte stream that leaves the chip: golden encoder, decoder, and the command that decodes a file."""
+
+from .decode import decode_stream, iterate_frames
+from .encode import encode_frame, encode_marked_row, encode_payload
+from .file import decode_file
+from .frame import DecodedFrame
+from .header import StreamError, StreamHeader
+
+__all__ = ["DecodedFrame", "StreamError", "StreamHeader", "decode_file", "decode_stream", "encode_frame",
+           "encode_marked_row", "encode_payload", "iterate_frames"]

@@ -1,0 +1,42 @@
+"""The two checks of the stream: CRC-32 of IEEE 802.3 over a frame, CRC-16 over a row, and what one bad byte does.
+
+CRC-32 is zlib's (polynomial 0x04c11db7 reflected, starts and ends inverted). CRC-16 is CRC-16/IBM-3740
+(polynomial 0x1021, most significant bit first, starts at 0xffff, ends as it is).
+"""
+
+import binascii
+import zlib
+from functools import cache
+
+import numpy as np
+
+CRC16_START = 0xFFFF
+
+
+def crc16(data):
+    """CRC-16 of a bytes-like object: int."""
+    return binascii.crc_hqx(data, CRC16_START)
+
+
+# CRC16_AFTER[n][byte]: what a byte adds to the CRC when n more bytes follow it
+CRC16_AFTER = np.array([[binascii.crc_hqx(bytes([byte]) + bytes(n), 0) for byte in range(256)] for n in range(4)])
+
+
+@cache
+def one_byte_errors(length):
+    """What every change of one byte of ``length`` bytes and the CRC-32 behind them does to the check.
+
+    Returns a dict from (computed CRC) xor (CRC received) to (position, change); positions from
+    ``length`` on are the CRC's own bytes, most significant first.
+    """
+    quiet = zlib.crc32(bytes(length))
+    errors = {}
+    for position in range(length):
+        for change in range(1, 256):
+            message = bytearray(length)
+            message[position] = change
+            errors[zlib.crc32(message) ^ quiet] = position, change
+    for position in range(4):
+        for change in range(1, 256):
+            errors[change << 8 * (3 - position)] = length + position, change
+    return errors

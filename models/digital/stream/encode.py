@@ -1,0 +1,46 @@
+"""The golden encoder: one frame's samples to bytes. The RTL's stream equals it byte for byte."""
+
+import numpy as np
+
+from models.parameters import ParameterError, TileParameters
+
+from .payload import base_of, encode_row, encode_rows, row_bytes_max
+from .trailer import row_mark, trailer
+
+
+def encode_frame(header, samples, made, left_out, tile=TileParameters()):
+    """One frame as bytes.
+
+    header: StreamHeader. samples: integer array (rows, cols, header.subs); only what the frame reads is used:
+    -128..127 in edge mode, where a code under the threshold is sent as zero, else 0..255.
+    made, left_out: conversions, 0..2**32-1. Raises ParameterError for a wrong shape, type or range.
+    """
+    samples = np.asarray(samples)
+    shape = header.rows, header.cols, header.subs
+    if samples.shape != shape or samples.dtype.kind not in "iu":
+        raise ParameterError(f"samples = {samples.dtype} array {samples.shape}: must be integers, shape {shape}")
+    layout = header.layout(tile)
+    rows = samples.reshape(header.rows, -1)
+    codes = np.concatenate([rows[row, layout.places_of(i)] for i, row in enumerate(layout.rows)])
+    low, high = (-128, 127) if header.edge else (0, 255)
+    if codes.min() < low or codes.max() > high:
+        raise ParameterError(f"samples = {codes.min()}..{codes.max()}: must be in {low}..{high} in {header.mode} mode")
+    counts = layout.counts
+    size = sum(row_bytes_max(int(n), header.edge) + 2 for n in counts)
+    out = np.empty(size, np.uint8)
+    end = encode_rows(codes.astype(np.int16), layout.rows, counts, header.edge, base_of(header.threshold), out)
+    sent, body = header.to_bytes(), out[:end].tobytes()
+    return sent + body + trailer(sent, body, made, left_out)
+
+
+def encode_payload(codes, edge, threshold):
+    """The payload of one row, without its mark: bytes. codes: integers in the order of the stream."""
+    codes = np.asarray(codes, np.int16)
+    out = np.empty(row_bytes_max(codes.size, edge) + 1, np.uint8)
+    return out[:encode_row(codes, edge, base_of(threshold), out, 0)].tobytes()
+
+
+def encode_marked_row(row, codes, edge, threshold):
+    """A row as it stands in the stream: payload and mark."""
+    payload = encode_payload(codes, edge, threshold)
+    return payload + row_mark(payload, row)

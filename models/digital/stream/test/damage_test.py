@@ -1,0 +1,210 @@
+"""One wrong byte costs at most its row, and the decoder says which; nothing makes it crash, hang or lie."""
+
+import zlib
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked_row
+from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
+from models.digital.stream.payload import check_row
+from models.digital.stream.test.frames import header_of, headers, samples_of
+from models.digital.stream.trailer import TRAILER_BYTES
+
+FRAMES = {"edge": header_of(12, 30, threshold=4), "rough": header_of(9, 20, threshold=0),
+          "raw": header_of(7, 13, mode="raw"), "phase": header_of(5, 18, mode="tof", phase=True),
+          "masked": header_of(16, 36, mask=0x00F0F1, threshold=6)}
+
+
+def sent(name):
+    header = FRAMES[name]
+    samples = samples_of(header, 5, 1 if name == "rough" else 0.3)
+    return header, samples, encode_frame(header, samples, 1000, 2000)
+
+
+def changed(data, position, change):
+    data = bytearray(data)
+    data[position] ^= change
+    return bytes(data)
+
+
+def row_starts(header, samples):
+    """Where each row starts in the frame, and where the trailer does."""
+    layout, at = header.layout(), [HEADER_BYTES]
+    for i, row in enumerate(layout.rows):
+        codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
+        at.append(at[-1] + len(encode_marked_row(int(row), codes, header.edge, header.threshold)))
+    return at
+
+
+def check_rows_lost(frame, header, samples, bad):
+    assert frame.header == header and frame.bad_rows == bad and not frame.complete == bool(bad)
+    good = np.ones(header.rows, bool)
+    good[bad] = False
+    assert np.array_equal(frame.samples[good], samples[good]) and not frame.samples[~good].any()
+    assert not frame.read[~good].any()
+    assert (frame.made, frame.left_out) == (1000, 2000)
+    assert frame.errors
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_one_wrong_byte_anywhere(name):
+    """The header and the trailer are mended; a row's byte costs that row alone."""
+    header, samples, data = sent(name)
+    starts = row_starts(header, samples)
+    assert starts[-1] == len(data) - TRAILER_BYTES
+    rows = header.layout().rows.tolist()
+    rng = np.random.default_rng(1)
+    for position in range(len(data)):
+        inside = HEADER_BYTES <= position < starts[-1]
+        bad = [rows[np.searchsorted(starts, position, "right") - 1]] if inside else []
+        for change in {1, 0x80, 0xFF, *rng.integers(1, 256, 3).tolist()}:
+            frame, = decode_stream(changed(data, position, change))
+            check_rows_lost(frame, header, samples, bad)
+            assert frame.stop == len(data)
+
+
+def test_wrong_byte_between_frames_keeps_the_frames_around():
+    header, samples, data = sent("edge")
+    for position in range(0, len(data), 3):
+        frames = decode_stream(data + changed(data, position, 0x55) + data)
+        assert [f.complete for f in (frames[0], frames[2])] == [True, True] and len(frames) == 3
+        assert not frames[0].errors and not frames[2].errors and len(frames[1].bad_rows) <= 1
+
+
+def test_a_mark_that_fits_by_chance_costs_its_own_row_only():
+    """A wrong byte may change a row's length and still leave a mark that fits: 1 in 65536 does, found here."""
+    header = header_of(80, 60, threshold=0)
+    samples = samples_of(header, 2, 0.5)
+    data = encode_frame(header, samples, 1000, 2000)
+    starts = row_starts(header, samples)
+    where, value, cases = np.empty(60, np.int32), np.empty(60, np.int16), 0
+    for row, (start, stop) in enumerate(zip(starts, starts[1:], strict=False)):
+        view = np.frombuffer(bytearray(data), np.uint8)
+        for position in range(start, stop):
+            for change in range(1, 256):
+                view[position] ^= change
+                end, index, _ = check_row(view, start, view.size, 60, True, 1, where, value)
+                if end >= 0 and index == row:
+                    assert end != stop
+                    frame, = decode_stream(view.tobytes())
+                    check_rows_lost(frame, header, samples, [row])
+                    cases += 1
+                view[position] ^= change
+    assert cases
+
+
+@pytest.mark.parametrize("name", FRAMES)
+def test_cut_short_anywhere(name):
+    """Whatever is whole is kept; only a file without a whole header is hopeless."""
+    header, samples, data = sent(name)
+    starts, rows = row_starts(header, samples), header.layout().rows
+    for length in range(len(data)):
+        if length < HEADER_BYTES:
+            with pytest.raises(StreamError):
+                decode_stream(data[:length])
+            continue
+        frame, = decode_stream(data[:length])
+        whole = sum(stop <= length for stop in starts[1:])
+        assert frame.bad_rows == rows[whole:].tolist() and frame.errors and frame.stop == length
+        assert np.array_equal(frame.samples[rows[:whole]], samples[rows[:whole]])
+        assert (frame.made is None) == (length < len(data) - 4)
+
+
+def test_bytes_lost_or_put_in():
+    """The rows behind a gap are found again."""
+    header = header_of(48, 60, threshold=4)
+    samples = samples_of(header, 3)
+    data, starts = encode_frame(header, samples, 1000, 2000), row_starts(header, samples)
+    for first, last, more in ((10, 10, b""), (10, 13, b""), (20, 20, bytes(50)), (20, 20, b"\xff"), (5, 40, b"abc")):
+        cut = data[:starts[first] + 2] + more + data[starts[last] + 5:]
+        frame, = decode_stream(cut)
+        check_rows_lost(frame, header, samples, list(range(first, last + 1)))
+
+
+@pytest.mark.parametrize("mode, step", [("raw", 2), ("edge", 3)])
+def test_many_damaged_rows(mode, step):
+    """Rows of plain bytes are good or bad one by one; a run-length coded one is found by the row behind it."""
+    header = header_of(200, 60, mode=mode, threshold=0)
+    samples = samples_of(header, 3)
+    data, starts = bytearray(encode_frame(header, samples, 1000, 2000)), row_starts(header, samples)
+    for start in starts[1:-1:step]:
+        data[start + 5] ^= 0x10
+    frame, = decode_stream(bytes(data))
+    check_rows_lost(frame, header, samples, list(range(1, 200, step)))
+
+
+def test_header_damaged_worse_is_named():
+    header, samples, data = sent("edge")
+    for first in range(HEADER_BYTES - 1):
+        with pytest.raises(StreamError, match="byte 0: "):
+            decode_stream(changed(changed(data, first, 0x21), first + 1, 0x42))
+
+
+def with_crc(fields):
+    return bytes(fields) + zlib.crc32(bytes(fields)).to_bytes(4, "big")
+
+
+@pytest.mark.parametrize("position, value, message", [
+    (0, 0x55, "starts with"), (4, 2, "version 2"), (5, 0x08, "reserved"), (5, 0x04, "phase"), (6, 128, "threshold"),
+    (7, 3, "lanes"), (8, 0x56, "tile rows"), (8, 0x36, "tile"), (9, 0xFF, "rows"), (11, 0xFF, "cols"),
+    (13, 200, "window row"), (14, 99, "window row1"), (16, 200, "window col1")])
+def test_header_that_says_what_cannot_be(position, value, message):
+    fields = bytearray(header_of(12, 30).to_bytes()[:FIELD_BYTES])
+    fields[position] = value
+    with pytest.raises(StreamError, match=message):
+        decode_stream(with_crc(fields) + bytes(1000))
+
+
+def test_empty_and_mask_of_nothing_are_named():
+    with pytest.raises(StreamError, match="empty"):
+        decode_stream(b"")
+    fields = bytearray(header_of(12, 30).to_bytes()[:FIELD_BYTES])
+    fields[17:20] = bytes(3)
+    with pytest.raises(StreamError, match="mask"):
+        decode_stream(with_crc(fields))
+
+
+def test_bytes_around_frames_are_told():
+    header, samples, data = sent("edge")
+    frames = decode_stream(b"noise" + data + b"more noise" + data + b"end")
+    assert [frame.complete for frame in frames] == [True, True]
+    assert "5 bytes skipped" in frames[0].errors[0] and "10 bytes skipped" in frames[1].errors[0]
+    assert "3 bytes are no frame" in frames[1].errors[1]
+
+
+@settings(max_examples=200, deadline=None)
+@given(headers(), st.integers(0, 2**32 - 1), st.data())
+def test_fuzz(header, seed, draw):
+    """Any number of bytes changed, cut out or put in: an answer of bounded size, or StreamError."""
+    data = bytearray(encode_frame(header, samples_of(header, seed), 1, 1) * 2)
+    for _ in range(draw.draw(st.integers(1, 6))):
+        at = draw.draw(st.integers(0, len(data) - 1))
+        data[at:at + draw.draw(st.integers(0, 8))] = draw.draw(st.binary(max_size=8))
+    try:
+        frames = decode_stream(bytes(data))
+    except StreamError as error:
+        assert "\n" not in str(error)
+    else:
+        assert len(frames) <= 4
+        for frame in frames:
+            assert frame.samples.shape == (frame.header.rows, frame.header.cols, frame.header.subs)
+            assert set(frame.bad_rows) <= set(frame.layout.rows.tolist())
+            assert frame.complete or frame.errors
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.binary(max_size=300), headers())
+def test_fuzz_behind_a_good_header(body, header):
+    frame = decode_stream(header.to_bytes() + body)[0]
+    assert frame.errors and frame.samples.size == header.rows * header.cols * header.subs
+
+
+@pytest.mark.parametrize("mode", ["edge", "tof"])
+def test_work_on_a_hostile_file_is_bounded(mode):
+    """The largest frame announced, then random bytes: every search ends at its limit."""
+    header = header_of(1024, 1536, mode=mode, threshold=0)
+    noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
+    frame, = decode_stream(header.to_bytes() + noise)
+    assert len(frame.bad_rows) == 1024

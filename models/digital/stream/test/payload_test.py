@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from models.digital.stream import encode_payload
+from models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_row, row_bytes_max
+
+CODES = st.lists(st.one_of(st.just(0), st.integers(-128, 127), st.integers(-3, 3)), max_size=300)
+
+
+def decoded(payload, count, edge, threshold, lead=3):
+    """Decode a payload that lies between other bytes: (bytes used, codes)."""
+    data = np.frombuffer(b"\xa5" * lead + payload + b"\x5a" * 7, np.uint8)
+    where, value = np.empty(count, np.int32), np.empty(count, np.int16)
+    end, found = decode_row(data, lead, data.size, count, edge, base_of(threshold), where, value)
+    codes = np.zeros(count, int)
+    codes[where[:found]] = value[:found]
+    return end - lead, codes.tolist()
+
+
+@settings(max_examples=300, deadline=None)
+@given(CODES, st.integers(0, 127))
+def test_edge_payload_comes_back_and_delimits_itself(codes, threshold):
+    kept = [code if abs(code) >= threshold else 0 for code in codes]
+    payload = encode_payload(codes, True, threshold)
+    assert decoded(payload, len(codes), True, threshold) == (len(payload), kept)
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.integers(0, 255), max_size=100))
+def test_other_modes_are_plain_bytes(codes):
+    assert encode_payload(codes, False, 9) == bytes(codes)
+    assert decoded(bytes(codes), len(codes), False, 9)[0] == len(codes)
+    assert decoded(bytes(codes), len(codes) + 8, False, 9)[0] < 0
+
+
+@settings(max_examples=200, deadline=None)
+@given(CODES, st.integers(0, 127))
+def test_no_row_grows_beyond_its_bound(codes, threshold):
+    assert len(encode_payload(codes, True, threshold)) <= row_bytes_max(len(codes), True)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_incompressible_rows_grow_by_less_than_a_sixteenth(seed):
+    rng = np.random.default_rng(seed)
+    noise = [rng.integers(-128, 128, 384), rng.choice([-128, 127], 384), rng.choice([-128, 0, 127], 384),
+             np.tile([0, 0, 0, -128], 96)][seed]
+    assert len(encode_payload(noise, True, 0)) + 2 <= 384 * 17 / 16
+
+
+def test_worst_case_chosen_sample_by_sample():
+    """An adversary who knows the coder's state and takes whichever sample costs most bits."""
+    state, codes, bits = START, [], 0
+    for _ in range(2000):
+        options = [(code_sample(code, 1, *state), code) for code in (-128, 127, 1, -1, 2, 10, 0)]
+        (_, length, *state), code = max(options, key=lambda option: option[0][1])
+        assert length <= TOKEN_MAX and state[3] >= 0
+        bits += length
+        codes.append(code)
+    assert 8.2 * 2000 < bits <= 8.25 * 2000 + 32
+    assert len(encode_payload(codes, True, 0)) == -(-bits // 8)
+
+
+def test_payload_that_no_encoder_writes_is_refused():
+    """A value beyond 127, a run beyond the row, bits after the end, and a payload cut short."""
+    row = [0] * 9 + [100] + [0] * 20
+    payload = encode_payload(row, True, 0)
+    assert decoded(payload, 30, True, 0)[0] == len(payload)
+    assert decoded(payload, 30, True, 60)[0] < 0                # 100 above a base of 60
+    assert decoded(payload, 9, True, 0)[0] < 0                  # the value lies outside
+    assert decoded(payload[:-1] + bytes([payload[-1] | 1]), 30, True, 0)[0] < 0
+    where, value = np.empty(30, np.int32), np.empty(30, np.int16)
+    data = np.frombuffer(payload, np.uint8)
+    assert decode_row(data, 0, data.size - 1, 30, True, 1, where, value)[0] < 0
