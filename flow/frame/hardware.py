@@ -32,9 +32,9 @@ def build_of(sensor, taps=1, waves=False):
                  tile_rows=sensor.tile.rows, tile_cols=sensor.tile.cols, taps=taps, waves=waves)
 
 
-def program(sensor, samples, waves=False, note=lambda text: None):
-    """The compiled bench for ``sensor`` and ``samples`` (taps, rows, cols, 2)."""
-    return bench_program(build_of(sensor, len(samples), waves), note)
+def program(sensor, taps, waves=False, note=lambda text: None):
+    """The compiled bench for ``sensor`` and frames of ``taps`` sub-frames, 1 or 4."""
+    return bench_program(build_of(sensor, taps, waves), note)
 
 
 def simulate(binary, sensor, frame, samples, front_end, stall=0, waves=None):

@@ -1,21 +1,25 @@
 """The main job: scene -> samples -> chip's Verilog -> stream -> decoded -> compared -> pictures and report."""
 
 import json
-import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 
 from flow.files import staged
-from models.afe import trim_codes
-from models.capture import CaptureOperator, expose
-from models.digital.chip import golden_frame
+from models.afe import trim_codes, trim_gain
+from models.capture import Exposure, capture
+from models.digital.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
+from models.pixel.trim import optical_gains
 from models.plan import plan
-from models.scene import load_scene
+from models.reconstruct import rebuild
+from models.scene import Sampling, load
 
-from . import hardware, outputs
+from . import hardware
 from .summary import summarize
 
 
@@ -27,29 +31,79 @@ class Clock:
 
     @contextmanager
     def step(self, name):
-        start = time.perf_counter()
+        start = perf_counter()
         try:
             yield
         finally:
-            self.seconds[name] = self.seconds.get(name, 0.0) + time.perf_counter() - start
+            self.seconds[name] = self.seconds.get(name, 0.0) + perf_counter() - start
 
 
-@dataclass(frozen=True)
-class FrameResult:
-    """Everything one run knows, for the summary, the pictures and the report.
+@dataclass(frozen=True, eq=False)
+class Exposed:
+    """One exposure of a scene.
 
-    ideal: the analog values (rows, cols, subs) in LSB of the same exposure without noise.
+    samples: float64 (taps, rows, cols, 2), what the front end samples. ideal: float64 (rows, cols, subs), the values
+    ahead of the converters, in LSB, of the same exposure without noise.
     """
 
-    request: object
     scene: object
     plan: object
+    front_end: object
     samples: np.ndarray
-    trims: np.ndarray
     ideal: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class FrameResult:
+    """Everything one run knows, for the summary, the pictures and the report."""
+
+    request: object
+    exposed: Exposed
+    program: Path
     golden: object
     chip: object
     decoded: object
+
+    @cached_property
+    def rebuilt(self):
+        """The 2-D image rebuilt from the decoded edges alone (models.reconstruct.rebuild)."""
+        return rebuild(self.decoded.samples[..., 0], self.decoded.read, self.exposed.scene, self.request.sensor,
+                       self.exposed.front_end.trim)
+
+
+def see(request):
+    """The scene that ``request`` names and the plan of its frame."""
+    array, optics = request.sensor.array, request.sensor.optics
+    scene = load(request.scene, Sampling(array.rows, array.cols, optics.views, request.focus), request.depth)
+    return scene, plan(scene, request.sensor, request.frame)
+
+
+def expose(request, scene, todo):
+    """Expose ``scene``; returns Exposed. The trims come from the optics."""
+    sensor, frame = request.sensor, request.frame
+    trims = trim_codes(optical_gains(sensor.tile, sensor.optics))
+    front_end = front_end_of(sensor, trims)
+
+    def samples(noise):
+        exposure = Exposure(sensor.electrical, frame.timing, sensor.chip.f_clk, noise, request.seed)
+        return capture(scene, sensor, todo, exposure, trim_gain(trims))
+
+    noisy = samples(request.noise)
+    clean = samples(0.0) if request.noise else noisy
+    ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
+    return Exposed(scene, todo, front_end, noisy, ideal)
+
+
+def read_out(request, exposed, program, clock=None, waves=None):
+    """Read one exposure out through the chip's Verilog and the golden chip; returns FrameResult."""
+    clock = clock or Clock()
+    sensor, frame = request.sensor, request.frame
+    with clock.step("rtl"):
+        chip = hardware.simulate(program, sensor, frame, exposed.samples, exposed.front_end, waves=waves)
+    with clock.step("decode"):
+        golden = golden_frame(exposed.samples, sensor, frame, exposed.front_end)
+        decoded = decode_stream(chip.stream, sensor.tile)[0]
+    return FrameResult(request, exposed, program, golden, chip, decoded)
 
 
 def run(request, note=lambda text: None):
@@ -57,40 +111,21 @@ def run(request, note=lambda text: None):
 
     note: called with a line before each long step. Raises ParameterError, ToolError, OSError.
     """
+    from . import outputs       # Matplotlib: not before it is needed
+
     clock = Clock()
     with clock.step("setup"):
-        scene = load_scene(request.scene, request.sensor, depth=request.depth, focus=request.focus)
-        todo = plan(scene, request.sensor, request.frame)
+        scene, todo = see(request)
     with clock.step("capture"):
-        samples, ideal, trims = capture(scene, todo, request)
+        exposed = expose(request, scene, todo)
     with clock.step("build"):
-        binary = hardware.program(request.sensor, samples, waves=bool(request.waves), note=note)
+        program = hardware.program(request.sensor, todo.taps, bool(request.waves), note)
     with staged(request.folder) as folder:
-        with clock.step("rtl"):
-            waves = (folder / "waves.vcd", *request.waves) if request.waves else None
-            chip = hardware.simulate(binary, request.sensor, request.frame, samples, trims, waves=waves)
-        with clock.step("decode"):
-            golden = golden_frame(samples, request.sensor, request.frame, trims)
-            golden.stream       # encoded here, so that its time is counted here
-            decoded = decode_stream(chip.stream, request.sensor.tile)[0]
-        result = FrameResult(request, scene, todo, samples, trims, ideal, golden, chip, decoded)
+        waves = (folder / "waves.vcd", *request.waves) if request.waves else None
+        result = read_out(request, exposed, program, clock, waves)
         with clock.step("report"):
             summary = summarize(result)
-            outputs.write(folder, result, summary, clock)
-        summary["wall_s"] = clock.seconds
+            summary["wall_s"] = clock.seconds
+            outputs.write(folder, result, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     return summary
-
-
-def capture(scene, todo, request):
-    """Samples, ideal held values and trims of one exposure.
-
-    Returns samples (taps, rows, cols, 2), the analog values without noise (rows, cols, subs), and register trims.
-    """
-    operator = CaptureOperator(request.sensor, todo)
-    pair = operator.forward(scene)
-    trims = trim_codes(operator.trim_gains)
-    samples = expose(pair, request.sensor, request.frame, noise=request.noise, seed=request.seed)
-    clean = expose(pair, request.sensor, request.frame, noise=0, seed=request.seed) if request.noise else samples
-    from models.afe import held_values
-    return samples, held_values(clean, request.sensor, request.frame, trims), trims

@@ -60,23 +60,12 @@ def front_end_of(sensor, trims):
                     sensor.tile)
 
 
-def read_mask(sensor, frame):
-    """The pixels a frame reads: bool (rows, cols). Raises ParameterError when there are none."""
-    scan = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile)
-    read = np.zeros((sensor.array.rows, sensor.array.cols), bool)
-    for row in range(sensor.tile.rows):
-        rows = scan.row_list[scan.row_list % sensor.tile.rows == row]
-        if rows.size:
-            read[np.ix_(rows, np.unique(scan.row_samples(row)[0]))] = True
-    return read
-
-
 def golden_frame(samples, sensor, frame, front_end):
     """The golden chip on one exposure; returns GoldenFrame.
 
     samples: float64 (taps, rows, cols, 2), diode pairs with a + b = 255 when both wells are full.
     """
-    read = read_mask(sensor, frame)
+    read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read
     done = front_end.convert(samples, frame.mode, frame.threshold)
     codes, converted, decisions = (np.moveaxis(part, 0, 2) * read[..., None] for part in done)
     sent = codes

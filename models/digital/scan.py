@@ -56,6 +56,16 @@ class Scan:
         wanted = np.array([bool(self.columns_of(r)) for r in range(tile.rows)])
         return rows[(rows < self.rows) & wanted[rows % tile.rows]]
 
+    @cached_property
+    def read(self):
+        """The pixels that are read: bool (rows, cols)."""
+        out = np.zeros((self.rows, self.cols), bool)
+        for row in range(self.tile.rows):
+            rows = self.row_list[self.row_list % self.tile.rows == row]
+            if rows.size:
+                out[np.ix_(rows, np.unique(self.row_samples(row)[0]))] = True
+        return out
+
     def columns_of(self, row):
         """Unmasked in-tile columns k of a row that exist in the window's first tile: tuple."""
         base = (row % self.tile.rows) * self.tile.cols

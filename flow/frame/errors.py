@@ -1,0 +1,70 @@
+"""Error against run time of this very scene: what the report shows beside the frame that was asked for.
+
+`make tradeoff` has the whole story; here are two short ones that are measured anew in every run.
+"""
+
+from dataclasses import replace
+from time import perf_counter
+
+import numpy as np
+
+from flow.charts import curves
+from models.capture import CaptureOperator
+from models.digital.chip import golden_frame
+from models.pixel.weights import raw_weights
+
+from . import hardware
+from .summary import decoding_error, psnr
+
+LADDER = (0, 1, 2, 4, 8, 16, 32, 64, 127)
+
+
+def figures(result, summary):
+    """Two Matplotlib figures: the capture model's, and in edge mode the chip's over the threshold."""
+    out = [_threshold(result, summary)] if result.request.frame.mode == "edge" else []
+    return [*out, _capture(result)]
+
+
+def _threshold(result, summary):
+    """PSNR of the decoded differences against the chip's frame time, each threshold run through the Verilog."""
+    sensor, samples = result.request.sensor, result.exposed.samples
+    points = []
+    for threshold in LADDER:
+        frame = replace(result.request.frame, threshold=threshold)
+        golden = golden_frame(samples, sensor, frame, result.exposed.front_end)
+        chip = hardware.simulate(result.program, sensor, frame, samples, result.exposed.front_end)
+        quality = psnr(decoding_error(golden.sent, result.exposed.ideal, golden.read, frame))
+        if quality is not None:
+            points.append((1e3 * chip.status["cycles"] / sensor.chip.f_clk, quality,
+                           f"T={threshold}: {len(chip.stream):,} B"))
+    here = 1e3 * summary["frame_s_at_clock"], summary["psnr_db"]
+    return curves({"differences": points}, "frame time at the clock (ms)", "PSNR (dB)",
+                  "Threshold: error against the chip's run time", mark=here if None not in here else None)
+
+
+def _capture(result):
+    """Relative error of one capture against time: fewer angular nodes, and float32 for float64."""
+    sensor, scene = result.request.sensor, result.exposed.scene
+    field = scene.light_field.astype(np.float64)
+    best = _captured(replace_nodes(sensor, 16), field, "float64")[0]
+    series = {}
+    for dtype in ("float64", "float32"):
+        series[dtype] = []
+        for nodes in (1, 2, 3, 4, 6, 8):
+            pair, seconds = _captured(replace_nodes(sensor, nodes), field.astype(dtype), dtype)
+            error = float(np.abs(pair - best).max() / max(float(best.max()), np.finfo(float).tiny))
+            series[dtype].append((1e3 * seconds, max(error, 1e-17), str(nodes)))
+    return curves(series, "weights and capture (ms); number: nodes a view cell", "largest error / largest value",
+                  "Capture model: error against run time", log_y=True)
+
+
+def replace_nodes(sensor, nodes):
+    return replace(sensor, optics=replace(sensor.optics, subsamples=nodes))
+
+
+def _captured(sensor, field, dtype):
+    raw_weights.cache_clear()
+    start = perf_counter()
+    operator = CaptureOperator(sensor, dtype, angular=field.shape[0] > 1 or sensor.optics.views == 1)
+    pair = operator.forward(field)
+    return pair, perf_counter() - start

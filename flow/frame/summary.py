@@ -1,0 +1,96 @@
+"""The figures of one run: what summary.json holds, each from what was measured or counted in this run."""
+
+import numba
+import numpy as np
+import pymtl3
+
+from flow.simulate.verilator import verilator_version
+from models.digital.stream import HEADER_BYTES, TRAILER_BYTES
+from models.parameters import EnergyParameters
+
+PEAK = 255.0        # span of the 8-bit codes
+
+
+def mismatches(first, second):
+    """How many bytes differ, a missing byte counting as one: int."""
+    a, b = (np.frombuffer(x, np.uint8) for x in (first, second))
+    common = min(a.size, b.size)
+    return int((a[:common] != b[:common]).sum()) + abs(a.size - b.size)
+
+
+def ideal_samples(ideal, frame):
+    """What a perfect chip would send, in codes, float64 (rows, cols, subs): the analog values, or of the
+    four taps their phase (256 = a turn) and amplitude.
+    """
+    if not frame.phase:
+        return ideal
+    x, y = ideal[..., 0] - ideal[..., 2], ideal[..., 3] - ideal[..., 1]
+    phase = np.mod(np.arctan2(y, x) * (256 / (2 * np.pi)), 256)
+    return np.stack([phase, np.maximum(np.abs(x), np.abs(y))], -1)
+
+
+def decoding_error(samples, ideal, read, frame):
+    """Decoded less ideal for every sample read, in codes: float64 (n, subs). A phase's error is the way round,
+    and nothing where the chip said that it is not valid (amplitude 0).
+    """
+    error = samples[read] - ideal_samples(ideal, frame)[read]
+    if frame.phase:
+        error[:, 0] = np.mod(error[:, 0] + 128, 256) - 128
+        error[samples[read][:, 1] == 0] = 0
+    return error
+
+
+def psnr(error):
+    """10 log10(255^2 / mean square) in dB, or None where there is no error at all (JSON has no infinity)."""
+    mean_square = float(np.mean(np.square(error))) if error.size else 0.0
+    return 10 * float(np.log10(PEAK**2 / mean_square)) if mean_square else None
+
+
+def energy_of(result):
+    """Energy of the frame by part, in uJ, and ``total``."""
+    frame, sensor, golden = result.request.frame, result.request.sensor, result.golden
+    taps = 4 if frame.mode == "tof" else 1
+    rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
+    parts = EnergyParameters().frame(resets=rows * sensor.array.cols * taps, amplified=rows * columns * taps,
+                                     seconds=result.chip.status["cycles"] / sensor.chip.f_clk,
+                                     decisions=golden.decisions)
+    micro = {name: 1e6 * value for name, value in parts.items()}
+    return {**micro, "total": sum(micro.values())}
+
+
+def summarize(result):
+    """summary.json as a dict, without `wall_s`.
+
+    stream_mismatches: bytes that differ between the chip's stream and the golden encoder's.
+    decoded_mismatches: decoded samples that differ from the golden codes, bad rows' among them.
+    raw_bytes: one byte a sample. psnr_db: decoded samples against the noiseless analog values, peak 255 codes.
+    """
+    asked, golden, chip, decoded = result.request, result.golden, result.chip, result.decoded
+    sensor, frame = asked.sensor, asked.frame
+    sent = golden.read.sum() * golden.sent.shape[2]
+    error = decoding_error(decoded.samples, result.exposed.ideal, golden.read, frame)
+    span = np.ptp(ideal_samples(result.exposed.ideal, frame)[golden.read]) if golden.read.any() else 0.0
+    body = len(chip.stream) - HEADER_BYTES - TRAILER_BYTES
+    marks = 2 * int(golden.read.any(1).sum())
+    return {
+        "scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols,
+        "threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed,
+        "window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation,
+        "phase": frame.phase, "focus": asked.focus,
+        "pixels": int(golden.read.sum()), "samples": golden.samples,
+        "conversions_made": chip.status["made"], "conversions_left_out": chip.status["left_out"],
+        "comparator_decisions": golden.decisions,
+        "cycles": chip.status["cycles"], "frame_s_at_clock": chip.status["cycles"] / sensor.chip.f_clk,
+        "cycles_by_pin": chip.activity,
+        "stream_bytes": len(chip.stream), "raw_bytes": int(sent),
+        "bytes": {"header": HEADER_BYTES, "tokens": body - marks, "row marks": marks, "trailer": TRAILER_BYTES},
+        "compression_ratio": float(sent) / max(len(chip.stream), 1),
+        "stream_mismatches": mismatches(chip.stream, golden.stream),
+        "decoded_mismatches": int((decoded.samples != golden.sent).sum()),
+        "psnr_db": psnr(error), "peak": PEAK, "signal_span": float(span),
+        "energy_uj": energy_of(result),
+        "left_out": result.exposed.plan.left_out,
+        "rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles,
+        "tools": {"verilator": verilator_version(), "pymtl3": pymtl3.__version__, "numpy": np.__version__,
+                  "numba": numba.__version__},
+    }

@@ -1,0 +1,40 @@
+"""The threshold of edge-only conversion on the default scene, through the chip's Verilog: PSNR of the decoded
+differences and of the image rebuilt from them against conversions, bytes, cycles, energy and simulation time."""
+
+from dataclasses import replace
+from functools import cache
+
+from flow.charts import curves
+from flow.frame import job
+from flow.frame.request import request
+
+THRESHOLDS = (0, 1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 127)
+
+
+def points(quick):
+    return [(t, 48 if quick else 384) for t in (THRESHOLDS[1:12:5] if quick else THRESHOLDS)]
+
+
+@cache
+def _exposure(size):
+    asked = request(rows=size, cols=size)
+    return asked, job.expose_scene(asked)
+
+
+def measure(point):
+    threshold, size = point
+    asked, exposure = _exposure(size)
+    asked = replace(asked, frame=replace(asked.frame, threshold=threshold))
+    result = job.read_out(asked, exposure)
+    summary = job.summarize(result)
+    rebuilt = job.rebuilt_image(result)
+    return [{"threshold": threshold, "psnr_edges_db": summary["psnr_db"], "psnr_image_db": rebuilt.psnr_db,
+             "conversions": summary["conversions_made"], "bytes": summary["stream_bytes"],
+             "cycles": summary["cycles"], "energy_uj": summary["energy_uj"]["total"],
+             "simulation_s": result.chip.seconds, "mismatches": summary["stream_mismatches"]}]
+
+
+def plot(rows):
+    return curves({"decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],
+                   "image rebuilt from them": [(r["bytes"], r["psnr_image_db"], "") for r in rows]},
+                  "bytes a frame", "PSNR (dB)", "Threshold: error against bytes", log_x=True)
