@@ -1,0 +1,52 @@
+"""EdgeAdc at functional level: models.digital.sar.decisions behind the ports."""
+
+from collections import deque
+
+from pymtl3 import Bits7, Bits8, Component, InPort, OutPort, update_ff
+from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+
+from models.digital.sar import decisions
+
+
+class EdgeAdcFL(Component):
+    """Same ports and same results as EdgeAdc. Results queue up without bound; one conversion at a time."""
+
+    def construct(s):
+        s.go = InPort()
+        s.unsigned_ = InPort()
+        s.threshold = InPort(Bits7)
+        s.comparator = InPort()
+        s.dac = OutPort(Bits8)
+        s.free = OutPort()
+        s.busy = OutPort()
+        s.out = SendIfcRTL(Bits8)
+        s.converted = OutPort()
+
+        s.run, s.results = None, deque()
+
+        @update_ff
+        def behave():
+            if s.reset:
+                s.run = None
+                s.results.clear()
+            if s.out.val & s.out.rdy:
+                s.results.popleft()
+            if s.run is not None:
+                try:
+                    s.dac <<= s.run.send(bool(s.comparator))
+                except StopIteration as end:
+                    s.run = None
+                    s.results.append(end.value)
+            elif s.go:
+                s.run = decisions(bool(s.unsigned_), int(s.threshold))
+                s.dac <<= next(s.run)
+            s.busy <<= s.run is not None
+            s.free <<= s.run is None
+            s.out.val <<= bool(s.results)
+            if s.results:
+                code, converted = s.results[0]
+                s.out.msg <<= code & 0xFF
+                s.converted <<= converted
+
+    def line_trace(s):
+        return f"{s.dac} {len(s.results)}"
