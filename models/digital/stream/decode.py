@@ -2,13 +2,14 @@
 
 import numpy as np
 
-from models.parameters import ROWS_MAX, ParameterError, TileParameters
+from models.parameters import ParameterError, TileParameters
 
+from .body import Body
 from .frame import DecodedFrame
 from .header import HEADER_BYTES, MAGIC, StreamError, read_header
-from .payload import base_of, decode_rows, frame_ends
+from .payload import frame_ends
 from .resync import Search
-from .trailer import TRAILER_BYTES, frame_crc, read_trailer
+from .trailer import TRAILER_BYTES
 
 MEMORY_MAX = 1 << 30        # bytes of samples that decode_stream returns at most
 SEARCH_MAX = 1 << 28, 64    # samples decoded on trial to find rows again: at most so many, and more for each byte
@@ -42,7 +43,9 @@ def iterate_frames(data, tile=TileParameters()):
             break
         if last is not None:
             yield last
-        last, limit = _decode_frame(data, start, header, sent, notes, tile, limit)
+        last = DecodedFrame(header, np.zeros((header.rows, header.cols, header.subs), np.int16), header.layout(tile),
+                            start, errors=notes)
+        limit = _decode_frame(data, last, sent, tile, limit)
         at = last.stop
     if last is None:
         raise StreamError("0 bytes: the stream is empty")
@@ -60,7 +63,7 @@ def _find_header(data, at, tile):
             reason = reason or str(error)
         else:
             if mended is None or position == at:    # with a byte changed, only where a header must be
-                notes = [f"byte {position + mended}: header byte mended"] if mended is not None else []
+                notes = [f"byte {position + mended}: byte of the header mended"] if mended is not None else []
                 if position > at:
                     notes.append(f"byte {at}: {position - at} bytes skipped: {reason}")
                 return position, header, sent, notes
@@ -68,45 +71,41 @@ def _find_header(data, at, tile):
     return at, None, b"", [reason]
 
 
-def _decode_frame(data, start, header, sent, notes, tile, limit):
-    layout, view = header.layout(tile), np.frombuffer(data, np.uint8)
-    frame = DecodedFrame(header, np.zeros((header.rows, header.cols, header.subs), np.int16), layout, start,
-                         errors=notes)
-    longest, total = int(layout.counts.max()), layout.rows.size
-    coder = header.edge, base_of(header.threshold), np.empty(longest, np.int32), np.empty(longest, np.int16)
-    flat = frame.samples.reshape(header.rows, -1)
-    bad, ordinal, at, search, tail = set(), 0, start + HEADER_BYTES, None, None
-    while True:
-        ordinal, at, before = decode_rows(view, at, ordinal, layout.rows, layout.kind, layout.places, layout.start,
-                                           *coder, flat)
-        if ordinal == total:
-            crc = None if bad else frame_crc(sent, memoryview(data)[start + HEADER_BYTES:at])
-            tail = read_trailer(data[at:at + TRAILER_BYTES], crc)
-            if tail:
-                break
-        if search is None:
-            following, known, *_ = _find_header(data, at, tile)
-            search = Search(view, following if known else view.size, limit, layout, *coder)
-        found = search.next_row(ordinal, before, at)
-        if not found:
-            bad.update(range(ordinal, total))
-            break
-        if found[1] == ordinal:     # the row before has the wrong length: its mark fitted by chance
-            ordinal -= 1
-            flat[layout.rows[ordinal]] = 0
-        bad.update(range(ordinal, found[1]))
-        at, ordinal = found
-    frame.bad_rows = layout.rows[sorted(bad)].tolist()
-    if bad:
-        frame.errors.append(f"byte {start}: {len(bad)} of {total} rows are bad: {_spans(frame.bad_rows)}")
+def _decode_frame(data, frame, sent, tile, limit):
+    """Fill in a frame from its ``start`` on; returns what is left of the samples to decode on trial."""
+    body = Body(np.frombuffer(data, np.uint8), frame, sent)
+    ordinal, at, tail = body.decode(0, body.first)
+    if tail is None:
+        following, header, *_ = _find_header(data, at, tile)
+        stop = following if header else len(data)
+        mended = body.mend(stop)
+        if mended:
+            ordinal, at, tail = body.total, stop - TRAILER_BYTES, mended
+        else:
+            ordinal, at, tail, limit = _decode_around(body, frame, ordinal, at, stop, limit)
     if tail:
-        frame.made, frame.left_out, wrong = tail
-        frame.errors += [f"byte {at}: {line}" for line in wrong]
+        frame.made, frame.left_out, notes = tail
+        frame.errors += [f"byte {at}: {note}" for note in notes]
     else:
-        frame.errors.append(f"byte {start}: the frame's trailer is damaged or missing")
-    ends = tail or ordinal == total and frame_ends(view, at + TRAILER_BYTES, view.size)
-    frame.stop = min(at + TRAILER_BYTES, view.size) if ends else search.stop
-    return frame, search.limit if search else limit
+        frame.errors.append(f"byte {at}: the trailer is damaged or missing")
+    ends = tail or ordinal == body.total and frame_ends(body.view, at + TRAILER_BYTES, len(data))
+    frame.stop = min(at + TRAILER_BYTES, len(data)) if ends else stop
+    return limit
+
+
+def _decode_around(body, frame, ordinal, at, stop, limit):
+    """Go on behind each damaged row: returns (ordinal, position, trailer or None, limit) where no more is found."""
+    search, bad, tail = Search(body.view, stop, limit, frame.layout, *body.coder), [], None
+    while tail is None:
+        found = search.next_row(ordinal, at)
+        bad += range(ordinal, found[1] if found else body.total)
+        if not found:
+            break
+        ordinal, at, tail = body.decode(found[1], found[0], not bad)
+    frame.bad_rows = frame.layout.rows[bad].tolist()
+    if bad:
+        frame.errors.append(f"byte {frame.start}: {len(bad)} of {body.total} rows are bad: {_spans(frame.bad_rows)}")
+    return ordinal, at, tail, search.limit
 
 
 def _spans(rows):

@@ -135,16 +135,12 @@ def _layout(rows, cols, lanes, frame, subs, tile):
     return Layout(index, kind, np.diff(start)[kind], np.concatenate(lists), start)
 
 
-def correct(data, length, crc=0):
-    """Correct one changed byte of ``length`` bytes and the CRC-32 (big-endian) behind them.
-
-    crc: CRC-32 of what goes before. Returns (the bytes and CRC as they were, position of the changed byte or None),
-    or None when the change is worse than one byte.
-    """
-    syndrome = zlib.crc32(data[:length], crc) ^ CRC.unpack_from(data, length)[0]
+def _correct(data):
+    """Correct one changed byte of a header: (header as it was, position of the changed byte or None), or None."""
+    syndrome = zlib.crc32(data[:FIELD_BYTES]) ^ CRC.unpack_from(data, FIELD_BYTES)[0]
     if not syndrome:
         return bytes(data), None
-    error = one_byte_errors(length).get(syndrome)
+    error = one_byte_errors(FIELD_BYTES).get(syndrome)
     if error is None:
         return None
     right = bytearray(data)
@@ -161,7 +157,7 @@ def read_header(data):
         raise StreamError(f"{len(data)} bytes: a header has {HEADER_BYTES}")
     if sum(a != b for a, b in zip(MAGIC, data, strict=False)) > 1:
         raise StreamError(f"starts with {bytes(data[:len(MAGIC)])!r}: a frame starts with {MAGIC!r}")
-    found = correct(data, FIELD_BYTES)
+    found = _correct(data)
     if found is None:
         raise StreamError("header CRC-32 does not fit, and no change of one byte mends it")
     sent, position = found

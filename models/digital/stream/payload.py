@@ -8,7 +8,7 @@ another file, inlined here, has changed.
 import numpy as np
 from numba import njit
 
-from .crc import CRC16_AFTER, CRC16_START
+from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 from .header import MAGIC
 from .trailer import COUNTED_BYTES, COUNTS, TRAILER_BYTES, TRAILER_ROW
 
@@ -206,12 +206,11 @@ def check_row(data, at, stop, count, edge, base, where, value):
 
 
 @njit(cache=True)
-def decode_rows(data, at, ordinal, rows, kind, places, start, edge, base, where, value, out):
-    """Decode rows into out (int16 (rows, cols * subs)) until one does not fit.
+def decode_rows(data, at, ordinal, rows, kind, places, start, edge, base, where, value, out, ends):
+    """Decode rows into out (int16 (rows, cols * subs)) until one does not fit; ends: int64 (R,), where they end.
 
-    Returns (its ordinal, or the number of rows; its position; position of the row before it).
+    Returns (its ordinal, or the number of rows; its position).
     """
-    before = at
     while ordinal < rows.size:
         first = start[kind[ordinal]]
         count = np.int64(start[kind[ordinal] + 1]) - first
@@ -223,8 +222,9 @@ def decode_rows(data, at, ordinal, rows, kind, places, start, edge, base, where,
         if not edge:
             for i in range(count):
                 out[row, places[first + i]] = data[at + i]
-        before, at, ordinal = at, end, ordinal + 1
-    return ordinal, at, before
+        ends[ordinal] = at = end
+        ordinal += 1
+    return ordinal, at
 
 
 @njit(cache=True)
@@ -267,10 +267,10 @@ def find_row(data, start, stop, limit, first, last, rows, counts, number, edge, 
         if last == rows.size and counts_fit(data, at, stop) and frame_ends(data, at + _TRAILER, stop):
             return at, rows.size, limit
         previous = -1
-        for ordinal in range(first, min(last, rows.size - 1) + 1):
-            # rows of the same number of samples look alike until their mark: try each number once
+        for ordinal in range(first, min(last, rows.size - 1, first + 3) + 1):
+            # rows of the same number of samples look alike until their mark; four numbers follow each other
             count = np.int64(counts[ordinal])
-            if count == previous or ordinal >= first + 4:
+            if count == previous:
                 continue
             previous = count
             limit -= count
@@ -284,3 +284,20 @@ def find_row(data, start, stop, limit, first, last, rows, counts, number, edge, 
                     and row_fits(data, end, stop, found + 1, rows, counts, edge, base, where, value):
                 return at, found, limit
     return -1, 0, limit
+
+
+@njit(cache=True)
+def one_byte_changes(syndrome, length, where, change):
+    """Which changes of one of ``length`` bytes give a CRC-32 that differs by ``syndrome`` from the right one.
+
+    Fills where and change (int64, as many as may be found), and returns how many were: the right one, if
+    there is one, and one more for every 16 MB.
+    """
+    found = 0
+    for position in range(length - 1, -1, -1):
+        byte = CRC32_BACK[syndrome >> 24]
+        syndrome = (syndrome ^ CRC32_TABLE[byte]) << 8 | byte
+        if 0 < syndrome < 256 and found < where.size:
+            where[found], change[found] = position, syndrome
+            found += 1
+    return found

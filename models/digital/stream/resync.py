@@ -22,23 +22,21 @@ class Search:
         self.number[layout.rows] = np.arange(layout.rows.size)
         self.longest = row_bytes_max(int(layout.counts.max()), edge) + 2
 
-    def next_row(self, lost, before, at):
+    def next_row(self, lost, at):
         """Where to go on when row number ``lost`` does not fit at ``at``: (position, ordinal) or None.
 
-        before: where the row before it starts: its own length may be wrong, if its mark fitted by chance.
         A row behind the lost one, where that seems to end, needs no second row to be believed when the lost row
         cannot have another length, or nothing better is near.
         """
         total = self.layout.rows.size
-        plain = not self.coder[0]
         behind = self._behind(lost, at) if lost < total else -1
-        near = min(self.stop, at + self.longest + COUNTED_BYTES)
-        if behind >= 0 and plain:
+        if behind >= 0 and not self.coder[0]:
             return behind, lost + 1
-        return (behind >= 0 and self._find(behind, behind + 1, lost + 1, lost + 1)
-                or self._find(before + 1, near, lost, min(lost + 1, total))
-                or behind >= 0 and (behind, lost + 1)
-                or self._find(before + 1, self.stop, lost, total))
+        following, near = min(lost + 1, total), min(self.stop, at + self.longest + COUNTED_BYTES)
+        return (behind >= 0 and self._find(behind, behind + 1, following, following)
+                or self._find(at + 1, near, following, following)
+                or behind >= 0 and (behind, following)
+                or self._find(at + 1, self.stop, following, total))
 
     def _behind(self, lost, at):
         """Where row number ``lost`` + 1 (or the trailer) fits right behind the lost one, or -1."""

@@ -6,7 +6,7 @@ import zlib
 from models.parameters import check_int
 
 from .crc import crc16
-from .header import CRC, FIELD_BYTES, correct
+from .header import CRC, FIELD_BYTES
 
 TRAILER_ROW = 0xFFFF    # stands for the row index in the trailer's mark
 MARK = struct.Struct(">H")
@@ -38,26 +38,15 @@ def trailer(sent, rows, made, left_out):
 
 
 def read_trailer(tail, crc):
-    """Read a trailer, one byte of which may be wrong.
+    """Read a trailer. tail: its bytes, perhaps fewer. crc: CRC-32 of the frame before it, None if that is damaged.
 
-    tail: its bytes, perhaps fewer. crc: CRC-32 of the frame before it, or None when that is known to be damaged.
-    Returns (made, left_out, what was wrong), or None when the counts cannot be trusted.
+    Returns (made, left_out, what was wrong), or None when the counts do not fit their mark.
     """
-    if len(tail) < COUNTED_BYTES:
+    if len(tail) < COUNTED_BYTES or row_mark(tail[:COUNTS.size], TRAILER_ROW) != tail[COUNTS.size:COUNTED_BYTES]:
         return None
-    whole = len(tail) == TRAILER_BYTES
-    mended = correct(tail, COUNTED_BYTES, crc) if whole and crc is not None else None
-    if not _counts_fit(tail):
-        if mended is None or not _counts_fit(mended[0]):
-            return None
-        return *COUNTS.unpack_from(mended[0]), [f"byte {mended[1]} of the trailer mended"]
     notes = []
-    if not whole:
+    if len(tail) < TRAILER_BYTES:
         notes = [f"the trailer ends after {len(tail)} of {TRAILER_BYTES} bytes"]
-    elif mended is None and crc is not None or mended and mended[1] is not None:
+    elif crc is not None and zlib.crc32(tail[:COUNTED_BYTES], crc) != CRC.unpack_from(tail, COUNTED_BYTES)[0]:
         notes = ["the frame's CRC-32 does not fit, though every row's mark does"]
     return *COUNTS.unpack_from(tail), notes
-
-
-def _counts_fit(tail):
-    return row_mark(tail[:COUNTS.size], TRAILER_ROW) == bytes(tail[COUNTS.size:COUNTED_BYTES])
