@@ -1,0 +1,71 @@
+"""A depth file beside a picture -> disparity against the reference plane (models/scene/camera.py).
+
+.npy                (rows, cols), depth in m, 0.1..1000
+.npz                one array: `depth` (m, the same) or `disparity` (px a view step, -100..100, at the array's size)
+16-bit image        depth in mm, 100..65535
+8-bit image         inverse depth: 0 is 6 m, 255 is 2 m, linear in 1/m (brighter is nearer)
+"""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from models.parameters import ParameterError
+
+from . import camera, resample
+from .picture_file import read_codes
+from .scene import check_values
+
+NEAR, FAR = 2.0, 6.0            # m, of 8-bit images
+BYTES_MAX = 2**30               # of an array in an .npz
+
+
+def read_disparity(path, sampling, picture_shape):
+    """Disparity (rows, cols) of ``path`` against the reference plane, px a view step.
+
+    picture_shape: (height, width) of the picture it belongs to: the crop is the same, the resolution may differ,
+    the proportions by 2 % at most. Raises ParameterError.
+    """
+    values, kind = _read(Path(path))
+    if values.ndim != 2 or 0 in values.shape:
+        raise ParameterError(f"depth shape = {values.shape}: must be (rows, cols)")
+    height, width = values.shape
+    if abs(np.log(width / height * picture_shape[0] / picture_shape[1])) > 0.02:
+        raise ParameterError(f"depth shape = {values.shape}: must have the proportions of the image, {picture_shape}")
+    values = resample.pick(values, *sampling.shape, resample.centre_box(height, width, *sampling.shape))
+    if kind == "disparity":
+        check_values("disparity", values, -100, 100)
+        return values
+    if kind == "inverse":
+        return camera.disparity(1 / (1 / FAR + values / 255 * (1 / NEAR - 1 / FAR)), sampling)
+    if kind == "mm":
+        values = values / 1000
+    check_values("depth", values, 0.1, 1000)
+    return camera.disparity(values, sampling)
+
+
+def _read(path):
+    if path.suffix.lower() not in (".npy", ".npz"):
+        codes = read_codes(path, "depth")
+        return codes, "mm" if codes.dtype == np.uint16 else "inverse"
+    if not path.is_file():
+        raise ParameterError(f"depth = {str(path)!r}: no such file; must be a readable file")
+    try:
+        if path.suffix.lower() == ".npy":
+            values, kind = np.load(path, mmap_mode="r", allow_pickle=False), "depth"
+        else:
+            if any(item.file_size > BYTES_MAX for item in zipfile.ZipFile(path).infolist()):
+                raise ParameterError(f"depth = {str(path)!r}: arrays must be of at most {BYTES_MAX} bytes")
+            with np.load(path, allow_pickle=False) as archive:
+                kind = next((name for name in ("depth", "disparity") if name in archive), None)
+                if kind is None:
+                    raise ParameterError(f"depth = {str(path)!r}: must hold an array named depth or disparity")
+                values = archive[kind]
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
+        if isinstance(error, ParameterError):
+            raise
+        raise ParameterError(f"depth = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None
+    if values.dtype.kind not in "iuf":
+        raise ParameterError(f"depth type = {values.dtype}: must be real numbers")
+    return values, kind

@@ -1,0 +1,98 @@
+"""Any image file -> linear luminance: 8 or 16 bit, gray, colour, palette or alpha, of any size."""
+
+import warnings
+from pathlib import Path
+
+import numpy as np
+from PIL import Image, ImageOps, UnidentifiedImageError
+
+from models.parameters import ParameterError
+
+from .resample import linear
+
+PIXELS_MAX = 2 * 89_478_485     # Pillow's limit against decompression bombs
+KEEP = 3                        # a picture this many times the array is reduced before it is decoded to linear light
+
+
+def read_luminance(path, rows, cols):
+    """Linear luminance 0..1 of the picture at ``path``: float32 (height, width).
+
+    8-bit codes are sRGB; 16-bit ones too; floating-point pictures (TIFF) are linear already. Transparency lies on
+    white. A picture far larger than rows x cols comes back smaller, reduced in whole boxes.
+    Raises ParameterError where the file is missing, no image, damaged, too large, or holds NaN or infinity.
+    """
+    with _opened(path, "scene") as picture:
+        picture.draft("RGB", (KEEP * cols, KEEP * rows))        # JPEG: decode at a fraction of the size
+        picture = ImageOps.exif_transpose(_loaded(picture, path, "scene"))
+        return _luminance(picture, path, max(1, min(picture.height // (KEEP * rows), picture.width // (KEEP * cols))))
+
+
+def read_codes(path, field):
+    """Gray codes of the picture at ``path`` as stored, uint8 or uint16 (height, width), for depth maps."""
+    with _opened(path, field) as picture:
+        picture = _loaded(picture, path, field)
+        if picture.mode.startswith("I"):
+            codes = np.asarray(picture)
+            if codes.min() < 0 or codes.max() > 65535:
+                raise ParameterError(f"{field} = {str(path)!r}: integer pixels must be in 0..65535")
+            return codes.astype(np.uint16)
+        if picture.mode == "F":
+            raise ParameterError(f"{field} = {str(path)!r}: a floating-point depth map must be .npy or .npz")
+        return np.asarray(picture.convert("L"))
+
+
+def _opened(path, field):
+    path = Path(path)
+    if not path.is_file():
+        raise ParameterError(f"{field} = {str(path)!r}: no such file; must be a readable file")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)     # up to PIXELS_MAX is wanted
+            picture = Image.open(path)
+    except Image.DecompressionBombError:
+        raise ParameterError(f"{field} = {str(path)!r}: must be an image of 1..{PIXELS_MAX} pixels") from None
+    except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
+        raise ParameterError(f"{field} = {str(path)!r}: must be an image file that Pillow reads "
+                             f"({type(error).__name__})") from None
+    return picture
+
+
+def _loaded(picture, path, field):
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")     # odd metadata is no concern of ours; damaged pixels raise
+            picture.load()
+    except Exception as error:      # a damaged file may raise nearly anything in a decoder
+        raise ParameterError(f"{field} = {str(path)!r}: the image is damaged ({error})") from None
+    return picture
+
+
+def _luminance(picture, path, factor):
+    if picture.mode == "F":
+        values = np.asarray(picture)
+        smallest, largest = float(values.min()), float(values.max())
+        if not (smallest >= 0 and largest <= 1):
+            worst = largest if smallest >= 0 else smallest
+            raise ParameterError(f"scene = {str(path)!r}: pixel value {worst:g}: every floating-point pixel must be a "
+                                 "finite number in [0, 1]")
+        return _reduced(picture, factor, np.float32)
+    if picture.mode.startswith("I"):
+        codes = np.asarray(picture)
+        if codes.min() < 0 or codes.max() > 65535:
+            raise ParameterError(f"scene = {str(path)!r}: integer pixels must be in 0..65535")
+        return _decode16(_reduced(Image.fromarray(codes.astype(np.float32)), factor, np.float32) / 65535)
+    if picture.mode in ("1", "L"):
+        return linear(_reduced(picture.convert("L"), factor, np.uint8))
+    if "A" in picture.mode or "transparency" in picture.info:
+        picture = picture.convert("RGBA")
+        page = Image.new("RGBA", picture.size, (255, 255, 255, 255))
+        picture = Image.alpha_composite(page, picture)
+    return linear(_reduced(picture.convert("RGB"), factor, np.uint8))
+
+
+def _reduced(picture, factor, dtype):
+    return np.asarray(picture.reduce(factor) if factor > 1 else picture, dtype)
+
+
+def _decode16(unit):
+    return np.where(unit <= 0.04045, unit / 12.92, ((unit + 0.055) / 1.055) ** 2.4)

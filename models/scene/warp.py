@@ -1,0 +1,159 @@
+"""A picture with disparity -> the views around it: forward warp with a z-buffer, then sub-pixel sampling.
+
+Only the disparity is warped forward (to the nearest pixels, the nearest surface wins); the radiance is then fetched
+at the exact sub-pixel place where the source saw that surface. So no surface is blurred by splatting.
+"""
+
+import numpy as np
+from numba import njit
+
+FOOTPRINT = 0.75    # px around its target that a pixel claims: surfaces stretched by up to 1.5 get no cracks
+BEHIND = -1e30      # no surface
+JUMP = 0.25         # px a view step between neighbours from which on two surfaces meet there
+
+
+@njit(cache=True)
+def splat(target, disparity, use, shift, dv, du):
+    """Warp ``disparity`` (rows, cols; px a view step) into ``target``, a z-buffer of the same rows.
+
+    use: bool (rows, cols), pixels that take part. shift: px to the right of every pixel before the step, (rows,
+    cols). dv, du: view steps. The largest disparity (the nearest surface) wins.
+    """
+    rows, cols = target.shape
+    for y in range(disparity.shape[0]):
+        for x in range(disparity.shape[1]):
+            if not use[y, x]:
+                continue
+            d = disparity[y, x]
+            ty, tx = y - dv * d, x + shift[y, x] - du * d
+            if not (-2 < ty < rows + 1 and -2 < tx < cols + 1):
+                continue
+            for r in range(max(0, int(np.ceil(ty - FOOTPRINT))), min(rows, int(np.floor(ty + FOOTPRINT)) + 1)):
+                for c in range(max(0, int(np.ceil(tx - FOOTPRINT))), min(cols, int(np.floor(tx + FOOTPRINT)) + 1)):
+                    if d > target[r, c]:
+                        target[r, c] = d
+
+
+@njit(cache=True)
+def unmixed(disparity):
+    """Bool (rows, cols): False for the pixels of a farther surface that touch a nearer one.
+
+    Such a pixel shows a mixture of both; left in, it draws the nearer one's outline onto the farther.
+    """
+    rows, cols = disparity.shape
+    out = np.ones((rows, cols), np.bool_)
+    for y in range(rows):
+        for x in range(cols):
+            for r in range(max(0, y - 1), min(rows, y + 2)):
+                for c in range(max(0, x - 1), min(cols, x + 2)):
+                    if disparity[r, c] > disparity[y, x] + JUMP:
+                        out[y, x] = False
+    return out
+
+
+@njit(cache=True)
+def fill_rows(disparity, hole):
+    """Fill holes (bool) in place with the farther of the nearest known neighbours in the row: the background side.
+
+    A row without any known pixel takes the smallest disparity known anywhere (0 where nothing is).
+    """
+    rows, cols = disparity.shape
+    lowest = np.inf
+    for y in range(rows):
+        for x in range(cols):
+            if not hole[y, x] and disparity[y, x] < lowest:
+                lowest = disparity[y, x]
+    if lowest == np.inf:
+        lowest = 0.0
+    for y in range(rows):
+        left = np.inf
+        x = 0
+        while x < cols:
+            if not hole[y, x]:
+                left = disparity[y, x]
+                x += 1
+                continue
+            end = x
+            while end < cols and hole[y, end]:
+                end += 1
+            value = min(left, disparity[y, end] if end < cols else np.inf)
+            for i in range(x, end):
+                disparity[y, i] = lowest if value == np.inf else value
+            x = end
+
+
+@njit(cache=True)
+def _keys(t):
+    """Weights of cubic convolution [Keys1981] at -1, 0, 1, 2 for a place ``t`` in 0..1 between 0 and 1."""
+    t2, t3 = t * t, t * t * t
+    return (-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3, -0.5 * t2 + 0.5 * t3)
+
+
+@njit(cache=True)
+def cubic(image, y, x):
+    """Value of ``image`` at a real place, the border pixels repeated outwards."""
+    rows, cols = image.shape
+    y, x = min(max(y, 0.0), rows - 1.0), min(max(x, 0.0), cols - 1.0)
+    y0, x0 = int(y), int(x)
+    wy, wx = _keys(y - y0), _keys(x - x0)
+    total = 0.0
+    for i in range(4):
+        row = image[min(max(y0 + i - 1, 0), rows - 1)]
+        total += wy[i] * (wx[0] * row[max(x0 - 1, 0)] + wx[1] * row[x0]
+                          + wx[2] * row[min(x0 + 1, cols - 1)] + wx[3] * row[min(x0 + 2, cols - 1)])
+    return total
+
+
+@njit(cache=True)
+def fetch(out, image, disparity, dv, du, high):
+    """out[y, x] = image seen from (dv, du) where a pixel has ``disparity`` in the view; limited to 0..high."""
+    for y in range(out.shape[0]):
+        for x in range(out.shape[1]):
+            d = disparity[y, x]
+            if d > BEHIND:
+                out[y, x] = min(max(cubic(image, y + dv * d, x + du * d), 0.0), high)
+
+
+@njit(cache=True)
+def fetch_second(out, surface, own, image, scale, offset, dv, du, high):
+    """Fill holes of ``surface`` in place from the second picture of a pair, whose surfaces are ``own``.
+
+    A pixel of disparity d lies ``scale * d + offset`` px to the left in the second picture.
+    """
+    for y in range(out.shape[0]):
+        for x in range(out.shape[1]):
+            d = own[y, x]
+            place = x + du * d - (scale * d + offset)
+            if surface[y, x] == BEHIND and d > BEHIND and 0 <= place <= image.shape[1] - 1:
+                out[y, x] = min(max(cubic(image, y + dv * d, place), 0.0), high)
+                surface[y, x] = d
+
+
+@njit(cache=True)
+def fill_from_background(out, disparity, dv, du):
+    """Give every pixel without a surface the radiance and disparity of the nearest pixel on the background side.
+
+    Looks both ways along the direction of the view's step, so that the farther of the two surfaces is taken.
+    """
+    rows, cols = out.shape
+    length = max(abs(dv), abs(du))
+    sy, sx = dv / length, du / length
+    known = disparity.copy()
+    for y in range(rows):
+        for x in range(cols):
+            if known[y, x] > BEHIND:
+                continue
+            best, by, bx = np.inf, y, x
+            for sign in (-1, 1):
+                i = 1
+                while True:
+                    r, c = int(np.round(y + sign * i * sy)), int(np.round(x + sign * i * sx))
+                    if r < 0 or r >= rows or c < 0 or c >= cols:
+                        break
+                    if known[r, c] > BEHIND:
+                        if known[r, c] < best:
+                            best, by, bx = known[r, c], r, c
+                        break
+                    i += 1
+            if best < np.inf:
+                out[y, x], disparity[y, x] = out[by, bx], known[by, bx]
