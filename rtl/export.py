@@ -45,8 +45,16 @@ def module_names(top, name):
     return names
 
 
+def _without_unused_constants(module):
+    """PyMTL declares constants that only gave a slice its width."""
+    for name in re.findall(r"(?m)^  localparam .*? (\w+)\s+=", module):
+        if len(re.findall(rf"\b{name}\b", module)) == 1:
+            module = re.sub(rf"(?m)^  localparam .*? {name}\s+=.*\n", "", module)
+    return module
+
+
 def tidy(text):
-    """PyMTL's Verilog without absolute paths, hashed type names and one-bit loop counters."""
+    """PyMTL's Verilog without absolute paths, hashed type names, one-bit loop counters and unused constants."""
     text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
@@ -55,6 +63,7 @@ def tidy(text):
         hashed = set(re.findall(rf"\b{struct}__[0-9a-f]{{16}}\b", text))
         if len(hashed) == 1:
             text = text.replace(hashed.pop(), struct)
+    text = "endmodule".join(map(_without_unused_constants, text.split("endmodule")))
     lines = [line.rstrip() for line in text.splitlines()]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 

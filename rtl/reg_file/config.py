@@ -9,10 +9,13 @@ from models.parameters.registers import register_map
 
 @cache
 def chip_config():
-    """ChipConfig: every configuration field by its name, and `trims`, pixel type 0 in the lowest bits."""
+    """ChipConfig: every configuration field by its name, and `trims`, the trim registers as they lie.
+
+    The register of pixel type 0 is lowest; its value is in the low bits of its bytes.
+    """
     chip = register_map()
     fields = {f.name: mk_bits(f.width) for f in chip.configuration if f.name != "trim"}
-    return mk_bitstruct("ChipConfig", fields | {"trims": mk_bits(sum(f.width for f in chip.trims))})
+    return mk_bitstruct("ChipConfig", fields | {"trims": mk_bits(sum(8 * f.size for f in chip.trims))})
 
 
 @cache

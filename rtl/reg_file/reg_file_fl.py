@@ -32,7 +32,7 @@ class RegFileFL(Component):
         names = [f.name for f in chip.configuration if f.name != "trim"]
 
         def configuration():
-            trims = sum(s.bank.value(f.key) << f.width * i for i, f in enumerate(chip.trims))
+            trims = sum(s.bank.value(f.key) << 8 * f.size * i for i, f in enumerate(chip.trims))
             return Config(*(s.bank.value(name) for name in names), trims)
 
         def falling():

@@ -64,6 +64,7 @@ class RegFile(Component):
         s.write = Wire()
         s.starting = Wire()
         s.in_image = Wire()
+        s.configuring = Wire()
         s.refused = Wire()
 
         s.spi.sclk //= s.sclk
@@ -71,14 +72,12 @@ class RegFile(Component):
         s.spi.mosi //= s.mosi
         s.miso //= s.spi.miso
         s.writable //= WRITABLE
-        low = 0
         for f in chip.configuration:
-            bit = 8 * (f.address - first) + f.lsb
-            if f.name == "trim":
-                connect(s.cfg.trims[low:low + f.width], s.image[bit:bit + f.width])
-                low += f.width
-            else:
+            if f.name != "trim":
+                bit = 8 * (f.address - first) + f.lsb
                 connect(getattr(s.cfg, f.name), s.image[bit:bit + f.width])
+        trims, past = chip.trims[0].address, chip.trims[-1].address + chip.trims[-1].size
+        connect(s.cfg.trims, s.image[8 * (trims - first):8 * (past - first)])
         sources = {"busy": (s.state, s.status.busy), "done": (s.events, s.status.done),
                    "cfg_err": (s.events, s.status.cfg_err), "amp_err": (s.events, s.status.amp_err),
                    "refused": (s.events, s.refused)}
@@ -95,6 +94,7 @@ class RegFile(Component):
             s.in_image @= (s.address >= FIRST) & (s.address <= LAST)
             s.write @= s.spi.rx_val & s.have_command & s.writing
             s.starting @= s.write & (s.address == A_START) & s.spi.rx[START_BIT]
+            s.configuring @= s.write & s.in_image & ~s.status.busy
             s.refused @= (s.status.busy & (s.starting | (s.write & s.in_image))
                           | s.loop.val & s.write & (s.address == A_LOOP))
 
@@ -135,8 +135,9 @@ class RegFile(Component):
 
         @update
         def up_written():
-            s.written @= s.image
-            if s.write & s.in_image & ~s.status.busy:
+            s.written @= Image(0)       # looked at when a byte is written only
+            if s.configuring:
+                s.written @= s.image
                 for i in range(n_bytes):
                     if s.offset == Bits7(i):
                         s.written[i * 8:i * 8 + 8] @= s.spi.rx & s.writable[i * 8:i * 8 + 8]
@@ -145,7 +146,7 @@ class RegFile(Component):
         def up_image():
             if s.reset:
                 s.image <<= RESET
-            else:
+            elif s.configuring:
                 s.image <<= s.written
 
         @update_ff

@@ -72,3 +72,9 @@ def test_tidy_keeps_two_types_of_one_name_apart():
     a, b = "Msg__0123456789abcdef", "Msg__fedcba9876543210"
     assert tidy(f"{a} x; {b} y;\n") == f"{a} x; {b} y;\n"
     assert tidy(f"{a} x; {a} y;\n") == "Msg x; Msg y;\n"
+
+
+def test_tidy_drops_constants_that_nothing_uses():
+    a = "module A;\n  localparam logic [1:0] used  = 2'd1;\n  localparam logic [1:0] width  = 2'd1;\n  x = used;\nendmodule\n"
+    b = a.replace("module A", "module B", 1)
+    assert tidy(a + b) == (a + b).replace("  localparam logic [1:0] width  = 2'd1;\n", "")

@@ -1,0 +1,58 @@
+"""The pattern generator against its golden function, and the function against what it is for."""
+
+import numpy as np
+import pytest
+
+from models.digital.pattern import pattern_held, pattern_value
+from models.digital.sar import convert
+from rtl.asp_chip.pattern_rtl import Pattern
+from rtl.testbench import build
+
+
+def test_pattern_makes_every_code_and_runs_of_zeros():
+    held = pattern_held(64, 96, 1, False)
+    codes, converted, _ = convert(held, False, 10)
+    assert set(np.unique(codes)) == set(range(-128, -9)) | {0} | set(range(10, 128))
+    assert 0.4 < converted.mean() < 0.6
+    assert set(np.unique(pattern_held(64, 96, 4, True))) == set(range(256))
+
+
+class TestRTL:
+    verilog = False
+    lanes = 4
+
+    @pytest.mark.parametrize("on", (True, False))
+    def test_answers_are_comparisons(self, on):
+        """A sampled pixel keeps its value until the next hold, whatever the address does; off, nothing is touched."""
+        sim = build(Pattern(self.lanes), self.verilog, f"Pattern_{self.lanes}")
+        rng = np.random.default_rng(self.lanes)
+        sim.on @= on
+        held = np.zeros(self.lanes, int)
+        for _ in range(300):
+            row, group, k, sub, hold = (int(rng.integers(n)) for n in (256, 256 // self.lanes, 6, 4, 2))
+            dac, analog = rng.integers(0, 256, self.lanes), rng.integers(0, 2, self.lanes)
+            sim.row @= row
+            sim.group @= group
+            sim.k @= k
+            sim.sub @= sub
+            sim.hold @= hold
+            sim.dac @= int.from_bytes(dac.astype(np.uint8).tobytes(), "little")
+            sim.analog @= int(sum(int(b) << i for i, b in enumerate(analog)))
+            sim.sim_eval_combinational()
+            want = held >= dac if on else analog
+            assert [int(sim.comparator) >> i & 1 for i in range(self.lanes)] == want.astype(int).tolist()
+            sim.sim_tick()
+            if hold:
+                held = pattern_value(row, group * self.lanes + np.arange(self.lanes), k, sub)
+
+
+class TestRTLOneLane(TestRTL):
+    lanes = 1
+
+
+class TestRTLTwoLanes(TestRTL):
+    lanes = 2
+
+
+class TestVerilog(TestRTL):
+    verilog = True
