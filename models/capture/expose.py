@@ -6,8 +6,10 @@ import numpy as np
 
 from models.parameters import ELEMENTARY_CHARGE, ParameterError, check_int, check_real
 
+from .shot import photon_count
+
 NOISE_MAX = 100.0
-PHOTONS_MAX = 1e15      # electrons a diode and interval: far beyond any well, and within the Poisson generator
+PHOTONS_MAX = 1e15      # electrons a diode and interval: far beyond any well
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def expose(pair, exposure, balance=None, tap=0):
             wells[1] -= alike
         collected = mean
         if n:
-            shot = (moving.poisson(mean) - mean).astype(dtype)
+            shot = photon_count(mean, moving.standard_normal(pair.shape, dtype)) - mean
             collected = np.maximum(mean + dtype.type(n) * shot, 0)
         np.clip(wells + collected, 0, dtype.type(e.full_well), out=wells)
     wells += offset + normal(exposure.generator(201 + tap), e.read_noise)

@@ -25,10 +25,8 @@ def stokes(i0, i45, i90, i135, diattenuation):
     """
     s1, s2 = i90 - i0, i135 - i45
     total = (i0 + i45 + i90 + i135) / 2
-    # A ratio to the larger of total and the smallest normal number: dark pixels give 0, not NaN.
-    scale = diattenuation * np.maximum(total, np.finfo(np.result_type(total, 0.0)).tiny)
-    lit = total > 0
-    return np.where(lit, np.stack([s1, s2]) / np.where(lit, scale, 1), 0.0)
+    lit = total > np.finfo(np.result_type(total, 0.0)).tiny     # denormal light has no ratios
+    return np.where(lit, np.stack([s1, s2]) / np.where(lit, total, 1) / diattenuation, 0.0)
 
 
 def angle(s1, s2):

@@ -52,7 +52,8 @@ def plan(scene, sensor, frame):
     if flat.any():
         samples = int((read & _spread(flat, sensor)).sum())
         notes.append(("conversions of flat tiles",
-                      f"no sample there can reach threshold {frame.threshold}, noise aside", f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles"))
+                      f"no sample there can reach threshold {frame.threshold}, noise aside",
+                      f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles"))
     left_out = tuple({"what": what, "why": why, "saved": saved} for what, why, saved in notes)
     return Plan(angular, polarized, taps, captures, read, flat, left_out)
 

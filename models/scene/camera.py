@@ -13,7 +13,7 @@ FIELD = (480, 720)              # px of the pair that fill the array: a margin s
 APERTURE = BASELINE / 2         # m: width of the lens, all views together. Ours: it makes about -2..2 px a view step.
 REFERENCE_DEPTH = 3.0           # m: where a scene without depth stands, and where disparity is 0
 
-DEPTH_MAX = 1e6                 # m: stands for infinity
+DEPTH_MAX = 1000.0              # m: stands for infinity
 
 
 def zoom(sampling):

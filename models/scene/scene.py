@@ -9,6 +9,8 @@ import numpy as np
 
 from models.parameters import ParameterError, check_choice, check_int, check_real
 
+from .camera import DEPTH_MAX
+
 RADIANCE_MAX = 16.0     # 1 = diffuse white; highlights and the saturated target go above it
 DTYPES = ("float32", "float64")
 
@@ -60,7 +62,7 @@ class Scene:
     image: the centre view, (rows, cols).
     disparity: px a view step towards the camera from the focal plane, (rows, cols), or None where not known:
         view (v, u) sees at (y, x) what the centre view sees at (y + dv * disparity, x + du * disparity).
-    depth: m from the camera, (rows, cols), or None.
+    depth: m from the camera, 0.001..1000, (rows, cols), or None.
     polarization: S1/S0 and S2/S0, (2, rows, cols), of degree 0..1; None = unpolarized.
     static: nothing moves or changes between the taps of a time-of-flight frame.
     Raises ParameterError for a wrong shape or type, NaN, infinity or a value out of range.
@@ -84,7 +86,7 @@ class Scene:
                                  f"(1, 1, rows, cols) with views = {self.views}")
         check_values("light_field", field, 0, RADIANCE_MAX)
         for name, low, high, shape in (("image", 0, RADIANCE_MAX, self.shape), ("disparity", -1e4, 1e4, self.shape),
-                                       ("depth", 1e-3, 1e6, self.shape),
+                                       ("depth", 1e-3, DEPTH_MAX, self.shape),
                                        ("polarization", -1, 1, (2, *self.shape))):
             value = getattr(self, name)
             if value is None:
