@@ -34,9 +34,9 @@ class Search:
             return behind, lost + 1
         following, near = min(lost + 1, total), min(self.stop, at + self.longest + COUNTED_BYTES)
         return (behind >= 0 and self._find(behind, behind + 1, following, following)
-                or self._find(at + 1, near, following, following)
+                or self._find(at, near, following, following)
                 or behind >= 0 and (behind, following)
-                or self._find(at + 1, self.stop, following, total))
+                or self._find(at, self.stop, following, total))
 
     def _behind(self, lost, at):
         """Where row number ``lost`` + 1 (or the trailer) fits right behind the lost one, or -1."""

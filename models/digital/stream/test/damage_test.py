@@ -153,6 +153,9 @@ def test_bytes_lost_or_put_in():
         cut = data[:starts[first] + 2] + more + data[starts[last] + 5:]
         frame, = decode_stream(cut)
         check_rows_lost(frame, header, samples, list(range(first, last + 1)))
+    for first, last in ((0, 1), (7, 30), (0, 48)):
+        frame, = decode_stream(data[:starts[first]] + data[starts[last]:])
+        check_rows_lost(frame, header, samples, list(range(first, last)))
 
 
 @pytest.mark.parametrize("mode, step", [("raw", 2), ("edge", 3)])

@@ -1,0 +1,66 @@
+"""PayloadPacker at RTL: a row's samples in, the bytes of its payload out."""
+
+from pymtl3 import Bits5, Bits7, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
+
+from .token_rtl import TokenCoder
+
+
+class PayloadPacker(Component):
+    """Tokens are gathered, from the top, in a register of 32 bits; eight or more of them are a byte that is due."""
+
+    def construct(s):
+        # Interface
+        s.restart = InPort()        # a row starts: empty but for the coder's state
+        s.push = InPort()           # the sample is taken; only while `ready`
+        s.flush = InPort()          # the row ends: fill up its last byte; only while `ready`
+        s.ready = OutPort()
+        s.coded = InPort()
+        s.threshold = InPort(Bits7)
+        s.code = InPort(Bits8)
+        s.val = OutPort()           # a byte is due
+        s.octet = OutPort(Bits8)
+        s.rdy = InPort()            # it would be taken
+
+        # Components
+        s.coder = TokenCoder()
+        s.gathered = Wire(Bits32)
+        s.count = Wire(Bits5)
+
+        s.take = Wire()
+        s.behind = Wire(Bits5)         # bits behind the next token; at most 7 of them lie before it
+
+        # Connections
+        s.coder.restart //= s.restart
+        s.coder.push //= s.push
+        s.coder.coded //= s.coded
+        s.coder.threshold //= s.threshold
+        s.coder.code //= s.code
+        s.octet //= s.gathered[24:32]
+
+        # Logic
+        @update
+        def handshake():
+            s.val @= s.count[3:5] != 0
+            s.take @= s.val & s.rdy
+            s.ready @= (s.count[3:5] == 0) | ((s.count[3:5] == 1) & s.rdy)
+            s.behind @= zext(s.count[0:3], 5) + s.coder.length
+
+        @update_ff
+        def gather():
+            if s.reset:
+                s.gathered <<= 0
+                s.count <<= 0
+            else:
+                if s.take:
+                    s.count <<= s.count - 8
+                if s.push:
+                    s.count <<= s.behind
+                    s.gathered <<= (concat(s.gathered[0:24], Bits8(0)) if s.take else s.gathered) \
+                        | (zext(s.coder.bits, 32) << zext(Bits5(0) - s.behind, 32))
+                elif s.take:
+                    s.gathered <<= concat(s.gathered[0:24], Bits8(0))
+                if s.flush:
+                    s.count <<= Bits5(8) if (s.count[0:3] != 0) | s.coder.open else Bits5(0)
+
+    def line_trace(s):
+        return f"{s.coder.line_trace()}b{s.count}"

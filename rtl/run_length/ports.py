@@ -1,0 +1,34 @@
+"""The ports that every level of RunLength has, and what they say of a frame."""
+
+from pymtl3 import Bits2, Bits7, Bits8, Bits16, Bits24, Bits32, InPort, OutPort
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from models.digital.stream import StreamHeader
+from models.parameters import MODES, Window
+from rtl.messages import ScanMsg
+
+HEADER_PORTS = {"mode": Bits2, "phase": None, "row0": Bits8, "row1": Bits8, "col0": Bits8, "col1": Bits8,
+                "decimation": Bits2, "mask": Bits24, "threshold": Bits7, "frame_number": Bits16}
+
+
+def add_header_ports(s):
+    """What the header tells of the configuration; held from FRAME to the end of the frame."""
+    for name, kind in HEADER_PORTS.items():
+        setattr(s, name, InPort(kind) if kind else InPort())
+
+
+def add_ports(s):
+    """The interface of RunLength."""
+    s.recv = RecvIfcRTL(ScanMsg)
+    add_header_ports(s)
+    s.made = InPort(Bits32)
+    s.left_out = InPort(Bits32)
+    s.send = SendIfcRTL(Bits8)
+    s.frame_sync = OutPort()
+
+
+def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
+    """The StreamHeader that the ports of ``s`` ask for."""
+    window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
+    return StreamHeader(rows, cols, lanes, tile_rows, tile_cols, window, MODES[int(s.mode)], bool(s.phase),
+                        int(s.decimation), int(s.mask), int(s.threshold), int(s.frame_number))

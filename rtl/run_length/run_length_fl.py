@@ -1,0 +1,59 @@
+"""RunLength at functional level: the golden encoder behind the ports, no cycle promised."""
+
+from collections import deque
+
+from pymtl3 import Component, update_ff
+
+from models.digital.stream import encode_marked_row
+from models.digital.stream.trailer import trailer
+from rtl.messages import END, FRAME, ROW, SAMPLE
+
+from .ports import add_ports, header_of
+
+
+class RunLengthFL(Component):
+    """Ports and parameters of RunLength. A row's bytes come when its last sample is known."""
+
+    def construct(s, *chip):
+        add_ports(s)
+
+        s.out = deque()
+        s.header = s.row = None
+        s.body = b""
+        s.codes = []
+
+        @update_ff
+        def behave():
+            if s.send.val & s.send.rdy:
+                s.out.popleft()
+            if s.recv.val & s.recv.rdy:
+                s.out.extend(s.take(chip, int(s.recv.msg.kind), int(s.recv.msg.data)))
+            if s.reset:
+                s.out.clear()
+                s.header = s.row = None
+            s.recv.rdy <<= not s.out
+            s.send.val <<= bool(s.out)
+            s.send.msg <<= s.out[0] if s.out else 0
+            s.frame_sync <<= bool(s.out) or s.header is not None
+
+    def take(s, chip, kind, data):
+        """The bytes that a message brings about."""
+        if s.header is None:
+            if kind != FRAME:
+                return b""
+            s.header, s.body = header_of(s, *chip), b""
+            return s.header.to_bytes()
+        if kind == SAMPLE:
+            s.codes.append(data - (data & 0x80) * 2 if s.header.edge else data)
+        if kind not in (ROW, END):
+            return b""
+        sent = b"" if s.row is None else encode_marked_row(s.row, s.codes, s.header.edge, s.header.threshold)
+        s.body += sent
+        s.row, s.codes = data, []
+        if kind == END:
+            sent += trailer(s.header.to_bytes(), s.body, int(s.made), int(s.left_out))
+            s.header = s.row = None
+        return sent
+
+    def line_trace(s):
+        return f"{len(s.out):3}"

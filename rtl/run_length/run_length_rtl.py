@@ -1,0 +1,104 @@
+"""RunLength at RTL: messages of a scan in, the bytes of docs/stream.md out."""
+
+from pymtl3 import Bits6, Bits8, Bits10, Bits16, Bits64, Component, Wire, concat, connect, update, update_ff
+
+from .byte_queue_rtl import ByteQueue
+from .control_rtl import COUNTED, COUNTS, HEADER, HEADER_FIELDS, MARK, TRAILER, RunLengthCtrl
+from .crc_rtl import Crc16, Crc32
+from .header_rtl import HeaderBytes
+from .packer_rtl import PayloadPacker
+from .ports import HEADER_PORTS, add_ports
+
+
+class RunLength(Component):
+    """rows, cols, lanes, tile_rows, tile_cols: what the header says of the chip."""
+
+    def construct(s, rows, cols, lanes, tile_rows, tile_cols):
+        # Interface
+        add_ports(s)
+
+        # Components
+        s.control = RunLengthCtrl()
+        s.header = HeaderBytes(rows, cols, lanes, tile_rows, tile_cols)
+        s.packer = PayloadPacker()
+        s.crc16 = Crc16()
+        s.crc32 = Crc32()
+        s.queue = ByteQueue()
+        s.row = Wire(Bits10)
+        s.following = Wire(Bits10)      # the row behind this one's mark
+        s.counts = Wire(Bits64)         # made and left out, the next byte on top
+        s.mark = Wire(Bits16)
+        s.octet = Wire(Bits8)
+
+        # Connections
+        for name in HEADER_PORTS:
+            connect(getattr(s.header, name), getattr(s, name))
+        s.header.index //= s.control.index
+        s.control.val //= s.recv.val
+        s.control.kind //= s.recv.msg.kind
+        s.control.rdy //= s.recv.rdy
+        s.control.packer_ready //= s.packer.ready
+        s.control.packer_val //= s.packer.val
+        s.control.queue_ready //= s.queue.ready
+        s.control.queue_last //= s.queue.last
+        s.control.frame_sync //= s.frame_sync
+        s.packer.restart //= s.control.restart
+        s.packer.push //= s.control.push
+        s.packer.flush //= s.control.flush
+        s.packer.coded //= lambda: s.mode == 0
+        s.packer.threshold //= s.threshold
+        s.packer.code //= s.recv.msg.data[0:8]
+        s.packer.rdy //= s.queue.ready
+        s.crc16.restart //= s.control.restart
+        s.crc16.put //= s.control.put_crc16
+        s.crc16.octet //= s.octet
+        s.crc32.restart //= s.control.start
+        s.crc32.put //= s.control.put_crc32
+        s.crc32.octet //= s.octet
+        s.queue.put //= s.control.put
+        s.queue.octet //= s.octet
+        s.queue.send.msg //= s.send.msg
+        s.queue.send.val //= s.send.val
+        s.queue.send.rdy //= s.send.rdy
+
+        # Logic
+        @update
+        def select():
+            s.mark @= s.crc16.crc ^ (Bits16(0xFFFF) if s.control.state == TRAILER else concat(Bits6(0), s.row))
+            if s.packer.val:
+                s.octet @= s.packer.octet
+            elif (s.control.state == HEADER) & (s.control.index < HEADER_FIELDS):
+                s.octet @= s.header.octet
+            elif (s.control.state == TRAILER) & (s.control.index < COUNTS):
+                s.octet @= s.counts[56:64]
+            elif (s.control.state == MARK) | ((s.control.state == TRAILER) & (s.control.index < COUNTED)):
+                s.octet @= s.mark[0:8] if s.control.index[0] else s.mark[8:16]
+            elif s.control.index[0:2] == 2:         # both CRC-32s start at an index of 2 modulo 4
+                s.octet @= s.crc32.crc[24:32]
+            elif s.control.index[0:2] == 3:
+                s.octet @= s.crc32.crc[16:24]
+            elif s.control.index[0:2] == 0:
+                s.octet @= s.crc32.crc[8:16]
+            else:
+                s.octet @= s.crc32.crc[0:8]
+
+        @update_ff
+        def remember():
+            if s.reset:
+                s.row <<= 0
+                s.following <<= 0
+                s.counts <<= 0
+            else:
+                if s.control.first_row:
+                    s.row <<= s.recv.msg.data
+                elif s.control.marked:
+                    s.row <<= s.following
+                if s.control.next_row:
+                    s.following <<= s.recv.msg.data
+                if s.control.finish:
+                    s.counts <<= concat(s.made, s.left_out)
+                elif s.control.put & (s.control.state == TRAILER):
+                    s.counts <<= concat(s.counts[0:56], Bits8(0))
+
+    def line_trace(s):
+        return f"{s.control.line_trace()} {s.packer.line_trace()} {s.queue.line_trace()}"

@@ -1,0 +1,213 @@
+"""RunLength at every level: the golden encoder's bytes, whatever the timing of either side."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings, strategies as st
+
+from models.digital.stream import StreamHeader, decode_stream, encode_frame
+from models.digital.stream.test.frames import samples_of
+from models.parameters import MODES, FrameParameters, Window
+from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
+from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
+from rtl.testbench import build
+
+ROWS, COLS, LANES = 12, 36, 4
+ALWAYS = [True]
+SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
+BURSTS = st.lists(st.booleans(), min_size=1, max_size=12).filter(any)
+
+
+@cache
+def simulator(cls, verilog):
+    return build(cls(ROWS, COLS, LANES, 4, 6), verilog, "RunLength")
+
+
+def header_of(mode="edge", window=Window(0, 2, 0, 5), **frame):
+    return StreamHeader.from_frame(ROWS, COLS, LANES, FrameParameters(window, mode, **frame))
+
+
+def messages_of(header, samples):
+    """The scan's messages of a frame."""
+    layout, out = header.layout(), [ScanMsg(FRAME, 0)]
+    for i, row in enumerate(layout.rows.tolist()):
+        codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
+        out += [ScanMsg(ROW, row)] + [ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes]
+    return out + [ScanMsg(END, 0)]
+
+
+class Bench:
+    """Sends a frame's messages and takes its bytes; ``log``: (rdy, val, byte, frame_sync) of every cycle."""
+
+    def __init__(self, cls, verilog, header, made=0, left_out=0):
+        self.sim, w = simulator(cls, verilog), header.window
+        self.log = []
+        values = {"mode": MODES.index(header.mode), "phase": header.phase, "row0": w.row0, "row1": w.row1,
+                  "col0": w.col0, "col1": w.col1, "decimation": header.decimation, "mask": header.mask,
+                  "threshold": header.threshold, "frame_number": header.frame_number}
+        for name, value in values.items():
+            port = getattr(self.sim, name)
+            port @= value
+        self.counts = made, left_out
+        self.sim.recv.val @= 0
+        self.sim.send.rdy @= 0
+        self.sim.reset @= 1
+        self.sim.sim_tick()
+        self.sim.reset @= 0
+
+    def run(self, messages, offered=ALWAYS, taken=ALWAYS, limit=50_000):
+        """Offer messages in the cycles that ``offered`` names and take bytes in those of ``taken`` (both cyclic),
+
+        until all messages are taken and no byte has come for a while; returns the bytes.
+        """
+        sim, out, sent, quiet = self.sim, bytearray(), 0, 0
+        while quiet < 30 + len(taken) + len(offered):
+            cycle = len(self.log)
+            assert cycle < limit
+            offer = sent < len(messages) and offered[cycle % len(offered)]
+            sim.recv.val @= offer
+            sim.recv.msg @= messages[sent] if offer else ScanMsg(3, 0x3FF)
+            ending = offer and messages[sent].kind == END
+            sim.made @= self.counts[0] if ending else 0
+            sim.left_out @= self.counts[1] if ending else 0
+            sim.send.rdy @= taken[cycle % len(taken)]
+            sim.sim_eval_combinational()
+            state = bool(sim.recv.rdy), bool(sim.send.val), int(sim.send.msg), bool(sim.frame_sync)
+            self.log.append(state)
+            quiet = 0 if state[1] or sent < len(messages) else quiet + 1
+            if state[1] and taken[cycle % len(taken)]:
+                out.append(state[2])
+            sent += offer and state[0]
+            sim.sim_tick()
+        return bytes(out)
+
+
+@st.composite
+def frames(draw):
+    """Header, samples and counts of a frame of the small chip."""
+    mode = draw(st.sampled_from(MODES))
+    row0, row1 = sorted(draw(st.integers(0, 2)) for _ in range(2))
+    col0, col1 = sorted(draw(st.integers(0, 5)) for _ in range(2))
+    header = header_of(mode, Window(row0, row1, col0, col1), phase=mode == "tof" and draw(st.booleans()),
+                       mask=draw(st.sampled_from([2**24 - 1, 0xF0F, 1, 0x800001])), threshold=draw(st.integers(0, 127)),
+                       decimation=draw(st.integers(0, 3)), frame_number=draw(st.integers(0, 65535)))
+    count = st.integers(0, 2**32 - 1)
+    samples = samples_of(header, draw(st.integers(0, 999)), draw(st.floats(0, 1)), draw(st.sampled_from([3, 30, 300])))
+    return header, samples, draw(count), draw(count)
+
+
+class TestRunLengthFL:
+    """Inherited by every level; a level overrides ``cls`` and ``verilog``."""
+
+    cls, verilog = RunLengthFL, False
+
+    @classmethod
+    def bench(cls, *args):
+        return Bench(cls.cls, cls.verilog, *args)
+
+    @SETTINGS
+    @given(frames(), BURSTS, BURSTS)
+    def test_any_frame_and_any_timing(self, frame, offered, taken):
+        header, samples, made, left_out = frame
+        got = self.bench(header, made, left_out).run(messages_of(header, samples), offered, taken)
+        assert got == encode_frame(header, samples, made, left_out)
+
+    @pytest.mark.parametrize("kind", ["zeros", "noise", "alternating", "one", "last", "least", "inside"])
+    def test_extreme_rows(self, kind):
+        header = header_of(threshold=5 if kind == "inside" else 0)
+        samples = np.zeros((ROWS, COLS, 1), int)
+        if kind == "noise":
+            samples = np.random.default_rng(0).integers(-128, 128, samples.shape)
+        elif kind == "alternating":
+            samples[:, ::2] = -128
+            samples[:, 1::2] = 127
+        elif kind == "one":
+            samples[:, 0] = -1
+        elif kind == "last":
+            samples[:, -1] = 1
+        elif kind == "least":
+            samples[:] = np.arange(-3, 3).repeat(6)[:, None]
+        elif kind == "inside":      # codes that no converter gives under this threshold
+            samples[:] = np.arange(-18, 18)[:, None] // 2
+        got = self.bench(header, 2**32 - 1, 0).run(messages_of(header, samples))
+        assert got == encode_frame(header, samples, 2**32 - 1, 0)
+
+    def test_a_long_run_of_zeros(self):
+        """Runs up to the longest token and beyond: 384 samples a row, all but the first and the last zero."""
+        row = np.zeros(384, int)
+        row[[0, -1]] = 9, -7
+        messages = [ScanMsg(FRAME, 0)]
+        for number in range(3):
+            messages += [ScanMsg(ROW, number)] + [ScanMsg(SAMPLE, int(code) & 0xFF) for code in row]
+        header = header_of()
+        got = self.bench(header).run(messages + [ScanMsg(END, 0)])
+        wide = StreamHeader.from_frame(3, 384, 1, FrameParameters(Window(0, 0, 0, 63)))
+        layout, samples = wide.layout(), np.zeros((3, 384, 1), int)
+        for i in range(3):
+            samples[i, layout.places_of(i), 0] = row
+        assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
+
+    def test_frames_follow_each_other_and_frame_sync_parts_them(self):
+        header = header_of(threshold=3, frame_number=77)
+        samples = samples_of(header, 2)
+        messages = messages_of(header, samples)
+        bench = self.bench(header, 5, 6)
+        assert bench.run(messages * 3, taken=[True, False, True]) == encode_frame(header, samples, 5, 6) * 3
+        sync = "".join("1" if state[3] else "0" for state in bench.log)
+        assert len(sync.replace("0", " ").split()) == 3
+        assert all(state[3] for state in bench.log if state[1])
+
+    def test_messages_outside_a_frame_are_dropped(self):
+        header = header_of()
+        samples = samples_of(header, 4)
+        messages = messages_of(header, samples)
+        stray = [ScanMsg(SAMPLE, 3), ScanMsg(ROW, 1), ScanMsg(SAMPLE, 3), ScanMsg(END, 0)]
+        got = self.bench(header).run(stray + messages[:1] + [ScanMsg(SAMPLE, 9)] + messages[1:])
+        assert got == encode_frame(header, samples, 0, 0)
+
+    def test_a_frame_without_rows(self):
+        got = self.bench(header_of(), 1, 2).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)])
+        frame, = decode_stream(got)
+        assert len(got) == 40 and (frame.made, frame.left_out) == (1, 2) and len(frame.bad_rows) == ROWS
+
+    def test_reset_in_a_frame(self):
+        header = header_of(threshold=3)
+        samples = samples_of(header, 6)
+        messages = messages_of(header, samples)
+        bench = self.bench(header)
+        bench.run(messages[:100])
+        assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
+
+
+class TestRunLengthCL(TestRunLengthFL):
+    cls = RunLengthCL
+
+    @SETTINGS
+    @given(frames(), BURSTS, BURSTS)
+    def test_every_port_in_every_cycle_is_the_cycle_level_s(self, frame, offered, taken):
+        header, samples, *counts = frame
+        benches = [self.bench(header, *counts), Bench(RunLengthCL, False, header, *counts)]
+        for bench in benches:
+            bench.run(messages_of(header, samples), offered, taken)
+        logs = [[state if state[1] else (state[0], False, None, state[3]) for state in bench.log] for bench in benches]
+        assert logs[0] == logs[1]
+
+    def test_a_sample_a_cycle_and_a_byte_a_cycle(self):
+        for mode, share in (("edge", 0), ("edge", 1), ("raw", 1)):
+            header = header_of(mode)
+            messages = messages_of(header, samples_of(header, 1, share))
+            bench = self.bench(header)
+            size = len(bench.run(messages))
+            busy = sum(state[3] for state in bench.log)
+            stalls = {("edge", 0): 0, ("edge", 1): size * 0.15, ("raw", 1): 0}[mode, share]
+            # header, for each row its message, its last byte or two and its mark, trailer
+            assert busy <= 26 + (len(messages) - 2 - ROWS) + ROWS * 5 + 14 + 4 + stalls
+
+
+class TestRunLength(TestRunLengthCL):
+    cls = RunLength
+
+
+class TestRunLengthVerilog(TestRunLength):
+    verilog = True
