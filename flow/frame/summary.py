@@ -5,7 +5,8 @@ import numpy as np
 import pymtl3
 
 from flow.simulate.verilator import verilator_version
-from models.digital.stream import HEADER_BYTES, TRAILER_BYTES
+from models.digital.stream.header import HEADER_BYTES
+from models.digital.stream.trailer import TRAILER_BYTES
 from models.parameters import EnergyParameters
 
 PEAK = 255.0        # span of the 8-bit codes

@@ -2,8 +2,9 @@
 of a noiseless exposure, and what the noise costs in conversions, bytes and cycles."""
 
 from flow.charts import curves
-from flow.frame import job
+from flow.frame import hardware, job
 from flow.frame.request import request
+from flow.frame.summary import summarize
 
 LEVELS = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 
@@ -15,8 +16,9 @@ def points(quick):
 def measure(point):
     level, size = point
     asked = request(rows=size, cols=size, noise=level)
-    result = job.read_out(asked, job.expose_scene(asked))
-    summary = job.summarize(result)
+    scene, todo = job.see(asked)
+    result = job.read_out(asked, job.expose(asked, scene, todo), hardware.program(asked.sensor, todo.taps))
+    summary = summarize(result)
     return [{"noise": level, "psnr_edges_db": summary["psnr_db"], "conversions": summary["conversions_made"],
              "bytes": summary["stream_bytes"], "cycles": summary["cycles"],
              "energy_uj": summary["energy_uj"]["total"], "simulation_s": result.chip.seconds,

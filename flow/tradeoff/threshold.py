@@ -5,8 +5,9 @@ from dataclasses import replace
 from functools import cache
 
 from flow.charts import curves
-from flow.frame import job
+from flow.frame import hardware, job
 from flow.frame.request import request
+from flow.frame.summary import summarize
 
 THRESHOLDS = (0, 1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 127)
 
@@ -18,16 +19,17 @@ def points(quick):
 @cache
 def _exposure(size):
     asked = request(rows=size, cols=size)
-    return asked, job.expose_scene(asked)
+    scene, todo = job.see(asked)
+    return asked, job.expose(asked, scene, todo), hardware.program(asked.sensor, todo.taps)
 
 
 def measure(point):
     threshold, size = point
-    asked, exposure = _exposure(size)
+    asked, exposed, program = _exposure(size)
     asked = replace(asked, frame=replace(asked.frame, threshold=threshold))
-    result = job.read_out(asked, exposure)
-    summary = job.summarize(result)
-    rebuilt = job.rebuilt_image(result)
+    result = job.read_out(asked, exposed, program)
+    summary = summarize(result)
+    rebuilt = result.rebuilt
     return [{"threshold": threshold, "psnr_edges_db": summary["psnr_db"], "psnr_image_db": rebuilt.psnr_db,
              "conversions": summary["conversions_made"], "bytes": summary["stream_bytes"],
              "cycles": summary["cycles"], "energy_uj": summary["energy_uj"]["total"],

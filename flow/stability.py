@@ -1,0 +1,91 @@
+"""Stiff and extreme cases, optical and digital: what is expected of each, and what came out.
+
+Every case runs with NumPy's warnings raised as errors; the digital ones go through the chip's Verilog.
+"""
+
+import sys
+import warnings
+
+import numpy as np
+from tqdm import tqdm
+
+from flow.frame import hardware, job
+from flow.frame.request import request
+from flow.frame.summary import summarize
+from models.digital.divider import quad_divide
+from models.stability import Case, optical_cases
+
+SINGLE_TYPE = 1 << 13
+# (name, arguments of `request`); few sizes, since each compiles a simulator
+FRAMES = (
+    ("one tile, 4 x 6", dict(rows=4, cols=6, scene="camera")),
+    ("1 x 37 pixels", dict(rows=1, cols=37, scene="camera")),
+    ("37 x 1 pixels", dict(rows=37, cols=1, scene="camera")),
+    ("37 x 50, threshold 0", dict(rows=37, cols=50, threshold=0)),
+    ("37 x 50, threshold 127", dict(rows=37, cols=50, threshold=127)),
+    ("37 x 50, all types masked but one", dict(rows=37, cols=50, mask=SINGLE_TYPE, threshold=0)),
+    ("37 x 50, noise 100 times physical", dict(rows=37, cols=50, noise=100.0)),
+    ("37 x 50, saturated scene", dict(rows=37, cols=50, scene="saturated", threshold=0)),
+    ("37 x 50, black scene", dict(rows=37, cols=50, scene="black")),
+    ("37 x 50, black scene, no noise", dict(rows=37, cols=50, scene="black", noise=0.0, threshold=0)),
+    ("37 x 50, saturated, image mode", dict(rows=37, cols=50, scene="saturated", mode="image")),
+    ("37 x 50, raw mode", dict(rows=37, cols=50, mode="raw")),
+    ("37 x 50, time of flight", dict(rows=37, cols=50, mode="tof")),
+    ("37 x 50, time of flight through the divider", dict(rows=37, cols=50, mode="tof", phase=True)),
+)
+
+
+def run():
+    """All cases: list of Case. Takes minutes when the simulators are not cached; shows a progress bar."""
+    with warnings.catch_warnings(), np.errstate(all="raise", under="ignore"):
+        warnings.simplefilter("error")
+        frames = tqdm(FRAMES, desc="frames", file=sys.stderr, disable=None)
+        return [*optical_cases(), *divider_cases(), *(frame_case(*frame) for frame in frames)]
+
+
+def frame_case(name, arguments):
+    """A frame through the Verilog: no byte may differ from the golden model, and every figure is finite."""
+    asked = request(**arguments)
+    scene, todo = job.see(asked)
+    exposed = job.expose(asked, scene, todo)
+    result = job.read_out(asked, exposed, hardware.program(asked.sensor, todo.taps))
+    summary = summarize(result)
+    wrong = summary["stream_mismatches"] + summary["decoded_mismatches"]
+    finite = bool(np.isfinite(exposed.samples).all() and np.isfinite(exposed.ideal).all())
+    return Case(name, "0 bytes or samples differ", f"{wrong} differ, {len(result.chip.stream)} bytes",
+                wrong == 0 and finite)
+
+
+def divider_cases():
+    """The divider where it is stiff: equal operands, zeros, full scale, every sign."""
+    full = np.array([-256, -255, 255])
+    corners = [np.ravel(a) for a in np.meshgrid(full, full)]
+    equal = np.arange(-255, 256)
+    equal = equal[equal != 0]
+    small = np.arange(1, 256)
+    sets = {"|x| = |y|, every sign": (np.r_[equal, equal], np.r_[equal, -equal]),
+            "full scale, every sign": corners,
+            "one operand zero, every sign": (np.r_[equal, 0 * equal], np.r_[0 * equal, equal]),
+            "ratio just under one and just over zero": (np.r_[small, 0 * small + 255], np.r_[small - 1, small])}
+    out = []
+    for name, (x, y) in sets.items():
+        worst = float(np.abs(phase_error(x, y)).max())
+        out.append(Case(f"divider: {name}", "phase within 0.75 LSB of atan2", f"{worst:.3f} LSB", worst <= 0.75))
+    zero = quad_divide(np.array([0]), np.array([0]))
+    right = bool(zero.zero[0]) and not (zero.ratio[0] or zero.octant[0] or zero.phase[0] or zero.amp_valid[0])
+    out.append(Case("divider: x = y = 0", "zero flag, every other output 0", "so" if right else "not so", right))
+    return out
+
+
+def phase_error(x, y):
+    """Phase of the divider less atan2, the short way round, in LSB."""
+    exact = np.arctan2(y, x) * 256 / (2 * np.pi)
+    return np.mod(quad_divide(x, y).phase - exact + 128, 256) - 128
+
+
+def table(cases):
+    """The cases as text, one a line."""
+    rows = [("case", "expected", "measured", ""), *((c.name, c.bound, c.measured, "ok" if c.ok else "FAILED")
+                                                     for c in cases)]
+    widths = [max(len(str(r[i])) for r in rows) for i in range(4)]
+    return "\n".join("  ".join(str(v).ljust(w) for v, w in zip(r, widths, strict=True)).rstrip() for r in rows)
