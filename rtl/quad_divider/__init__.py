@@ -1,0 +1,10 @@
+"""QuadDivider: octant, ratio, amplitude and phase of a vector; three dividing variants and CORDIC."""
+
+from .cordic_rtl import Cordic
+from .quad_divider_cl import QuadDividerCL
+from .quad_divider_fl import QuadDividerFL
+from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
+from .variants import golden, quad_divider, ratio_bits, timing
+
+__all__ = ["Cordic", "QuadDividerCL", "QuadDividerFL", "QuadDividerPipelined", "QuadDividerRadix2",
+           "QuadDividerRadix4", "golden", "quad_divider", "ratio_bits", "timing"]

@@ -1,0 +1,35 @@
+"""QuadDivider at functional level: the golden functions behind the ports."""
+
+from pymtl3 import Component, InPort, update_ff
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from rtl.messages import DivReq, div_resp
+
+from .variants import check_variant, ratio_bits, response
+
+
+class QuadDividerFL(Component):
+    """Same ports and same responses as any variant; takes one request, then offers its response."""
+
+    def construct(s, variant, n_frac=8, iterations=10):
+        check_variant(variant, n_frac, iterations)
+
+        s.recv = RecvIfcRTL(DivReq)
+        s.send = SendIfcRTL(div_resp(ratio_bits(variant, n_frac)))
+        s.noise_floor = InPort(8)
+
+        @update_ff
+        def behave():
+            if s.reset:
+                s.recv.rdy <<= 1
+                s.send.val <<= 0
+            elif s.recv.val & s.recv.rdy:
+                s.recv.rdy <<= 0
+                s.send.val <<= 1
+                s.send.msg <<= response(variant, n_frac, iterations, s.recv.msg, s.noise_floor)
+            elif s.send.val & s.send.rdy:
+                s.recv.rdy <<= 1
+                s.send.val <<= 0
+
+    def line_trace(s):
+        return f"{s.recv}(){s.send}"

@@ -1,0 +1,186 @@
+"""QuadDivider: the three dividing variants."""
+
+from pymtl3 import Bits4, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN
+from models.parameters import check_int
+from rtl.messages import DivReq, div_resp
+
+from .angle_rtl import Fold, PhaseIndex, Unfold
+from .digit_rtl import Radix2Digit, Radix4Digit, div_state
+from .iterative_rtl import IterativeDivider
+
+
+class Operands(Component):
+    """A request as the state of a division that has no digit yet."""
+
+    def construct(s, quotient_bits):
+        State, Quotient = div_state(quotient_bits), mk_bits(quotient_bits)
+        s.msg = InPort(DivReq)
+        s.noise_floor = InPort(8)
+        s.state = OutPort(State)
+
+        s.fold = Fold()
+
+        s.fold.msg //= s.msg
+        s.fold.noise_floor //= s.noise_floor
+
+        @update
+        def up_state():
+            s.state @= State(s.fold.octant, s.fold.amp_valid, s.fold.larger, s.fold.smaller, Quotient(0))
+
+
+class Result(Component):
+    """The response of a division that is over: its phase by the table."""
+
+    def construct(s, n_frac):
+        s.octant = InPort(3)
+        s.larger = InPort(9)
+        s.amp_valid = InPort()
+        s.ratio = InPort(n_frac)
+        s.msg = OutPort(div_resp(n_frac))
+
+        s.lookup = PhaseIndex(n_frac)
+        s.unfold = Unfold(n_frac)
+
+        s.lookup.ratio //= s.ratio
+        s.unfold.octant //= s.octant
+        s.unfold.larger //= s.larger
+        s.unfold.amp_valid //= s.amp_valid
+        s.unfold.ratio //= s.ratio
+        s.unfold.index //= lambda: zext(s.lookup.index, 8)
+        s.unfold.msg //= s.msg
+
+
+class DividerDatapath(Component):
+    """One state register that goes around through one digit."""
+
+    def construct(s, n_frac, Digit):
+        digits = -(-n_frac // Digit.digit_bits)
+        quotient_bits = digits * Digit.digit_bits
+        State = div_state(quotient_bits)
+
+        s.load = InPort()
+        s.step = InPort()
+        s.last = OutPort()
+        s.recv_msg = InPort(DivReq)
+        s.noise_floor = InPort(8)
+        s.send_msg = OutPort(div_resp(n_frac))
+
+        s.operands = Operands(quotient_bits)
+        s.digit = Digit(quotient_bits)
+        s.result = Result(n_frac)
+        s.state = Wire(State)
+        s.count = Wire(4)
+
+        s.operands.msg //= s.recv_msg
+        s.operands.noise_floor //= s.noise_floor
+        s.digit.in_state //= s.state
+        s.result.octant //= s.state.octant
+        s.result.larger //= s.state.larger
+        s.result.amp_valid //= s.state.amp_valid
+        s.result.ratio //= s.state.quotient[quotient_bits - n_frac:quotient_bits]   # two bits a digit: one too many
+        s.result.msg //= s.send_msg
+        s.last //= lambda: s.count == Bits4(digits - 1)
+
+        @update_ff
+        def up_state():
+            if s.reset:
+                s.state <<= State()
+                s.count <<= Bits4(0)
+            elif s.load:
+                s.state <<= s.operands.state
+                s.count <<= Bits4(0)
+            elif s.step:
+                s.state <<= s.digit.out_state
+                s.count <<= s.count + Bits4(1)
+
+
+class QuadDividerRadix2(IterativeDivider):
+    """One bit of the ratio a cycle: the smallest. n_frac: 4..16."""
+
+    def construct(s, n_frac=8):
+        check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+        super().construct(DividerDatapath(n_frac, Radix2Digit), n_frac)
+
+
+class QuadDividerRadix4(IterativeDivider):
+    """Two bits of the ratio a cycle. n_frac: 4..16."""
+
+    def construct(s, n_frac=8):
+        check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+        super().construct(DividerDatapath(n_frac, Radix4Digit), n_frac)
+
+
+class PipelineRegister(Component):
+    """A state and whether there is one. It moves when ``advance`` is high; an empty one keeps its bits still."""
+
+    def construct(s, quotient_bits):
+        State = div_state(quotient_bits)
+        s.advance = InPort()
+        s.in_val = InPort()
+        s.in_state = InPort(State)
+        s.out_val = OutPort()
+        s.out_state = OutPort(State)
+
+        @update_ff
+        def up_register():
+            if s.reset:
+                s.out_val <<= 0
+                s.out_state <<= State()
+            elif s.advance:
+                s.out_val <<= s.in_val
+                if s.in_val:
+                    s.out_state <<= s.in_state
+
+
+class QuadDividerPipelined(Component):
+    """A stage a bit: one result a cycle. The whole pipeline stops while its result is not taken. n_frac: 4..16."""
+
+    def construct(s, n_frac=8):
+        check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+
+        s.recv = RecvIfcRTL(DivReq)
+        s.send = SendIfcRTL(div_resp(n_frac))
+        s.noise_floor = InPort(8)
+
+        s.operands = Operands(n_frac)
+        stages, digits = range(n_frac + 1), range(n_frac)
+        for i in stages:                # not a list: PyMTL would join the ports in arrays, which Yosys calls memories
+            setattr(s, f"stage{i}", PipelineRegister(n_frac))
+        for i in digits:
+            setattr(s, f"digit{i}", Radix2Digit(n_frac))
+        s.result = Result(n_frac)
+        s.advance = Wire()
+        s.unused_rest = Wire(9)
+        s.depth = n_frac + 1
+
+        s.operands.msg //= s.recv.msg
+        s.operands.noise_floor //= s.noise_floor
+        s.stage0.in_val //= s.recv.val
+        s.stage0.in_state //= s.operands.state
+        for i in digits:
+            this, digit, following = getattr(s, f"stage{i}"), getattr(s, f"digit{i}"), getattr(s, f"stage{i + 1}")
+            digit.in_state //= this.out_state
+            following.in_val //= this.out_val
+            following.in_state //= digit.out_state
+        for i in stages:
+            stage = getattr(s, f"stage{i}")
+            stage.advance //= s.advance
+        s.recv.rdy //= s.advance
+        s.send.val //= following.out_val
+        s.unused_rest //= following.out_state.rest
+        s.result.octant //= following.out_state.octant
+        s.result.larger //= following.out_state.larger
+        s.result.amp_valid //= following.out_state.amp_valid
+        s.result.ratio //= following.out_state.quotient
+        s.send.msg //= s.result.msg
+
+        @update
+        def up_advance():
+            s.advance @= ~s.send.val | s.send.rdy
+
+    def line_trace(s):
+        stages = (getattr(s, f"stage{i}") for i in range(s.depth))
+        return f"{s.recv}({''.join('.*'[stage.out_val] for stage in stages)}){s.send}"

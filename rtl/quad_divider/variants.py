@@ -1,0 +1,53 @@
+"""The variants by name, and what each takes: the registry behind the block's parameters."""
+
+from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN, cordic
+from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN, quad_divide
+from models.parameters import DIVIDERS, check_choice, check_int
+from rtl.messages import div_resp
+
+from .cordic_rtl import RATIO_BITS, Cordic
+from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
+
+DIVIDING = {"radix2": QuadDividerRadix2, "radix4": QuadDividerRadix4, "pipelined": QuadDividerPipelined}
+
+
+def check_variant(variant, n_frac, iterations):
+    """Raise ParameterError unless the arguments name a divider."""
+    check_choice("divider", variant, DIVIDERS)
+    check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+    check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
+
+
+def quad_divider(variant, n_frac=8, iterations=10):
+    """The RTL of ``variant`` ('radix2', 'radix4', 'pipelined' or 'cordic'). Raises ParameterError.
+
+    n_frac: fraction bits of the ratio, 4..16 (not for CORDIC).  iterations: of CORDIC, 4..16.
+    """
+    check_variant(variant, n_frac, iterations)
+    return Cordic(iterations) if variant == "cordic" else DIVIDING[variant](n_frac)
+
+
+def ratio_bits(variant, n_frac=8):
+    """Width of the response's ratio: n_frac, or CORDIC's own width for a ratio that is 0."""
+    return RATIO_BITS if variant == "cordic" else n_frac
+
+
+def golden(variant, n_frac, iterations, x, y, noise_floor=0):
+    """QuadResult that ``variant`` must give."""
+    if variant == "cordic":
+        return cordic(x, y, iterations, noise_floor)
+    return quad_divide(x, y, n_frac, noise_floor)
+
+
+def response(variant, n_frac, iterations, request, noise_floor):
+    """The DivResp that ``variant`` must give to the DivReq ``request``."""
+    r = golden(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
+    return div_resp(ratio_bits(variant, n_frac))(
+        int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp))
+
+
+def timing(variant, n_frac=8, iterations=10):
+    """(latency, interval) in cycles: from the request's to the response's first cycle, and between two results."""
+    check_variant(variant, n_frac, iterations)
+    steps = {"radix2": n_frac, "radix4": -(-n_frac // 2), "pipelined": n_frac, "cordic": iterations}[variant]
+    return steps + 1, 1 if variant == "pipelined" else steps + 2
