@@ -8,7 +8,14 @@ def reg_file(sensor):
     return RegFile(sensor.tile_rows - 1, sensor.tile_cols - 1)
 
 
+def asp_chip(sensor):
+    from rtl.asp_chip import AspChip
+    return AspChip(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, tuple(sensor.tile.order), sensor.tile.rows,
+                   sensor.tile.cols, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
+
+
 TOPS = {
+    "AspChip": asp_chip,
     "RegFile": reg_file,
 }
 

@@ -4,7 +4,12 @@ A ramp over rows, tiles, types and sub-samples makes every code; in a checkerboa
 lowest bits are left around mid-scale, so that a window comparison has something to leave out.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
+
+from models.digital.sar import BIPOLAR, convert
+from models.parameters import SAMPLES_PER_PIXEL, TileParameters
 
 
 def pattern_value(row, tile, k, sub):
@@ -18,11 +23,23 @@ def pattern_value(row, tile, k, sub):
     return np.where(quiet, 0x80 | ramp & 3, ramp)
 
 
-def pattern_held(rows, cols, subs, unsigned, tile_cols=6):
-    """The pattern as held values of a whole array in LSB: float64 (rows, cols, subs).
+@dataclass(frozen=True)
+class PatternEnd:
+    """Stands where models.afe.FrontEnd does when the chip's test pattern is on: ideal, and blind to the scene.
 
-    unsigned: 0..255, else -128..127.
+    rows, cols: size of the array in pixels.
     """
-    row, col, sub = np.ogrid[:rows, :cols, :subs]
-    value = pattern_value(row, col // tile_cols, col % tile_cols, sub).astype(np.float64)
-    return value if unsigned else value - 128
+
+    rows: int
+    cols: int
+    tile: TileParameters = TileParameters()
+
+    def values(self, mode):
+        """What the comparators see, in LSB: float64 (subs, rows, cols)."""
+        sub, row, col = np.ogrid[:SAMPLES_PER_PIXEL[mode], :self.rows, :self.cols]
+        value = pattern_value(row, col // self.tile.cols, col % self.tile.cols, sub).astype(np.float64)
+        return value - BIPOLAR if mode == "edge" else value
+
+    def convert(self, samples, mode, threshold=0):
+        """The codes of a whole frame: Conversion of arrays (subs, rows, cols). samples: not looked at."""
+        return convert(self.values(mode), mode != "edge", threshold)

@@ -1,0 +1,5 @@
+"""AspChip: the whole digital chip."""
+
+from .asp_chip_rtl import AspChip
+
+__all__ = ["AspChip"]

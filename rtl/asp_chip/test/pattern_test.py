@@ -3,18 +3,19 @@
 import numpy as np
 import pytest
 
-from models.digital.pattern import pattern_held, pattern_value
-from models.digital.sar import convert
+from models.digital.pattern import PatternEnd, pattern_value
 from rtl.asp_chip.pattern_rtl import Pattern
 from rtl.testbench import build
 
 
 def test_pattern_makes_every_code_and_runs_of_zeros():
-    held = pattern_held(64, 96, 1, False)
-    codes, converted, _ = convert(held, False, 10)
+    end = PatternEnd(64, 96)
+    codes, converted, _ = end.convert(None, "edge", 10)
     assert set(np.unique(codes)) == set(range(-128, -9)) | {0} | set(range(10, 128))
     assert 0.4 < converted.mean() < 0.6
-    assert set(np.unique(pattern_held(64, 96, 4, True))) == set(range(256))
+    for mode, subs in (("image", 1), ("raw", 2), ("tof", 4)):
+        codes = end.convert(None, mode).codes
+        assert codes.shape == (subs, 64, 96) and set(np.unique(codes)) == set(range(256))
 
 
 class TestRTL:
