@@ -5,24 +5,32 @@ from pymtl3 import Bits5, Bits7, Bits8, Bits32, Component, InPort, OutPort, Wire
 from .token_rtl import TokenCoder
 
 
+def add_packer_ports(s):
+    """The interface of a packer."""
+    s.restart = InPort()        # a row starts: empty but for the coder's state
+    s.push = InPort()           # the sample is taken; only while `ready`
+    s.flush = InPort()          # the row ends: fill up its last byte; only while `ready`
+    s.ready = OutPort()
+    s.coded = InPort()          # edge mode; else a sample is a byte
+    s.threshold = InPort(Bits7)
+    s.code = InPort(Bits8)
+    s.val = OutPort()           # a byte is due
+    s.octet = OutPort(Bits8)
+    s.rdy = InPort()            # it would be taken
+
+
 class PayloadPacker(Component):
     """Tokens are gathered, from the top, in a register of 32 bits; eight or more of them are a byte that is due."""
 
+    def new_coder(s):
+        return TokenCoder()
+
     def construct(s):
         # Interface
-        s.restart = InPort()        # a row starts: empty but for the coder's state
-        s.push = InPort()           # the sample is taken; only while `ready`
-        s.flush = InPort()          # the row ends: fill up its last byte; only while `ready`
-        s.ready = OutPort()
-        s.coded = InPort()
-        s.threshold = InPort(Bits7)
-        s.code = InPort(Bits8)
-        s.val = OutPort()           # a byte is due
-        s.octet = OutPort(Bits8)
-        s.rdy = InPort()            # it would be taken
+        add_packer_ports(s)
 
         # Components
-        s.coder = TokenCoder()
+        s.coder = s.new_coder()
         s.gathered = Wire(Bits32)
         s.count = Wire(Bits5)
 

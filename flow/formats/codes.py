@@ -1,0 +1,48 @@
+"""The codes that the formats are measured on."""
+
+import zipfile
+
+import numpy as np
+
+from models.parameters import ParameterError
+
+
+def default_codes():
+    """Edge codes of the default scene: (int16 codes of a converter without a threshold, float64 values in LSB),
+
+    both (rows, cols). The values are those of the same exposure without noise, ahead of the converter.
+    """
+    from dataclasses import replace
+
+    from flow.frame import job
+    from flow.frame.request import request
+    from models.digital.chip import golden_frame
+
+    asked = request()
+    scene, todo = job.see(asked)
+    exposed = job.expose(asked, scene, todo)
+    golden = golden_frame(exposed.samples, asked.sensor, replace(asked.frame, threshold=0), exposed.front_end)
+    return golden.codes[..., 0], exposed.ideal[..., 0]
+
+
+def load_codes(path):
+    """The same from an npz file with ``codes`` and ``ideal``. Raises ParameterError."""
+    try:
+        with np.load(path) as file:
+            codes, ideal = file["codes"], file["ideal"]
+    except (ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise ParameterError(f"codes = {path}: must be an npz file with codes and ideal ({error})") from None
+    if codes.ndim != 2 or codes.shape != ideal.shape or codes.dtype.kind != "i" or abs(codes.astype(int)).max() > 128:
+        raise ParameterError(f"codes = {path}: must hold codes -128..127 and ideal, both (rows, cols)")
+    return codes.astype(np.int16), ideal.astype(float)
+
+
+def thresholded(codes, threshold):
+    """What edge mode sends of them: the window comparison makes zeros of magnitudes under the threshold."""
+    return np.where(np.abs(codes.astype(np.int16)) < threshold, np.int16(0), codes)
+
+
+def entropy_bytes(codes):
+    """Bytes that an ideal coder of the samples' own frequencies, one by one, would need."""
+    _, counts = np.unique(codes, return_counts=True)
+    return float(-(counts * np.log2(counts / codes.size)).sum() / 8)

@@ -1,0 +1,58 @@
+"""Scan orders: a frame's samples cut into segments, each coded by itself and closed by a mark."""
+
+from dataclasses import dataclass
+from typing import Callable
+
+import numpy as np
+
+from models.digital.scan import Scan
+from models.parameters import FrameParameters, TileParameters, Window
+
+MARK_BYTES = 2
+
+
+@dataclass(frozen=True)
+class Order:
+    """segments: function of (rows, cols, tile) -> list of flat indices, int arrays.
+
+    buffer: what must be held before it can be sent in this order. lost: what a wrong byte costs.
+    """
+
+    segments: Callable
+    buffer: str
+    lost: str
+
+
+def _raster(rows, cols, tile):
+    return list(np.arange(rows * cols).reshape(rows, cols))
+
+
+def _type_in_row(rows, cols, tile):
+    frame = FrameParameters(Window(0, -(-rows // tile.rows) - 1, 0, -(-cols // tile.cols) - 1))
+    scan = Scan(rows, cols, 8, frame, tile)
+    return [row * cols + scan.row_samples(row)[0] for row in range(rows)]
+
+
+def _type_in_frame(rows, cols, tile):
+    types = tile.type_map(rows, cols).ravel()
+    return [np.flatnonzero(types == kind) for kind in range(tile.n_types)]
+
+
+def _tiles(rows, cols, tile):
+    row, col = np.divmod(np.arange(rows * cols), cols)
+    order = np.lexsort((col % tile.cols, row % tile.rows, col // tile.cols, row // tile.rows))
+    return np.split(order, np.flatnonzero(np.diff(row[order] // tile.rows)) + 1)
+
+
+ORDERS = {
+    "raster": Order(_raster, "a row", "a row"),
+    "type by type in the row": Order(_type_in_row, "none", "a row"),
+    "type by type in the frame": Order(_type_in_frame, "a frame", "a type"),
+    "tile by tile": Order(_tiles, "4 rows", "4 rows"),
+}
+CHIP = "type by type in the row"
+
+
+def segments_of(name, rows, cols, tile=TileParameters()):
+    """Every sample of a (rows, cols) array once: list of flat indices."""
+    return ORDERS[name].segments(rows, cols, tile)
