@@ -70,7 +70,8 @@ def test_read_of_everything_is_nothing_left_out():
     assert CaptureOperator(sensor, read=np.ones((8, 12), bool)).read is None
 
 
-@pytest.mark.parametrize("light,field", [(np.zeros((3, 3, 8, 11)), "light_field"), (np.zeros((1, 1, 8, 12)), "light_field"),
+@pytest.mark.parametrize("light,field", [(np.zeros((3, 3, 8, 11)), "light_field"),
+                                         (np.zeros((1, 1, 8, 12)), "light_field"),
                                          (np.zeros((3, 3, 8, 12), np.float32), "light_field")])
 def test_wrong_light_fields(light, field):
     with pytest.raises(ParameterError, match=field):

@@ -38,7 +38,7 @@ def test_single_arctangent_loses_the_quadrant():
 
 
 def test_frequency_is_in_hertz():
-    """d = c phase / (4 pi f) with the f of cos(2 pi f t): with Eq. 5.1's cos(f t), in rad/s, the depth would be 2 pi off."""
+    """d = c phase / (4 pi f) with the f of cos(2 pi f t): Eq. 5.1's cos(f t), in rad/s, would be 2 pi off."""
     depth = 1.5
     delay = 2 * depth / SPEED_OF_LIGHT
     np.testing.assert_allclose(phase_of(depth, F_MOD), 2 * np.pi * F_MOD * delay)

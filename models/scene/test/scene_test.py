@@ -75,7 +75,8 @@ def test_polarized_target_has_its_degree():
     np.testing.assert_allclose(np.hypot(*scene.polarization), 0.4)
 
 
-@pytest.mark.parametrize("name,field", [("nothing", "scene"), ("edge:north", "edge degrees"), ("edge:1e9", "edge degrees"),
+@pytest.mark.parametrize("name,field", [("nothing", "scene"), ("edge:north", "edge degrees"),
+                                        ("edge:1e9", "edge degrees"),
                                         ("flat:nan", "flat percent"), ("missing/file.png", "scene"),
                                         ("coins:3", "scene")])
 def test_bad_names(name, field):
