@@ -1,6 +1,8 @@
 """AmpCtrl at RTL: one state machine, one counter, every output a register."""
 
-from pymtl3 import Bits3, Component, InPort, OutPort, Wire, update, update_ff
+from pymtl3 import Component, Wire, update, update_ff
+
+from .ports import declare_ports
 
 IDLE, GUARD, RESET, INTEGRATE, CM_RESET, REFERENCE, SIGNAL = range(7)
 
@@ -10,16 +12,7 @@ class AmpCtrl(Component):
 
     def construct(s):
         # Interface
-        s.start = InPort()
-        s.four_tap = InPort()
-        s.hold_free = InPort()
-        s.t_reset, s.t_int, s.t_cm = InPort(16), InPort(16), InPort(16)
-        s.t_settle, s.t_read, s.t_guard = InPort(16), InPort(16), InPort(16)
-        s.n_cm = InPort(8)
-        s.pixel_reset, s.shutter, s.ref_ctl, s.integrate = OutPort(), OutPort(), OutPort(), OutPort()
-        s.cm_reset, s.read, s.sample = OutPort(), OutPort(), OutPort()
-        s.tap = OutPort(2)
-        s.busy, s.done, s.cfg_err = OutPort(), OutPort(), OutPort()
+        declare_ports(s)
 
         # Components: what `start` captures, and the state
         s.d_reset, s.d_int, s.d_cm = Wire(16), Wire(16), Wire(16)

@@ -1,0 +1,55 @@
+"""AmpCtrl at FL: the golden waveform behind the pins. It is exact in every cycle, so that it serves as CL too."""
+
+from pymtl3 import Component, update_ff
+
+from models.digital.amp_ctrl import AmpPins, row_waveform
+from models.parameters import AmpTiming
+
+from .ports import DURATIONS, declare_ports
+
+
+class AmpCtrlFL(Component):
+    """The pixel amplifier's control (README.md)."""
+
+    def construct(s):
+        declare_ports(s)
+        s.row = None            # the waveform under way
+        s.pins = AmpPins()
+        s.error = 0
+
+        @update_ff
+        def up_pins():
+            if s.reset:
+                s.row, s.pins, s.error = None, AmpPins(), 0
+            elif s.row is not None:
+                s.pins = s.row.send(bool(s.hold_free))
+                if s.pins.done:
+                    s.row = None
+            else:
+                s.pins = AmpPins(tap=s.pins.tap)
+                if s.start:
+                    s.begin()
+            # one by one: PyMTL finds the registers of a block by reading it
+            s.pixel_reset <<= s.pins.pixel_reset
+            s.shutter <<= s.pins.shutter
+            s.ref_ctl <<= s.pins.ref_ctl
+            s.integrate <<= s.pins.integrate
+            s.cm_reset <<= s.pins.cm_reset
+            s.read <<= s.pins.read
+            s.sample <<= s.pins.sample
+            s.tap <<= s.pins.tap
+            s.busy <<= s.pins.busy
+            s.done <<= s.pins.done
+            s.cfg_err <<= s.error
+
+    def begin(s):
+        """`start` in idle: capture the durations; a zero one is refused."""
+        durations = {name: int(getattr(s, name)) for name in DURATIONS}
+        s.error = int(0 in durations.values())
+        s.pins = AmpPins()
+        if not s.error:
+            s.row = row_waveform(AmpTiming(n_cm=int(s.n_cm), **durations), bool(s.four_tap))
+            s.pins = next(s.row)
+
+    def line_trace(s):
+        return f"{s.pins}"

@@ -1,0 +1,17 @@
+"""AmpCtrl's ports, the same at every level."""
+
+from pymtl3 import InPort, OutPort
+
+DURATIONS = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard")
+
+
+def declare_ports(s):
+    """Give the component ``s`` its ports."""
+    s.start, s.four_tap, s.hold_free = InPort(), InPort(), InPort()
+    for name in DURATIONS:
+        setattr(s, name, InPort(16))
+    s.n_cm = InPort(8)
+    s.pixel_reset, s.shutter, s.ref_ctl, s.integrate = OutPort(), OutPort(), OutPort(), OutPort()
+    s.cm_reset, s.read, s.sample = OutPort(), OutPort(), OutPort()
+    s.tap = OutPort(2)
+    s.busy, s.done, s.cfg_err = OutPort(), OutPort(), OutPort()

@@ -1,0 +1,139 @@
+"""AmpCtrl: every cycle of every pin equals the golden waveform, at every level."""
+
+import random
+
+import pytest
+from hypothesis import HealthCheck, given, settings, strategies as st
+
+from models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
+from models.parameters import AmpTiming
+from rtl.amp_ctrl import AmpCtrl, AmpCtrlFL
+from rtl.amp_ctrl.ports import DURATIONS
+from rtl.testbench import build
+
+# A test that several levels inherit runs on each of them: that is meant.
+SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
+PHASES = ("pixel_reset", "integrate", "cm_reset", "read")
+
+timings = st.builds(AmpTiming, **{name: st.integers(1, 5) for name in DURATIONS}, n_cm=st.integers(0, 3))
+
+
+def drive(sim, timing=None, four_tap=0, **ports):
+    """Set the inputs; ``timing``: AmpTiming or None for what is there."""
+    if timing is not None:
+        for name in (*DURATIONS, "n_cm"):
+            port = getattr(sim, name)
+            port @= getattr(timing, name)
+        sim.four_tap @= four_tap
+    for name, value in ports.items():
+        port = getattr(sim, name)
+        port @= value
+
+
+def pins(sim):
+    return {name: int(getattr(sim, name)) for name in PIN_NAMES}
+
+
+@pytest.fixture(scope="class")
+def sim(request):
+    return build(request.cls.level(), request.cls.verilog, "AmpCtrl")
+
+
+class TestAmpCtrlFL:
+    level = AmpCtrlFL
+    verilog = False
+
+    def fresh(self, sim):
+        sim.sim_reset()
+        drive(sim, start=0, hold_free=1)
+        return sim
+
+    def check_row(self, sim, timing, four_tap, free, noise=None):
+        """One row, cycle by cycle; ``free``: function of the cycle; ``noise``: random starts and durations while busy."""
+        drive(sim, timing, four_tap, start=1)
+        sim.sim_tick()
+        drive(sim, start=0)
+        golden = row_waveform(timing, bool(four_tap))
+        expected, cycle = next(golden), 0
+        while True:
+            assert pins(sim) == vars(expected), f"cycle {cycle}"
+            assert sum(pins(sim)[p] for p in PHASES) <= 1
+            if expected.done:
+                return cycle
+            hold_free = free(cycle)
+            drive(sim, hold_free=int(hold_free))
+            if noise:
+                drive(sim, AmpTiming(*(noise.randint(1, 9) for _ in DURATIONS), noise.randint(0, 9)),
+                      start=noise.randint(0, 1))
+            sim.sim_tick()
+            expected, cycle = golden.send(hold_free), cycle + 1
+
+    @SETTINGS
+    @given(timings, st.booleans(), st.integers(0, 2**32))
+    def test_waveform(self, sim, timing, four_tap, seed):
+        noise = random.Random(seed)
+        self.fresh(sim)
+        for _ in range(2):
+            self.check_row(sim, timing, int(four_tap), lambda _: noise.random() < 0.7, noise)
+            drive(sim, start=0)
+            sim.sim_tick()
+            assert pins(sim) == vars(AmpPins(tap=3 * four_tap))
+
+    @pytest.mark.parametrize("four_tap", [0, 1])
+    def test_cycles(self, sim, four_tap):
+        timing = AmpTiming(7, 11, 3, 5, 2, 4, n_cm=2)
+        assert self.check_row(self.fresh(sim), timing, four_tap, lambda _: True) == row_cycles(timing, four_tap)
+
+    def test_back_to_back(self, sim):
+        """A start in the very cycle of `done` is taken."""
+        self.fresh(sim)
+        for _ in range(3):
+            self.check_row(sim, AmpTiming(1, 1, 1, 1, 1, 1, n_cm=0), 0, lambda _: True)
+
+    @pytest.mark.parametrize("name", DURATIONS)
+    def test_zero_duration_is_refused(self, sim, name):
+        self.fresh(sim)
+        drive(sim, AmpTiming(2, 2, 2, 2, 2, 2, n_cm=1))
+        drive(sim, start=1, **{name: 0})
+        sim.sim_tick()
+        drive(sim, start=0)
+        for _ in range(20):
+            assert int(sim.cfg_err) and not any(pins(sim).values())
+            sim.sim_tick()
+        self.check_row(sim, AmpTiming(2, 2, 2, 2, 2, 2, n_cm=1), 0, lambda _: True)
+        assert not int(sim.cfg_err)
+
+    @SETTINGS
+    @given(timings, st.integers(0, 60))
+    def test_reset_at_any_moment(self, sim, timing, cycles):
+        self.fresh(sim)
+        drive(sim, timing, start=1)
+        sim.sim_tick()
+        drive(sim, start=0)
+        for _ in range(cycles):
+            sim.sim_tick()
+        sim.reset @= 1
+        sim.sim_tick()
+        sim.reset @= 0
+        assert not any(pins(sim).values())
+        self.check_row(sim, timing, 0, lambda _: True)
+
+    def test_longest_durations(self, sim):
+        """All 16 bits of a duration count."""
+        self.fresh(sim)
+        drive(sim, AmpTiming(1, 65535, 1, 1, 1, 1, n_cm=0), start=1)
+        sim.sim_tick()
+        drive(sim, start=0)
+        high = 0
+        while not int(sim.done):
+            high += int(sim.integrate)
+            sim.sim_tick()
+        assert high == 65535
+
+
+class TestAmpCtrlRTL(TestAmpCtrlFL):
+    level = AmpCtrl
+
+
+class TestAmpCtrlVerilog(TestAmpCtrlRTL):
+    verilog = True
