@@ -38,11 +38,22 @@ def gates_of_packers():
             return None
 
 
+def insert(document, text):
+    """Put ``text`` between the marks of a Markdown file. Raises ParameterError when it has none."""
+    before, mark, rest = document.read_text().partition("<!-- formats -->\n")
+    _, end, after = rest.partition("<!-- end of formats -->")
+    if not (mark and end):
+        raise ParameterError(f"document = {document}: must have the comments 'formats' and 'end of formats'")
+    with staged(document.parent) as part:
+        (part / document.name).write_text(before + mark + "\n" + text + "\n" + end + after)
+
+
 def main(argv=None):
     parser = argparse.ArgumentParser(prog="python -m flow.formats", description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "formats",
                         help="folder of formats.csv, formats.md and formats.png (%(default)s)")
     parser.add_argument("--codes", type=Path, help="npz with codes and ideal, both (rows, cols), in place of the scene")
+    parser.add_argument("--document", type=Path, help="also put the tables between the marks of this Markdown file")
     options = parser.parse_args(argv)
     try:
         codes, ideal = load_codes(options.codes) if options.codes else default_codes()
@@ -54,6 +65,8 @@ def main(argv=None):
             write_csv(part / "formats.csv", rows)
             (part / "formats.md").write_text(text)
             save(chart(rows), part / "formats.png")
+        if options.document:
+            insert(options.document, text.split("\n", 2)[2].strip() + "\n")
     except (ParameterError, SizeError, OSError) as error:
         print(f"flow.formats: {error}", file=sys.stderr)
         return 2

@@ -16,7 +16,7 @@ from models.digital.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
 from models.pixel.trim import optical_gains
 from models.plan import plan
-from models.reconstruct import rebuild
+#from models.reconstruct import rebuild
 from models.scene import Sampling, load
 
 from . import hardware

@@ -71,5 +71,5 @@ def golden_frame(samples, sensor, frame, front_end):
     sent = codes
     if frame.phase:
         sent = np.zeros((*read.shape, 2), np.int16)
-        sent[read] = np.stack(phase_samples(codes[read], sensor.chip.n_frac, frame.noise_floor), -1)
+        sent[read] = np.stack(phase_samples(codes[read], sensor.chip, frame.noise_floor), -1)
     return GoldenFrame(sensor, frame, codes, converted, sent, read, int(decisions.sum(dtype=np.int64)))

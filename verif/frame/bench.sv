@@ -1,6 +1,6 @@
 // A frame in the simulator: the chip, the analog front end and a host that plays SPI transfers
-// and takes the byte stream. Everything is synchronous to `clk`, so that the same file runs in
-// Verilator (clocked by main.cpp) and in Icarus (clocked by clock.sv).
+// and takes the byte stream. Everything is synchronous to `clk`, so that the same file runs clocked
+// by main.cpp in Verilator and by clock.sv in Icarus.
 //
 //   +script=FILE   what the host does, bytes:  01          wait for the end of a frame
 //                                              02 n b...   an SPI transfer of n bytes
@@ -42,7 +42,7 @@ module Bench #(
       .link_data(link_data), .link_val(link_val), .link_rdy(link_rdy), .frame_sync(frame_sync),
       .dac(dac), .hold(hold), .unsigned_(unsigned_), .mode(mode), .row(row), .group(group), .k(k), .sub(sub),
       .en(en), .balance(balance), .comparator(comparator),
-      .pixel_reset(pixel_reset), .integrate(integrate), .cm_reset(cm_reset), .read(read), .
+      .pixel_reset(pixel_reset), .integrate(integrate), .cm_reset(cm_reset), .read(read),
       .busy(busy),
       /* verilator lint_off PINCONNECTEMPTY */
       .shutter(), .ref_ctl(), .sample(), .tap(), .amp_row()
