@@ -14,8 +14,14 @@ def asp_chip(sensor):
                    sensor.tile.cols, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
+def quad_divider(sensor):
+    from rtl.quad_divider import quad_divider
+    return quad_divider(sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
+
+
 TOPS = {
     "AspChip": asp_chip,
+    "QuadDivider": quad_divider,
     "RegFile": reg_file,
 }
 

@@ -1,0 +1,1 @@
+"""The quadrature divider with every input there is."""
