@@ -61,10 +61,7 @@ def raw_weights(types, optics):
     return out
 
 
-@lru_cache(maxsize=32)
 def view_weights(tile, optics):
-    """W (types, 2, views, views), read-only, so scaled that a flat white scene gives 1 in a diode on average."""
+    """W (types, 2, views, views), so scaled that a flat white scene gives 1 in a diode on average."""
     raw = raw_weights(tile.types, optics)
-    out = raw / (raw.sum((1, 2, 3)).mean() / 2)
-    out.setflags(write=False)
-    return out
+    return raw / (raw.sum((1, 2, 3)).mean() / 2)

@@ -23,7 +23,7 @@ def flat_tiles(scene, sensor, frame):
         return np.zeros(shape, bool)
     weights = view_weights(tile, sensor.optics)
     balance = gains(residual(weights))[:, None, None]
-    reach = np.abs(weights[:, 0] - balance * weights[:, 1]).sum((1, 2)).max() / 2 * codes_per_unit(sensor, frame)
+    reach = np.abs(weights[:, 0] - balance * weights[:, 1]).sum((1, 2)).max() / 2 * codes_per_unit(sensor, frame.timing)
     rows, cols = scene.shape
     span = np.zeros((2, shape[0] * tile.rows, shape[1] * tile.cols))
     _span(scene.light_field, span[:, :rows, :cols])
@@ -42,9 +42,9 @@ def _well_radiance(weights, sensor, frame):
     return room / (white * weights.sum((2, 3)).max() * (frame.timing.n_cm + 1))
 
 
-def codes_per_unit(sensor, frame):
+def codes_per_unit(sensor, timing):
     """Codes of the difference that a relative photocurrent of 1 makes, before gain mismatch and full wells."""
-    e, timing = sensor.electrical, frame.timing
+    e = sensor.electrical
     seconds = timing.t_int / sensor.chip.f_clk * (timing.n_cm + 1)
     return e.white_current * seconds / ELEMENTARY_CHARGE / e.lsb_electrons * e.difference_gain
 

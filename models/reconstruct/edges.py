@@ -1,7 +1,8 @@
 """The image back from the decoded edge samples alone, where the disparity is known.
 
 An edge sample is a difference over the lens: the sum of c[type, v, u] I(y + dv d, x + du d), with c = Wa - g Wb of sum
-0 and d the disparity at the pixel (what a nearer surface hides from some views is not modelled). Sought is the image that explains them with the least gradient:
+0 and d the disparity at the pixel (what a nearer surface hides from some views is not modelled). Sought is the image
+that explains them with the least gradient:
 
     argmin |D I - samples|^2 + smoothness |grad I|^2
 
@@ -26,7 +27,7 @@ class Solver:
     """smoothness: weight of the gradient, 1e-9..1e3. iterations: at most, 1..10000. tolerance: relative, 0..1."""
 
     smoothness: float = 1e-3
-    iterations: int = 30
+    iterations: int = 20
     tolerance: float = 1e-3
 
     def __post_init__(self):

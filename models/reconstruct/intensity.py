@@ -3,18 +3,27 @@
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
+from models.parameters import ELEMENTARY_CHARGE, AmpTiming
 from models.pixel.weights import view_weights
 
+FULL = 255.0        # LSB: both wells of a pair full
 
-def image_from_sums(sums, sensor, white, read=None, full=255.0):
+
+def white_sum(sensor, timing=AmpTiming()):
+    """LSB of the sum of a pair under a flat white scene, on average over the types, full wells aside."""
+    e = sensor.electrical
+    return 2 * e.white_current * timing.t_int / sensor.chip.f_clk / ELEMENTARY_CHARGE / e.lsb_electrons
+
+
+def sum_image(sums, sensor, read=None, timing=AmpTiming()):
     """Relative radiance (1 = white) of every pixel from the sums of its pair: (rows, cols), 0 at least.
 
-    sums: (rows, cols) in LSB. white: LSB of a pair under a flat white scene. read: bool (rows, cols); pixels that were
-    not read take the nearest one that was. full: LSB at which a pair is saturated; sums are clipped there.
-    Each type's own share of the common mode is divided out.
+    sums: (rows, cols) in LSB; they are clipped to 0..255. read: bool (rows, cols); pixels that were not read take the
+    nearest one that was; None = all were. timing: AmpTiming. Each type's own share of the common mode is divided out.
     """
     share = view_weights(sensor.tile, sensor.optics).sum((1, 2, 3)) / 2
-    out = np.clip(sums, 0, full) / (white * share[sensor.tile.type_map(*sums.shape)])
+    white = white_sum(sensor, timing) * share[sensor.tile.type_map(*sums.shape)]
+    out = np.clip(sums, 0, FULL) / white
     if read is None or read.all():
         return out
     if not read.any():

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from models.capture import CaptureOperator
 from models.parameters import SensorParameters
 from models.pixel import optical_gains
-from models.reconstruct import EdgeOperator, demosaic, image_from_edges, linear_light_field
+from models.reconstruct import EdgeOperator, demosaic, image_from_edges, light_field_estimate
 from models.scene import Sampling, load
 
 SENSOR = SensorParameters()
@@ -27,6 +28,7 @@ def test_demosaic(benchmark, edges):
     assert benchmark(demosaic, edges[1], SENSOR.tile).shape == (24, 384, 384)
 
 
-def test_linear_light_field(benchmark):
-    pairs = np.random.default_rng(0).random((384, 384, 2))
-    assert benchmark(linear_light_field, pairs, SENSOR, 100.0).shape == (5, 5, 384, 384)
+def test_light_field_estimate(benchmark):
+    operator = CaptureOperator(SENSOR)
+    pair = np.random.default_rng(0).random((2, 384, 384))
+    assert benchmark(light_field_estimate, operator, pair).shape == (5, 5, 384, 384)

@@ -5,11 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from models.afe import trim_codes, trim_gain
 from models.capture import CaptureOperator
-from models.parameters import ArrayParameters, ParameterError, SensorParameters, TileParameters
+from models.parameters import AmpTiming, ArrayParameters, ParameterError, SensorParameters, TileParameters
 from models.pixel import optical_gains, view_weights
-from models.reconstruct import (EdgeOperator, Solver, demosaic, edge_images, image_from_edges, image_from_sums,
-                                linear_light_field, psnr_db, psnr_without_mean_db)
+from models.plan import codes_per_unit
+from models.reconstruct import (EdgeOperator, Solver, demosaic, edge_images, image_from_edges, light_field_estimate,
+                                psnr_db, psnr_without_mean_db, rebuild, sum_image, white_sum)
 from models.reconstruct.edges import laplacian
 from models.scene import Sampling, load
 
@@ -62,7 +64,7 @@ def test_demosaic_of_an_unread_type_is_zero():
 def test_image_of_a_uniform_scene_is_uniform():
     sensor = _sensor(9, 13)
     pair = CaptureOperator(sensor).forward(np.full((5, 5, 9, 13), 0.4))
-    np.testing.assert_allclose(image_from_sums(100 * pair.sum(0), sensor, white=200), 0.4)
+    np.testing.assert_allclose(sum_image(white_sum(sensor) / 2 * pair.sum(0), sensor), 0.4)
 
 
 def test_image_clips_and_fills():
@@ -70,16 +72,17 @@ def test_image_clips_and_fills():
     sums = np.array([[-5.0, 300, 80, 80, 80, 80]] * 4)
     read = np.ones((4, 6), bool)
     read[:, 5] = False
-    image = image_from_sums(sums, sensor, 200, read)
-    np.testing.assert_allclose(image[0], [0, 255 / 200, 0.4, 0.4, 0.4, 0.4])
-    assert not image_from_sums(sums, sensor, 200, np.zeros((4, 6), bool)).any()
+    image = sum_image(sums, sensor, read)
+    np.testing.assert_allclose(white_sum(sensor), 203.7, atol=0.1)       # 80 % of two full wells
+    np.testing.assert_allclose(image[0] * white_sum(sensor), [0, 255, 80, 80, 80, 80], rtol=1e-9)
+    assert not sum_image(sums, sensor, np.zeros((4, 6), bool)).any()
 
 
 @pytest.mark.parametrize("dtype", ["float32", "float64"])
 def test_linear_estimate_of_a_uniform_scene_is_exact(dtype):
     sensor = _sensor(13, 20)
-    pair = CaptureOperator(sensor, dtype).forward(np.full((5, 5, 13, 20), 0.3, dtype))
-    found = linear_light_field(np.moveaxis(80 * pair, 0, -1), sensor, 80.0)
+    operator = CaptureOperator(sensor, dtype)
+    found = light_field_estimate(operator, operator.forward(np.full((5, 5, 13, 20), 0.3, dtype)))
     assert found.shape == (5, 5, 13, 20) and found.dtype == dtype
     np.testing.assert_allclose(found, 0.3, rtol=1e-5)
 
@@ -89,7 +92,8 @@ def test_linear_estimate_leans_to_the_lit_view():
     sensor = _sensor(8, 12)
     light = np.zeros((5, 5, 8, 12))
     light[1, 3] = 1
-    found = linear_light_field(np.moveaxis(CaptureOperator(sensor).forward(light), 0, -1), sensor, 1.0)
+    operator = CaptureOperator(sensor)
+    found = light_field_estimate(operator, operator.forward(light))
     assert np.unravel_index(found[:, :, 4, 6].argmax(), (5, 5)) == (1, 3)
 
 
@@ -101,6 +105,17 @@ def test_edge_operator_and_its_adjoint(rows, cols, seed, masked):
     d = EdgeOperator(sensor, 6 * _random((rows, cols), seed + 1) - 3, np.ones(24), read)
     x, y = _random((rows, cols), seed + 2), _random((rows, cols), seed + 3)
     assert abs(np.vdot(d.forward(x), y) - np.vdot(x, d.transpose(y))) < 1e-10
+
+
+def test_linear_estimate_from_some_types_and_from_none():
+    sensor = _sensor(8, 12)
+    kinds = sensor.tile.type_map(8, 12)
+    some = CaptureOperator(sensor, read=kinds < 9)
+    np.testing.assert_allclose(light_field_estimate(some, some.forward(np.full((5, 5, 8, 12), 0.3))), 0.3)
+    none = CaptureOperator(sensor, read=np.zeros((8, 12), bool))
+    assert not light_field_estimate(none, np.zeros((2, 8, 12))).any()
+    with pytest.raises(ParameterError, match="angular"):
+        light_field_estimate(CaptureOperator(sensor, angular=False), np.zeros((2, 8, 12)))
 
 
 def test_edge_operator_is_the_trimmed_capture_of_a_plane():
@@ -128,6 +143,19 @@ def test_image_comes_back_from_its_edges():
     assert abs(found.mean()) < 1e-12
     start = psnr_without_mean_db(np.zeros((rows, cols)), scene.image)
     assert psnr_without_mean_db(found, scene.image) > start + 10
+
+
+def test_rebuild_from_codes():
+    rows, cols = 96, 96
+    sensor, scene = _sensor(rows, cols), load("camera", Sampling(rows, cols, focus=2.0))
+    trim = tuple(trim_codes(optical_gains(sensor.tile, sensor.optics)).tolist())
+    values = EdgeOperator(sensor, scene.disparity, trim_gain(trim)).forward(scene.image)
+    codes = np.rint(values * codes_per_unit(sensor, AmpTiming()))
+    read = sensor.tile.type_map(rows, cols) != 3
+    found = rebuild(codes, read, scene, sensor, trim)
+    assert found.psnr_db > psnr_without_mean_db(np.zeros((rows, cols)), scene.image) + 6
+    assert not rebuild(np.zeros((8, 12)), np.ones((8, 12), bool), load("flat", Sampling(8, 12)), _sensor(8, 12),
+                       trim).image.any()
 
 
 def test_nothing_comes_back_from_nothing():
