@@ -6,6 +6,47 @@ from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 from models.digital.sar import BITS, decisions
 
 
+class LaneCycles:
+    """One lane without ports, a cycle a call; AdcBankCL is made of these too.
+
+    dac: code at the DAC.  result: (code, converted) at the output, or None.
+    """
+
+    def __init__(self):
+        self.run = None         # the conversion under way
+        self.left = 0           # decisions it takes at most from here
+        self.waiting = None     # a result that finds the one before not taken yet
+        self.result = None
+        self.dac = 0
+
+    def tick(self, go, unsigned, threshold, comparator, taken):
+        """End a cycle in which ``go`` and ``comparator`` were as given and ``result`` was ``taken`` or not."""
+        startable = not self.busy or (self.left == 1 and self.result is None)
+        if taken:
+            self.result = None
+        if self.run is not None:
+            self.left -= 1
+            try:
+                self.dac = self.run.send(comparator)
+            except StopIteration as end:
+                self.run, self.left, self.waiting = None, 0, end.value
+        if self.waiting is not None and self.result is None:
+            self.result, self.waiting = self.waiting, None
+        if go and startable:
+            self.run = decisions(unsigned, threshold)
+            self.left = BITS + (2 if threshold and not unsigned else 0)
+            self.dac = next(self.run)
+
+    @property
+    def busy(self):
+        return self.run is not None or self.waiting is not None
+
+    @property
+    def free(self):
+        """A go may be given in the cycle after this one."""
+        return not self.busy or (0 < self.left <= 2 and self.result is None)
+
+
 class EdgeAdcCL(Component):
     """Same ports as EdgeAdc, and the same values on them in every cycle."""
 
@@ -20,40 +61,23 @@ class EdgeAdcCL(Component):
         s.out = SendIfcRTL(Bits8)
         s.converted = OutPort()
 
-        s.run = None        # the conversion under way
-        s.left = 0          # decisions it takes at most from here
-        s.waiting = None    # a result that finds the one before not taken yet
-        s.result = None     # the result at the port
+        s.lane = LaneCycles()
 
         @update_ff
         def behave():
-            idle = s.run is None and s.waiting is None
-            ending = s.left == 1 and s.result is None
-            if s.out.val & s.out.rdy:
-                s.result = None
-            if s.run is not None:
-                s.left -= 1
-                try:
-                    s.dac <<= s.run.send(bool(s.comparator))
-                except StopIteration as end:
-                    s.run, s.left, s.waiting = None, 0, end.value
-            if s.waiting is not None and s.result is None:
-                s.result, s.waiting = s.waiting, None
-            if s.go and (idle or ending):
-                window = 0 if s.unsigned_ else int(s.threshold)
-                s.run = decisions(bool(s.unsigned_), window)
-                s.left = BITS + 2 * bool(window)
-                s.dac <<= next(s.run)
             if s.reset:
-                s.run = s.waiting = s.result = None
-                s.left = 0
-            s.busy <<= s.run is not None or s.waiting is not None
-            s.free <<= (s.run is None and s.waiting is None) or (0 < s.left <= 2 and s.result is None)
-            s.out.val <<= s.result is not None
-            if s.result is not None:
-                code, converted = s.result
+                s.lane = LaneCycles()
+            else:
+                s.lane.tick(bool(s.go), bool(s.unsigned_), int(s.threshold), bool(s.comparator),
+                            bool(s.out.val & s.out.rdy))
+            s.dac <<= s.lane.dac
+            s.busy <<= s.lane.busy
+            s.free <<= s.lane.free
+            s.out.val <<= s.lane.result is not None
+            if s.lane.result is not None:
+                code, converted = s.lane.result
                 s.out.msg <<= code & 0xFF
                 s.converted <<= converted
 
     def line_trace(s):
-        return f"{s.left:2d} {s.dac} {'*' if s.result else ' '}"
+        return f"{s.lane.left:2d} {s.dac} {'*' if s.lane.result else ' '}"

@@ -1,0 +1,98 @@
+"""AdcBank at cycle level: the RTL's cycles and stalls, data by models.digital.sar.decisions."""
+
+from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, Component, InPort, OutPort, mk_bits, update, update_ff
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from rtl.edge_adc.edge_adc_cl import LaneCycles
+from rtl.messages import FRAME, SAMPLE, ScanMsg, step_msg
+
+
+class AdcBankCL(Component):
+    """Same ports as AdcBank, and the same values on them in every cycle."""
+
+    def construct(s, lanes=8):
+        Lanes = mk_bits(lanes)
+        s.step = RecvIfcRTL(step_msg(lanes))
+        s.mode = InPort(Bits2)
+        s.threshold = InPort(Bits7)
+        s.comparator = InPort(Lanes)
+        s.dac = OutPort(mk_bits(8 * lanes))
+        s.hold = OutPort()
+        s.row = OutPort(Bits10)
+        s.group = OutPort(Bits8)
+        s.k = OutPort(Bits3)
+        s.sub = OutPort(Bits2)
+        s.en = OutPort(Lanes)
+        s.unsigned_ = OutPort()
+        s.idle = OutPort()
+        s.made = OutPort(Bits32)
+        s.left_out = OutPort(Bits32)
+        s.scan = SendIfcRTL(ScanMsg)
+
+        s.lanes = [LaneCycles() for _ in range(lanes)]
+        s.at_pins = None        # (kind, row, en) of what is sampled and converts, or of a mark behind what leaves
+        s.leaving = []          # what leaves, in order: marks (ScanMsg) and lanes (int)
+
+        def tick_lanes(taken_lane):
+            for number, lane in enumerate(s.lanes):
+                lane.tick(bool(s.hold & s.en[number]), bool(s.unsigned_), int(s.threshold),
+                          bool(s.comparator[number]), number == taken_lane)
+
+        def count(head):
+            if isinstance(head, int):
+                converted = s.lanes[head].result[1]
+                s.made <<= s.made + int(converted)
+                s.left_out <<= s.left_out + int(not converted)
+            elif head.kind == FRAME:
+                s.made <<= 0
+                s.left_out <<= 0
+
+        def move_on():
+            if s.at_pins is not None and not s.leaving:
+                kind, row, en = s.at_pins
+                if kind == SAMPLE:
+                    s.leaving = [lane for lane in range(lanes) if en >> lane & 1]
+                else:
+                    s.leaving = [ScanMsg(kind, row)]
+                s.at_pins = None
+
+        @update_ff
+        def behave():
+            taken = bool(s.step.val & s.step.rdy)
+            starts = taken and bool(s.step.msg.kind == SAMPLE) and not s.reset
+            if s.reset:
+                s.lanes = [LaneCycles() for _ in range(lanes)]
+                s.at_pins, s.leaving = None, []
+                s.made <<= 0
+                s.left_out <<= 0
+            else:
+                head = s.leaving.pop(0) if s.scan.val & s.scan.rdy else None
+                if head is not None:
+                    count(head)
+                tick_lanes(head if isinstance(head, int) else None)
+                move_on()
+                if taken:
+                    s.at_pins = int(s.step.msg.kind), int(s.step.msg.row), int(s.step.msg.en)
+                    s.row <<= s.step.msg.row
+                    s.group <<= s.step.msg.group
+                    s.k <<= s.step.msg.k
+                    s.sub <<= s.step.msg.sub
+                    s.en <<= s.step.msg.en
+            s.hold <<= starts
+            s.step.rdy <<= not starts and s.at_pins is None and all(lane.free for lane in s.lanes)
+            s.idle <<= not starts and not any(lane.busy for lane in s.lanes)
+            s.dac <<= sum(lane.dac << 8 * number for number, lane in enumerate(s.lanes))
+            head = s.leaving[0] if s.leaving else None
+            if isinstance(head, int):       # a lane, whose result may not be there yet
+                result = s.lanes[head].result
+                head = result and ScanMsg(SAMPLE, (len(s.leaving) == 1) << 9 | result[0] & 0xFF)
+            s.scan.val <<= head is not None
+            if head is not None:
+                s.scan.msg <<= head
+
+        @update
+        def range_of_dac():
+            s.unsigned_ @= s.mode != 0
+
+    def line_trace(s):
+        return f"{s.step} {'h' if s.hold else ' '} {len(s.leaving)} {s.scan}"

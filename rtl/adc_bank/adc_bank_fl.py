@@ -1,0 +1,96 @@
+"""AdcBank at functional level: one step at a time, every lane by models.digital.sar.decisions."""
+
+from collections import deque
+
+from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, Component, InPort, OutPort, mk_bits, update_ff
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from models.digital.sar import decisions
+from rtl.messages import FRAME, SAMPLE, ScanMsg, step_msg
+
+
+class AdcBankFL(Component):
+    """Same ports and same messages as AdcBank. Messages queue up without bound."""
+
+    def construct(s, lanes=8):
+        Lanes = mk_bits(lanes)
+        s.step = RecvIfcRTL(step_msg(lanes))
+        s.mode = InPort(Bits2)
+        s.threshold = InPort(Bits7)
+        s.comparator = InPort(Lanes)
+        s.dac = OutPort(mk_bits(8 * lanes))
+        s.hold = OutPort()
+        s.row = OutPort(Bits10)
+        s.group = OutPort(Bits8)
+        s.k = OutPort(Bits3)
+        s.sub = OutPort(Bits2)
+        s.en = OutPort(Lanes)
+        s.unsigned_ = OutPort()
+        s.idle = OutPort()
+        s.made = OutPort(Bits32)
+        s.left_out = OutPort(Bits32)
+        s.scan = SendIfcRTL(ScanMsg)
+
+        s.runs = {}             # lane -> its decisions under way
+        s.done = {}             # lane -> (code, converted) of the step under way
+        s.queue = deque()       # (ScanMsg, converted or None)
+        s.codes = [0] * lanes
+
+        def convert():
+            if s.hold:
+                s.runs = {lane: decisions(bool(s.unsigned_), int(s.threshold)) for lane in range(lanes) if s.en[lane]}
+                s.codes[:] = [next(s.runs[lane]) if lane in s.runs else code for lane, code in enumerate(s.codes)]
+                return
+            for lane, run in list(s.runs.items()):
+                try:
+                    s.codes[lane] = run.send(bool(s.comparator[lane]))
+                except StopIteration as end:
+                    s.done[lane] = end.value
+                    del s.runs[lane]
+            if s.done and not s.runs:
+                for lane in sorted(s.done):
+                    code, converted = s.done[lane]
+                    last = lane == max(s.done)
+                    s.queue.append((ScanMsg(SAMPLE, last << 9 | code & 0xFF), converted))
+                s.done = {}
+
+        def leave(msg, converted):
+            if converted is not None:
+                s.made <<= s.made + int(converted)
+                s.left_out <<= s.left_out + int(not converted)
+            elif msg.kind == FRAME:
+                s.made <<= 0
+                s.left_out <<= 0
+
+        @update_ff
+        def behave():
+            taken = bool(s.step.val & s.step.rdy) and not s.reset
+            starts = taken and s.step.msg.kind == SAMPLE
+            if s.reset:
+                s.runs, s.done, s.codes = {}, {}, [0] * lanes
+                s.queue.clear()
+                s.made <<= 0
+                s.left_out <<= 0
+            else:
+                if s.scan.val & s.scan.rdy:
+                    leave(*s.queue.popleft())
+                convert()
+            if starts:
+                s.row <<= s.step.msg.row
+                s.group <<= s.step.msg.group
+                s.k <<= s.step.msg.k
+                s.sub <<= s.step.msg.sub
+                s.en <<= s.step.msg.en
+            elif taken:
+                s.queue.append((ScanMsg(s.step.msg.kind, s.step.msg.row), None))
+            s.hold <<= starts
+            s.step.rdy <<= not (starts or s.runs)
+            s.idle <<= not (starts or s.runs)
+            s.unsigned_ <<= s.mode != 0
+            s.dac <<= sum(code << 8 * lane for lane, code in enumerate(s.codes))
+            s.scan.val <<= bool(s.queue)
+            if s.queue:
+                s.scan.msg <<= s.queue[0][0]
+
+    def line_trace(s):
+        return f"{s.step} {len(s.runs)} {s.scan}"

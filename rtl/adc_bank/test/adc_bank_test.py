@@ -1,0 +1,228 @@
+"""AdcBank at every level, with the analog front end at its pins: steps in, the golden model's codes out, in order."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from pymtl3 import Bits2, Bits7, Component, InPort, OutPort, connect
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from models.afe import Converter, FrontEnd
+from models.digital.scan import Scan
+from models.parameters import MODES, ConverterParameters, FrameParameters, Window
+from pixels.afe_fl import AfeFL
+from rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
+from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
+from rtl.testbench import build
+
+ROWS, COLS, LANES = 3, 104, 8       # three groups, the last one partial
+RNG = np.random.default_rng(5)
+SAMPLES = RNG.uniform(0, 127.5, (4, ROWS, COLS, 2))
+SAMPLES[:, 0, :, 1] = SAMPLES[:, 0, :, 0] + RNG.choice((-1, 1), (4, COLS)) * RNG.uniform(15, 90, (4, COLS))   # no zeros
+SAMPLES[:, 1, :, 1] = SAMPLES[:, 1, :, 0]                                   # zeros
+SAMPLES[:, 2, :, 1] = SAMPLES[:, 2, :, 0] + RNG.normal(0, 3, (4, COLS))     # around the window
+
+SETTINGS = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
+ALWAYS = [(True, True)]
+patterns = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=40).filter(
+    lambda p: any(v for v, _ in p) and any(r for _, r in p))
+
+
+def front_end(lanes, rough=True):
+    imperfect = ConverterParameters(inl=1, dnl=0.3, offset=1, noise=0.7, ktc=0.5, seed=4)
+    return FrontEnd(4.0, (0,) * 24, lanes, Converter.draw(imperfect, lanes) if rough else None)
+
+
+class Harness(Component):
+    """The bank with the front end at its pins; streams and settings are brought out."""
+
+    def construct(s, dut, lanes, rough):
+        s.step = RecvIfcRTL(step_msg(lanes))
+        s.scan = SendIfcRTL(ScanMsg)
+        s.mode, s.threshold = InPort(Bits2), InPort(Bits7)
+        s.hold, s.idle = OutPort(), OutPort()
+
+        s.dut = dut
+        s.afe = AfeFL(front_end(lanes, rough), SAMPLES)
+
+        connect(s.step, s.dut.step)
+        connect(s.dut.scan, s.scan)
+        for name in ("mode", "threshold", "hold", "idle"):
+            connect(getattr(s, name), getattr(s.dut, name))
+        connect(s.mode, s.afe.mode)
+        for name in ("row", "group", "k", "sub", "en", "dac", "hold", "unsigned_", "comparator"):
+            connect(getattr(s.dut, name), getattr(s.afe, name))
+
+    def line_trace(s):
+        return f"{s.dut.line_trace()} {s.afe.line_trace()}"
+
+
+@cache
+def simulator(cls, verilog, lanes=LANES, rough=True):
+    return build(Harness(cls(lanes), lanes, rough), verilog, f"AdcBank{lanes}")
+
+
+class Run:
+    """What a bank did with a list of StepMsg: messages with their cycles, hold and idle cycle by cycle, counters."""
+
+    def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=20_000):
+        sim.mode @= MODES.index(mode)
+        sim.threshold @= threshold
+        sim.step.val @= 0
+        sim.scan.rdy @= 0
+        sim.reset @= 1
+        sim.sim_tick()
+        sim.reset @= 0
+        self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
+        steps, cycle, ends = list(steps), 0, sum(int(m.kind) == END for m in steps)
+        while ends > len(self.counts) or steps or self.idle[-1:] != [True]:
+            offer, ready = pattern[cycle % len(pattern)]
+            sim.step.val @= bool(steps) and offer
+            if steps:
+                sim.step.msg @= steps[0]
+            sim.scan.rdy @= ready
+            sim.sim_eval_combinational()
+            if steps and offer and sim.step.rdy:
+                steps.pop(0)
+            self.hold.append(bool(sim.hold))
+            self.idle.append(bool(sim.idle))
+            if sim.scan.val and ready:
+                self.messages.append((int(sim.scan.msg.kind), int(sim.scan.msg.data)))
+                self.sent_at.append(cycle)
+                if sim.scan.msg.kind == END:
+                    self.counts.append((int(sim.dut.made), int(sim.dut.left_out)))
+            sim.sim_tick()
+            cycle += 1
+            assert cycle < limit
+
+
+def steps_of(scan):
+    """StepMsg of a whole frame."""
+    Step = step_msg(scan.lanes)
+    out = [Step(FRAME, 0, 0, 0, 0, 0)]
+    for row in scan.row_list.tolist():
+        out.append(Step(ROW, row, 0, 0, 0, 0))
+        out += [Step(SAMPLE, row, x.group, x.k, x.sub, x.enable) for x in scan.steps(row)]
+    return out + [Step(END, 0, 0, 0, 0, 0)]
+
+
+def expected(steps, lanes, mode, threshold, rough=True):
+    """(messages, [(made, left out) of every END]) of a list of StepMsg by the golden model."""
+    golden = front_end(lanes, rough).convert(SAMPLES, mode, threshold)
+    messages, counts = [], []
+    for step in steps:
+        if step.kind != SAMPLE:
+            messages.append((int(step.kind), int(step.row)))
+            if step.kind == FRAME:
+                counts.append([0, 0])
+            continue
+        enabled = [lane for lane in range(lanes) if step.en[lane]]
+        for lane in enabled:
+            at = int(step.sub), int(step.row), 6 * (lanes * int(step.group) + lane) + int(step.k)
+            messages.append((SAMPLE, (lane == enabled[-1]) << 9 | int(golden.codes[at]) & 0xFF))
+            counts[-1][0 if golden.converted[at] else 1] += 1
+    return messages, [tuple(c) for c in counts]
+
+
+def frame(rows, cols, lanes, mode, **kw):
+    return Scan(rows, cols, lanes, FrameParameters(Window(0, -(-rows // 4) - 1, 0, -(-cols // 6) - 1), mode=mode, **kw))
+
+
+@st.composite
+def step_lists(draw):
+    """Two frames of any steps: any lanes enabled, none too."""
+    Step = step_msg(LANES)
+    out = []
+    for _ in range(2):
+        out.append(Step(FRAME, 0, 0, 0, 0, 0))
+        for row in draw(st.lists(st.integers(0, ROWS - 1), max_size=2)):
+            out.append(Step(ROW, row, 0, 0, 0, 0))
+            out += [Step(SAMPLE, row, draw(st.integers(0, 1)), draw(st.integers(0, 5)), 0, draw(st.integers(0, 255)))
+                    for _ in range(draw(st.integers(0, 6)))]
+        out.append(Step(END, 0, 0, 0, 0, 0))
+    return out
+
+
+class TestAdcBankFL:
+    """Inherited by every level; a level overrides ``cls`` and ``verilog``."""
+
+    cls, verilog = AdcBankFL, False
+
+    def run(self, *args, lanes=LANES, rough=True):
+        return Run(simulator(self.cls, self.verilog, lanes, rough), *args)
+
+    def check(self, steps, mode, threshold, pattern=ALWAYS, lanes=LANES):
+        got = self.run(steps, mode, threshold, pattern, lanes=lanes)
+        assert (got.messages, got.counts) == expected(steps, lanes, mode, threshold)
+
+    @pytest.mark.parametrize("mode", MODES)
+    def test_a_frame_of_every_mode(self, mode):
+        self.check(steps_of(frame(ROWS, COLS, LANES, mode, mask=0x00431001)), mode, 10)
+
+    @SETTINGS
+    @given(step_lists(), st.integers(0, 127), patterns)
+    def test_any_steps_and_any_timing(self, steps, threshold, pattern):
+        self.check(steps, "edge", threshold, pattern)
+
+    @SETTINGS
+    @given(step_lists(), patterns)
+    def test_is_not_idle_while_it_converts(self, steps, pattern):
+        """From the hold to the last decision (two for the zeros of row 1, ten at most) `idle` is low."""
+        got = self.run(steps, "edge", 10, pattern)
+        enabled = [bool(step.en) for step in steps if step.kind == SAMPLE]
+        holds = np.flatnonzero(got.hold)
+        assert len(holds) == len(enabled)
+        for at, some in zip(holds, enabled):
+            assert not any(got.idle[at:at + (3 if some else 1)])
+        assert got.idle[-1]
+
+
+class TestAdcBankCL(TestAdcBankFL):
+    cls = AdcBankCL
+
+    @SETTINGS
+    @given(step_lists(), st.integers(0, 127), patterns)
+    def test_same_cycles_as_the_cycle_level(self, steps, threshold, pattern):
+        got = self.run(steps, "edge", threshold, pattern)
+        reference = Run(simulator(AdcBankCL, False), steps, "edge", threshold, pattern)
+        assert vars(got) == vars(reference)
+
+    @pytest.mark.parametrize("row, mode, threshold, interval", [
+        (1, "edge", 10, [8, 8]), (0, "edge", 1, [10, 10]), (0, "edge", 0, [10, 8]), (0, "image", 0, [10, 8])])
+    def test_cycles_a_step(self, row, mode, threshold, interval):
+        """Zeros cost what eight results take to leave; samples that convert, their ten decisions.
+
+        Without a window a step has eight decisions, and every other one waits for the last lane's result to leave.
+        """
+        Step = step_msg(LANES)
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), *[Step(SAMPLE, row, 0, 0, 0, 255)] * 9, Step(END, 0, 0, 0, 0, 0)]
+        got = self.run(steps, mode, threshold)
+        holds = np.diff(np.flatnonzero(got.hold))
+        assert sorted(holds[-2:]) == sorted(interval) and sorted(holds[-4:-2]) == sorted(interval)
+
+    @pytest.mark.parametrize("row, threshold, latency", [(1, 10, 3), (0, 1, 11)])
+    def test_latency(self, row, threshold, latency):
+        """From the hold to the first result at the output."""
+        Step = step_msg(LANES)
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), Step(SAMPLE, row, 0, 0, 0, 255), Step(END, 0, 0, 0, 0, 0)]
+        got = self.run(steps, "edge", threshold)
+        assert got.sent_at[1] - got.hold.index(True) == latency
+        assert np.diff(got.sent_at[1:]).tolist() == [1] * 8
+
+
+class TestAdcBankRTL(TestAdcBankCL):
+    cls = AdcBank
+
+
+class TestAdcBankVerilog(TestAdcBankRTL):
+    verilog = True
+
+
+@pytest.mark.parametrize("cls", [AdcBankFL, AdcBankCL, AdcBank])
+@pytest.mark.parametrize("lanes", [1, 2, 32])
+def test_other_numbers_of_lanes(cls, lanes):
+    steps = steps_of(frame(2, 50, lanes, "edge", mask=0x00000201))
+    got = Run(simulator(cls, False, lanes), steps, "edge", 10, [(True, True), (True, False), (False, True)])
+    assert (got.messages, got.counts) == expected(steps, lanes, "edge", 10)
