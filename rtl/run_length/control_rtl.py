@@ -23,7 +23,6 @@ class RunLengthCtrl(Component):
         s.start = OutPort()         # a frame starts
         s.first_row = OutPort()     # the message's row is the first
         s.next_row = OutPort()      # the message's row comes behind the mark of the row before
-        s.finish = OutPort()           # the frame's END is taken
         s.push = OutPort()
         s.flush = OutPort()
         s.restart = OutPort()       # of the row's coder and its CRC
@@ -39,6 +38,7 @@ class RunLengthCtrl(Component):
         s.open = Wire()             # a row has started
         s.ending = Wire()           # END has come
         s.go = Wire()
+        s.finish = Wire()           # the frame's END is taken
         s.step = Wire()             # a byte of header, mark or trailer goes into the queue
         s.last = Wire()             # ... its last one
 

@@ -1,13 +1,15 @@
 """RunLength at RTL: messages of a scan in, the bytes of docs/stream.md out."""
 
-from pymtl3 import Bits6, Bits8, Bits10, Bits16, Bits64, Component, Wire, concat, connect, update, update_ff
+from pymtl3 import Bits2, Bits6, Bits8, Bits10, Bits16, Bits32, Component, Wire, concat, connect, update, update_ff
 
 from .byte_queue_rtl import ByteQueue
-from .control_rtl import COUNTED, COUNTS, HEADER, HEADER_FIELDS, MARK, TRAILER, RunLengthCtrl
+from .control_rtl import COUNTS, HEADER, HEADER_FIELDS, MARK, TRAILER, RunLengthCtrl
 from .crc_rtl import Crc16, Crc32
 from .header_rtl import HeaderBytes
 from .packer_rtl import PayloadPacker
 from .ports import HEADER_PORTS, add_ports
+
+MARK_PLACE = COUNTS // 2     # upper bits of the index of the trailer's mark
 
 
 class RunLength(Component):
@@ -26,8 +28,9 @@ class RunLength(Component):
         s.queue = ByteQueue()
         s.row = Wire(Bits10)
         s.following = Wire(Bits10)      # the row behind this one's mark
-        s.counts = Wire(Bits64)         # made and left out, the next byte on top
         s.mark = Wire(Bits16)
+        s.word = Wire(Bits32)           # a count or the CRC-32
+        s.place = Wire(Bits2)           # of the byte in it, 0 on top
         s.octet = Wire(Bits8)
 
         # Connections
@@ -63,31 +66,36 @@ class RunLength(Component):
 
         # Logic
         @update
+        def select_word():
+            s.word @= s.crc32.crc
+            s.place @= s.control.index[0:2] ^ 2     # the CRC-32s start at an index of 2 modulo 4
+            if (s.control.state == TRAILER) & (s.control.index < COUNTS):
+                s.word @= s.left_out if s.control.index[2] else s.made
+                s.place @= s.control.index[0:2]
+
+        @update
         def select():
             s.mark @= s.crc16.crc ^ (Bits16(0xFFFF) if s.control.state == TRAILER else concat(Bits6(0), s.row))
             if s.packer.val:
                 s.octet @= s.packer.octet
             elif (s.control.state == HEADER) & (s.control.index < HEADER_FIELDS):
                 s.octet @= s.header.octet
-            elif (s.control.state == TRAILER) & (s.control.index < COUNTS):
-                s.octet @= s.counts[56:64]
-            elif (s.control.state == MARK) | ((s.control.state == TRAILER) & (s.control.index < COUNTED)):
+            elif (s.control.state == MARK) | ((s.control.state == TRAILER) & (s.control.index[1:5] == MARK_PLACE)):
                 s.octet @= s.mark[0:8] if s.control.index[0] else s.mark[8:16]
-            elif s.control.index[0:2] == 2:         # both CRC-32s start at an index of 2 modulo 4
-                s.octet @= s.crc32.crc[24:32]
-            elif s.control.index[0:2] == 3:
-                s.octet @= s.crc32.crc[16:24]
-            elif s.control.index[0:2] == 0:
-                s.octet @= s.crc32.crc[8:16]
+            elif s.place == 0:
+                s.octet @= s.word[24:32]
+            elif s.place == 1:
+                s.octet @= s.word[16:24]
+            elif s.place == 2:
+                s.octet @= s.word[8:16]
             else:
-                s.octet @= s.crc32.crc[0:8]
+                s.octet @= s.word[0:8]
 
         @update_ff
         def remember():
             if s.reset:
                 s.row <<= 0
                 s.following <<= 0
-                s.counts <<= 0
             else:
                 if s.control.first_row:
                     s.row <<= s.recv.msg.data
@@ -95,10 +103,6 @@ class RunLength(Component):
                     s.row <<= s.following
                 if s.control.next_row:
                     s.following <<= s.recv.msg.data
-                if s.control.finish:
-                    s.counts <<= concat(s.made, s.left_out)
-                elif s.control.put & (s.control.state == TRAILER):
-                    s.counts <<= concat(s.counts[0:56], Bits8(0))
 
     def line_trace(s):
         return f"{s.control.line_trace()} {s.packer.line_trace()} {s.queue.line_trace()}"

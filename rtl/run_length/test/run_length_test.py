@@ -15,7 +15,7 @@ from rtl.testbench import build
 
 ROWS, COLS, LANES = 12, 36, 4
 ALWAYS = [True]
-SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
+SETTINGS = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 BURSTS = st.lists(st.booleans(), min_size=1, max_size=12).filter(any)
 
 
@@ -68,9 +68,9 @@ class Bench:
             offer = sent < len(messages) and offered[cycle % len(offered)]
             sim.recv.val @= offer
             sim.recv.msg @= messages[sent] if offer else ScanMsg(3, 0x3FF)
-            ending = offer and messages[sent].kind == END
-            sim.made @= self.counts[0] if ending else 0
-            sim.left_out @= self.counts[1] if ending else 0
+            held = sent == len(messages) or messages[sent].kind in (END, FRAME) and sent
+            sim.made @= self.counts[0] if held else 0       # from END to the end of the frame
+            sim.left_out @= self.counts[1] if held else 0
             sim.send.rdy @= taken[cycle % len(taken)]
             sim.sim_eval_combinational()
             state = bool(sim.recv.rdy), bool(sim.send.val), int(sim.send.msg), bool(sim.frame_sync)
@@ -194,15 +194,14 @@ class TestRunLengthCL(TestRunLengthFL):
         assert logs[0] == logs[1]
 
     def test_a_sample_a_cycle_and_a_byte_a_cycle(self):
-        for mode, share in (("edge", 0), ("edge", 1), ("raw", 1)):
+        """Beyond header, samples and trailer, a row costs its message, its last byte or two and its mark."""
+        for mode, share in (("edge", 0), ("edge", 0.2), ("edge", 1), ("raw", 1)):
             header = header_of(mode)
-            messages = messages_of(header, samples_of(header, 1, share))
+            messages = messages_of(header, samples_of(header, 1, share, 10))
             bench = self.bench(header)
-            size = len(bench.run(messages))
-            busy = sum(state[3] for state in bench.log)
-            stalls = {("edge", 0): 0, ("edge", 1): size * 0.15, ("raw", 1): 0}[mode, share]
-            # header, for each row its message, its last byte or two and its mark, trailer
-            assert busy <= 26 + (len(messages) - 2 - ROWS) + ROWS * 5 + 14 + 4 + stalls
+            bench.run(messages)
+            samples = len(messages) - 2 - ROWS
+            assert 0 <= sum(state[3] for state in bench.log) - (26 + samples + 14) <= 5 * ROWS + 2
 
 
 class TestRunLength(TestRunLengthCL):

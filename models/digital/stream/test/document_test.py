@@ -1,0 +1,26 @@
+from pathlib import Path
+
+import pytest
+
+from models.digital.stream import decode_stream
+from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
+from models.digital.stream.test.examples import EXAMPLES, small_frame
+from models.digital.stream.trailer import TRAILER_BYTES
+
+DOCUMENT = (Path(__file__).parents[4] / "docs" / "stream.md").read_text()
+
+
+@pytest.mark.parametrize("example", EXAMPLES)
+def test_worked_examples_are_what_the_encoder_gives(example):
+    assert "```\n" + "\n".join(example()) + "\n```" in DOCUMENT
+
+
+def test_the_frame_of_the_document_decodes():
+    words = " ".join(line[14:].replace("mark", "") for line in small_frame())
+    frame, = decode_stream(bytes.fromhex(words))
+    assert frame.complete and not frame.errors and frame.samples[1, 5].tolist() == [220, 230]
+
+
+def test_sizes_of_the_document():
+    assert f"header ({HEADER_BYTES} bytes)" in DOCUMENT and f"trailer ({TRAILER_BYTES} bytes)" in DOCUMENT
+    assert f"{255 * (FIELD_BYTES + 4):,} changes" in DOCUMENT

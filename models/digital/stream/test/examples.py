@@ -1,0 +1,87 @@
+"""The worked examples of docs/stream.md, written by the encoder: `python -m models.digital.stream.test.examples`."""
+
+import numpy as np
+
+from models.digital.stream import StreamHeader, encode_frame, encode_marked_row
+from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
+from models.digital.stream.payload import START, base_of, code_sample
+from models.parameters import FrameParameters, Window
+
+FIELDS = (("magic", 4), ("version", 1), ("flags", 1), ("threshold", 1), ("lanes", 1), ("tile", 1), ("rows", 2),
+          ("cols", 2), ("row0", 1), ("row1", 1), ("col0", 1), ("col1", 1), ("mask", 3), ("frame number", 2), ("CRC-32", 4))
+
+
+def token_lines(codes, threshold):
+    """A line for each token of a row: the state before it, what it stands for, its bits."""
+    state, lines = START, []
+    for code in codes:
+        k, r2, run, credit = state
+        bits, length, *state = code_sample(int(code), base_of(threshold), *state)
+        if not length:
+            continue
+        text = f"{bits:0{length}b}"
+        if run == 0 and credit // 4 + r2 // 2 < k + 17:
+            said = f"literal {code}"
+        elif text == "0":
+            said = f"{1 << k} zeros"
+        else:
+            said = f"{run} zeros, then {code}"
+            text = " ".join(filter(None, (text[0], text[1:1 + k], text[1 + k], text[2 + k:])))
+        lines.append(_token(k, r2, credit, said, text))
+    k, r2, run, credit = state
+    return lines + [_token(k, r2, credit, f"{run} zeros, the row ends", "0")] * (run > 0)
+
+
+def _token(k, r2, credit, said, text):
+    return f"  k={k} r2={r2} credit={credit:<4} {said:22} {text}"
+
+
+def row_example(row, codes, threshold):
+    """A row of edge mode, token by token, and its bytes."""
+    sent = encode_marked_row(row, codes, True, threshold)
+    return [f"row {row}, threshold {threshold}, {len(codes)} samples:", "  " + " ".join(map(str, codes)), "tokens:",
+            *token_lines(codes, threshold), f"payload: {sent[:-2].hex(' ')}", f"mark:    {sent[-2:].hex(' ')}"]
+
+
+def frame_example(header, samples, made, left_out):
+    """A whole frame, field by field."""
+    data = encode_frame(header, samples, made, left_out)
+    lines, at = [], 0
+    for name, size in FIELDS:
+        lines.append(f"{name:14}{data[at:at + size].hex(' ')}")
+        at += size
+    assert at == HEADER_BYTES == FIELD_BYTES + 4
+    layout = header.layout()
+    for i, row in enumerate(layout.rows.tolist()):
+        codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
+        size = len(encode_marked_row(row, codes, header.edge, header.threshold))
+        lines.append(f"{f'row {row}':14}{data[at:at + size - 2].hex(' ')}   mark {data[at + size - 2:at + size].hex(' ')}")
+        at += size
+    for name, size in (("made", 4), ("left out", 4), ("mark", 2), ("CRC-32", 4)):
+        lines.append(f"{name:14}{data[at:at + size].hex(' ')}")
+        at += size
+    assert at == len(data)
+    return lines
+
+
+def edges():
+    """Runs, values of both signs, a long run, and a run that the row cuts off."""
+    return row_example(5, [0] * 5 + [12, 0, 0, -10, 15, 0, -31] + [0] * 30 + [10] + [0] * 7, 10)
+
+
+def noise():
+    """Values that no code makes smaller: literals take over when the credit is spent."""
+    return row_example(0, [-128, 127, -128, 127, -128, 127, -128, 127, 0, 100], 0)
+
+
+def small_frame():
+    """A raw frame of 2 x 6 pixels, type 3 masked."""
+    frame = FrameParameters(Window(0, 0, 0, 0), "raw", mask=0xFFFFF7, threshold=10, frame_number=258)
+    header = StreamHeader.from_frame(2, 6, 1, frame)
+    return frame_example(header, np.arange(24).reshape(2, 6, 2) * 10, 22, 0)
+
+
+EXAMPLES = edges, noise, small_frame
+
+if __name__ == "__main__":
+    print("\n\n".join("\n".join(example()) for example in EXAMPLES))
