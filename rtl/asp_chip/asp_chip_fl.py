@@ -1,0 +1,103 @@
+"""AspChip at functional level: registers and golden frames behind the chip's pins."""
+
+from pymtl3 import Component, Wire, connect, update, update_ff
+
+from models.parameters import (MODES, AmpTiming, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
+                               SensorParameters, TileParameters, Window)
+from models.parameters.registers import register_map
+from rtl.reg_file import RegFileFL, chip_status
+
+from .golden_run import GoldenRun, resting_pins
+from .pins import declare_pins
+
+TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
+
+
+def frame_of(cfg):
+    """FrameParameters of a ChipConfig, without the durations. Raises ParameterError where there is no such frame."""
+    mode = MODES[int(cfg.mode)]
+    return FrameParameters(
+        Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))), mode, int(cfg.mask),
+        int(cfg.threshold), int(cfg.decimation), bool(cfg.phase) and mode == "tof", int(cfg.noise_floor),
+        bool(cfg.overlap), bool(cfg.test_pattern), int(cfg.frame_number))
+
+
+def trims_of(cfg):
+    """Trim registers by pixel type, unsigned: tuple."""
+    return tuple(int(cfg.trims) >> 8 * f.size * i & (1 << f.width) - 1 for i, f in enumerate(register_map().trims))
+
+
+class AspChipFL(Component):
+    """The bytes of AspChip without its timing: all steps are converted, then the frame is sent.
+
+    The converters' pins move as they do on the chip, so that any front end can answer; the amplifiers' pins rest,
+    for no row takes time here. Parameters: see AspChip.
+    """
+
+    def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6, divider="radix4", n_frac=8, iterations=10):
+        declare_pins(s, lanes)
+        s.regs = RegFileFL(-(-rows // tile_rows) - 1, -(-cols // tile_cols) - 1)
+        for name in ("sclk", "csn", "mosi", "miso"):
+            connect(getattr(s, name), getattr(s.regs, name))
+        s.mode //= s.regs.cfg.mode
+
+        types = TileParameters().types[:tile_rows * tile_cols]
+        s.sensor = SensorParameters(TileParameters(tile_rows, tile_cols, types, tuple(order)),
+                                    ArrayParameters(rows, cols),
+                                    chip=ChipParameters(lanes, divider, n_frac, iterations))
+        s.byte, s.byte_val = Wire(8), Wire()
+        s.run = s.job = None
+        s.cycles = 0
+        s.resting = resting_pins()
+
+        def begin():
+            """Start the configured frame; returns (cfg_err, amp_err)."""
+            cfg = s.regs.cfg
+            try:
+                s.run = GoldenRun(s.sensor, frame_of(cfg), trims_of(cfg))
+                AmpTiming(*(int(getattr(cfg, name)) for name in TIMING))
+            except ParameterError as error:
+                return True, str(error).startswith("t_")
+            s.job = s.run.cycles(lambda: int(s.comparator), lambda: s.link_rdy and not s.regs.cfg.loop_enable)
+            s.cycles = 0
+            return False, False
+
+        @update_ff
+        def behave():
+            done = cfg_err = amp_err = False
+            if s.reset:
+                s.run = s.job = None
+                s.cycles = 0
+            elif s.job is not None:
+                s.cycles += 1
+                done = next(s.job, s) is s
+                if done:
+                    s.job = None
+            elif s.regs.start:
+                cfg_err, amp_err = begin()
+            s.busy <<= s.job is not None
+            s.regs.status <<= chip_status()(
+                s.job is not None, done, cfg_err, amp_err, s.cycles, s.run.made if s.run else 0,
+                s.run.left_out if s.run else 0)
+            pins = s.run.pins if s.run else s.resting
+            s.dac <<= pins["dac"]
+            s.hold <<= pins["hold"]
+            s.unsigned_ <<= pins["unsigned_"]
+            s.row <<= pins["row"]
+            s.group <<= pins["group"]
+            s.k <<= pins["k"]
+            s.sub <<= pins["sub"]
+            s.en <<= pins["en"]
+            s.balance <<= pins["balance"]
+            s.frame_sync <<= pins["frame_sync"]
+            s.byte <<= pins["link_data"]
+            s.byte_val <<= pins["link_val"]
+
+        @update
+        def link():
+            s.link_data @= s.regs.loop.msg if s.regs.cfg.loop_enable else s.byte
+            s.link_val @= s.regs.loop.val if s.regs.cfg.loop_enable else s.byte_val
+            s.regs.loop.rdy @= s.link_rdy & s.regs.cfg.loop_enable
+
+    def line_trace(s):
+        return f"{s.row},{s.group},{s.k},{s.sub} {s.link_data if s.link_val else '  '}"

@@ -1,0 +1,85 @@
+"""A frame as the chip's pins see it, from golden functions: what AspChipFL plays."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from models.digital.pattern import pattern_value
+from models.digital.phase import phase_samples
+from models.digital.sar import decisions
+from models.digital.scan import Scan
+from models.digital.stream import StreamHeader, encode_frame
+from models.parameters import FrameParameters, SensorParameters
+
+
+def resting_pins():
+    """The pins that a frame moves, before it does: dict name -> 0."""
+    return dict.fromkeys(("dac", "hold", "unsigned_", "row", "group", "k", "sub", "en", "balance", "link_data",
+                          "link_val", "frame_sync"), 0)
+
+
+@dataclass
+class GoldenRun:
+    """One frame. The pins' values and the counters lie in attributes named as they are on the chip.
+
+    trims: register values by pixel type, unsigned. Raises ParameterError where no frame can start.
+    """
+
+    sensor: SensorParameters
+    frame: FrameParameters
+    trims: tuple
+    pins: dict = field(default_factory=resting_pins)
+    made: int = 0
+    left_out: int = 0
+
+    def __post_init__(self):
+        array, chip = self.sensor.array, self.sensor.chip
+        self.scan = Scan(array.rows, array.cols, chip.lanes, self.frame, self.sensor.tile)
+
+    def cycles(self, comparator, link_rdy):
+        """Generator: after each `next` the pins hold for a cycle.
+
+        comparator, link_rdy: functions that give the pin's value in that cycle.
+        """
+        sensor, frame = self.sensor, self.frame
+        codes = np.zeros((sensor.array.rows, sensor.array.cols, self.scan.subs), np.int16)
+        for row in self.scan.row_list:
+            for step in self.scan.steps(int(row)):
+                if step.enable:
+                    yield from self._convert(step, codes, comparator)
+        sent = np.stack(phase_samples(codes, sensor.chip, frame.noise_floor), -1) if frame.phase else codes
+        header = StreamHeader.from_frame(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile)
+        for byte in encode_frame(header, sent, self.made, self.left_out, sensor.tile):
+            self.pins.update(link_data=byte, link_val=1, frame_sync=1)
+            yield
+            while not link_rdy():
+                yield
+        self.pins.update(link_val=0, frame_sync=0)
+
+    def _convert(self, step, codes, comparator):
+        """The lanes of a step, a decision of all of them a cycle, into ``codes``."""
+        tile, frame = self.sensor.tile, self.frame
+        tiles = {lane: self.scan.lanes * step.group + lane
+                 for lane in range(self.scan.lanes) if step.enable >> lane & 1}
+        searches = {lane: decisions(frame.mode != "edge", frame.threshold) for lane in tiles}
+        trial = {lane: next(search) for lane, search in searches.items()}
+        kind = tile.order[tile.cols * (step.row % tile.rows) + step.k]
+        self.pins.update(hold=1, unsigned_=int(frame.mode != "edge"), row=step.row, group=step.group, k=step.k,
+                         sub=step.sub, en=step.enable, balance=self.trims[kind])
+        yield
+        while trial:
+            self.pins.update(hold=0, dac=sum(code << 8 * lane for lane, code in trial.items()))
+            yield
+            answers = comparator()
+            for lane, code in list(trial.items()):
+                above = bool(answers >> lane & 1)
+                if frame.test_pattern:
+                    above = bool(pattern_value(step.row, tiles[lane], step.k, step.sub) >= code)
+                try:
+                    trial[lane] = searches[lane].send(above)
+                except StopIteration as end:
+                    del trial[lane]
+                    code, converted = end.value
+                    codes[step.row, tile.cols * tiles[lane] + step.k, step.sub] = code
+                    self.made += converted
+                    self.left_out += not converted

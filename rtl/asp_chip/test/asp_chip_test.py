@@ -1,0 +1,128 @@
+"""AspChip at every level: whole frames over its pins against the golden chip."""
+
+import numpy as np
+import pytest
+
+from models.digital.chip import golden_frame
+from models.digital.pattern import PatternEnd
+from models.parameters import (AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters, Window)
+from models.parameters.registers import frame_writes, register_map
+from rtl.asp_chip import AspChip, AspChipFL
+from rtl.testbench import build
+
+from .chip_bench import ChipBench
+
+ROWS, COLS, LANES = 8, 13, 2
+SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
+FULL = SENSOR.full_window
+FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1)
+PATTERN = PatternEnd(ROWS, COLS)
+CHIP = register_map()
+
+def pattern_frame(window=FULL, mode="edge", **fields):
+    return FrameParameters(window, mode, test_pattern=True, timing=FAST, **fields)
+
+
+FRAMES = {
+    "edge": pattern_frame(frame_number=7),
+    "every sample": pattern_frame(threshold=0, overlap=False),
+    "image, some types": pattern_frame(mode="image", mask=0x8040A1),
+    "raw, a window": pattern_frame(Window(1, 1, 1, 2), "raw"),
+    "tof, decimated": pattern_frame(mode="tof", mask=0x03, decimation=1),
+}
+PHASE = pattern_frame(Window(1, 1, 0, 2), "tof", mask=0x000F0F, phase=True, noise_floor=20)
+
+
+class ChipTests:
+    """One chip a class; the tests that a simulation in Python can bear."""
+
+    component, verilog = None, False
+
+    def bench(self, **kw):
+        cls = type(self)
+        if cls.__dict__.get("sim") is None:
+            tile, chip = SENSOR.tile, SENSOR.chip
+            cls.sim = build(self.component(ROWS, COLS, LANES, tuple(tile.order), tile.rows, tile.cols, chip.divider,
+                                           chip.n_frac, chip.cordic_iterations), self.verilog, "AspChip")
+        return ChipBench(cls.sim, LANES, **kw)
+
+    def check(self, bench, frame, golden, trims=None):
+        """One frame: its bytes, its counters and its end."""
+        bench.write(frame_writes(frame, trims))
+        bench.start()
+        assert bytes(bench.stream) == golden.stream
+        assert all(bench.sync)
+        status = bench.status()
+        assert status.pop("cycles") > 0
+        assert status == {"busy": False, "done": True, "cfg_err": False, "amp_err": False, "refused": False,
+                          "conversions_made": golden.made, "conversions_left_out": golden.left_out}
+
+    def test_phase_and_loop_back(self):
+        bench = self.bench()
+        self.check(bench, PHASE, golden_frame(None, SENSOR, PHASE, PATTERN))
+        bench.stream.clear()
+        options, loop = CHIP["loop_enable"], CHIP["loop_back"].byte
+        bench.write([(options.byte, 1 << options.shift)])
+        bench.sync.clear()
+        bench.spi.transfer(bytes((0x80 | loop, *b"Talbot")))
+        assert bytes(bench.stream) == b"Talbot" and not any(bench.sync)
+
+
+class FrameTests(ChipTests):
+    """Everything else."""
+
+    @pytest.mark.parametrize("name", FRAMES)
+    def test_pattern(self, name):
+        frame = FRAMES[name]
+        self.check(self.bench(), frame, golden_frame(None, SENSOR, frame, PATTERN))
+
+    def test_front_end_at_the_pins(self):
+        """Values that only the comparators know, any of them, with a link that is slow: nothing lost or doubled."""
+        held = np.random.default_rng(3).normal(0, 30, (1, ROWS, COLS))
+
+        class FrontEnd(PatternEnd):
+            def values(self, mode):
+                return held
+
+        frame = FrameParameters(FULL, threshold=20, timing=FAST)
+        trims = [(-1) ** t * (20 * t + 3) for t in range(24)]
+        bench = self.bench(held=held, stall=0.7)
+        self.check(bench, frame, golden_frame(None, SENSOR, frame, FrontEnd(ROWS, COLS)), trims)
+        kinds, width = SENSOR.tile.type_map(ROWS, COLS), CHIP.trims[0].width
+        assert bench.pins == {(0, row, col, trims[kinds[row, col]] % (1 << width))
+                              for row in range(ROWS) for col in range(COLS)}
+
+    def test_two_frames(self):
+        """Nothing of one frame is left in the next, after a change of everything."""
+        bench = self.bench()
+        for name in ("raw, a window", "edge"):
+            frame = FRAMES[name]
+            bench.stream.clear()
+            self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
+
+    def test_impossible_frames_do_not_start(self):
+        """Every time anew, and a good one starts after them."""
+        bench = self.bench()
+        field = {f.name: f for f in CHIP.configuration}
+        good = CHIP.image(CHIP.configuration, {"row1": FULL.row1, "col1": FULL.col1})
+        for name, value, amp_err in 2 * (("row1", 2, False), ("col0", 3, False), ("t_int", 0, True)):
+            wrong = CHIP.image([field[name]], {name: value})
+            bench.write(sorted(wrong.items()))
+            bench.start()
+            status = bench.status()
+            assert status["cfg_err"] and status["amp_err"] == amp_err and not status["busy"] | status["done"], name
+            assert not bench.stream
+            bench.write([(address, good[address]) for address in sorted(wrong)])
+        self.check(bench, FRAMES["edge"], golden_frame(None, SENSOR, FRAMES["edge"], PATTERN))
+
+
+class TestFL(FrameTests):
+    component = AspChipFL
+
+
+class TestRTL(ChipTests):
+    component = AspChip
+
+
+class TestVerilog(FrameTests):
+    component, verilog = AspChip, True

@@ -1,0 +1,93 @@
+"""The chip on a bench: an SPI host, a link that stalls, and a front end in Python."""
+
+import random
+
+import numpy as np
+
+from models.parameters.registers import command, decode_status, register_map, status_transfers, write_transfers
+from rtl.reg_file.test.spi_host import SpiHost
+
+CHIP = register_map()
+MAX_CYCLES = 60_000
+
+
+class ChipBench:
+    """Resets ``sim`` and drives every pin of it.
+
+    held: float64 (subs, rows, cols), what the ideal sample-and-holds take, in LSB; None: the comparators stay low.
+    stall: the link is not ready in this share of the cycles, 0..1.
+    """
+
+    def __init__(self, sim, lanes, tile_cols=6, held=None, stall=0.0, seed=1):
+        self.sim, self.lanes, self.tile_cols, self.held = sim, lanes, tile_cols, held
+        self.stall, self.random = stall, random.Random(seed)
+        self.stream, self.sync, self.taken = [], [], np.zeros(lanes)
+        self.registers = CHIP.image(CHIP.configuration)
+        self.pins = set()
+        sim.link_rdy @= 0
+        sim.comparator @= 0
+        sim.reset @= 1
+        sim.sim_tick()
+        sim.sim_tick()
+        sim.reset @= 0
+        self.spi = SpiHost(sim, self.tick)
+
+    def tick(self):
+        """One cycle: comparators answer, the link takes what is there."""
+        sim = self.sim
+        answers = self.answers() if self.held is not None else 0
+        ready = self.random.random() >= self.stall
+        if ready != sim.link_rdy or answers != sim.comparator:
+            sim.link_rdy @= ready
+            sim.comparator @= answers
+            sim.sim_eval_combinational()
+        if sim.link_val and ready:
+            self.stream.append(int(sim.link_data))
+            self.sync.append(int(sim.frame_sync))
+        if sim.hold:
+            self.sample()
+        self.watch()
+        sim.sim_tick()
+
+    def sample(self):
+        """The enabled lanes take the pixels that the pins name."""
+        sim = self.sim
+        assert int(sim.en) != 0
+        for lane in range(self.lanes):
+            if sim.en[lane]:
+                col = self.tile_cols * (self.lanes * int(sim.group) + lane) + int(sim.k)
+                where = int(sim.sub), int(sim.row), col
+                self.pins.add((*where, int(sim.balance)))
+                if self.held is not None:
+                    self.taken[lane] = self.held[where]
+
+    def answers(self):
+        """Comparators: held value >= level(dac), half an LSB built into the DAC (docs/chip.md)."""
+        sim = self.sim
+        codes = np.array([int(sim.dac) >> 8 * lane & 0xFF for lane in range(self.lanes)])
+        levels = codes - (0.5 if sim.unsigned_ else 128.5)
+        return int(sum(int(above) << lane for lane, above in enumerate(self.taken >= levels)))
+
+    def watch(self):
+        """What must hold in every cycle: no two of the amplifier's phases together."""
+        sim = self.sim
+        assert int(sim.pixel_reset) + int(sim.integrate) + int(sim.cm_reset) + int(sim.read) <= 1
+
+    def write(self, writes):
+        """Bring the registers to ``writes`` ((address, byte) pairs), sending only what they do not hold."""
+        for transfer in write_transfers([w for w in writes if self.registers.get(w[0]) != w[1]]):
+            self.spi.transfer(transfer)
+        self.registers.update(writes)
+
+    def start(self):
+        """Start a frame and wait for its end."""
+        self.spi.transfer(command("start"))
+        cycles = 0
+        while self.sim.busy or cycles < 8:
+            self.tick()
+            cycles += 1
+            assert cycles < MAX_CYCLES, f"the frame has not ended after {cycles} cycles"
+
+    def status(self):
+        """Status and counters, over SPI."""
+        return decode_status([self.spi.transfer(t) for t in status_transfers()])
