@@ -31,7 +31,7 @@ def markdown(rows, gates, growths, threshold, source):
          f"{gates[name]:,.0f}" if gates else "needs Yosys"] for name in FORMATS])
     out += ["", *_table(["order", "must be held", "a wrong byte costs"],
                         [[name, order.buffer, order.lost] for name, order in ORDERS.items()])]
-    out += ["", f"{CHOSEN.capitalize()}, {CHIP}:", ""]
+    out += ["", f"{CHOSEN[0].upper()}{CHOSEN[1:]}, {CHIP}:", ""]
     out += _table(["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"], [
         [r["threshold"], f"{r['psnr_db']:.2f}", f"{100 * r['not_zero']:.1f} %", f"{r['bytes']:,}", f"{r['ratio']:.2f}",
          f"{r['entropy_ratio']:.2f}"] for r in rows if (r["order"], r["format"]) == (CHIP, CHOSEN)])

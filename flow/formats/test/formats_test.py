@@ -1,0 +1,114 @@
+"""The comparison: every sample coded once in every order, known frames cost what they must, bad files are named."""
+
+import csv
+import shutil
+
+import numpy as np
+import pytest
+
+from flow.formats.__main__ import main
+from flow.formats.codes import entropy_bytes, load_codes, thresholded
+from flow.formats.measure import frame_bytes, growth, measure
+from flow.formats.orders import CHIP, ORDERS, segments_of
+from flow.formats.tokens import CHOSEN, FORMATS
+from models.digital.stream import StreamHeader, encode_frame
+from models.parameters import FrameParameters, ParameterError, Window
+
+
+@pytest.fixture
+def codes():
+    """Sparse codes of an odd size, (22, 45)."""
+    rng = np.random.default_rng(2)
+    values = rng.laplace(0, 25, (22, 45)) * (rng.random((22, 45)) < 0.2)
+    return np.clip(np.rint(values), -128, 127).astype(np.int16), values
+
+
+@pytest.mark.parametrize("name", ORDERS)
+def test_every_order_has_every_sample_once(name):
+    segments = segments_of(name, 22, 45)
+    assert sorted(np.concatenate(segments)) == list(range(22 * 45))
+    assert len(segments) == {"raster": 22, CHIP: 22, "type by type in the frame": 24, "tile by tile": 6}[name]
+
+
+def test_tiles_follow_each_other():
+    assert segments_of("tile by tile", 8, 12)[1][:26].tolist() == [
+        row * 12 + col for row in range(4, 8) for col in range(6)] + [54, 55]
+
+
+@pytest.mark.parametrize("threshold", [0, 12])
+def test_the_chosen_format_in_the_chip_s_order_is_the_stream(codes, threshold):
+    header = StreamHeader.from_frame(22, 45, 8, FrameParameters(Window(0, 5, 0, 7), threshold=threshold))
+    sent = thresholded(codes[0], threshold)
+    assert frame_bytes(sent, threshold, FORMATS[CHOSEN][0], segments_of(CHIP, 22, 45)) \
+        == len(encode_frame(header, sent[..., None], 0, 0))
+
+
+def test_formats_on_a_known_row():
+    """300 zeros, 12, 40 zeros, -90 under a threshold of 10."""
+    row = np.array([0] * 300 + [12] + [0] * 40 + [-90], np.int16)
+    out = np.zeros(100, np.uint8)
+    expected = {"byte pairs": "ff00 2d0c 285a".replace("5a", "a6"), "nibbles": "fffff fffff fffff fffff 02 ffa f a6"}
+    for name, text in expected.items():
+        size = FORMATS[name][0](row, 10, out)
+        digits = text.replace(" ", "")
+        assert out[:size].tobytes().hex() == digits + "0" * (len(digits) % 2)
+
+
+def test_entropy():
+    assert entropy_bytes(np.zeros((4, 4), int)) == 0
+    assert entropy_bytes(np.array([0, 1] * 8)) == 2
+    assert entropy_bytes(np.arange(256)) == 256
+
+
+def test_noise_grows_by_less_than_a_sixteenth_in_the_chosen_format_alone():
+    grown = {name: growth(encoder, (8, 384)) for name, (encoder, _) in FORMATS.items()}
+    assert [name for name, ratio in grown.items() if ratio < 17 / 16] == [CHOSEN]
+
+
+def test_measure(codes):
+    rows = measure(*codes, thresholds=(4, 20))
+    assert len(rows) == 2 * len(ORDERS) * len(FORMATS)
+    assert rows[0]["psnr_db"] > rows[-1]["psnr_db"] and rows[0]["bytes"] > rows[-1]["bytes"]
+    assert all(row["ratio"] == pytest.approx(22 * 45 / row["bytes"]) for row in rows)
+
+
+def test_command(tmp_path, codes, capsys, monkeypatch):
+    """Without Yosys: the sizes are left out, and said to be."""
+    monkeypatch.setenv("PATH", str(tmp_path))
+    np.savez(tmp_path / "c.npz", codes=codes[0], ideal=codes[1])
+    document = tmp_path / "d.md"
+    document.write_text("before\n<!-- formats -->\nstale\n<!-- end of formats -->\nafter\n")
+    arguments = ["--codes", str(tmp_path / "c.npz"), "--out", str(tmp_path / "out"), "--document", str(document)]
+    assert main(arguments) == 0
+    said = capsys.readouterr()
+    assert "| byte pairs |" in said.out and "needs Yosys" in said.out and "sizes left out: yosys: not found" in said.err
+    with open(tmp_path / "out" / "formats.csv") as file:
+        assert {row["order"] for row in csv.DictReader(file)} == set(ORDERS)
+    assert (tmp_path / "out" / "formats.png").read_bytes()[:4] == b"\x89PNG"
+    text = document.read_text()
+    assert text.startswith("before\n") and text.endswith("after\n") and "stale" not in text and "| nibbles |" in text
+
+
+@pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
+def test_gates_rank_the_packers():
+    from flow.formats.__main__ import gates_of_packers
+    gates = gates_of_packers()
+    assert list(gates) == list(FORMATS)
+    assert gates["byte pairs"] < gates["nibbles"] < gates["Golomb-Rice, fixed"] < gates[CHOSEN] < 2500
+
+
+@pytest.mark.parametrize("content", [{}, {"codes": np.zeros(3, int)}, {"codes": np.zeros((2, 2)), "ideal": np.zeros((2, 2))},
+                                     {"codes": np.full((2, 2), 300), "ideal": np.zeros((2, 2))}])
+def test_bad_codes_are_named(tmp_path, content):
+    np.savez(tmp_path / "c.npz", **content)
+    with pytest.raises(ParameterError, match="c.npz"):
+        load_codes(tmp_path / "c.npz")
+
+
+def test_bad_files_are_one_line_and_status_2(tmp_path, capsys):
+    (tmp_path / "text.npz").write_text("no archive")
+    for name in ("missing.npz", "text.npz"):
+        assert main(["--codes", str(tmp_path / name), "--out", str(tmp_path / "out")]) == 2
+        error = capsys.readouterr().err
+        assert name in error and error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
