@@ -16,7 +16,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from scipy.fft import dctn, idctn
-from scipy.sparse.linalg import LinearOperator, cg
 
 from models.parameters import ParameterError, check_int, check_real
 from models.pixel.weights import view_weights
@@ -70,18 +69,38 @@ def image_from_edges(samples, operator, solver=Solver()):
 
     samples: decoded codes divided by the codes that a radiance of 1 makes (models.plan.codes_per_unit).
     """
-    n = samples.size
+    def normal(image):
+        return operator.transpose(operator.forward(image)) + solver.smoothness * laplacian(image)
 
-    def normal(flat):
-        image = flat.reshape(operator.shape)
-        return (operator.transpose(operator.forward(image)) + solver.smoothness * laplacian(image)).ravel()
-
-    system = LinearOperator((n, n), matvec=normal, dtype=float)
-    inverse = _inverse_laplacian(operator.shape)
-    easier = LinearOperator((n, n), dtype=float, matvec=lambda flat: inverse(flat.reshape(operator.shape)).ravel())
     right = operator.transpose(samples)
-    flat, _ = cg(system, (right - right.mean()).ravel(), rtol=solver.tolerance, maxiter=solver.iterations, M=easier)
-    return (flat - flat.mean()).reshape(operator.shape)
+    return _conjugate_gradients(normal, right - right.mean(), _inverse_laplacian(operator.shape), solver)
+
+
+def _conjugate_gradients(apply, right, precondition, solver):
+    """x of apply(x) = right, both (rows, cols), with the residual at most tolerance * |right|, or the last iteration's.
+
+    Like scipy.sparse.linalg.cg, but without BLAS, whose threads stall one another where the cores are shared.
+    """
+    x, residual = np.zeros_like(right), right.copy()
+    goal = solver.tolerance**2 * _dot(right, right)
+    direction, energy = np.zeros_like(right), 0.0
+    for _ in range(solver.iterations):
+        if _dot(residual, residual) <= goal:
+            break
+        upward = precondition(residual)
+        before, energy = energy, _dot(residual, upward)
+        if energy <= 0:         # nothing left but what the preconditioner is blind to: the mean
+            break
+        direction = upward + (energy / before if before else 0.0) * direction
+        curved = apply(direction)
+        step = energy / _dot(direction, curved)
+        x += step * direction
+        residual -= step * curved
+    return x - x.mean()
+
+
+def _dot(a, b):
+    return float(np.einsum("yx,yx", a, b))
 
 
 def laplacian(image):
