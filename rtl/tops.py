@@ -19,10 +19,16 @@ def quad_divider(sensor):
     return quad_divider(sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
+def run_length(sensor):
+    from rtl.run_length import RunLength
+    return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
+
+
 TOPS = {
     "AspChip": asp_chip,
     "QuadDivider": quad_divider,
     "RegFile": reg_file,
+    "RunLength": run_length,
 }
 
 

@@ -59,7 +59,7 @@ def _find_header(data, at, tile):
         try:
             header, sent, mended = read_header(data[position:position + HEADER_BYTES])
             header.layout(tile)
-        except (StreamError, ParameterError) as error:
+        except ParameterError as error:
             reason = reason or str(error)
         else:
             if mended is None or position == at:    # with a byte changed, only where a header must be

@@ -24,8 +24,8 @@ FIELD_BYTES = _FIELDS.size
 HEADER_BYTES = FIELD_BYTES + CRC.size
 
 
-class StreamError(ValueError):
-    """The bytes are no stream. The message is one line that says where and why."""
+class StreamError(ParameterError):
+    """The bytes given are no stream. The message is one line that says where and why."""
 
 
 @dataclass(frozen=True)
