@@ -23,9 +23,9 @@ def markdown(rows, gates, growths, threshold, source):
     here = {(r["order"], r["format"]): r["ratio"] for r in rows if r["threshold"] == threshold}
     known = next(r for r in rows if r["threshold"] == threshold)
     out = ["# Token formats and scan orders", "", f"Measured on {source}, by `python -m flow.formats`.", "",
-           f"Threshold {threshold}: {known['psnr_db']:.1f} dB, {100 * known['not_zero']:.1f} % of the samples are not zero, "
-           f"and their zero-order entropy allows {known['entropy_ratio']:.2f} : 1. Compression (a byte a sample over all "
-           "bytes of the frame), what random codes grow by, and gates of the packer:", ""]
+           f"Threshold {threshold}: {known['psnr_db']:.1f} dB, {100 * known['not_zero']:.1f} % of the samples are "
+           f"not zero, and their zero-order entropy allows {known['entropy_ratio']:.2f} : 1. Compression (a byte a "
+           "sample over all bytes of the frame), what random codes grow by, and gates of the packer:", ""]
     out += _table(["format", *ORDERS, "noise grows", "gates"], [
         [name, *(f"{here[order, name]:.2f}" for order in ORDERS), f"{100 * (growths[name] - 1):+.1f} %",
          f"{gates[name]:,.0f}" if gates else "needs Yosys"] for name in FORMATS])

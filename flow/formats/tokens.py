@@ -10,7 +10,7 @@ from models.digital.stream.payload import encode_row
 
 @njit(cache=True)
 def byte_pairs(codes, base, out):
-    """(zeros, value) in a byte each; 255 zeros without a value are (255, 0). Returns the bytes written to out (uint8)."""
+    """(zeros, value) in a byte each; 255 zeros alone are (255, 0). Returns the bytes written to out (uint8)."""
     at = run = 0
     for code in codes:
         if abs(code) < base:
@@ -37,7 +37,7 @@ def _append(out, at, bits, length):
 
 @njit(cache=True)
 def nibbles(codes, base, out):
-    """Zeros (15: no value follows), then sign and distance 0..6 from the smallest magnitude, or sign, 7 and the code."""
+    """Zeros (15: no value follows), then sign and distance 0..6 from the base, or sign, 7 and the code."""
     at = run = 0
     for code in codes:
         distance = abs(code) - base

@@ -97,8 +97,9 @@ def test_gates_rank_the_packers():
     assert gates["byte pairs"] < gates["nibbles"] < gates["Golomb-Rice, fixed"] < gates[CHOSEN] < 2500
 
 
-@pytest.mark.parametrize("content", [{}, {"codes": np.zeros(3, int)}, {"codes": np.zeros((2, 2)), "ideal": np.zeros((2, 2))},
-                                     {"codes": np.full((2, 2), 300), "ideal": np.zeros((2, 2))}])
+@pytest.mark.parametrize("content", [
+    {}, {"codes": np.zeros(3, int)}, {"codes": np.zeros((2, 2)), "ideal": np.zeros((2, 2))},
+    {"codes": np.full((2, 2), 300), "ideal": np.zeros((2, 2))}])
 def test_bad_codes_are_named(tmp_path, content):
     np.savez(tmp_path / "c.npz", **content)
     with pytest.raises(ParameterError, match="c.npz"):

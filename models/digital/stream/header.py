@@ -56,11 +56,11 @@ class StreamHeader:
         check_choice("lanes", self.lanes, LANES)
         check_int("tile rows", self.tile_rows, 1, 4)
         check_int("tile cols", self.tile_cols, 1, 6)
-        self.frame
+        self.frame      # checks the other fields
 
     @classmethod
     def from_frame(cls, rows, cols, lanes, frame, tile=TileParameters()):
-        """The header of a frame that a chip of ``rows`` x ``cols`` pixels and ``lanes`` sends. frame: FrameParameters."""
+        """The header that a chip of ``rows`` x ``cols`` pixels and ``lanes`` sends. frame: FrameParameters."""
         return cls(rows, cols, lanes, tile.rows, tile.cols, frame.window, frame.mode, frame.phase, frame.decimation,
                    frame.mask, frame.threshold, frame.frame_number)
 

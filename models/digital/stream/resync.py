@@ -17,7 +17,8 @@ class Search:
 
     def __init__(self, data, stop, limit, layout, edge, base, where, value):
         """data: uint8. stop: where the next frame starts, or the end. where, value: scratch for a row's samples."""
-        self.data, self.stop, self.limit, self.layout, self.coder = data, stop, limit, layout, (edge, base, where, value)
+        self.data, self.stop, self.limit, self.layout = data, stop, limit, layout
+        self.coder = edge, base, where, value
         self.number = np.full(ROWS_MAX, -1, np.int32)
         self.number[layout.rows] = np.arange(layout.rows.size)
         self.longest = row_bytes_max(int(layout.counts.max()), edge) + 2

@@ -1,8 +1,8 @@
 """RiceCoder at RTL: Golomb-Rice codes of runs and values, their parameters fixed or adaptive, in PayloadPacker."""
 
 from pymtl3 import (
-    Bits3, Bits4, Bits5, Bits7, Bits8, Bits9, Bits15, Bits24, Component, InPort, OutPort, Wire, concat, update, update_ff,
-    zext,
+    Bits3, Bits4, Bits5, Bits7, Bits8, Bits9, Bits15, Bits24, Component, InPort, OutPort, Wire, concat, update,
+    update_ff, zext,
 )
 
 from rtl.run_length.packer_rtl import PayloadPacker
@@ -35,6 +35,7 @@ class RiceCoder(Component):
         s.escape = Wire()
         s.ones = Wire(Bits8)
         s.value = Wire(Bits15)
+        s.token = Wire(Bits24)
         s.width = Wire(Bits4)
 
         # Logic
@@ -60,6 +61,7 @@ class RiceCoder(Component):
                 s.value @= ((zext(s.ones, 15) << 1) << zext(s.r, 15)) \
                     | zext(s.distance[0:7] - (s.quotient << zext(s.r, 7)), 15)
                 s.width @= s.quotient[0:4] + zext(s.r, 4) + 1
+            s.token @= zext(concat(s.span | zext(s.run, 8), s.code[7]), 24) << zext(s.width, 24)
 
         @update
         def choose():
@@ -71,7 +73,7 @@ class RiceCoder(Component):
             elif s.zero:
                 s.length @= zext(s.full, 5)
             else:
-                s.bits @= (zext(concat(s.span | zext(s.run, 8), s.code[7]), 24) << zext(s.width, 24)) | zext(s.value, 24)
+                s.bits @= s.token | zext(s.value, 24)
                 s.length @= zext(s.width, 5) + zext(s.k, 5) + 2
 
         @update_ff

@@ -8,7 +8,8 @@ from models.digital.stream.payload import START, base_of, code_sample
 from models.parameters import FrameParameters, Window
 
 FIELDS = (("magic", 4), ("version", 1), ("flags", 1), ("threshold", 1), ("lanes", 1), ("tile", 1), ("rows", 2),
-          ("cols", 2), ("row0", 1), ("row1", 1), ("col0", 1), ("col1", 1), ("mask", 3), ("frame number", 2), ("CRC-32", 4))
+          ("cols", 2), ("row0", 1), ("row1", 1), ("col0", 1), ("col1", 1), ("mask", 3), ("frame number", 2),
+          ("CRC-32", 4))
 
 
 def token_lines(codes, threshold):
@@ -55,7 +56,8 @@ def frame_example(header, samples, made, left_out):
     for i, row in enumerate(layout.rows.tolist()):
         codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
         size = len(encode_marked_row(row, codes, header.edge, header.threshold))
-        lines.append(f"{f'row {row}':14}{data[at:at + size - 2].hex(' ')}   mark {data[at + size - 2:at + size].hex(' ')}")
+        payload, mark = data[at:at + size - 2], data[at + size - 2:at + size]
+        lines.append(f"{f'row {row}':14}{payload.hex(' ')}   mark {mark.hex(' ')}")
         at += size
     for name, size in (("made", 4), ("left out", 4), ("mark", 2), ("CRC-32", 4)):
         lines.append(f"{name:14}{data[at:at + size].hex(' ')}")

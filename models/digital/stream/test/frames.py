@@ -28,7 +28,8 @@ def samples_of(header, seed, share=0.2, scale=20):
         codes = rng.integers(0, 256, shape)
     layout, out = header.layout(), np.zeros(shape, int)
     for i, row in enumerate(layout.rows):
-        out.reshape(header.rows, -1)[row, layout.places_of(i)] = codes.reshape(header.rows, -1)[row, layout.places_of(i)]
+        here = row, layout.places_of(i)
+        out.reshape(header.rows, -1)[here] = codes.reshape(header.rows, -1)[here]
     return out
 
 
