@@ -80,7 +80,7 @@ class DividerDatapath(Component):
         s.result.octant //= s.state.octant
         s.result.larger //= s.state.larger
         s.result.amp_valid //= s.state.amp_valid
-        s.result.ratio //= s.state.quotient[quotient_bits - n_frac:quotient_bits]   # two bits a digit: one too many
+        s.result.ratio //= s.state.quotient[quotient_bits - n_frac:quotient_bits]  # a last digit may give a bit more
         s.result.msg //= s.send_msg
         s.last //= lambda: s.count == Bits4(digits - 1)
 
@@ -146,35 +146,35 @@ class QuadDividerPipelined(Component):
         s.noise_floor = InPort(8)
 
         s.operands = Operands(n_frac)
-        stages, digits = range(n_frac + 1), range(n_frac)
-        for i in stages:                # not a list: PyMTL would join the ports in arrays, which Yosys calls memories
-            setattr(s, f"stage{i}", PipelineRegister(n_frac))
-        for i in digits:
-            setattr(s, f"digit{i}", Radix2Digit(n_frac))
+        stages = [PipelineRegister(n_frac) for _ in range(n_frac + 1)]
+        digits = [Radix2Digit(n_frac) for _ in range(n_frac)]
+        # Not as lists: PyMTL would join their ports in arrays, which Yosys calls memories.
+        for i, stage in enumerate(stages):
+            setattr(s, f"stage{i}", stage)
+        for i, digit in enumerate(digits):
+            setattr(s, f"digit{i}", digit)
         s.result = Result(n_frac)
         s.advance = Wire()
         s.unused_rest = Wire(9)
-        s.depth = n_frac + 1
 
         s.operands.msg //= s.recv.msg
         s.operands.noise_floor //= s.noise_floor
-        s.stage0.in_val //= s.recv.val
-        s.stage0.in_state //= s.operands.state
-        for i in digits:
-            this, digit, following = getattr(s, f"stage{i}"), getattr(s, f"digit{i}"), getattr(s, f"stage{i + 1}")
-            digit.in_state //= this.out_state
-            following.in_val //= this.out_val
-            following.in_state //= digit.out_state
-        for i in stages:
-            stage = getattr(s, f"stage{i}")
+        stages[0].in_val //= s.recv.val
+        stages[0].in_state //= s.operands.state
+        for before, digit, after in zip(stages, digits, stages[1:]):
+            digit.in_state //= before.out_state
+            after.in_val //= before.out_val
+            after.in_state //= digit.out_state
+        for stage in stages:
             stage.advance //= s.advance
+        last = stages[-1]
+        s.unused_rest //= last.out_state.rest
+        s.result.octant //= last.out_state.octant
+        s.result.larger //= last.out_state.larger
+        s.result.amp_valid //= last.out_state.amp_valid
+        s.result.ratio //= last.out_state.quotient
         s.recv.rdy //= s.advance
-        s.send.val //= following.out_val
-        s.unused_rest //= following.out_state.rest
-        s.result.octant //= following.out_state.octant
-        s.result.larger //= following.out_state.larger
-        s.result.amp_valid //= following.out_state.amp_valid
-        s.result.ratio //= following.out_state.quotient
+        s.send.val //= last.out_val
         s.send.msg //= s.result.msg
 
         @update
@@ -182,5 +182,4 @@ class QuadDividerPipelined(Component):
             s.advance @= ~s.send.val | s.send.rdy
 
     def line_trace(s):
-        stages = (getattr(s, f"stage{i}") for i in range(s.depth))
-        return f"{s.recv}({''.join('.*'[stage.out_val] for stage in stages)}){s.send}"
+        return f"{s.recv}({s.advance}){s.send}"

@@ -65,8 +65,8 @@ def test_zero_amplitude_and_noise_floor():
 
 @pytest.mark.parametrize("x, y, octant, ratio, phase", [
     (255, 0, 0, 0, 0), (1, 1, 1, 255, 32), (0, 9, 2, 0, 64), (-7, 7, 3, 255, 96), (-256, 0, 4, 0, 128),
-    (-256, -256, 5, 255, 160), (0, -1, 6, 0, 192), (200, -200, 7, 255, 224), (100, 50, 0, 128, 19), (-2, -1, 4, 128, 147),
-    (1, -256, 6, 1, 192), (255, -3, 7, 3, 255)])
+    (-256, -256, 5, 255, 160), (0, -1, 6, 0, 192), (200, -200, 7, 255, 224), (100, 50, 0, 128, 19),
+    (-2, -1, 4, 128, 147), (1, -256, 6, 1, 192), (255, -3, 7, 3, 255)])
 def test_by_hand(x, y, octant, ratio, phase):
     result = quad_divide(x, y)
     assert (int(result.octant), int(result.ratio), int(result.phase)) == (octant, ratio, phase)
@@ -89,7 +89,8 @@ def test_thresholds_in_60_digits(n_frac):
         assert threshold == 0 or not reached(threshold - 1)
 
 
-@pytest.mark.parametrize("n_frac, bound", [(4, 1.6), (5, 1.05), (6, 0.81), (7, 0.64), (8, 0.75), (12, 0.51), (16, 0.501)])
+@pytest.mark.parametrize("n_frac, bound", [
+    (4, 1.6), (5, 1.05), (6, 0.81), (7, 0.64), (8, 0.75), (12, 0.51), (16, 0.501)])
 def test_phase_of_every_input(n_frac, bound):
     worst, rms = worst_and_rms(quad_divide(X, Y, n_frac))
     print(f"n_frac {n_frac}: worst {worst:.4f} LSB, RMS {rms:.4f} LSB")
