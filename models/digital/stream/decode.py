@@ -35,7 +35,7 @@ def iterate_frames(data, tile=TileParameters()):
     data = bytes(data)
     at, last, limit = 0, None, SEARCH_MAX[0] + SEARCH_MAX[1] * len(data)
     while at < len(data):
-        start, header, sent, notes = _find_header(data, at, tile)
+        start, header, layout, sent, notes = _find_header(data, at, tile)
         if header is None:
             if last is None:
                 raise StreamError(f"byte {at}: {notes[0]}")
@@ -43,8 +43,8 @@ def iterate_frames(data, tile=TileParameters()):
             break
         if last is not None:
             yield last
-        last = DecodedFrame(header, np.zeros((header.rows, header.cols, header.subs), np.int16), header.layout(tile),
-                            start, errors=notes)
+        samples = np.zeros((header.rows, header.cols, header.subs), np.int16)
+        last = DecodedFrame(header, samples, layout, start, errors=notes)
         limit = _decode_frame(data, last, sent, tile, limit)
         at = last.stop
     if last is None:
@@ -53,12 +53,12 @@ def iterate_frames(data, tile=TileParameters()):
 
 
 def _find_header(data, at, tile):
-    """The first header at or behind ``at``: (position, StreamHeader or None, header as sent, notes)."""
+    """The first header at or behind ``at``: (position, StreamHeader or None, Layout, header as sent, notes)."""
     reason, position = None, at
     while position >= 0:
         try:
             header, sent, mended = read_header(data[position:position + HEADER_BYTES])
-            header.layout(tile)
+            layout = header.layout(tile)
         except ParameterError as error:
             reason = reason or str(error)
         else:
@@ -66,9 +66,9 @@ def _find_header(data, at, tile):
                 notes = [f"byte {position + mended}: byte of the header mended"] if mended is not None else []
                 if position > at:
                     notes.append(f"byte {at}: {position - at} bytes skipped: {reason}")
-                return position, header, sent, notes
+                return position, header, layout, sent, notes
         position = data.find(MAGIC, position + 1)
-    return at, None, b"", [reason]
+    return at, None, None, b"", [reason]
 
 
 def _decode_frame(data, frame, sent, tile, limit):
