@@ -16,7 +16,7 @@ from models.digital.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
 from models.pixel.trim import optical_gains
 from models.plan import plan
-#from models.reconstruct import rebuild
+from models.reconstruct import rebuild
 from models.scene import Sampling, load
 
 from . import hardware
@@ -68,7 +68,7 @@ class FrameResult:
     def rebuilt(self):
         """The 2-D image rebuilt from the decoded edges alone (models.reconstruct.rebuild)."""
         return rebuild(self.decoded.samples[..., 0], self.decoded.read, self.exposed.scene, self.request.sensor,
-                       self.exposed.front_end.trim)
+                       self.exposed.front_end.trim, self.request.frame.timing)
 
 
 def see(request):

@@ -4,7 +4,7 @@ import numpy as np
 
 from flow.charts import bars, svg
 from models.capture import CaptureOperator
-from models.reconstruct import light_field_estimate, sum_image
+from models.reconstruct import edge_images, light_field_estimate, sum_image
 
 from . import errors, pictures
 from .chip_picture import chip_svg
@@ -78,7 +78,7 @@ def _sheets(result):
     if frame.mode in ("edge", "raw"):
         samples = decoded.samples.astype(float)
         difference = samples[..., 0] if frame.mode == "edge" else samples[..., 0] - samples[..., 1]
-        edges = by_type(difference, sensor)
+        edges = edge_images(difference, sensor.tile)
         out.append(("edges", "The 24 edge images", "one a pixel type, every sample of the tile grid: beta and gamma of the "
                     "grating, cosine or sine analyzer; blue negative, red positive",
                     pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))))
@@ -91,16 +91,6 @@ def _sheets(result):
         out.append(("views_decoded", "The light field read back", "linear estimate from the decoded diodes, view by view",
                     pictures.view_sheet(np.maximum(light_field_estimate(operator, pair), 0))))
     return out
-
-
-def by_type(values, sensor):
-    """Samples sorted by pixel type: (types, tile rows, tile cols) from (rows, cols); 0 beyond a partial tile."""
-    tile = sensor.tile
-    padded = np.zeros((sensor.tile_rows * tile.rows, sensor.tile_cols * tile.cols))
-    padded[:values.shape[0], :values.shape[1]] = values
-    grid = padded.reshape(sensor.tile_rows, tile.rows, sensor.tile_cols, tile.cols)
-    positions = grid.transpose(1, 3, 0, 2).reshape(tile.n_types, sensor.tile_rows, sensor.tile_cols)
-    return positions[np.argsort(tile.order)]
 
 
 def _where(s):

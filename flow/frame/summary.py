@@ -79,7 +79,7 @@ def summarize(result):
         "window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation,
         "phase": frame.phase, "focus": asked.focus,
         "pixels": int(golden.read.sum()), "samples": golden.samples,
-        "conversions_made": chip.status["made"], "conversions_left_out": chip.status["left_out"],
+        "conversions_made": chip.status["conversions_made"], "conversions_left_out": chip.status["conversions_left_out"],
         "comparator_decisions": golden.decisions,
         "cycles": chip.status["cycles"], "frame_s_at_clock": chip.status["cycles"] / sensor.chip.f_clk,
         "cycles_by_pin": chip.activity,

@@ -15,8 +15,8 @@ BUILD = ROOT / "build"
 FRAME = ROOT / "verif" / "frame"
 
 # -fno-strict-aliasing is Verilator's own requirement; the rest is for speed.
-CXX_FLAGS = ("-std=gnu++17", "-O3", "-fno-strict-aliasing", "-fno-plt")
-VERILATOR_FLAGS = ("--cc", "--top-module", "Bench", "--prefix", "VBench", "-O3", "--x-assign", "fast",
+CXX_FLAGS = ("-std=gnu++17", "-O2", "-fno-strict-aliasing")
+VERILATOR_FLAGS = ("--cc", "--top-module", "Bench", "--prefix", "VBench", "-O3", "-fno-split", "--x-assign", "fast",
                    "--x-initial", "fast", "--noassert", "--output-split", "0", "--no-timing", "-Wno-fatal", "-Wno-lint")
 
 
