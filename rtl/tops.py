@@ -32,6 +32,11 @@ def divider(variant):
     return build
 
 
+def phase_path(sensor):
+    from rtl.phase_path import PhasePath
+    return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
+
+
 def run_length(sensor):
     from rtl.run_length import RunLength
     return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
@@ -57,6 +62,7 @@ TOPS = {        # each imports its block when it is built: a block that is being
     "QuadDividerRadix4": divider("radix4"),
     "QuadDividerPipelined": divider("pipelined"),
     "Cordic": divider("cordic"),
+    "PhasePath": phase_path,
     "RunLength": run_length,
     "RegFile": reg_file,
     "AspChip": asp_chip,

@@ -5,6 +5,7 @@ from pymtl3 import Bits32, Component, Wire, concat, connect, update, update_ff
 from models.parameters.registers import register_map
 from rtl.adc_bank import AdcBank
 from rtl.amp_ctrl import AmpCtrl
+from rtl.phase_path import PhasePath
 from rtl.readout_seq import ReadoutSeq
 from rtl.reg_file import RegFile
 from rtl.run_length import RunLength
@@ -37,9 +38,11 @@ class AspChip(Component):
         s.amp = AmpCtrl()
         s.seq = ReadoutSeq(rows, cols, lanes, order, tile_rows, tile_cols)
         s.bank = AdcBank(lanes)
+        s.phase = PhasePath(lanes, divider, n_frac, iterations)
         s.encoder = RunLength(rows, cols, lanes, tile_rows, tile_cols)
         s.generator = Pattern(lanes)
         s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
+        s.phase_on = Wire()
         s.was_sync = Wire()
         s.cfg_told = Wire()         # cfg_err and amp_err are levels: tell each once a start
         s.amp_told = Wire()
@@ -85,7 +88,12 @@ class AspChip(Component):
         s.balancer.trims //= cfg.trims
         s.balancer.balance //= s.balance
 
-        s.encoder.recv //= s.bank.scan
+        s.phase.recv //= s.bank.scan
+        s.phase.on //= s.phase_on
+        s.phase.noise_floor //= cfg.noise_floor
+        s.phase.send //= s.encoder.recv
+
+        s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made
         s.encoder.left_out //= s.bank.left_out
         s.encoder.frame_sync //= s.frame_sync
@@ -95,7 +103,7 @@ class AspChip(Component):
         # Logic
         @update
         def up_phase():
-            s.encoder.phase @= s.regs.cfg.phase & (s.regs.cfg.mode == TOF)
+            s.phase_on @= s.regs.cfg.phase & (s.regs.cfg.mode == TOF)
 
         @update
         def up_link():
