@@ -5,6 +5,7 @@ import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from time import perf_counter
 
 from .verilator import ToolError
 
@@ -15,7 +16,7 @@ WAIT, TRANSFER, STOP = b"\x01", b"\x02", b"\x00"
 class FrameRun:
     """stream: bytes that left the chip. miso: bytes that came back over SPI.
     activity: cycles that each pin of the front end was high (bench.sv).
-    cycles: clock cycles of the simulation, SPI included. seconds: wall clock of the clock loop.
+    cycles: clock cycles of the simulation, SPI included. seconds: wall clock of the clock loop (Icarus: of its process).
     """
 
     stream: bytes
@@ -36,26 +37,29 @@ def host_script(before, after):
 
 
 def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000_000, waves=None):
-    """Run the bench ``program`` on one frame; returns FrameRun.
+    """Run the bench ``program`` (an executable, or .vvp of Icarus) on one frame; returns FrameRun.
 
     samples, converter: files of the analog front end (pixels/README.md). script: bytes of `host_script`.
     stall: the link is not ready in this many of 256 cycles. waves: (file, first row, last row) for a VCD.
     Raises ToolError when the bench does not finish.
     """
+    simulator = ["vvp"] if Path(program).suffix == ".vvp" else []
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         folder = Path(folder)
         (folder / "script").write_bytes(script)
-        arguments = [f"+script={folder / 'script'}", f"+miso={folder / 'miso'}", f"+stream={folder / 'stream'}",
-                     f"+stats={folder / 'stats'}", f"+activity={folder / 'activity'}", f"+samples={samples}", f"+converter={converter}",
-                     f"+stall={stall}", f"+max_cycles={max_cycles}"]
+        arguments = [f"+{name}={folder / name}" for name in ("script", "miso", "stream", "activity", "stats")]
+        arguments += [f"+samples={samples}", f"+converter={converter}", f"+stall={stall}", f"+max_cycles={max_cycles}"]
         if waves:
             arguments += [f"+waves={waves[0]}", f"+waves_row0={waves[1]}", f"+waves_row1={waves[2]}"]
-        result = subprocess.run([program, *arguments], capture_output=True, text=True)
-        if result.returncode:
+        start = perf_counter()
+        result = subprocess.run([*simulator, program, *arguments], capture_output=True, text=True)
+        spent = perf_counter() - start
+        if result.returncode or not (folder / "activity").exists():
             tail = (result.stdout + result.stderr).strip()[-800:]
             raise ToolError(f"the simulation stopped with status {result.returncode}"
                             f"{' (no frame end)' if result.returncode == 4 else ''}: {tail}")
-        stats = json.loads((folder / "stats").read_text())
-        return FrameRun((folder / "stream").read_bytes(), (folder / "miso").read_bytes(),
-                        json.loads((folder / "activity").read_text()),
-                        stats["cycles"], stats["seconds"])
+        activity = json.loads((folder / "activity").read_text())
+        stats = folder / "stats"
+        seconds = json.loads(stats.read_text())["seconds"] if stats.exists() else spent
+        return FrameRun((folder / "stream").read_bytes(), (folder / "miso").read_bytes(), activity,
+                        activity.pop("cycles"), seconds)

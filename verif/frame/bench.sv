@@ -7,7 +7,7 @@
 //                                              00          stop
 //   +miso=FILE     every byte that came back over SPI
 //   +stream=FILE   every byte that left the chip
-//   +activity=FILE how many cycles each pin of the front end was high, and the link moved a byte
+//   +activity=FILE how many cycles each pin of the front end was high, and in all
 //   +stall=P       the link is not ready in P of 256 cycles, pseudo-random
 //   +samples=FILE, +converter=FILE   see pixels/afe.sv
 `default_nettype none
@@ -72,9 +72,10 @@ module Bench #(
   end
 
   // ---- activity ----
-  reg [31:0] n_busy, n_reset, n_integrate, n_cm, n_read, n_dark, n_hold, n_bytes;
+  reg [31:0] n_cycles, n_busy, n_reset, n_integrate, n_cm, n_read, n_dark, n_hold, n_bytes;
   integer activity;
   always @(posedge clk) begin
+    n_cycles <= reset ? 0 : n_cycles + 1;
     if (reset) begin
       n_busy <= 0; n_reset <= 0; n_integrate <= 0; n_cm <= 0; n_read <= 0; n_dark <= 0; n_hold <= 0; n_bytes <= 0;
     end else if (busy) begin
@@ -91,8 +92,8 @@ module Bench #(
   task automatic write_activity;
     if ($value$plusargs("activity=%s", name)) begin
       activity = $fopen(name, "w");
-      $fwrite(activity, "{\"busy\": %0d, \"pixel_reset\": %0d, \"integrate\": %0d, \"cm_reset\": %0d, ",
-              n_busy, n_reset, n_integrate, n_cm);
+      $fwrite(activity, "{\"cycles\": %0d, \"busy\": %0d, \"pixel_reset\": %0d, \"integrate\": %0d, \"cm_reset\": %0d, ",
+              n_cycles, n_busy, n_reset, n_integrate, n_cm);
       $fwrite(activity, "\"read\": %0d, \"waiting\": %0d, \"steps\": %0d, \"bytes\": %0d}\n",
               n_read, n_dark, n_hold, n_bytes);
       $fclose(activity);

@@ -1,0 +1,93 @@
+"""Whole frames: the chip's Verilog against the golden chip, byte for byte, in every mode, at odd sizes."""
+
+import shutil
+
+import numpy as np
+import pytest
+from hypothesis import given, settings, strategies as st
+
+from flow.frame import hardware
+from flow.frame.request import request
+from flow.simulate.icarus import icarus_program
+from models.digital.chip import front_end_of, golden_frame
+from models.digital.stream import decode_stream
+from models.parameters import ConverterParameters, MODES, SensorParameters, Window
+
+SIZES = {"odd": (13, 50, 4), "row": (1, 37, 8), "tile": (4, 6, 1)}      # rows, cols, lanes
+TAPS = 4
+
+
+def exposure(sensor, seed, span=20.0):
+    """Random diode pairs (4, rows, cols, 2) whose differences reach past the converter's range now and then."""
+    rng = np.random.default_rng(seed)
+    common = rng.uniform(0, 128, (TAPS, sensor.array.rows, sensor.array.cols, 1))
+    return common + rng.normal(0, span, (*common.shape[:3], 2)) * (rng.random(common.shape) < 0.3)
+
+
+def check(program, asked, front_end, samples, stall=0):
+    """Run one frame; stream, decoded samples and the chip's own counters must be the golden model's."""
+    golden = golden_frame(samples, asked.sensor, asked.frame, front_end)
+    chip = hardware.simulate(program, asked.sensor, asked.frame, samples, front_end, stall=stall)
+    assert chip.stream == golden.stream
+    assert chip.status["conversions_made"] == golden.made
+    assert chip.status["conversions_left_out"] == golden.left_out
+    assert not chip.status["cfg_err"] and not chip.status["refused"]
+    frame, = decode_stream(chip.stream, asked.sensor.tile)
+    assert frame.complete and (frame.samples == golden.sent).all() and (frame.read == golden.read).all()
+    return chip
+
+
+def asked_of(size, **options):
+    rows, cols, lanes = SIZES[size]
+    return request(rows=rows, cols=cols, lanes=lanes, **options)
+
+
+MODE_CASES = [*((mode, False) for mode in MODES), ("tof", True)]
+
+
+@pytest.fixture(scope="module")
+def programs():
+    return {name: hardware.program(asked_of(name).sensor, TAPS) for name in SIZES}
+
+
+@pytest.mark.parametrize("mode, phase", MODE_CASES)
+@pytest.mark.parametrize("size", SIZES)
+def test_every_mode_at_odd_sizes(programs, size, mode, phase):
+    asked = asked_of(size, mode=mode, phase=phase)
+    check(programs[size], asked, front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 1))
+
+
+@settings(max_examples=30, deadline=None)
+@given(data=st.data(), mode=st.sampled_from(MODE_CASES), threshold=st.integers(0, 127), decimation=st.integers(0, 3),
+       types=st.sets(st.integers(0, 23), min_size=1), overlap=st.booleans(), stall=st.integers(0, 240),
+       seed=st.integers(0, 99))
+def test_windows_masks_and_back_pressure(programs, data, mode, threshold, decimation, types, overlap, stall, seed):
+    row0, row1 = sorted(data.draw(st.tuples(st.integers(0, 2), st.integers(0, 2))))
+    col0, col1 = sorted(data.draw(st.tuples(st.integers(0, 7), st.integers(0, 7))))
+    asked = asked_of("odd", window=lambda full: Window(row0, row1, col0, col1), mode=mode[0], phase=mode[1],
+                     mask=sum(1 << t for t in types), threshold=threshold, decimation=decimation, overlap=overlap)
+    front_end = front_end_of(asked.sensor, np.random.default_rng(seed).integers(-512, 512, 24))
+    check(programs["odd"], asked, front_end, exposure(asked.sensor, seed), stall)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_imperfect_converters(programs, mode):
+    rows, cols, lanes = SIZES["odd"]
+    asked = asked_of("odd", mode=mode, threshold=9)
+    rough = ConverterParameters(inl=2, dnl=0.5, offset=3, noise=1.5, ktc=1, seed=5)
+    sensor = SensorParameters(array=asked.sensor.array, chip=asked.sensor.chip, converter=rough)
+    front_end = front_end_of(sensor, [0] * 24)
+    assert front_end.converter is not None
+    samples = exposure(sensor, 3)
+    golden = golden_frame(samples, sensor, asked.frame, front_end)
+    assert hardware.simulate(programs["odd"], sensor, asked.frame, samples, front_end).stream == golden.stream
+
+
+def test_icarus_sends_the_same_bytes(programs, tmp_path):
+    if not shutil.which("iverilog"):
+        pytest.skip("Icarus Verilog is not installed: make tools")
+    asked = asked_of("odd", threshold=9)
+    front_end, samples = front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 2)
+    program = icarus_program(hardware.build_of(asked.sensor, TAPS), tmp_path)
+    chip = check(program, asked, front_end, samples)
+    assert chip.status["cycles"] == check(programs["odd"], asked, front_end, samples).status["cycles"]
