@@ -1,0 +1,198 @@
+"""PhasePath at RTL: a store of the taps, the divider, and the control that keeps the order."""
+
+from pymtl3 import (Bits2, Bits6, Bits8, Bits9, Bits10, Bits17, Component, InPort, OutPort, Wire, clog2, concat,
+                    mk_bits, update, update_ff, zext)
+from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+
+from rtl.messages import SAMPLE, DivReq, ScanMsg
+from rtl.quad_divider import quad_divider
+
+ENTRY = 17                  # i0 or i0 - i180 (9, signed), i90 (8)
+IN_FLIGHT_MAX = 63          # more than any divider holds
+
+
+class TapEntry(Component):
+    """A register of the store."""
+
+    def construct(s):
+        s.write = InPort()
+        s.next = InPort(Bits17)
+        s.value = OutPort(Bits17)
+
+        @update_ff
+        def up_value():
+            if s.reset:
+                s.value <<= 0
+            elif s.write:
+                s.value <<= s.next
+
+
+class TapStore(Component):
+    """What the fourth tap of a step needs of the first three, for every sample of the step.
+
+    lanes: samples of a step at most.
+    """
+
+    def construct(s, lanes):
+        Index = mk_bits(max(1, clog2(lanes)))
+
+        # Interface
+        s.write = InPort()          # keep `sample` (taps 0 to 2)
+        s.tap = InPort(Bits2)
+        s.index = InPort(Index)     # number of the sample in its step
+        s.sample = InPort(Bits8)
+        s.x = OutPort(Bits9)        # of the sample at tap 3
+        s.y = OutPort(Bits9)
+
+        # Components
+        for i in range(lanes):
+            setattr(s, f"entry{i}", TapEntry())
+        s.entries = Wire(mk_bits(ENTRY * lanes))
+        s.here = Wire(mk_bits(lanes))
+        s.entry = Wire(Bits17)
+        s.next = Wire(Bits17)
+        s.wide = Wire(Bits9)
+
+        # Connections
+        for i in range(lanes):
+            entry = getattr(s, f"entry{i}")
+            entry.write //= s.here[i]
+            entry.next //= s.next
+            entry.value //= s.entries[ENTRY * i:ENTRY * i + ENTRY]
+
+        # Logic
+        @update
+        def up_read():
+            s.entry @= 0
+            for i in range(lanes):
+                if s.index == Index(i):
+                    s.entry @= s.entries[ENTRY * i:ENTRY * i + ENTRY]
+
+        @update
+        def up_next():
+            s.wide @= zext(s.sample, 9)
+            s.x @= s.entry[8:17]
+            s.y @= s.wide - zext(s.entry[0:8], 9)
+            s.next @= concat(s.wide, s.entry[0:8])
+            if s.tap == 1:
+                s.next @= concat(s.x, s.sample)
+            elif s.tap == 2:
+                s.next @= concat(s.x - s.wide, s.entry[0:8])
+
+        @update
+        def up_here():
+            for i in range(lanes):
+                s.here[i] @= s.write & (s.index == Index(i))
+
+    def line_trace(s):
+        return f"{s.tap}:{s.index} {s.x},{s.y}"
+
+
+class PhasePath(Component):
+    """lanes: of the bank ahead. divider, n_frac, iterations: see rtl.quad_divider."""
+
+    def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
+        Index = mk_bits(max(1, clog2(lanes)))
+
+        # Interface
+        s.recv = RecvIfcRTL(ScanMsg)
+        s.on = InPort()
+        s.noise_floor = InPort(Bits8)
+        s.send = SendIfcRTL(ScanMsg)
+
+        # Components
+        s.store = TapStore(lanes)
+        s.divider = quad_divider(divider, n_frac, iterations)
+        s.full = Wire()             # `kind` and `data` hold a message
+        s.kind = Wire(Bits2)
+        s.data = Wire(Bits10)
+        s.tap = Wire(Bits2)
+        s.index = Wire(Index)
+        s.in_flight = Wire(Bits6)   # requests whose responses have not left
+        s.second = Wire()           # the phase of a response left, its amplitude is next
+
+        s.sample = Wire()           # a tap is in the register
+        s.fourth = Wire()
+        s.passes = Wire()           # what is in the register may leave as it is
+        s.asked = Wire()
+        s.answered = Wire()
+        s.consumed = Wire()
+
+        # Connections
+        s.store.tap //= s.tap
+        s.store.index //= s.index
+        s.store.sample //= s.data[0:8]
+        s.store.x //= s.divider.recv.msg.x
+        s.store.y //= s.divider.recv.msg.y
+        s.divider.noise_floor //= s.noise_floor
+
+        # Logic
+        @update
+        def up_sort():
+            s.sample @= s.full & s.on & (s.kind == SAMPLE)
+            s.fourth @= s.sample & (s.tap == 3)
+            s.passes @= s.full & (~s.on | ((s.kind != SAMPLE) & (s.in_flight == 0)))
+            s.store.write @= s.sample & (s.tap != 3)
+            s.divider.recv.val @= s.fourth & (s.in_flight != IN_FLIGHT_MAX)
+
+        @update
+        def up_send():
+            s.send.val @= s.divider.send.val | s.passes
+            s.send.msg.kind @= SAMPLE
+            s.send.msg.data @= zext(s.data[0:8], 10)
+            if s.divider.send.val:
+                s.send.msg.data @= zext(s.divider.send.msg.phase, 10)
+                if s.second:
+                    s.send.msg.data @= 0
+                    if s.divider.send.msg.amp_valid:
+                        s.send.msg.data @= zext(s.divider.send.msg.amp, 10)
+            elif s.kind != SAMPLE:
+                s.send.msg.kind @= s.kind
+                s.send.msg.data @= s.data
+
+        @update
+        def up_answered():
+            s.divider.send.rdy @= s.second & s.send.rdy
+            s.answered @= s.divider.send.val & s.divider.send.rdy
+
+        @update
+        def up_consumed():
+            s.asked @= s.divider.recv.val & s.divider.recv.rdy
+            s.consumed @= s.store.write | s.asked | (s.passes & s.send.rdy)
+            s.recv.rdy @= ~s.full | s.consumed
+
+        @update_ff
+        def up_register():
+            if s.reset:
+                s.full <<= 0
+                s.kind <<= 0
+                s.data <<= 0
+            elif s.recv.rdy:
+                s.full <<= s.recv.val
+                if s.recv.val:
+                    s.kind <<= s.recv.msg.kind
+                    s.data <<= s.recv.msg.data
+
+        @update_ff
+        def up_position():
+            if s.reset:
+                s.tap <<= 0
+                s.index <<= 0
+            elif s.store.write | s.asked:
+                s.index <<= s.index + 1
+                if s.data[9]:
+                    s.index <<= 0
+                    s.tap <<= s.tap + 1
+
+        @update_ff
+        def up_divider():
+            if s.reset:
+                s.in_flight <<= 0
+                s.second <<= 0
+            else:
+                s.in_flight <<= s.in_flight + zext(s.asked, 6) - zext(s.answered, 6)
+                if s.divider.send.val & s.send.rdy:
+                    s.second <<= ~s.second
+
+    def line_trace(s):
+        return f"{s.recv} {s.store.line_trace()} {s.in_flight} {s.send}"

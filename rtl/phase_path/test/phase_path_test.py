@@ -1,0 +1,164 @@
+"""PhasePath at every level: taps in, the golden model's phase and amplitude out, marks in their places."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from models.digital.phase import phase_samples
+from models.parameters import ChipParameters
+from rtl.messages import END, FRAME, ROW, SAMPLE
+from rtl.phase_path import PhasePath, PhasePathCL, PhasePathFL
+from rtl.testbench import build
+
+LANES = 8
+SETTINGS = settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
+ALWAYS = [(True, True)]
+LAST = 1 << 9
+patterns = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=30).filter(
+    lambda p: any(v for v, _ in p) and any(r for _, r in p))
+bytes_ = st.one_of(st.integers(0, 255), st.sampled_from([0, 1, 127, 128, 254, 255]))
+steps = st.integers(1, LANES).flatmap(
+    lambda n: st.lists(st.lists(bytes_, min_size=n, max_size=n), min_size=4, max_size=4))
+rows = st.lists(st.tuples(st.integers(0, 1023), st.lists(steps, max_size=3)), max_size=3)
+
+
+def messages(frame):
+    """The bank's messages of [(row, [step])]; a step is its four taps, each the samples of the enabled lanes."""
+    out = [(FRAME, 0)]
+    for row, row_steps in frame:
+        out.append((ROW, row))
+        for taps in row_steps:
+            for tap in taps:
+                out += [(SAMPLE, value | (LAST if i == len(tap) - 1 else 0)) for i, value in enumerate(tap)]
+    return [*out, (END, 0)]
+
+
+def expected(frame, chip, noise_floor):
+    out = [(FRAME, 0)]
+    for row, row_steps in frame:
+        out.append((ROW, row))
+        for taps in row_steps:
+            phase, amplitude = phase_samples(np.array(taps).T, chip, noise_floor)
+            out += [(SAMPLE, int(value)) for pair in zip(phase, amplitude) for value in pair]
+    return [*out, (END, 0)]
+
+
+@cache
+def simulator(cls, verilog, chip):
+    return build(cls(chip.lanes, chip.divider, chip.n_frac, chip.cordic_iterations), verilog,
+                 f"PhasePath_{chip.lanes}_{chip.divider}")
+
+
+class Run:
+    """What came out, message by message, and in which cycles messages went in and out."""
+
+    def __init__(self, sim, sent, on, noise_floor=0, pattern=ALWAYS, limit=20_000):
+        sim.on @= on
+        sim.noise_floor @= noise_floor
+        sim.recv.val @= 0
+        sim.send.rdy @= 0
+        sim.reset @= 1
+        sim.sim_tick()
+        sim.reset @= 0
+        self.messages, self.in_at, self.out_at = [], [], []
+        sent, cycle = list(sent), 0
+        while not self.messages or self.messages[-1][0] != END:
+            offer, ready = pattern[cycle % len(pattern)]
+            sim.recv.val @= bool(sent) and offer
+            if sent:
+                sim.recv.msg.kind @= sent[0][0]
+                sim.recv.msg.data @= sent[0][1]
+            sim.send.rdy @= ready
+            sim.sim_eval_combinational()
+            if sent and offer and sim.recv.rdy:
+                sent.pop(0)
+                self.in_at.append(cycle)
+            if ready and sim.send.val:
+                self.messages.append((int(sim.send.msg.kind), int(sim.send.msg.data)))
+                self.out_at.append(cycle)
+            sim.sim_tick()
+            cycle += 1
+            assert cycle < limit
+
+
+class TestPhasePathFL:
+    """Inherited by every level; a level overrides ``cls`` and ``verilog``."""
+
+    cls, verilog = PhasePathFL, False
+    chip = ChipParameters(LANES, "radix4", 8)
+
+    def run(self, *args):
+        return Run(simulator(self.cls, self.verilog, self.chip), *args)
+
+    @SETTINGS
+    @given(rows, st.sampled_from([0, 1, 20, 255]), patterns)
+    def test_any_taps_and_any_timing(self, frame, noise_floor, pattern):
+        got = self.run(messages(frame), True, noise_floor, pattern)
+        assert got.messages == expected(frame, self.chip, noise_floor)
+
+    @SETTINGS
+    @given(rows, patterns)
+    def test_passes_samples_without_the_last_flag_when_off(self, frame, pattern):
+        sent = messages(frame)
+        got = self.run(sent, False, 200, pattern)
+        assert got.messages == [(kind, data & 0xFF if kind == SAMPLE else data) for kind, data in sent]
+
+    def test_the_four_quadrants_and_none(self):
+        """x = i0 - i180, y = i270 - i90."""
+        taps = [[200, 100, 0, 100, 100], [100, 0, 100, 200, 100], [0, 100, 200, 100, 100], [100, 200, 100, 0, 100]]
+        got = self.run(messages([(7, [taps])]), True)
+        assert got.messages[1:-1] == [(ROW, 7), *((SAMPLE, v) for v in (0, 200, 64, 200, 128, 200, 192, 200, 0, 0))]
+
+    def test_amplitude_under_the_noise_floor_is_zero(self):
+        taps = [[30, 31], [0, 0], [0, 0], [0, 0]]
+        got = self.run(messages([(0, [taps])]), True, 31)
+        assert [data for _, data in got.messages[2:-1]] == [0, 0, 0, 31]
+
+
+class TestPhasePathCL(TestPhasePathFL):
+    cls = PhasePathCL
+
+    @SETTINGS
+    @given(rows, st.booleans(), patterns)
+    def test_same_cycles_as_the_cycle_level(self, frame, on, pattern):
+        got = self.run(messages(frame), on, 20, pattern)
+        reference = Run(simulator(PhasePathCL, False, self.chip), messages(frame), on, 20, pattern)
+        assert vars(got) == vars(reference)
+
+    def test_passes_a_message_a_cycle_when_off(self):
+        sent = messages([(1, [[[1] * 8] * 4] * 2)])
+        got = self.run(sent, False)
+        assert (np.diff(got.out_at) == 1).all() and got.out_at[0] == got.in_at[0] + 1
+
+    def test_cycles_of_a_step_when_on(self):
+        """24 taps a message a cycle, then the divider's interval a sample, the last response in two messages."""
+        sent = messages([(1, [[[9] * 8] * 4] * 3)])
+        got = self.run(sent, True)
+        fourth = np.array(got.in_at[2:-1]).reshape(3, 4, 8)
+        assert (np.diff(fourth[:, :3].reshape(3, 24)[:, 1:]) == 1).all()
+        assert set(np.diff(fourth[:, 3])[:, 1:].ravel()) == {7}
+        assert (np.diff(fourth[:, 0, 0]) == 74).all()
+
+
+class TestPhasePathRTL(TestPhasePathCL):
+    cls = PhasePath
+
+
+class TestPhasePathVerilog(TestPhasePathRTL):
+    verilog = True
+
+
+@pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
+@pytest.mark.parametrize("chip", [ChipParameters(1, "radix2", 4), ChipParameters(32, "pipelined", 12),
+                                  ChipParameters(4, "cordic", 8, 6)], ids=lambda c: c.divider)
+def test_other_lanes_and_dividers(cls, chip):
+    rng = np.random.default_rng(8)
+    frame = [(row, [rng.integers(0, 256, (4, chip.lanes)).tolist() for _ in range(2)]) for row in (0, 5)]
+    for pattern in (ALWAYS, [(True, False), (True, True), (False, True), (True, False), (True, False)]):
+        got = Run(simulator(cls, False, chip), messages(frame), True, 10, pattern)
+        assert got.messages == expected(frame, chip, 10)
+        reference = Run(simulator(PhasePathCL, False, chip), messages(frame), True, 10, pattern)
+        assert vars(got) == vars(reference)
