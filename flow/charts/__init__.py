@@ -34,7 +34,8 @@ def bars(parts, unit, title):
     axes.barh(names, [parts[n] for n in names], color=[COLOURS[i % len(COLOURS)] for i in range(len(names))][::-1])
     for i, name in enumerate(names):
         share = f"  ({100 * parts[name] / total:.0f} %)" if total else ""
-        axes.text(parts[name], i, f" {parts[name]:,.4g} {unit}{share}", va="center", fontsize=8)
+        text = f"{parts[name]:,.0f}" if parts[name] >= 1000 else f"{parts[name]:.4g}"
+        axes.text(parts[name], i, f" {text} {unit}{share}", va="center", fontsize=8)
     axes.set_xlim(0, 1.55 * max(parts.values(), default=1) or 1)
     axes.set_title(title, fontsize=10, loc="left")
     axes.xaxis.set_visible(False)

@@ -26,7 +26,7 @@ def figures(result, summary):
 
 
 def _threshold(result, summary):
-    """PSNR of the decoded differences against the chip's frame time, each threshold run through the Verilog."""
+    """PSNR of the decoded differences against bytes and frame time, each threshold run through the Verilog."""
     sensor, samples = result.request.sensor, result.exposed.samples
     points = []
     for threshold in LADDER:
@@ -35,11 +35,12 @@ def _threshold(result, summary):
         chip = hardware.simulate(result.program, sensor, frame, samples, result.exposed.front_end)
         quality = psnr(decoding_error(golden.sent, result.exposed.ideal, golden.read, frame))
         if quality is not None:
-            points.append((1e3 * chip.status["cycles"] / sensor.chip.f_clk, quality,
-                           f"T={threshold}: {len(chip.stream):,} B"))
-    here = 1e3 * summary["frame_s_at_clock"], summary["psnr_db"]
-    return curves({"differences": points}, "frame time at the clock (ms)", "PSNR (dB)",
-                  "Threshold: error against the chip's run time", mark=here if None not in here else None)
+            points.append((len(chip.stream), quality,
+                           f"T={threshold}: {1e3 * chip.status['cycles'] / sensor.chip.f_clk:.2f} ms"))
+    here = summary["stream_bytes"], summary["psnr_db"]
+    return curves({"differences": points}, "bytes a frame", "PSNR (dB)",
+                  "Threshold: error against bytes, and the chip's frame time", log_x=True,
+                  mark=here if None not in here else None)
 
 
 def _capture(result):

@@ -1,0 +1,57 @@
+"""float32 against float64 in the capture of the default scene: largest relative error, codes that change and time."""
+
+from functools import cache
+from time import perf_counter
+
+import numpy as np
+
+from flow.charts import curves
+from models.afe import FrontEnd, trim_codes
+from models.capture import CaptureOperator
+from models.parameters import ArrayParameters, SensorParameters
+from models.pixel import optical_gains
+from models.scene import Sampling, load
+
+REPEATS = 9
+
+
+def points(quick):
+    return [(dtype, size) for size in ((48,) if quick else (96, 192, 384, 768)) for dtype in ("float64", "float32")]
+
+
+@cache
+def _scene(size):
+    sensor = SensorParameters(array=ArrayParameters(rows=size, cols=size))
+    return sensor, load("motorcycle", Sampling(size, size))
+
+
+def _codes(pair, sensor):
+    """Codes of a noiseless edge frame of photocurrents (2, rows, cols) at half a full well for white."""
+    trims = trim_codes(optical_gains(sensor.tile, sensor.optics))
+    front_end = FrontEnd(sensor.electrical.difference_gain, tuple(trims.tolist()))
+    samples = np.ascontiguousarray(np.moveaxis(pair, 0, -1)[None], np.float64) * (255 / 4)
+    return front_end.convert(samples, "edge", 0).codes
+
+
+def measure(point):
+    dtype, size = point
+    sensor, scene = _scene(size)
+    best = CaptureOperator(sensor, "float64").forward(scene.full_light_field.astype("float64"))
+    operator, field = CaptureOperator(sensor, dtype), scene.full_light_field.astype(dtype)
+    times = []
+    for _ in range(REPEATS):
+        start = perf_counter()
+        pair = operator.forward(field)
+        times.append(perf_counter() - start)
+    error = float(np.abs(pair - best).max() / best.max())
+    changed = int((_codes(pair, sensor) != _codes(best, sensor)).sum())
+    return [{"dtype": dtype, "rows": size, "error": error, "codes_changed": changed, "samples": size * size,
+             "capture_ms": 1e3 * min(times)}]
+
+
+def plot(rows):
+    # The reference itself has no error; it is drawn at float64's own rounding.
+    floor = float(np.finfo(np.float64).eps)
+    return curves({d: [(r["capture_ms"], max(r["error"], floor), f"{r['rows']}") for r in rows if r["dtype"] == d]
+                   for d in ("float64", "float32")}, "capture (ms); number: rows of the array",
+                  "largest error / largest value", "float32 against float64", log_x=True, log_y=True)

@@ -1,0 +1,37 @@
+"""Views and angular nodes of the capture model: photocurrents of the 48 diodes against an adaptive quadrature of Eq. 3.3,
+for uniform light and for light that ripples with angle, against the time to compute the weights."""
+
+from dataclasses import replace
+
+from flow.charts import curves
+from models.parameters import SensorParameters
+from models.pixel import Ripple, exact, sampling_error
+
+VIEWS = (1, 3, 5, 7, 9, 15)
+NODES = (1, 2, 3, 4, 6, 8, 12)
+LIGHTS = {"uniform": Ripple(0.0), "one ripple": Ripple()}
+_references = {}
+
+
+def points(quick):
+    return [(light, views, nodes) for light in LIGHTS for views in ((3, 5) if quick else VIEWS)
+            for nodes in ((1, 4) if quick else NODES)]
+
+
+def measure(point):
+    light, views, nodes = point
+    sensor = SensorParameters()
+    if light not in _references:
+        _references[light] = exact(sensor.tile.types, sensor.optics, LIGHTS[light])
+    optics = replace(sensor.optics, views=views, subsamples=nodes)
+    found = sampling_error(sensor.tile.types, optics, LIGHTS[light], _references[light])
+    return [{"light": light, "views": views, "nodes": nodes, "worst": found.worst, "rms": found.rms,
+             "seconds": found.seconds}]
+
+
+def plot(rows):
+    return curves({f"{light}, {v} x {v} views": [(1e3 * r["seconds"], r["worst"], str(r["nodes"])) for r in rows
+                                                 if r["light"] == light and r["views"] == v]
+                   for light in LIGHTS for v in VIEWS if any(r["views"] == v for r in rows)},
+                  "time of the weights (ms); number: nodes a view cell", "worst error of a photocurrent / their mean",
+                  "Views and angular nodes", log_x=True, log_y=True)
