@@ -92,6 +92,14 @@ class FrameTests(ChipTests):
         assert bench.pins == {(0, row, col, trims[kinds[row, col]] % (1 << width))
                               for row in range(ROWS) for col in range(COLS)}
 
+    def test_phase_counts_in_tof_mode_only(self):
+        bench, frame = self.bench(), FRAMES["raw, a window"]
+        writes = dict(frame_writes(frame))
+        writes[CHIP["phase"].byte] |= 1 << CHIP["phase"].shift
+        bench.write(sorted(writes.items()))
+        bench.start()
+        assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream
+
     def test_two_frames(self):
         """Nothing of one frame is left in the next, after a change of everything."""
         bench = self.bench()
@@ -126,3 +134,14 @@ class TestRTL(ChipTests):
 
 class TestVerilog(FrameTests):
     component, verilog = AspChip, True
+
+    def test_overlap_saves_time(self):
+        """The next row integrates while one converts: the bytes are the same, the frame is shorter."""
+        streams, cycles = [], []
+        for overlap in (True, False):
+            bench = self.bench()
+            bench.write(frame_writes(pattern_frame(overlap=overlap)))
+            bench.start()
+            streams.append(bytes(bench.stream))
+            cycles.append(bench.status()["cycles"])
+        assert streams[0] == streams[1] and cycles[0] < cycles[1]
