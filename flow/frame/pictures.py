@@ -43,12 +43,11 @@ def enlarge(image, width):
     return image.resize((image.width * factor, image.height * factor), Image.Resampling.NEAREST)
 
 
-def contact_sheet(images, labels, columns, cell=120):
-    """Images of one size in a labelled grid."""
+def contact_sheet(images, labels, columns, cell=120, aspect=1.0):
+    """Images of one size in a labelled grid, ``cell`` pixels wide. aspect: width over height of one of their pixels."""
     font = ImageFont.load_default(13)
     width, height = images[0].size
-    factor = cell / width
-    size = (cell, max(1, round(height * factor)))
+    size = (cell, max(1, round(cell * height / (width * aspect))))
     gap, caption = 8, 18
     rows = -(-len(images) // columns)
     sheet = Image.new("RGB", (columns * (size[0] + gap) + gap, rows * (size[1] + caption + gap) + gap), PAPER)
@@ -64,8 +63,9 @@ def contact_sheet(images, labels, columns, cell=120):
 def edge_sheet(edges, tile, scale):
     """The 24 edge images (n_types, tile_rows, tile_cols) as a contact sheet, one row a beta."""
     images = [signed(edge, scale) for edge in edges]
-    labels = [f"b{t.beta:g} g{t.gamma_deg:g}{' sin' if t.alpha else ' cos'}" for t in tile.types]
-    return contact_sheet(images, labels, columns=max(1, len(images) // 3))
+    labels = [f"{t.beta:g}, {t.gamma_deg:g}°{' sin' if t.alpha else ' cos'}" for t in tile.types]
+    return contact_sheet(images, labels, columns=max(1, len(images) // 3),
+                         aspect=tile.cols / tile.rows)
 
 
 def view_sheet(light_field, cell=96):

@@ -1,8 +1,9 @@
 """The figures of one run: what summary.json holds, each from what was measured or counted in this run."""
 
-import numba
+import sys
+from importlib.metadata import version
+
 import numpy as np
-import pymtl3
 
 from flow.simulate.verilator import verilator_version
 from models.digital.stream.header import HEADER_BYTES
@@ -92,6 +93,6 @@ def summarize(result):
         "energy_uj": energy_of(result),
         "left_out": result.exposed.plan.left_out,
         "rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles,
-        "tools": {"verilator": verilator_version(), "pymtl3": pymtl3.__version__, "numpy": np.__version__,
-                  "numba": numba.__version__},
+        "tools": {"python": sys.version.split()[0], "verilator": verilator_version(),
+                  **{name: version(name) for name in ("pymtl3", "numpy", "numba")}},
     }
