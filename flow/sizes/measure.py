@@ -45,7 +45,7 @@ def areas():
 def synthesize(path, top):
     """Cells of each type of module ``top`` in the Verilog file ``path``, flattened: Counter. Raises SizeError."""
     if not shutil.which("yosys"):
-        raise SizeError("yosys: not found; install it (Debian and Ubuntu: apt-get install yosys, or make tools as root)")
+        raise SizeError("yosys: not found; install it (Debian and Ubuntu: apt-get install yosys; make tools)")
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
         script = (f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {LIBRARY}; "

@@ -1,7 +1,7 @@
 """The register file: bytes over SPI to configuration, start strobe and status (models/parameters/registers)."""
 
-from pymtl3 import (Bits1, Bits3, Bits6, Bits7, Bits8, Bits10, Bits64, Component, InPort, OutPort, Wire, concat, connect, mk_bits,
-                    update, update_ff)
+from pymtl3 import (Bits1, Bits3, Bits6, Bits7, Bits8, Bits10, Bits64, Component, InPort, OutPort, Wire, concat,
+                    connect, mk_bits, update, update_ff)
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 from models.parameters.registers import register_map

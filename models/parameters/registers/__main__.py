@@ -9,7 +9,7 @@ def markdown(chip):
     """The map as one Markdown table: an array's registers share a row."""
     lines = ["# Register map of AspChip", "",
              "Generated from `models/parameters/registers/asp_chip.rdl` by `python -m models.parameters.registers`.",
-             "Byte addresses; fields of more than a byte are little-endian. How to reach them: `rtl/reg_file/README.md`.",
+             "Byte addresses; fields of more than a byte are little-endian. How to reach them: rtl/reg_file/README.md.",
              "", "| address | register | bits | field | access | reset | meaning |", "|---|---|---|---|---|---|---|"]
     arrays = {}
     for f in chip.fields:
@@ -20,7 +20,8 @@ def markdown(chip):
             address = f"0x{f.address:02X}" + (f" + {f.size} i" if indexed else "")
             register = f"{name}[0..{len(fields) - 1}]" if indexed else name
             bits = f"{f.lsb + f.width - 1}:{f.lsb}" if f.width > 1 else f"{f.lsb}"
-            lines.append(f"| {address} | {register} | {bits} | {f.name} | {f.access} | {f.reset:#x} | {f.description} |")
+            cells = address, register, bits, f.name, f.access, f"{f.reset:#x}", f.description
+            lines.append(f"| {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 

@@ -25,7 +25,8 @@ def frame_writes(frame, trims=None):
     window, timing = frame.window, frame.timing
     values = {"mode": MODES.index(frame.mode),
               **{name: int(getattr(frame, name)) for name in (
-                  "overlap", "phase", "test_pattern", "decimation", "threshold", "noise_floor", "mask", "frame_number")},
+                  "overlap", "phase", "test_pattern", "decimation", "threshold", "noise_floor", "mask",
+                  "frame_number")},
               **{name: getattr(window, name) for name in ("row0", "row1", "col0", "col1")},
               **{name: getattr(timing, name) for name in (
                   "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")},

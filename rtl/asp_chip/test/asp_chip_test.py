@@ -2,10 +2,13 @@
 
 import numpy as np
 import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
-from models.parameters import (AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters, Window)
+from models.parameters import (MODES, AmpTiming, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
+                               SensorParameters, Window)
 from models.parameters.registers import frame_writes, register_map
 from rtl.asp_chip import AspChip, AspChipFL
 from rtl.testbench import build
@@ -36,7 +39,7 @@ PHASE = pattern_frame(Window(1, 1, 0, 2), "tof", mask=0x000F0F, phase=True, nois
 class ChipTests:
     """One chip a class; the tests that a simulation in Python can bear."""
 
-    component, verilog = None, False
+    component, verilog, examples = None, False, 5
 
     def bench(self, **kw):
         cls = type(self)
@@ -92,6 +95,28 @@ class FrameTests(ChipTests):
         assert bench.pins == {(0, row, col, trims[kinds[row, col]] % (1 << width))
                               for row in range(ROWS) for col in range(COLS)}
 
+    def test_any_frame(self):
+        """Any configuration, any stall: the golden bytes, or an error where there is nothing to read."""
+        tiles = [st.tuples(st.integers(0, last), st.integers(0, last)).map(sorted) for last in (FULL.row1, FULL.col1)]
+
+        @settings(max_examples=self.examples, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+        @given(st.sampled_from(MODES), st.integers(1, 2**24 - 1), *tiles, st.integers(0, 127), st.integers(0, 3),
+               st.booleans(), st.booleans(), st.floats(0, 0.9))
+        def check(mode, mask, rows, cols, threshold, decimation, phase, overlap, stall):
+            frame = pattern_frame(Window(*rows, *cols), mode, mask=mask, threshold=threshold, decimation=decimation,
+                                  phase=phase and mode == "tof", overlap=overlap, noise_floor=threshold)
+            bench = self.bench(stall=stall, seed=mask)
+            try:
+                golden = golden_frame(None, SENSOR, frame, PATTERN)
+            except ParameterError:
+                bench.write(frame_writes(frame))
+                bench.start()
+                assert bench.status()["cfg_err"] and not bench.stream
+            else:
+                self.check(bench, frame, golden)
+
+        check()
+
     def test_phase_counts_in_tof_mode_only(self):
         bench, frame = self.bench(), FRAMES["raw, a window"]
         writes = dict(frame_writes(frame))
@@ -133,7 +158,7 @@ class TestRTL(ChipTests):
 
 
 class TestVerilog(FrameTests):
-    component, verilog = AspChip, True
+    component, verilog, examples = AspChip, True, 15
 
     def test_overlap_saves_time(self):
         """The next row integrates while one converts: the bytes are the same, the frame is shorter."""

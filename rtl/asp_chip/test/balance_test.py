@@ -7,7 +7,10 @@ from rtl.asp_chip.balance_rtl import Balance
 from rtl.testbench import build
 
 
-@pytest.mark.parametrize("tile", [TileParameters(), TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))])
+SMALL_TILE = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
+
+
+@pytest.mark.parametrize("tile", [TileParameters(), SMALL_TILE])
 def test_balance_follows_the_tile(tile):
     sim = build(Balance(tuple(tile.order), tile.rows, tile.cols, 10, 16))
     trims = [(37 * t + 5) & 0x3FF for t in range(24)]

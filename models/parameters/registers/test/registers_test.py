@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from models.afe.trim import TRIM_BITS, TRIM_MAX, TRIM_MIN, trim_gain
 from models.digital.registers import RegisterBank
 from models.parameters import FrameParameters, ParameterError, SensorParameters, TileParameters
 from models.parameters.registers import (command, decode_status, frame_writes, read_transfer, register_map,
@@ -37,7 +38,12 @@ def test_resets_are_the_default_parameters():
     writes = frame_writes(FrameParameters(FULL))
     assert dict(writes) == CHIP.image(CHIP.configuration)
     assert len(CHIP.trims) == TileParameters().n_types
-    assert {f.width for f in CHIP.trims} == {len(bin(trim_range()[1])) - 1} and all(f.signed for f in CHIP.trims)
+
+
+def test_trims_are_the_front_ends():
+    assert {f.width for f in CHIP.trims} == {TRIM_BITS} and all(f.signed for f in CHIP.trims)
+    assert trim_range() == (TRIM_MIN, TRIM_MAX)
+    assert trim_gain(CHIP.trims[0].reset) == 1
 
 
 @settings(max_examples=30, deadline=None)
