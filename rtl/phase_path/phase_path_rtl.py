@@ -37,6 +37,7 @@ class TapStore(Component):
         Index = mk_bits(max(1, clog2(lanes)))
 
         # Interface
+        s.on = InPort()
         s.write = InPort()          # keep `sample` (taps 0 to 2)
         s.tap = InPort(Bits2)
         s.index = InPort(Index)     # number of the sample in its step
@@ -64,9 +65,10 @@ class TapStore(Component):
         @update
         def up_read():
             s.entry @= 0
-            for i in range(lanes):
-                if s.index == Index(i):
-                    s.entry @= s.entries[ENTRY * i:ENTRY * i + ENTRY]
+            if s.on:
+                for i in range(lanes):
+                    if s.index == Index(i):
+                        s.entry @= s.entries[ENTRY * i:ENTRY * i + ENTRY]
 
         @update
         def up_next():
@@ -81,8 +83,10 @@ class TapStore(Component):
 
         @update
         def up_here():
-            for i in range(lanes):
-                s.here[i] @= s.write & (s.index == Index(i))
+            s.here @= 0
+            if s.write:
+                for i in range(lanes):
+                    s.here[i] @= s.index == Index(i)
 
     def line_trace(s):
         return f"{s.tap}:{s.index} {s.x},{s.y}"
@@ -119,6 +123,7 @@ class PhasePath(Component):
         s.consumed = Wire()
 
         # Connections
+        s.store.on //= s.on
         s.store.tap //= s.tap
         s.store.index //= s.index
         s.store.sample //= s.data[0:8]
