@@ -47,7 +47,7 @@ class AspChipFL(Component):
                                     chip=ChipParameters(lanes, divider, n_frac, iterations))
         s.byte, s.byte_val = Wire(8), Wire()
         s.run = s.job = None
-        s.cycles = 0
+        s.spent = 0
         s.resting = resting_pins()
 
         def begin():
@@ -59,7 +59,7 @@ class AspChipFL(Component):
             except ParameterError as error:
                 return True, str(error).startswith("t_")
             s.job = s.run.cycles(lambda: int(s.comparator), lambda: s.link_rdy and not s.regs.cfg.loop_enable)
-            s.cycles = 0
+            s.spent = 0
             return False, False
 
         @update_ff
@@ -67,18 +67,19 @@ class AspChipFL(Component):
             done = cfg_err = amp_err = False
             if s.reset:
                 s.run = s.job = None
-                s.cycles = 0
+                s.spent = 0
             elif s.job is not None:
-                s.cycles += 1
+                s.spent += 1
                 done = next(s.job, s) is s
                 if done:
                     s.job = None
             elif s.regs.start:
                 cfg_err, amp_err = begin()
             s.busy <<= s.job is not None
-            s.regs.status <<= chip_status()(
-                s.job is not None, done, cfg_err, amp_err, s.cycles, s.run.made if s.run else 0,
-                s.run.left_out if s.run else 0)
+            s.regs.status <<= chip_status()(s.job is not None, done, cfg_err, amp_err)
+            s.regs.cycles <<= s.spent
+            s.regs.conversions_made <<= s.run.made if s.run else 0
+            s.regs.conversions_left_out <<= s.run.left_out if s.run else 0
             pins = s.run.pins if s.run else s.resting
             s.dac <<= pins["dac"]
             s.hold <<= pins["hold"]

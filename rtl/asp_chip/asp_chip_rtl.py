@@ -1,6 +1,6 @@
 """AspChip: the whole digital chip. It only connects; what the blocks do is in their own folders."""
 
-from pymtl3 import Bits32, Component, Wire, concat, connect, update, update_ff
+from pymtl3 import Component, Wire, connect, update, update_ff
 
 from models.parameters.registers import register_map
 from rtl.adc_bank import AdcBank
@@ -51,6 +51,11 @@ class AspChip(Component):
         cfg = s.regs.cfg
         for name in ("sclk", "csn", "mosi", "miso"):
             connect(getattr(s, name), getattr(s.regs, name))
+        s.regs.cycles //= s.seq.cycles
+        s.regs.conversions_made[0:32] //= s.bank.made
+        s.regs.conversions_made[32:64] //= 0
+        s.regs.conversions_left_out[0:32] //= s.bank.left_out
+        s.regs.conversions_left_out[32:64] //= 0
 
         s.seq.start //= s.regs.start
         s.seq.overlap //= cfg.overlap
@@ -124,9 +129,6 @@ class AspChip(Component):
             s.regs.status.done @= s.was_sync & ~s.encoder.frame_sync
             s.regs.status.cfg_err @= s.seq.cfg_err & ~s.cfg_told
             s.regs.status.amp_err @= s.amp.cfg_err & ~s.amp_told
-            s.regs.status.cycles @= s.seq.cycles
-            s.regs.status.conversions_made @= concat(Bits32(0), s.bank.made)
-            s.regs.status.conversions_left_out @= concat(Bits32(0), s.bank.left_out)
 
         @update_ff
         def up_told():

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from pymtl3 import Bits1, Bits64, mk_bits, mk_bitstruct
+from pymtl3 import Bits1, mk_bits, mk_bitstruct
 
 from models.parameters.registers import register_map
 
@@ -20,8 +20,7 @@ def chip_config():
 
 @cache
 def chip_status():
-    """ChipStatus: busy, one-cycle strobes for the sticky bits that the chip sets, and the counters."""
+    """ChipStatus: busy, and one-cycle strobes for the sticky bits that the chip sets."""
     chip = register_map()
     strobes = [f.name for f in chip.fields if f.access == "w1c" and f.name != "refused"]
-    return mk_bitstruct("ChipStatus", {"busy": Bits1, **{name: Bits1 for name in strobes},
-                                       **{f.name: Bits64 for f in chip.counters}})
+    return mk_bitstruct("ChipStatus", {"busy": Bits1, **dict.fromkeys(strobes, Bits1)})

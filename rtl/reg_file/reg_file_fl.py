@@ -19,6 +19,7 @@ class RegFileFL(Component):
         s.mosi = InPort()
         s.miso = OutPort()
         s.status = InPort(chip_status())
+        s.cycles, s.conversions_made, s.conversions_left_out = InPort(64), InPort(64), InPort(64)
         s.cfg = OutPort(Config)
         s.start = OutPort()
         s.loop = SendIfcRTL(Bits8)
@@ -40,7 +41,7 @@ class RegFileFL(Component):
                 s.out = s.out << 1 & 0xFF if s.bits else 0
             else:
                 s.out = s.bank.read(s.command, int(s.status.busy),
-                                    [int(getattr(s.status, name)) for name in counters])
+                                    [int(getattr(s, name)) for name in counters])
 
         def rising():
             s.bits.append(int(s.mosi))

@@ -36,13 +36,18 @@ class RegFile(Component):
         A_CYCLES, A_MADE, A_LEFT_OUT = (Bits7(f.byte) for f in chip.counters)
         LAST_COUNTER = Bits7(chip.counters[-1].byte + 7)
         START_BIT = chip["start"].shift
-        CLEARED_BY_START = Bits8(sum(1 << chip[n].shift for n in ("done", "cfg_err", "amp_err")))
+        sticky = [f for f in chip.fields if f.access == "w1c"]      # neighbours (a test says so)
+        low, high = sticky[0].shift, sticky[-1].shift + 1
+        Sticky = mk_bits(high - low)
+        KEPT_AT_START = Sticky(1 << chip["refused"].shift - low)
+        BUSY = chip["busy"].shift
 
         s.sclk = InPort()
         s.csn = InPort()
         s.mosi = InPort()
         s.miso = OutPort()
         s.status = InPort(chip_status())
+        s.cycles, s.conversions_made, s.conversions_left_out = InPort(64), InPort(64), InPort(64)
         s.cfg = OutPort(chip_config())
         s.start = OutPort()
         s.loop = SendIfcRTL(Bits8)
@@ -52,9 +57,8 @@ class RegFile(Component):
         s.written = Wire(Image)         # ... with the byte that is written now
         s.writable = Wire(Image)
         s.snapshot = Wire(64)           # the counter whose first byte was read last
-        s.sticky = Wire(8)              # sticky bits at their places in the status byte
-        s.events = Wire(8)              # what sets them
-        s.state = Wire(8)               # the bits that are not sticky
+        s.sticky = Wire(Sticky)
+        s.events = Wire(Sticky)         # what sets them
         s.have_command = Wire()
         s.writing = Wire()
         s.address = Wire(7)
@@ -65,6 +69,7 @@ class RegFile(Component):
         s.starting = Wire()
         s.in_image = Wire()
         s.configuring = Wire()
+        s.looping = Wire()
         s.refused = Wire()
 
         s.spi.sclk //= s.sclk
@@ -78,13 +83,8 @@ class RegFile(Component):
                 connect(getattr(s.cfg, f.name), s.image[bit:bit + f.width])
         trims, past = chip.trims[0].address, chip.trims[-1].address + chip.trims[-1].size
         connect(s.cfg.trims, s.image[8 * (trims - first):8 * (past - first)])
-        sources = {"busy": (s.state, s.status.busy), "done": (s.events, s.status.done),
-                   "cfg_err": (s.events, s.status.cfg_err), "amp_err": (s.events, s.status.amp_err),
-                   "refused": (s.events, s.refused)}
-        placed = {(vector, chip[name].shift): signal for name, (vector, signal) in sources.items()}
-        for vector in (s.events, s.state):
-            for bit in range(8):
-                connect(vector[bit], placed.get((vector, bit), Bits1(0)))
+        for f in sticky:
+            connect(s.events[f.shift - low], s.refused if f.name == "refused" else getattr(s.status, f.name))
 
         @update
         def up_decode():
@@ -93,10 +93,16 @@ class RegFile(Component):
             s.counter_index @= concat(s.address[0:3], Bits3(0))
             s.in_image @= (s.address >= FIRST) & (s.address <= LAST)
             s.write @= s.spi.rx_val & s.have_command & s.writing
-            s.starting @= s.write & (s.address == A_START) & s.spi.rx[START_BIT]
-            s.configuring @= s.write & s.in_image & ~s.status.busy
-            s.refused @= (s.status.busy & (s.starting | (s.write & s.in_image))
-                          | s.loop.val & s.write & (s.address == A_LOOP))
+            s.starting @= Bits1(0)
+            s.configuring @= Bits1(0)
+            s.looping @= Bits1(0)
+            s.refused @= Bits1(0)
+            if s.write:
+                s.starting @= (s.address == A_START) & s.spi.rx[START_BIT] & ~s.status.busy
+                s.configuring @= s.in_image & ~s.status.busy
+                s.looping @= (s.address == A_LOOP) & ~s.loop.val
+                s.refused @= (s.status.busy & (s.in_image | (s.address == A_START) & s.spi.rx[START_BIT])
+                              | s.loop.val & (s.address == A_LOOP))
 
         @update
         def up_read():
@@ -105,15 +111,16 @@ class RegFile(Component):
                 if s.in_image:
                     s.spi.tx @= s.image[s.index:s.index + Bits10(8)]
                 elif s.address == A_CYCLES:
-                    s.spi.tx @= s.status.cycles[0:8]
+                    s.spi.tx @= s.cycles[0:8]
                 elif s.address == A_MADE:
-                    s.spi.tx @= s.status.conversions_made[0:8]
+                    s.spi.tx @= s.conversions_made[0:8]
                 elif s.address == A_LEFT_OUT:
-                    s.spi.tx @= s.status.conversions_left_out[0:8]
+                    s.spi.tx @= s.conversions_left_out[0:8]
                 elif (s.address > A_CYCLES) & (s.address <= LAST_COUNTER):
                     s.spi.tx @= s.snapshot[s.counter_index:s.counter_index + Bits6(8)]
                 elif s.address == A_STATUS:
-                    s.spi.tx @= s.sticky | s.state
+                    s.spi.tx[BUSY] @= s.status.busy
+                    s.spi.tx[low:high] @= s.sticky
                 elif s.address == A_ID:
                     s.spi.tx @= ID
                 elif s.address == A_VERSION:
@@ -155,24 +162,24 @@ class RegFile(Component):
                 s.snapshot <<= Bits64(0)
             elif s.spi.tx_take & s.have_command & ~s.writing:
                 if s.address == A_CYCLES:
-                    s.snapshot <<= s.status.cycles
+                    s.snapshot <<= s.cycles
                 elif s.address == A_MADE:
-                    s.snapshot <<= s.status.conversions_made
+                    s.snapshot <<= s.conversions_made
                 elif s.address == A_LEFT_OUT:
-                    s.snapshot <<= s.status.conversions_left_out
+                    s.snapshot <<= s.conversions_left_out
 
         @update_ff
         def up_status():
             if s.reset:
                 s.start <<= Bits1(0)
-                s.sticky <<= Bits8(0)
+                s.sticky <<= Sticky(0)
             else:
-                s.start <<= s.starting & ~s.status.busy
-                if s.starting & ~s.status.busy:
-                    s.sticky <<= s.sticky & ~CLEARED_BY_START | s.events
+                s.start <<= s.starting
+                if s.starting:
+                    s.sticky <<= s.sticky & KEPT_AT_START | s.events
                 elif s.write & (s.address == A_STATUS):
-                    s.sticky <<= s.sticky & ~s.spi.rx | s.events
-                else:
+                    s.sticky <<= s.sticky & ~s.spi.rx[low:high] | s.events
+                elif s.events != 0:
                     s.sticky <<= s.sticky | s.events
 
         @update_ff
@@ -180,7 +187,7 @@ class RegFile(Component):
             if s.reset:
                 s.loop.val <<= Bits1(0)
                 s.loop.msg <<= Bits8(0)
-            elif s.write & (s.address == A_LOOP) & ~s.loop.val:
+            elif s.looping:
                 s.loop.val <<= Bits1(1)
                 s.loop.msg <<= s.spi.rx
             elif s.loop.rdy:

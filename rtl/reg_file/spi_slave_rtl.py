@@ -36,11 +36,16 @@ class SpiSlave(Component):
         @update
         def up_edges():
             s.selected @= ~s.csn_sync[1]
-            s.rise @= s.selected & s.sclk_sync[1] & ~s.sclk_sync[2]
-            s.fall @= s.selected & ~s.sclk_sync[1] & s.sclk_sync[2]
+            s.rise @= Bits1(0)
+            s.fall @= Bits1(0)
+            s.rx_val @= Bits1(0)
+            s.tx_take @= Bits1(0)
+            if s.selected:          # nothing moves in most cycles of a frame, and nothing need be simulated
+                s.rise @= s.sclk_sync[1] & ~s.sclk_sync[2]
+                s.fall @= ~s.sclk_sync[1] & s.sclk_sync[2]
+                s.rx_val @= s.rise & (s.count == Bits3(7))
+                s.tx_take @= s.fall & (s.count == Bits3(0))
             s.rx @= concat(s.shift_in, s.mosi_sync[1])
-            s.rx_val @= s.rise & (s.count == Bits3(7))
-            s.tx_take @= s.fall & (s.count == Bits3(0))
 
         @update_ff
         def up_sync():

@@ -26,7 +26,7 @@ class Bench:
     def __init__(self, sim, half=4):
         self.sim, self.starts, self.loop = sim, 0, []
         sim.loop.rdy @= 1
-        sim.status @= type(sim.status)()
+        self.status()
         sim.reset @= 1
         sim.sim_tick()
         sim.reset @= 0
@@ -41,11 +41,12 @@ class Bench:
         self.starts += int(sim.start)
 
     def status(self, **fields):
-        """Drive the status inputs: fields by name, the rest 0."""
-        status = type(self.sim.status)()
-        for name, value in fields.items():
-            setattr(status, name, type(getattr(status, name))(value))
-        self.sim.status @= status
+        """Drive the status inputs: bits and counters by name, the rest 0."""
+        counters = {f.name: fields.pop(f.name, 0) for f in CHIP.counters}
+        self.sim.cycles @= counters["cycles"]
+        self.sim.conversions_made @= counters["conversions_made"]
+        self.sim.conversions_left_out @= counters["conversions_left_out"]
+        self.sim.status @= type(self.sim.status)(**fields)
 
     def read(self, address, count=1):
         return self.spi.transfer(read_transfer(address, count))[1:]

@@ -32,6 +32,9 @@ def test_the_configuration_is_one_run_of_addresses_of_its_own():
     assert not others & set(range(min(ours), max(ours) + 1))
     assert [f.byte for f in CHIP.counters] == [CHIP.counters[0].byte + 8 * i for i in range(3)]
     assert CHIP.counters[0].byte % 8 == 0
+    sticky = [f for f in CHIP.fields if f.access == "w1c"]
+    assert [f.shift for f in sticky] == list(range(sticky[0].shift, sticky[0].shift + len(sticky)))
+    assert all(f.width == 1 and f.register == "status" for f in sticky)
 
 
 def test_resets_are_the_default_parameters():
