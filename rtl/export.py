@@ -54,15 +54,16 @@ def _without_unused_constants(module):
 
 
 def tidy(text):
-    """PyMTL's Verilog without absolute paths, hashed type names, one-bit loop counters and unused constants."""
+    """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants."""
     text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
     text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)
-    for struct in sorted(set(re.findall(r"\b(\w+?)__[0-9a-f]{16}\b", text))):
-        hashed = set(re.findall(rf"\b{struct}__[0-9a-f]{{16}}\b", text))
-        if len(hashed) == 1:
-            text = text.replace(hashed.pop(), struct)
+    structs = sorted(set(re.findall(r"(?m)^} (\w+);", text)))
+    short = [name.partition("__")[0] for name in structs]
+    for name, plain in zip(structs, short, strict=True):
+        if short.count(plain) == 1:
+            text = re.sub(rf"\b{name}\b", plain, text)
     text = "endmodule".join(map(_without_unused_constants, text.split("endmodule")))
     lines = [line.rstrip() for line in text.splitlines()]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"

@@ -38,7 +38,7 @@ def test_readable_names_and_flat_ports(exported, name):
     text = (exported / f"{name}.v").read_text()
     modules = re.findall(r"(?m)^module (\w+)", text)
     assert modules[-1] == name and len(set(modules)) == len(modules)
-    assert not [m for m in modules if "__" in m]
+    assert not [m for m in modules + re.findall(r"(?m)^} (\w+);", text) if "__" in m]
     assert not re.findall(r"(?m)^\s*(?:input|output)\b.*\[\d+:\d+\]\s*,?$", text), "an unpacked-array port"
 
 
@@ -69,9 +69,10 @@ def test_unknown_top():
 
 
 def test_tidy_keeps_two_types_of_one_name_apart():
-    a, b = "Msg__0123456789abcdef", "Msg__fedcba9876543210"
-    assert tidy(f"{a} x; {b} y;\n") == f"{a} x; {b} y;\n"
-    assert tidy(f"{a} x; {a} y;\n") == "Msg x; Msg y;\n"
+    a = "typedef struct packed {\n  logic [1:0] kind;\n} Msg__kind_2;\nMsg__kind_2 x;\n"
+    b = a.replace("kind_2", "0123456789abcdef")
+    assert tidy(a + b) == a + b
+    assert tidy(b) == tidy(a) == a.replace("__kind_2", "")
 
 
 def test_tidy_drops_constants_that_nothing_uses():
