@@ -49,11 +49,11 @@ stability: $(READY)  ## stiff and extreme cases: bound against measured
 
 .PHONY: formats
 formats: $(READY)  ## stream formats and scan orders compared: build/formats/
-	@$(PY) -m flow.formats
+	@$(PY) -m flow.formats --document docs/stream.md
 
 .PHONY: sizes
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
-	@$(PY) -m flow.sizes
+	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: bench
 bench: $(READY)  ## speed and memory (pytest-benchmark)

@@ -6,6 +6,8 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from models.parameters import ParameterError
+
 
 @contextlib.contextmanager
 def staged(out):
@@ -27,3 +29,18 @@ def staged(out):
         if made:
             with contextlib.suppress(OSError):
                 out.rmdir()
+
+
+def insert(document, mark, text):
+    """Put ``text`` between the comments '<!-- mark -->' and '<!-- end of mark -->' of a Markdown file.
+
+    Raises ParameterError when the file does not have both.
+    """
+    document = Path(document)
+    first, last = f"<!-- {mark} -->\n", f"<!-- end of {mark} -->"
+    before, found, rest = document.read_text().partition(first)
+    _, ends, after = rest.partition(last)
+    if not (found and ends):
+        raise ParameterError(f"document = {document}: must have the comments {mark!r} and 'end of {mark}'")
+    with staged(document.parent) as part:
+        (part / document.name).write_text(f"{before}{first}\n{text.strip()}\n\n{last}{after}")

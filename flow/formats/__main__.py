@@ -9,7 +9,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from flow.charts import save
-from flow.files import staged
+from flow.files import insert, staged
 from flow.sizes.measure import ROOT, SizeError, measure as size_of
 from flow.tradeoff import write_csv
 from models.parameters import ParameterError
@@ -38,16 +38,6 @@ def gates_of_packers():
             return None
 
 
-def insert(document, text):
-    """Put ``text`` between the marks of a Markdown file. Raises ParameterError when it has none."""
-    before, mark, rest = document.read_text().partition("<!-- formats -->\n")
-    _, end, after = rest.partition("<!-- end of formats -->")
-    if not (mark and end):
-        raise ParameterError(f"document = {document}: must have the comments 'formats' and 'end of formats'")
-    with staged(document.parent) as part:
-        (part / document.name).write_text(before + mark + "\n" + text + "\n" + end + after)
-
-
 def main(argv=None):
     parser = argparse.ArgumentParser(prog="python -m flow.formats", description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "formats",
@@ -66,7 +56,7 @@ def main(argv=None):
             (part / "formats.md").write_text(text)
             save(chart(rows), part / "formats.png")
         if options.document:
-            insert(options.document, text.split("\n", 2)[2].strip() + "\n")
+            insert(options.document, "formats", text.split("\n", 2)[2].strip() + "\n")
     except (ParameterError, SizeError, OSError) as error:
         print(f"flow.formats: {error}", file=sys.stderr)
         return 2

@@ -22,6 +22,7 @@ def write(folder, result, summary):
         image.save(folder / f"{name}.png")
     for name, _, _, image in sheets:
         image.save(folder / f"{name}.png")
+    pictures.overview(named).save(folder / "overview.png")
     page = render(summary, pictures=[(caption, pictures.enlarge(image, 384)) for _, caption, image in named],
                   chip=chip_svg(result.request.sensor, result.request.frame),
                   sheets=[(title, caption, image) for _, title, caption, image in sheets],

@@ -74,3 +74,9 @@ def view_sheet(light_field, cell=96):
     v, u = light_field.shape[:2]
     images = [gray(light_field[j, i], high=high) for j in range(v) for i in range(u)]
     return contact_sheet(images, [f"v{j - v // 2:+d} u{i - u // 2:+d}" for j in range(v) for i in range(u)], u, cell)
+
+
+def overview(named, cell=288):
+    """The run's pictures side by side: list of (name, caption, image) to one image."""
+    square = [image.convert("RGB").resize((cell, cell), Image.Resampling.LANCZOS) for _, _, image in named]
+    return contact_sheet(square, [name for name, _, _ in named], len(named), cell)

@@ -8,10 +8,11 @@ import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
-from flow.files import staged
+from flow.files import insert, staged
+from models.parameters import ParameterError
 
 from .measure import ROOT, SizeError, measure
-from .table import markdown
+from .table import markdown, readme_table
 
 
 def export(tops, options, folder):
@@ -29,6 +30,7 @@ def main(argv=None):
         epilog="Further options (--lanes, --rows, --divider ...) go to python -m rtl.export.")
     parser.add_argument("tops", nargs="*", help="tops to measure; default: every one")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "sizes", help="folder of sizes.json and sizes.md")
+    parser.add_argument("--document", type=Path, help="also put the blocks' table between the marks of this file")
     options, others = parser.parse_known_args(argv)
     try:
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
@@ -36,7 +38,9 @@ def main(argv=None):
         with staged(options.out) as part:
             (part / "sizes.json").write_text(json.dumps([asdict(s) for s in sizes], indent=1) + "\n")
             (part / "sizes.md").write_text(markdown(sizes))
-    except (SizeError, OSError) as error:
+        if options.document:
+            insert(options.document, "sizes", readme_table(sizes))
+    except (SizeError, ParameterError, OSError) as error:
         print(f"flow.sizes: {error}", file=sys.stderr)
         return 2
     print(markdown(sizes), end="")
