@@ -12,6 +12,24 @@ from rtl.edge_adc import EdgeAdc
 from rtl.messages import FRAME, SAMPLE, ScanMsg, step_msg
 
 
+class LaneResult(Component):
+    """A link of the chain that takes the result (val, converted, code) of the lane whose turn it is."""
+
+    def construct(s):
+        s.turn = InPort()
+        s.val = InPort()
+        s.converted = InPort()
+        s.code = InPort(Bits8)
+        s.chain_in = InPort(Bits10)
+        s.chain_out = OutPort(Bits10)
+
+        @update
+        def up_chain():
+            s.chain_out @= s.chain_in
+            if s.turn:
+                s.chain_out @= concat(s.val, s.converted, s.code)
+
+
 class AdcBank(Component):
     """lanes: a power of two in 1..32."""
 
@@ -39,6 +57,7 @@ class AdcBank(Component):
         # Components
         for i in range(lanes):          # not a list: PyMTL would join the ports in arrays, which Yosys calls memories
             setattr(s, f"lane{i}", EdgeAdc())
+            setattr(s, f"link{i}", LaneResult())
         s.at_pins = Wire()              # the message whose row and lanes are at the pins is not draining yet
         s.pins_kind = Wire(Bits2)
         s.mark = Wire()                 # FRAME, ROW or END is at the output
@@ -49,12 +68,10 @@ class AdcBank(Component):
         s.go = Wire(Lanes)
         s.free = Wire(Lanes)
         s.busy = Wire(Lanes)
-        s.ready = Wire(Lanes)           # results at the lanes
         s.taken = Wire(Lanes)
-        s.converted = Wire(Lanes)
-        s.codes = Wire(mk_bits(8 * lanes))
         s.first = Wire(Lanes)           # one-hot: the lane whose turn it is
-        s.code = Wire(Bits8)
+        s.none = Wire(Bits10)
+        s.result = Wire(Bits10)         # its result: val, converted, code
         s.last = Wire()
         s.sent = Wire()
         s.drained = Wire()
@@ -62,8 +79,9 @@ class AdcBank(Component):
         s.convert = Wire()
 
         # Connections
+        chain = s.none
         for i in range(lanes):
-            lane = getattr(s, f"lane{i}")
+            lane, link = getattr(s, f"lane{i}"), getattr(s, f"link{i}")
             lane.go //= s.go[i]
             lane.unsigned_ //= s.unsigned_
             lane.threshold //= s.threshold
@@ -71,10 +89,15 @@ class AdcBank(Component):
             lane.dac //= s.dac[8 * i:8 * i + 8]
             lane.free //= s.free[i]
             lane.busy //= s.busy[i]
-            lane.out.val //= s.ready[i]
             lane.out.rdy //= s.taken[i]
-            lane.out.msg //= s.codes[8 * i:8 * i + 8]
-            lane.converted //= s.converted[i]
+            link.turn //= s.first[i]
+            link.val //= lane.out.val
+            link.converted //= lane.converted
+            link.code //= lane.out.msg
+            link.chain_in //= chain
+            chain = link.chain_out
+        s.none //= Bits10(0)
+        s.result //= chain
 
         # Logic: taking a step
         @update
@@ -82,8 +105,7 @@ class AdcBank(Component):
             s.unsigned_ @= s.mode != 0
             s.idle @= ~s.hold & (s.busy == 0)
             s.step.rdy @= ~s.hold & ~s.at_pins & (s.free == ~Lanes(0))
-            for i in range(lanes):
-                s.go[i] @= s.hold & s.en[i]
+            s.go @= s.en if s.hold else Lanes(0)
 
         @update
         def accept():
@@ -96,21 +118,11 @@ class AdcBank(Component):
             s.first @= s.remaining & (~s.remaining + 1)
             s.last @= s.first == s.remaining
 
-        if lanes == 1:
-            s.code //= s.codes
-        else:
-            @update
-            def choose():
-                s.code @= 0
-                for i in range(lanes):
-                    if s.first[i]:
-                        s.code @= s.codes[8 * i:8 * i + 8]
-
         @update
         def send():
-            s.scan.val @= s.mark | ((s.first & s.ready) != 0)
+            s.scan.val @= s.mark | s.result[9]
             s.scan.msg.kind @= SAMPLE
-            s.scan.msg.data @= concat(s.last, Bits1(0), s.code)
+            s.scan.msg.data @= concat(s.last, Bits1(0), s.result[0:8])
             if s.mark:
                 s.scan.msg.kind @= s.mark_kind
                 s.scan.msg.data @= s.mark_row
@@ -119,8 +131,7 @@ class AdcBank(Component):
         def handshake():
             s.sent @= s.scan.val & s.scan.rdy
             s.drained @= (~s.mark & (s.remaining == 0)) | (s.sent & (s.mark | s.last))
-            for i in range(lanes):
-                s.taken[i] @= s.first[i] & s.scan.rdy
+            s.taken @= s.first if s.scan.rdy else Lanes(0)
 
         @update_ff
         def pins():
@@ -164,7 +175,7 @@ class AdcBank(Component):
                             s.left_out <<= 0
                     else:
                         s.remaining <<= s.remaining & ~s.first
-                        if (s.first & s.converted) != 0:
+                        if s.result[8]:
                             s.made <<= s.made + 1
                         else:
                             s.left_out <<= s.left_out + 1

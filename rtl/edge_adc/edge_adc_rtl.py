@@ -1,10 +1,16 @@
-"""EdgeAdc at RTL: control of one successive-approximation lane with a zero window."""
+"""EdgeAdc at RTL: control of one successive-approximation lane with a zero window.
 
-from pymtl3 import Bits3, Bits7, Bits8, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
+The trial itself says which bit is on trial: its lowest one, for all below it are still zero.
+Conditions are nested where one alone would do, so that a simulator skips what a lane at rest does not need.
+"""
+
+from pymtl3 import Bits3, Bits7, Bits8, Component, InPort, OutPort, Wire, update, update_ff, zext
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-IDLE, ABOVE, BELOW, SEARCH, WAIT = range(5)
-MIDDLE = 0x80                 # code 0 in offset binary, and the first trial of the search
+# ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, when the first has said "above".
+# WAIT, WAIT_ZERO: a result whose predecessor was not taken yet; the code of WAIT is in `trial`.
+IDLE, ABOVE, BELOW, OUTSIDE, SEARCH, WAIT, WAIT_ZERO = range(7)
+MIDDLE = 0x80               # code 0 in offset binary, and the first trial of the search
 
 
 class EdgeAdc(Component):
@@ -23,96 +29,95 @@ class EdgeAdc(Component):
 
         # Components
         s.state = Wire(Bits3)
-        s.trial = Wire(Bits8)       # at the DAC; holds the code (offset binary) in WAIT
-        s.mask = Wire(Bits8)        # one-hot, the bit on trial
-        s.above = Wire()            # first decision of the window
+        s.trial = Wire(Bits8)       # at the DAC
         s.full = Wire()             # `code` waits to be taken
         s.code = Wire(Bits8)
-        s.was_converted = Wire()
-        s.waits_converted = Wire()  # the flag of the code that waits in `trial`
+        s.search_made = Wire()      # it took a search
 
-        s.window = Wire()
-        s.room = Wire()
-        s.start = Wire()
-        s.zero = Wire()           # the window says zero
-        s.last = Wire()
-        s.kept = Wire(Bits8)
-        s.magnitude = Wire(Bits8)
+        s.kept = Wire(Bits8)        # the trial after the comparator's answer
         s.result = Wire(Bits8)
+        s.magnitude = Wire(Bits8)
+        s.found = Wire()            # `result` stands
 
         # Connections
         s.dac //= s.trial
         s.out.msg //= s.code
         s.out.val //= s.full
-        s.converted //= s.was_converted
+        s.converted //= s.search_made
 
         # Logic: status, from registers only
         @update
-        def status():
-            s.window @= ~s.unsigned_ & (s.threshold != 0)
-            s.last @= (s.state == SEARCH) & s.mask[0]
+        def up_status():
             s.busy @= s.state != IDLE
-            s.free @= (s.state == IDLE) | ((s.state == SEARCH) & (s.mask[0] | s.mask[1]) & ~s.full)
+            s.free @= 1
+            if s.state != IDLE:
+                s.free @= (s.state == SEARCH) & ((s.trial & 3) != 0) & ~s.full
 
+        # Logic: what a conversion ends with
         @update
-        def control():
-            s.start @= s.go & ((s.state == IDLE) | (s.last & ~s.full))
-            s.room @= ~s.full | s.out.rdy
-            s.zero @= (s.state == BELOW) & s.comparator & ~s.above
-
-        @update
-        def outcome():
-            s.kept @= s.trial & ~s.mask
-            if s.comparator | (s.state == WAIT):
-                s.kept @= s.trial
+        def up_result():
+            s.found @= 0
+            s.kept @= 0
             s.result @= 0
             s.magnitude @= 0
-            if s.last | (s.state == WAIT):      # the condition only spares simulators the work
-                s.result @= s.kept
-                if ~s.unsigned_:
-                    s.result @= s.kept ^ MIDDLE
-                    s.magnitude @= s.result if s.kept[7] else ~s.result + 1
-                    if s.magnitude < zext(s.threshold, 8):
-                        s.result @= 0
+            if s.state >= BELOW:
+                s.found @= (s.state >= WAIT) | ((s.state == BELOW) & s.comparator)
+                if (s.state == SEARCH) | (s.state == WAIT):
+                    s.found @= (s.state == WAIT) | s.trial[0]
+                    s.kept @= s.trial
+                    if (s.state == SEARCH) & ~s.comparator:
+                        s.kept @= s.trial & (s.trial - 1)
+                    s.result @= s.kept
+                    if ~s.unsigned_:
+                        s.result @= s.kept ^ MIDDLE
+                        s.magnitude @= s.result if s.kept[7] else ~s.result + 1
+                        if s.magnitude < zext(s.threshold, 8):
+                            s.result @= 0
 
         @update_ff
-        def advance():
+        def up_state():
             if s.reset:
                 s.state <<= IDLE
                 s.trial <<= 0
-                s.mask <<= 0
-                s.above <<= 0
+            else:
+                if s.state != IDLE:
+                    if s.found:
+                        if ~s.full | s.out.rdy:
+                            s.state <<= IDLE
+                        elif (s.state == SEARCH) | (s.state == WAIT):
+                            s.trial <<= s.kept
+                            s.state <<= WAIT
+                        else:
+                            s.state <<= WAIT_ZERO
+                    elif s.state == SEARCH:
+                        s.trial <<= s.kept | ((s.trial & (~s.trial + 1)) >> 1)
+                    elif s.state == ABOVE:
+                        s.trial <<= 129 - zext(s.threshold, 8)      # level(1 - T)
+                        s.state <<= OUTSIDE if s.comparator else BELOW
+                    else:
+                        s.trial <<= MIDDLE
+                        s.state <<= SEARCH
+                if s.go:
+                    if (s.state == IDLE) | ((s.state == SEARCH) & s.trial[0] & ~s.full):
+                        s.trial <<= MIDDLE
+                        s.state <<= SEARCH
+                        if ~s.unsigned_ & (s.threshold != 0):
+                            s.trial <<= zext(s.threshold, 8) | MIDDLE       # level(T)
+                            s.state <<= ABOVE
+
+        @update_ff
+        def up_out():
+            if s.reset:
                 s.full <<= 0
                 s.code <<= 0
-                s.was_converted <<= 0
-                s.waits_converted <<= 0
-            else:
-                if s.full & s.out.rdy:
-                    s.full <<= 0
-                if s.state == ABOVE:
-                    s.above <<= s.comparator
-                    s.trial <<= 129 - zext(s.threshold, 8)
-                    s.state <<= BELOW
-                elif (s.state == SEARCH) & ~s.mask[0]:
-                    s.trial <<= s.kept | (s.mask >> 1)
-                    s.mask <<= s.mask >> 1
-                elif (s.state == BELOW) & ~s.zero:
-                    s.trial <<= MIDDLE
-                    s.state <<= SEARCH
-                elif s.state != IDLE:       # a result: the window's zero, the last bit, or one that waits
-                    if s.room:
-                        s.code <<= s.result
-                        s.was_converted <<= s.waits_converted if s.state == WAIT else s.last
-                        s.full <<= 1
-                        s.state <<= IDLE
-                    else:
-                        s.trial <<= MIDDLE if s.state == BELOW else s.kept
-                        s.waits_converted <<= s.waits_converted if s.state == WAIT else s.last
-                        s.state <<= WAIT
-                if s.start:
-                    s.trial <<= concat(s.window, s.threshold) if s.window else Bits8(MIDDLE)     # level(T), or the MSB
-                    s.mask <<= MIDDLE
-                    s.state <<= ABOVE if s.window else SEARCH
+                s.search_made <<= 0
+            elif s.found:
+                if ~s.full | s.out.rdy:
+                    s.full <<= 1
+                    s.code <<= s.result
+                    s.search_made <<= (s.state == SEARCH) | (s.state == WAIT)
+            elif s.full & s.out.rdy:
+                s.full <<= 0
 
     def line_trace(s):
-        return f"{'iabsw'[int(s.state)]}{s.trial}{'*' if s.full else ' '}"
+        return f"{'iaboswz'[int(s.state)]}{s.trial}{'*' if s.full else ' '}"

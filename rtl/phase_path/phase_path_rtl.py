@@ -7,24 +7,34 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 from rtl.messages import SAMPLE, DivReq, ScanMsg
 from rtl.quad_divider import quad_divider
 
-ENTRY = 17                  # i0 or i0 - i180 (9, signed), i90 (8)
 IN_FLIGHT_MAX = 63          # more than any divider holds
 
 
 class TapEntry(Component):
-    """A register of the store."""
+    """A register of the store, and its link in the chain that reads the one whose turn it is."""
 
     def construct(s):
+        s.turn = InPort()
         s.write = InPort()
         s.next = InPort(Bits17)
-        s.value = OutPort(Bits17)
+        s.chain_in = InPort(Bits17)
+        s.chain_out = OutPort(Bits17)
+
+        s.value = Wire(Bits17)
+
+        @update
+        def up_chain():
+            s.chain_out @= s.chain_in
+            if s.turn:
+                s.chain_out @= s.value
 
         @update_ff
         def up_value():
             if s.reset:
                 s.value <<= 0
-            elif s.write:
-                s.value <<= s.next
+            elif s.turn:
+                if s.write:
+                    s.value <<= s.next
 
 
 class TapStore(Component):
@@ -34,10 +44,10 @@ class TapStore(Component):
     """
 
     def construct(s, lanes):
-        Index = mk_bits(max(1, clog2(lanes)))
+        Index, Lanes = mk_bits(max(1, clog2(lanes))), mk_bits(lanes)
 
         # Interface
-        s.on = InPort()
+        s.used = InPort()
         s.write = InPort()          # keep `sample` (taps 0 to 2)
         s.tap = InPort(Bits2)
         s.index = InPort(Index)     # number of the sample in its step
@@ -48,27 +58,31 @@ class TapStore(Component):
         # Components
         for i in range(lanes):
             setattr(s, f"entry{i}", TapEntry())
-        s.entries = Wire(mk_bits(ENTRY * lanes))
-        s.here = Wire(mk_bits(lanes))
-        s.entry = Wire(Bits17)
+        s.turn = Wire(Lanes)
+        s.none = Wire(Bits17)
+        s.entry = Wire(Bits17)      # i0 or i0 - i180 (9, signed), i90 (8)
         s.next = Wire(Bits17)
         s.wide = Wire(Bits9)
 
         # Connections
+        chain = s.none
         for i in range(lanes):
             entry = getattr(s, f"entry{i}")
-            entry.write //= s.here[i]
+            entry.turn //= s.turn[i]
+            entry.write //= s.write
             entry.next //= s.next
-            entry.value //= s.entries[ENTRY * i:ENTRY * i + ENTRY]
+            entry.chain_in //= chain
+            chain = entry.chain_out
+        s.none //= Bits17(0)
+        s.entry //= chain
 
         # Logic
         @update
-        def up_read():
-            s.entry @= 0
-            if s.on:
+        def up_turn():
+            s.turn @= 0
+            if s.used:
                 for i in range(lanes):
-                    if s.index == Index(i):
-                        s.entry @= s.entries[ENTRY * i:ENTRY * i + ENTRY]
+                    s.turn[i] @= s.index == Index(i)
 
         @update
         def up_next():
@@ -80,13 +94,6 @@ class TapStore(Component):
                 s.next @= concat(s.x, s.sample)
             elif s.tap == 2:
                 s.next @= concat(s.x - s.wide, s.entry[0:8])
-
-        @update
-        def up_here():
-            s.here @= 0
-            if s.write:
-                for i in range(lanes):
-                    s.here[i] @= s.index == Index(i)
 
     def line_trace(s):
         return f"{s.tap}:{s.index} {s.x},{s.y}"
@@ -123,7 +130,7 @@ class PhasePath(Component):
         s.consumed = Wire()
 
         # Connections
-        s.store.on //= s.on
+        s.store.used //= s.sample
         s.store.tap //= s.tap
         s.store.index //= s.index
         s.store.sample //= s.data[0:8]
