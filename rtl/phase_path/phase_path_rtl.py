@@ -1,6 +1,6 @@
 """PhasePath at RTL: a store of the taps, the divider, and the control that keeps the order."""
 
-from pymtl3 import (Bits2, Bits6, Bits8, Bits9, Bits10, Bits17, Component, InPort, OutPort, Wire, clog2, concat,
+from pymtl3 import (Bits2, Bits6, Bits8, Bits9, Bits10, Bits17, Component, InPort, OutPort, Wire, concat,
                     mk_bits, update, update_ff, zext)
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
@@ -44,13 +44,10 @@ class TapStore(Component):
     """
 
     def construct(s, lanes):
-        Index, Lanes = mk_bits(max(1, clog2(lanes))), mk_bits(lanes)
-
         # Interface
-        s.used = InPort()
         s.write = InPort()          # keep `sample` (taps 0 to 2)
         s.tap = InPort(Bits2)
-        s.index = InPort(Index)     # number of the sample in its step
+        s.turn = InPort(lanes)      # one-hot: number of the sample in its step
         s.sample = InPort(Bits8)
         s.x = OutPort(Bits9)        # of the sample at tap 3
         s.y = OutPort(Bits9)
@@ -58,7 +55,6 @@ class TapStore(Component):
         # Components
         for i in range(lanes):
             setattr(s, f"entry{i}", TapEntry())
-        s.turn = Wire(Lanes)
         s.none = Wire(Bits17)
         s.entry = Wire(Bits17)      # i0 or i0 - i180 (9, signed), i90 (8)
         s.next = Wire(Bits17)
@@ -78,13 +74,6 @@ class TapStore(Component):
 
         # Logic
         @update
-        def up_turn():
-            s.turn @= 0
-            if s.used:
-                for i in range(lanes):
-                    s.turn[i] @= s.index == Index(i)
-
-        @update
         def up_next():
             s.wide @= zext(s.sample, 9)
             s.x @= s.entry[8:17]
@@ -96,14 +85,15 @@ class TapStore(Component):
                 s.next @= concat(s.x - s.wide, s.entry[0:8])
 
     def line_trace(s):
-        return f"{s.tap}:{s.index} {s.x},{s.y}"
+        return f"{s.tap}:{s.turn} {s.x},{s.y}"
 
 
 class PhasePath(Component):
     """lanes: of the bank ahead. divider, n_frac, iterations: see rtl.quad_divider."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
-        Index = mk_bits(max(1, clog2(lanes)))
+        Lanes = mk_bits(lanes)
+        FIRST = Lanes(1)
 
         # Interface
         s.recv = RecvIfcRTL(ScanMsg)
@@ -118,7 +108,7 @@ class PhasePath(Component):
         s.kind = Wire(Bits2)
         s.data = Wire(Bits10)
         s.tap = Wire(Bits2)
-        s.index = Wire(Index)
+        s.turn = Wire(Lanes)        # one-hot: number in its step of the sample in the register
         s.in_flight = Wire(Bits6)   # requests whose responses have not left
         s.second = Wire()           # the phase of a response left, its amplitude is next
 
@@ -130,9 +120,8 @@ class PhasePath(Component):
         s.consumed = Wire()
 
         # Connections
-        s.store.used //= s.sample
         s.store.tap //= s.tap
-        s.store.index //= s.index
+        s.store.turn //= s.turn
         s.store.sample //= s.data[0:8]
         s.store.x //= s.divider.recv.msg.x
         s.store.y //= s.divider.recv.msg.y
@@ -189,11 +178,11 @@ class PhasePath(Component):
         def up_position():
             if s.reset:
                 s.tap <<= 0
-                s.index <<= 0
+                s.turn <<= FIRST
             elif s.store.write | s.asked:
-                s.index <<= s.index + 1
+                s.turn <<= s.turn << 1
                 if s.data[9]:
-                    s.index <<= 0
+                    s.turn <<= FIRST
                     s.tap <<= s.tap + 1
 
         @update_ff
