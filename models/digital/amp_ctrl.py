@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, fields
 
+import numpy as np
+
 TAPS = 4
 
 
@@ -32,7 +34,7 @@ def row_waveform(timing, four_tap=False):
     """
     for tap in range(TAPS if four_tap else 1):
         yield from _sub_frame(timing, tap)
-    yield AmpPins(tap=tap, done=1)
+    yield AmpPins(done=1)
 
 
 def _sub_frame(t, tap):
@@ -56,8 +58,25 @@ def _sub_frame(t, tap):
     for length, reference in ((t.t_settle, 1), (t.t_read, 0)):
         yield from phase(length - 1, read=1, ref_ctl=reference)
         yield AmpPins(tap=tap, busy=1, read=1, ref_ctl=reference, sample=1)
-    # With the tap's number counting up behind the guard, the guard still shows the tap it follows.
+    # The tap counts up behind the guard, long after the second `sample`, into this tap's capacitors, has ended.
     yield from phase(t.t_guard)
+
+
+def waveform(timing, four_tap, hold_free):
+    """One row for a known pattern of hold_free: dict of pin name -> uint8 array, an entry a cycle.
+
+    timing: AmpTiming. hold_free: bools, entry i for the i-th cycle behind `start`. The arrays end with the cycle of
+    `done`, or with hold_free if that is shorter.
+    """
+    row, cycles = row_waveform(timing, four_tap), []
+    pins = next(row)
+    for free in hold_free:
+        cycles.append(pins)
+        if pins.done:
+            break
+        pins = row.send(bool(free))
+    table = np.array([list(vars(pins).values()) for pins in cycles], np.uint8).reshape(-1, len(PIN_NAMES))
+    return dict(zip(PIN_NAMES, table.T))
 
 
 def row_cycles(timing, four_tap=False):
@@ -66,5 +85,3 @@ def row_cycles(timing, four_tap=False):
     tap = (t.t_reset + (t.n_cm + 1) * (t.t_int + t.t_guard) + t.n_cm * (t.t_cm + t.t_guard) + t.t_guard
            + t.t_settle + t.t_read + t.t_guard)
     return t.t_guard + (TAPS if four_tap else 1) * tap
-
-

@@ -26,7 +26,7 @@ class AmpCtrlFL(Component):
                 if s.pins.done:
                     s.row = None
             else:
-                s.pins = AmpPins(tap=s.pins.tap)
+                s.pins = AmpPins()
                 if s.start:
                     s.begin()
             # one by one: PyMTL finds the registers of a block by reading it
@@ -46,7 +46,6 @@ class AmpCtrlFL(Component):
         """`start` in idle: capture the durations; a zero one is refused."""
         durations = {name: int(getattr(s, name)) for name in DURATIONS}
         s.error = int(0 in durations.values())
-        s.pins = AmpPins()
         if not s.error:
             s.row = row_waveform(AmpTiming(n_cm=int(s.n_cm), **durations), bool(s.four_tap))
             s.pins = next(s.row)

@@ -107,10 +107,9 @@ class AmpCtrl(Component):
                 s.busy <<= s.next_state != IDLE
                 s.done <<= s.sub_frame_done & ~s.next_tap
                 if s.accept:
-                    s.tap <<= 0
                     s.cfg_err <<= s.zero
-                elif s.sub_frame_done & s.next_tap:
-                    s.tap <<= s.tap + 1
+                if s.sub_frame_done & s.d_four:
+                    s.tap <<= s.tap + 1     # behind the last one it is 0 again
                 if s.last & (s.state == RESET):
                     s.resets <<= s.d_n_cm
                 elif s.last & (s.state == CM_RESET):
