@@ -118,11 +118,15 @@ module Afe #(
       index = 28'd0;
     end
     always @(posedge clk)
-      if (hold && en[l]) begin
+      if (hold && en[l])
         held <= value(l) + (noisy ? ktc_scale * $itor(counts(pixel(l, sub), KTC)) : 0.0) + $bitstoreal(words[HEAD+l]);
-        index <= pixel(l, sub);
-        if (noisy) noise <= noise_scale * $itor(counts(pixel(l, sub), 4'd0));
-      end else if (noisy) noise <= noise_scale * $itor(counts(index, next_decision));
+    always @(posedge clk)
+      if (noisy) begin
+        if (hold && en[l]) begin
+          index <= pixel(l, sub);
+          noise <= noise_scale * $itor(counts(pixel(l, sub), 4'd0));
+        end else noise <= noise_scale * $itor(counts(index, next_decision));
+      end
     assign comparator[l] = held + noise >= level(l, unsigned_, dac[8*l+:8]);
   end
 endmodule
