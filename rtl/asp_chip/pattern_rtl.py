@@ -11,7 +11,8 @@ class Pattern(Component):
     """
 
     def construct(s, lanes):
-        Lanes, Codes = mk_bits(lanes), mk_bits(8 * lanes)
+        Lanes = mk_bits(lanes)
+        Codes = mk_bits(8 * max(lanes, 2))      # PyMTL cannot take a slice in a loop that is the whole signal
         MIDDLE = Bits6(0x20)
         GROUP_STEP = Bits8(5 * lanes)
 
@@ -21,7 +22,7 @@ class Pattern(Component):
         s.k = InPort(Bits3)
         s.sub = InPort(Bits2)
         s.hold = InPort()
-        s.dac = InPort(Codes)
+        s.dac = InPort(mk_bits(8 * lanes))
         s.analog = InPort(Lanes)
         s.comparator = OutPort(Lanes)
 
@@ -31,7 +32,11 @@ class Pattern(Component):
         s.tile_bit = Wire(Lanes)        # bit 1 of each lane's tile column
         s.pattern = Wire(Codes)
         s.held = Wire(Codes)
+        s.trials = Wire(Codes)
 
+        s.trials[0:8 * lanes] //= s.dac
+        if lanes == 1:
+            s.trials[8:16] //= 0
         s.lane_steps //= Codes(sum((5 * lane & 0xFF) << 8 * lane for lane in range(lanes)))
         shift = clog2(lanes) if lanes > 1 else 0
         for lane in range(lanes):
@@ -64,7 +69,7 @@ class Pattern(Component):
             s.comparator @= s.analog
             if s.on:
                 for lane in range(lanes):
-                    s.comparator[lane] @= s.held[lane * 8:lane * 8 + 8] >= s.dac[lane * 8:lane * 8 + 8]
+                    s.comparator[lane] @= s.held[lane * 8:lane * 8 + 8] >= s.trials[lane * 8:lane * 8 + 8]
 
     def line_trace(s):
         return f"{s.held if s.on else s.analog}"
