@@ -118,7 +118,7 @@ module Afe #(
       index = 28'd0;
     end
     always @(posedge clk)
-      if (hold && en[l])
+      if (hold) if (en[l])
         held <= value(l) + (noisy ? ktc_scale * $itor(counts(pixel(l, sub), KTC)) : 0.0) + $bitstoreal(words[HEAD+l]);
     always @(posedge clk)
       if (noisy) begin

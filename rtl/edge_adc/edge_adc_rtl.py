@@ -79,15 +79,23 @@ class EdgeAdc(Component):
             if s.reset:
                 s.state <<= IDLE
                 s.trial <<= 0
+                s.full <<= 0
+                s.code <<= 0
+                s.search_made <<= 0
             else:
+                if s.full & s.out.rdy:
+                    s.full <<= 0
                 if s.state != IDLE:
                     if s.found:
                         if ~s.full | s.out.rdy:
                             s.state <<= IDLE
-                        elif (s.state == SEARCH) | (s.state == WAIT):
+                            s.full <<= 1
+                            s.code <<= s.result
+                            s.search_made <<= (s.state == SEARCH) | (s.state == WAIT)
+                        elif s.state == SEARCH:
                             s.trial <<= s.kept
                             s.state <<= WAIT
-                        else:
+                        elif s.state == BELOW:
                             s.state <<= WAIT_ZERO
                     elif s.state == SEARCH:
                         s.trial <<= s.kept | ((s.trial & (~s.trial + 1)) >> 1)
@@ -104,20 +112,6 @@ class EdgeAdc(Component):
                         if ~s.unsigned_ & (s.threshold != 0):
                             s.trial <<= zext(s.threshold, 8) | MIDDLE       # level(T)
                             s.state <<= ABOVE
-
-        @update_ff
-        def up_out():
-            if s.reset:
-                s.full <<= 0
-                s.code <<= 0
-                s.search_made <<= 0
-            elif s.found:
-                if ~s.full | s.out.rdy:
-                    s.full <<= 1
-                    s.code <<= s.result
-                    s.search_made <<= (s.state == SEARCH) | (s.state == WAIT)
-            elif s.full & s.out.rdy:
-                s.full <<= 0
 
     def line_trace(s):
         return f"{'iaboswz'[int(s.state)]}{s.trial}{'*' if s.full else ' '}"
