@@ -162,3 +162,11 @@ def test_other_lanes_and_dividers(cls, chip):
         assert got.messages == expected(frame, chip, 10)
         reference = Run(simulator(PhasePathCL, False, chip), messages(frame), True, 10, pattern)
         assert vars(got) == vars(reference)
+
+
+@pytest.mark.parametrize("divider, cycles", [("radix2", 102), ("radix4", 74), ("pipelined", 32), ("cordic", 116)])
+def test_cycles_of_a_full_step(divider, cycles):
+    """From tap 0 of one step of eight samples to tap 0 of the next, with nothing in the way."""
+    chip = ChipParameters(LANES, divider)
+    got = Run(simulator(PhasePathCL, False, chip), messages([(1, [[[9] * 8] * 4] * 3)]), True)
+    assert np.diff(np.array(got.in_at[2:-1]).reshape(3, 32)[:, 0]).tolist() == [cycles, cycles]
