@@ -1,99 +1,174 @@
-"""The steps of one row: types, groups and sub-samples, ascending; what is masked costs no cycle."""
+"""The steps of one row: columns of the tile, groups, sub-samples, ascending; no step is empty."""
 
-from pymtl3 import Bits4, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
+from pymtl3 import Bits8, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
+
+STRIDES = (1, 2, 4, 8)      # tiles, by decimation
 
 
 class StepWalk(Component):
-    """Loaded with a row's columns it stands at its first step; ``advance`` moves it on; ``last`` is its last.
+    """``load`` puts it at the first step of a row that reads ``columns``; ``advance`` moves it on unless at the last.
 
-    columns: bit k = in-tile column k is read. subs: sub-samples of a pixel, less one.
+    lanes: a power of two. last_col: index of the last tile across. cols_there: columns that exist in it.
+
+    Lanes whose tiles decimation keeps are the same in every group, for stride and lanes are powers of two;
+    only the first group loses those left of col0, and the last one those right of the last tile that is kept.
     """
 
-    def construct(s, lanes, last_tile, last_cols):
-        """lanes: a power of two. last_tile: index of the last tile column. last_cols: columns in it, 1..6."""
+    def construct(s, lanes, last_col, cols_there):
+        Lanes = mk_bits(lanes)
         shift = lanes.bit_length() - 1
 
         # Interface
         s.load = InPort()
         s.advance = InPort()
         s.columns = InPort(6)
-        s.subs = InPort(2)
+        s.subs = InPort(2)          # sub-samples of a pixel less one
         s.col0 = InPort(8)
         s.col1 = InPort(8)
         s.decimation = InPort(2)
         s.k = OutPort(3)
         s.group = OutPort(8)
         s.sub = OutPort(2)
-        s.en = OutPort(lanes)
-        s.last = OutPort()
+        s.en = OutPort(Lanes)
+        s.last = OutPort()          # the row's last step
 
         # Components
-        s.left = Wire(6)            # columns still to come, this one not counted
-        s.stride = Wire(4)
-        s.group_step = Wire(9)
-        s.far = Wire(9)
+        s.last_tile = Wire(8)       # last tile that is kept in column k
+        s.left = Wire(6)            # columns still to come
         s.sub_ends, s.group_ends = Wire(), Wire()
-        s.pending, s.rest = Wire(6), Wire(6)
+        s.regroup = Wire()          # the next step has another group
+        s.turn = Wire()             # and another column
+        s.pending = Wire(6)
         s.next_k = Wire(3)
+        s.rest = Wire(6)
+        s.bound = Wire(8)
+        s.stride_mask = Wire(8)
+        s.group_step = Wire(8)
+        s.next_last_tile = Wire(8)
+        s.next_group = Wire(8)
 
-        # Logic
-        @update
-        def up_stride():
-            s.stride @= Bits4(1) << zext(s.decimation, 4)
-            s.group_step @= zext(s.stride, 9) >> shift
-            if (zext(s.stride, 9) >> shift) == 0:
-                s.group_step @= 1
-            s.far @= zext(s.group, 9) + s.group_step
-
+        # Logic: when
         @update
         def up_ends():
             s.sub_ends @= s.sub == s.subs
-            s.group_ends @= s.far > zext(s.col1 >> shift, 9)
+            s.group_ends @= s.group == (s.last_tile >> shift)
             s.last @= s.sub_ends & s.group_ends & (s.left == 0)
+            s.regroup @= s.load | (s.advance & s.sub_ends & ~s.last)
+            s.turn @= s.load | (s.advance & s.sub_ends & s.group_ends & ~s.last)
 
+        # Logic: what comes next; the conditions only spare simulators the work
         @update
         def up_column():
-            s.pending @= s.left
-            if s.load:
-                s.pending @= s.columns
-            s.next_k @= 0
-            for i in range(6):
-                if s.pending[5 - i]:
-                    s.next_k @= 5 - i
-            s.rest @= s.pending & (s.pending - 1)
+            s.pending @= s.columns if s.load else s.left
+            s.next_k @= 5
+            s.rest @= 0
+            s.bound @= s.col1
+            if s.turn:
+                s.rest @= s.pending & (s.pending - 1)
+                if s.pending[0]:
+                    s.next_k @= 0
+                elif s.pending[1]:
+                    s.next_k @= 1
+                elif s.pending[2]:
+                    s.next_k @= 2
+                elif s.pending[3]:
+                    s.next_k @= 3
+                elif s.pending[4]:
+                    s.next_k @= 4
+                if (s.col1 == last_col) & (s.next_k >= cols_there):
+                    s.bound @= s.col1 - 1
+
+        STRIDE_MASK = [Bits8(n - 1) for n in STRIDES]
+        GROUP_STEP = [Bits8(max(1, n // lanes)) for n in STRIDES]
+        mask_0, mask_1, mask_2, mask_3 = STRIDE_MASK
+        step_0, step_1, step_2, step_3 = GROUP_STEP
+
+        @update
+        def up_stride():
+            s.stride_mask @= mask_0
+            s.group_step @= step_0
+            if s.decimation == 1:
+                s.stride_mask @= mask_1
+                s.group_step @= step_1
+            elif s.decimation == 2:
+                s.stride_mask @= mask_2
+                s.group_step @= step_2
+            elif s.decimation == 3:
+                s.stride_mask @= mask_3
+                s.group_step @= step_3
+
+        @update
+        def up_group():
+            s.next_group @= s.group + s.group_step
+            s.next_last_tile @= s.last_tile
+            if s.turn:
+                s.next_group @= s.col0 >> shift
+                s.next_last_tile @= s.bound - ((s.bound - s.col0) & s.stride_mask)
+
+        if lanes == 1:
+            s.en //= 1
+        else:
+            add_lanes(s, lanes, shift, Lanes)
 
         @update_ff
-        def up_state():
+        def up_step():
             if s.reset:
                 s.k <<= 0
                 s.group <<= 0
                 s.sub <<= 0
+                s.last_tile <<= 0
                 s.left <<= 0
-            elif s.load:
-                s.k <<= s.next_k
-                s.left <<= s.rest
-                s.group <<= s.col0 >> shift
-                s.sub <<= 0
-            elif s.advance:
-                if ~s.sub_ends:
-                    s.sub <<= s.sub + 1
-                else:
+            else:
+                if s.load | (s.advance & s.sub_ends):
                     s.sub <<= 0
-                    if ~s.group_ends:
-                        s.group <<= s.far[0:8]
-                    else:
-                        s.group <<= s.col0 >> shift
-                        s.k <<= s.next_k
-                        s.left <<= s.rest
+                elif s.advance:
+                    s.sub <<= s.sub + 1
+                if s.regroup:
+                    s.group <<= s.next_group
+                    s.last_tile <<= s.next_last_tile
+                if s.turn:
+                    s.k <<= s.next_k
+                    s.left <<= s.rest
 
-        s.tile = Wire(mk_bits(9 * lanes))
-        s.off = Wire(mk_bits(9 * lanes))
+    def line_trace(s):
+        return f"k{s.k} g{s.group} s{s.sub} {s.en.bin()}"
 
-        @update
-        def up_enable():
-            for i in range(lanes):
-                s.tile[9 * i:9 * i + 9] @= (zext(s.group, 9) << shift) + i
-                s.off[9 * i:9 * i + 9] @= (s.tile[9 * i:9 * i + 9] - zext(s.col0, 9)) & (zext(s.stride, 9) - 1)
-                s.en[i] @= ((s.tile[9 * i:9 * i + 9] >= zext(s.col0, 9)) & (s.tile[9 * i:9 * i + 9] <= zext(s.col1, 9))
-                            & (s.off[9 * i:9 * i + 9] == 0)
-                            & ~((s.tile[9 * i:9 * i + 9] == last_tile) & (s.k >= last_cols)))
+
+def add_lanes(s, lanes, shift, Lanes):
+    """The lanes that convert, of two or more: a register in StepWalk ``s``."""
+    ALL = Lanes((1 << lanes) - 1)
+    kept = [Lanes(sum(1 << lane for lane in range(0, lanes, n))) for n in STRIDES]
+    kept_1, kept_2, kept_3 = kept[1:]
+    few = min(3, shift)         # bits of a tile's number that decimation looks at within a group
+
+    s.offset = Wire(few)
+    s.kept = Wire(Lanes)        # by decimation, with the first lane kept
+    s.next_en = Wire(Lanes)
+
+    @update
+    def up_kept():
+        s.offset @= s.col0[0:few] & s.stride_mask[0:few]
+        s.kept @= ALL
+        if s.decimation == 1:
+            s.kept @= kept_1
+        elif s.decimation == 2:
+            s.kept @= kept_2
+        elif s.decimation == 3:
+            s.kept @= kept_3
+
+    @update
+    def up_enable():
+        s.next_en @= 0
+        if s.regroup:
+            s.next_en @= s.kept << zext(s.offset, Lanes)
+            if s.next_group == (s.col0 >> shift):
+                s.next_en @= s.next_en & (ALL << zext(s.col0[0:shift], Lanes))
+            if s.next_group == (s.next_last_tile >> shift):
+                s.next_en @= s.next_en & (ALL >> zext(~s.next_last_tile[0:shift], Lanes))
+
+    @update_ff
+    def up_lanes():
+        if s.reset:
+            s.en <<= 0
+        elif s.regroup:
+            s.en <<= s.next_en

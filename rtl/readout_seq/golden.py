@@ -1,0 +1,32 @@
+"""The golden scan behind ReadoutSeq's ports: configuration from them, messages to them."""
+
+from models.digital.scan import Scan
+from models.parameters import MODES, FrameParameters, TileParameters, Window
+from rtl.messages import END, FRAME, ROW, SAMPLE, step_msg
+
+from .ports import WINDOW
+
+
+def configured_scan(s, rows, cols, lanes, tile):
+    """The Scan that the ports of component ``s`` ask for. Raises ParameterError where no frame can start."""
+    window = Window(*(int(getattr(s, name)) for name in WINDOW))
+    # the ports cannot hold a frame's other fields; a mask of 0 is refused here, one of unused types by Scan
+    frame = FrameParameters(window, MODES[int(s.mode)], int(s.mask), decimation=int(s.decimation))
+    return Scan(rows, cols, lanes, frame, tile)
+
+
+def tile_of(order, tile_rows, tile_cols):
+    """TileParameters whose positions lie in ``order``."""
+    return TileParameters(tile_rows, tile_cols, TileParameters().types[:tile_rows * tile_cols], tuple(order))
+
+
+def row_steps(scan, row):
+    """The messages that convert one row, in order: list of StepMsg."""
+    Step = step_msg(scan.lanes)
+    return [Step(SAMPLE, row, step.group, step.k, step.sub, step.enable) for step in scan.steps(row) if step.enable]
+
+
+def mark(kind, lanes, row=0):
+    """The FRAME, ROW or END message."""
+    assert kind in (FRAME, ROW, END)
+    return step_msg(lanes)(kind, row)

@@ -1,0 +1,48 @@
+"""ReadoutSeq's ports, the same at every level, and what its parameters say of the array's edges."""
+
+from typing import NamedTuple
+
+from pymtl3 import InPort, OutPort
+from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+
+from models.parameters import COLS_MAX, LANES, ROWS_MAX, ParameterError, TileParameters, check_choice, check_int
+from rtl.messages import step_msg
+
+WINDOW = ("row0", "row1", "col0", "col1")
+
+
+class Edges(NamedTuple):
+    """last_row, last_col: index of the last tile down and across, 0..255.
+    rows_there, cols_there: rows and columns of pixels that exist in them, 1..tile's.
+    """
+
+    last_row: int
+    rows_there: int
+    last_col: int
+    cols_there: int
+
+
+def edges(rows, cols, lanes, order, tile_rows, tile_cols):
+    """Edges of an array of rows x cols pixels. Raises ParameterError for what the ports cannot address."""
+    check_int("rows", rows, 1, ROWS_MAX)
+    check_int("cols", cols, 1, COLS_MAX)
+    check_choice("lanes", lanes, LANES)
+    TileParameters(tile_rows, tile_cols, TileParameters().types[:tile_rows * tile_cols], tuple(order))
+    last_row, last_col = (rows - 1) // tile_rows, (cols - 1) // tile_cols
+    if max(last_row, last_col) > 255:
+        raise ParameterError(f"array = {rows} x {cols}: must be at most 256 x 256 tiles of {tile_rows} x {tile_cols}")
+    return Edges(last_row, rows - last_row * tile_rows, last_col, cols - last_col * tile_cols)
+
+
+def declare_ports(s, lanes):
+    """Give the component ``s`` its ports."""
+    s.start, s.overlap = InPort(), InPort()
+    s.mode, s.mask, s.decimation = InPort(2), InPort(24), InPort(2)
+    for name in WINDOW:
+        setattr(s, name, InPort(8))
+    s.amp_done, s.amp_err, s.bank_idle = InPort(), InPort(), InPort()
+    s.busy, s.done, s.cfg_err = OutPort(), OutPort(), OutPort()
+    s.amp_start, s.amp_row = OutPort(), OutPort(10)
+    s.four_tap, s.hold_free = OutPort(), OutPort()
+    s.step = SendIfcRTL(step_msg(lanes))
+    s.cycles = OutPort(64)

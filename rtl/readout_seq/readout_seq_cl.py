@@ -1,0 +1,123 @@
+"""ReadoutSeq at cycle level: the RTL's cycles and stalls, data by the golden scan."""
+
+from pymtl3 import Component, update, update_ff
+
+from models.parameters import MODES, ParameterError
+from rtl.messages import END, FRAME, ROW
+
+from .golden import configured_scan, mark, row_steps, tile_of
+from .ports import declare_ports, edges
+
+
+class ReadoutSeqCL(Component):
+    """Same ports as ReadoutSeq, and the same values on them in every cycle (README.md)."""
+
+    def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6):
+        edges(rows, cols, lanes, order, tile_rows, tile_cols)
+        declare_ports(s, lanes)
+        s.size = rows, cols, lanes, tile_of(order, tile_rows, tile_cols)
+        s.clear()
+
+        @update
+        def up_four_tap():
+            s.four_tap @= MODES[int(s.mode)] == "tof"
+
+        @update_ff
+        def behave():
+            if s.reset:
+                s.clear()
+            else:
+                s.tick()
+            s.busy <<= s.frame is not None
+            s.done <<= s.ended
+            s.cfg_err <<= s.error
+            s.amp_start <<= s.started
+            s.amp_row <<= s.amplified
+            s.hold_free <<= s.held is None
+            s.step.val <<= s.offer is not None
+            if s.offer is not None:
+                s.step.msg <<= s.offer
+            s.cycles <<= s.count
+
+    def clear(s):
+        """The state behind a reset."""
+        s.frame = None              # generator: the walk through the frame, a cycle a step
+        s.todo = None               # rows that the amplifiers have not begun
+        s.amplified = 0             # the row they began last
+        s.integrating = s.started = s.failing = s.ended = s.error = False
+        s.held = None               # row in the sample-and-holds
+        s.offer = None              # message at the port
+        s.count = 0
+
+    def tick(s):
+        """What the edge at the end of a cycle does."""
+        was_started, s.started, s.ended = s.started, False, False
+        if s.frame is None:
+            if s.start:
+                s.begin()
+            return
+        s.count += 1
+        if s.integrating and not was_started:
+            if s.amp_err:
+                s.integrating, s.failing = False, True
+            elif s.amp_done:
+                s.integrating, s.held = False, s.amplified
+                if s.overlap:
+                    s.launch()
+        if s.failing and (s.offer is None or s.step.rdy):
+            count, row = s.count, s.amplified
+            s.clear()
+            s.count, s.amplified, s.error = count, row, True
+        else:
+            next(s.frame, None)
+
+    def begin(s):
+        """`start` in idle."""
+        try:
+            scan = configured_scan(s, *s.size)
+        except ParameterError:
+            s.error = True
+            return
+        s.error, s.count = False, 0
+        s.todo = [int(row) for row in scan.row_list]
+        s.frame = s.walk(scan)
+        next(s.frame)
+
+    def launch(s):
+        """Give the next row, if there is one, to the amplifiers."""
+        if s.todo:
+            s.amplified = s.todo.pop(0)
+            s.integrating = s.started = True
+
+    def walk(s, scan):
+        """A frame; every yield is one clock cycle."""
+        s.launch()
+        yield           # `amp_start`
+        yield           # and its answer, which may be `amp_err`
+        yield from s.send(mark(FRAME, scan.lanes))
+        while s.integrating or s.held is not None:
+            yield
+            while s.held is None:
+                yield
+            yield from s.send(mark(ROW, scan.lanes, s.held))
+            for step in row_steps(scan, s.held):
+                yield from s.send(step)
+            yield
+            while not s.bank_idle:
+                yield
+            s.held = None
+            if not s.integrating:
+                s.launch()
+        yield from s.send(mark(END, scan.lanes))
+        s.frame, s.ended = None, True
+
+    def send(s, msg):
+        """Offer ``msg`` until it is taken."""
+        s.offer = msg
+        yield
+        while not s.step.rdy:
+            yield
+        s.offer = None
+
+    def line_trace(s):
+        return f"amp {s.amplified} {s.step}"

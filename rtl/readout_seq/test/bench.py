@@ -1,0 +1,207 @@
+"""What surrounds ReadoutSeq: amplifiers and converter bank as their handshakes alone, and a record of a frame."""
+
+from dataclasses import dataclass, field
+from functools import cache
+
+from models.digital.scan import Scan
+from models.parameters import MODES, FrameParameters, ParameterError, TileParameters, Window
+from rtl.amp_ctrl import AmpCtrl
+from rtl.messages import END, FRAME, ROW, SAMPLE
+from rtl.testbench import build
+
+CONFIGURATION = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap")
+QUIET = dict(start=0, amp_done=0, amp_err=0, bank_idle=1)
+SMALL_TILE = 3, 5, (4, 14, 0, 9, 2, 7, 13, 1, 8, 3, 10, 6, 12, 5, 11)
+
+
+@dataclass(frozen=True)
+class Size:
+    """Parameters of ReadoutSeq."""
+
+    rows: int
+    cols: int
+    lanes: int
+    tile_rows: int = 4
+    tile_cols: int = 6
+    order: tuple = TileParameters().order
+
+    @property
+    def tiles(self):
+        return -(-self.rows // self.tile_rows), -(-self.cols // self.tile_cols)
+
+    @property
+    def arguments(self):
+        return self.rows, self.cols, self.lanes, self.order, self.tile_rows, self.tile_cols
+
+    def whole(self, **ports):
+        """Values of the configuration ports for the whole array, all types, but for ``ports``."""
+        rows, cols = self.tiles
+        return dict(mode=0, mask=2**24 - 1, row0=0, row1=rows - 1, col0=0, col1=cols - 1, decimation=0,
+                    overlap=0) | ports
+
+    def scan(self, ports):
+        """The golden Scan, or None where these values of the ports are an error."""
+        types = TileParameters().types[:self.tile_rows * self.tile_cols]
+        try:
+            frame = FrameParameters(Window(*(ports[n] for n in CONFIGURATION[2:6])), MODES[ports["mode"]],
+                                    ports["mask"], decimation=ports["decimation"])
+            return Scan(self.rows, self.cols, self.lanes, frame,
+                        TileParameters(self.tile_rows, self.tile_cols, types, self.order))
+        except ParameterError:
+            return None
+
+
+@cache
+def simulator(cls, size, verilog):
+    return build(cls(*size.arguments), verilog, f"ReadoutSeq_{size.rows}_{size.cols}_{size.lanes}")
+
+
+def messages(scan):
+    """The golden messages of a frame, (kind, row, group, k, sub, en); 0 where a kind says nothing."""
+    out = [(FRAME, 0, 0, 0, 0, 0)]
+    for row in scan.row_list:
+        out.append((ROW, row, 0, 0, 0, 0))
+        out += [(SAMPLE, s.row, s.group, s.k, s.sub, s.enable) for s in scan.steps(row) if s.enable]
+    return out + [(END, 0, 0, 0, 0, 0)]
+
+
+def said(msg):
+    """A StepMsg as ``messages`` writes it."""
+    kind = int(msg.kind)
+    if kind == SAMPLE:
+        return (kind, *(int(getattr(msg, name)) for name in ("row", "group", "k", "sub", "en")))
+    return kind, int(msg.row) if kind == ROW else 0, 0, 0, 0, 0
+
+
+def amplifiers(integrate, read, err_at=None):
+    """AmpCtrl's handshake, a cycle a yield: gives (amp_done, amp_err), is sent (amp_start, hold_free).
+
+    integrate, read: functions that give a row's cycles. From start to done there are integrate + read + 1.
+    err_at: (row counted from 0, cycles behind its start, amp_done too) at which amp_err rises, to stay until the
+    next start.
+    """
+    err, number = 0, -1
+    start, _ = yield 0, 0
+    while True:
+        while not start:
+            start, _ = yield 0, err
+        err, number = 0, number + 1
+        if err_at and err_at[0] == number:
+            for _ in range(err_at[1]):
+                start, _ = yield 0, 0
+                assert not start
+            err = 1
+            start, _ = yield err_at[2], err
+            continue
+        for _ in range(integrate()):
+            start, free = yield 0, 0
+            assert not start, "amp_start while a row is under way"
+        while not free:
+            start, free = yield 0, 0
+        for _ in range(read()):
+            start, _ = yield 0, 0
+        start, _ = yield 1, 0
+
+
+@cache
+def amp_ctrl_simulator():
+    return build(AmpCtrl())
+
+
+def amp_ctrl(timing, four_tap):
+    """The real AmpCtrl in place of ``amplifiers``; timing: AmpTiming, or None for durations of 0."""
+    sim = amp_ctrl_simulator()
+    for name in ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm"):
+        port = getattr(sim, name)
+        port @= getattr(timing, name) if timing else 0
+    sim.four_tap @= int(four_tap)
+    sim.reset @= 1
+    sim.sim_tick()
+    sim.reset @= 0
+    while True:
+        start, free = yield int(sim.done), int(sim.cfg_err)
+        assert not (start and sim.busy), "amp_start while a row is under way"
+        assert free or not sim.read, "a sample-and-hold in use is overwritten"
+        sim.start @= start
+        sim.hold_free @= free
+        sim.sim_tick()
+
+
+def bank(ready, conversion):
+    """AdcBank's handshake: gives (rdy, idle), is sent whether a step was taken. Functions: rdy, cycles of a step."""
+    busy = 0
+    while True:
+        taken = yield ready(), int(busy == 0)
+        busy = conversion() if taken else max(0, busy - 1)
+
+
+@dataclass
+class Record:
+    """What was seen, by cycle; `start` is given in cycle 0."""
+
+    taken: list = field(default_factory=list)       # (cycle, message)
+    starts: list = field(default_factory=list)      # (cycle, amp_row)
+    dones: list = field(default_factory=list)
+    idle: list = field(default_factory=list)        # bank_idle of every cycle
+    pins: list = field(default_factory=list)        # and the output pins
+    standing: tuple = None                          # an offer that was not taken in the last cycle
+
+    @property
+    def messages(self):
+        return [msg for _, msg in self.taken]
+
+
+class Bench:
+    """One simulator of any level, and its surroundings, which live on from frame to frame."""
+
+    def __init__(self, sim, amplifier, converters):
+        self.sim, self.amplifier, self.converters = sim, amplifier, converters
+        self.answer, self.supply = next(amplifier), next(converters)
+        self.reset()
+
+    def drive(self, **ports):
+        for name, value in ports.items():
+            port = getattr(self.sim, name)
+            port @= value
+
+    def reset(self):
+        self.drive(**QUIET, reset=1)
+        self.sim.step.rdy @= 0
+        self.sim.sim_tick()
+        self.sim.reset @= 0
+
+    def cycle(self, record, start=0):
+        """One clock cycle; returns the pins in it."""
+        sim = self.sim
+        ready, idle = self.supply
+        self.drive(start=start, amp_done=self.answer[0], amp_err=self.answer[1], bank_idle=idle)
+        sim.step.rdy @= ready
+        sim.sim_eval_combinational()
+        pins = {name: int(getattr(sim, name)) for name in
+                ("busy", "done", "cfg_err", "amp_start", "amp_row", "four_tap", "hold_free", "cycles")}
+        pins["offer"] = said(sim.step.msg) if sim.step.val else None
+        taken = pins["offer"] is not None and ready
+        number = len(record.pins)
+        assert record.standing in (None, pins["offer"]), "an offer was changed or taken back"
+        record.standing = None if taken else pins["offer"]
+        record.pins.append(pins)
+        record.idle.append(idle)
+        if taken:
+            record.taken.append((number, pins["offer"]))
+        if pins["amp_start"]:
+            record.starts.append((number, pins["amp_row"]))
+        if self.answer[0]:
+            record.dones.append(number)
+        self.answer = self.amplifier.send((pins["amp_start"], pins["hold_free"]))
+        self.supply = self.converters.send(taken and pins["offer"][0] == SAMPLE)
+        sim.sim_tick()
+        return pins
+
+    def frame(self, ports, noise=lambda: 0, limit=12_000):
+        """Start a frame and run until busy falls; ``noise``: starts while busy. Returns Record."""
+        record = Record()
+        self.drive(**ports)
+        self.cycle(record, start=1)
+        while self.cycle(record, start=noise() if self.sim.busy else 0)["busy"]:
+            assert len(record.pins) < limit
+        return record

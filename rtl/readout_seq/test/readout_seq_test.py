@@ -1,0 +1,229 @@
+"""ReadoutSeq at every level: the golden scan's messages and rows, whatever the timing around it."""
+
+import random
+
+import pytest
+from hypothesis import HealthCheck, given, settings, strategies as st
+
+from models.digital.amp_ctrl import row_cycles
+from models.parameters import AmpTiming, ParameterError
+from rtl.messages import END, FRAME, ROW, SAMPLE
+from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
+
+from .bench import SMALL_TILE, Bench, Record, Size, amp_ctrl, amplifiers, bank, messages, simulator
+
+# A test that several levels inherit runs on each of them: that is meant.
+SETTINGS = settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
+SIZES = (Size(7, 31, 2), Size(1, 1, 1), Size(13, 45, 4), Size(1, 75, 8), Size(9, 1, 1), Size(6, 130, 32),
+         Size(8, 26, 4, *SMALL_TILE))
+LARGEST = Size(1024, 1536, 1)
+seeds = st.integers(0, 2**32)
+masks = st.one_of(st.just(2**24 - 1), st.integers(0, 23).map(lambda t: 1 << t), st.integers(0, 2**24 - 1))
+
+
+@st.composite
+def configurations(draw, size):
+    """Values of the configuration ports; most of them can be read."""
+    ports = {"mode": draw(st.integers(0, 3)), "mask": draw(masks), "decimation": draw(st.integers(0, 3)),
+             "overlap": draw(st.integers(0, 1))}
+    for axis, tiles in zip(("row", "col"), size.tiles):
+        low, high = sorted(draw(st.tuples(*[st.integers(0, tiles - 1)] * 2)))
+        ports |= {f"{axis}0": low, f"{axis}1": high}
+    return ports
+
+
+def randomly(seed, err_at=None):
+    """Surroundings with random timing, some of it extreme: amplifiers and bank; and random starts while busy."""
+    noise = random.Random(seed)
+    longest, hurry = noise.choice((2, 40)), noise.choice((0.1, 0.5, 0.9, 1))
+    return (amplifiers(lambda: noise.randint(1, longest), lambda: noise.randint(1, 9), err_at),
+            bank(lambda: int(noise.random() < hurry), lambda: noise.randint(0, 3))), lambda: noise.randint(0, 1)
+
+
+def steadily(integrate, read, conversion):
+    return amplifiers(lambda: integrate, lambda: read), bank(lambda: 1, lambda: conversion)
+
+
+class TestReadoutSeqFL:
+    """Inherited by every level; a level overrides ``cls``, ``verilog`` and ``sizes``."""
+
+    cls, verilog, sizes, overlaps = ReadoutSeqFL, False, SIZES, False
+
+    def bench(self, size, surroundings):
+        return Bench(simulator(self.cls, size, self.verilog), *surroundings)
+
+    def check(self, record, scan, overlap, before):
+        """One frame's record; ``before``: the pins that must not have moved where there is no frame."""
+        if scan is None:
+            assert record.pins[1] == before | {"cfg_err": 1} and not record.taken and not record.starts
+            return
+        assert record.messages == messages(scan)
+        assert [row for _, row in record.starts] == list(scan.row_list)
+        assert record.pins[-1]["done"] and not any(pins["done"] for pins in record.pins[:-1])
+        assert not any(pins["cfg_err"] for pins in record.pins[1:])
+        assert all(pins["busy"] for pins in record.pins[1:-1])
+        assert record.pins[-1]["cycles"] == len(record.pins) - 2
+        assert all(pins["four_tap"] == (scan.frame.mode == "tof") for pins in record.pins)
+        self.check_holds(record, scan, overlap)
+
+    def check_holds(self, record, scan, overlap):
+        """hold_free is low from a row's amp_done until its steps are converted, and the next row starts in time."""
+        used = []
+        for done, row, start in zip(record.dones, scan.row_list, [*record.starts[1:], (None, None)]):
+            last = max(cycle for cycle, msg in record.taken if msg[:2] == (SAMPLE, row))
+            converted = record.idle.index(1, last + 1)
+            assert start[0] in (None, 1 + (done if overlap and self.overlaps else converted))
+            used += range(done + 1, converted + 1)
+        assert [cycle for cycle, pins in enumerate(record.pins) if not pins["hold_free"]] == used
+
+    @SETTINGS
+    @given(st.data(), seeds)
+    def test_any_frame(self, data, seed):
+        size = data.draw(st.sampled_from(self.sizes))
+        surroundings, noise = randomly(seed)
+        bench = self.bench(size, surroundings)
+        for ports in data.draw(st.lists(configurations(size), min_size=1, max_size=2)):
+            before = bench.cycle(Record())
+            record = bench.frame(ports, noise)
+            self.check(record, size.scan(ports), ports["overlap"], before | {"four_tap": ports["mode"] == 3})
+
+    def test_messages_by_hand(self):
+        """The types at k = 0 and k = 4 of a tile's second row; the array ends in partial tiles."""
+        size = Size(7, 31, 2)       # 2 x 6 tiles, the last ones with 3 rows and 1 column
+        ports = size.whole(mask=1 << size.order[6] | 1 << size.order[10], col0=1)
+        record = self.bench(size, steadily(3, 1, 0)).frame(ports)
+        steps = [(0, 0, 0b10), (0, 1, 0b11), (0, 2, 0b11), (4, 0, 0b10), (4, 1, 0b11), (4, 2, 0b01)]
+        expected = [(FRAME, 0, 0, 0, 0, 0)]
+        for row in (1, 5):
+            expected += [(ROW, row, 0, 0, 0, 0)] + [(SAMPLE, row, group, k, 0, en) for k, group, en in steps]
+        assert record.messages == expected + [(END, 0, 0, 0, 0, 0)]
+
+    @pytest.mark.parametrize("ports", [
+        dict(mask=0), dict(row0=1, row1=0), dict(row1=2), dict(row1=255), dict(col0=3, col1=2), dict(col1=6),
+        dict(row0=1, mask=sum(1 << t for t in Size(1, 1, 1).order[18:])),       # only in the last tile's missing row
+        dict(col0=5, mask=2**24 - 1 - sum(1 << t for t in Size(1, 1, 1).order[::6])),   # it has its first column only
+    ], ids=str)
+    def test_refused(self, ports):
+        size = Size(7, 31, 2)
+        bench = self.bench(size, steadily(3, 1, 0))
+        assert size.scan(size.whole(**ports)) is None
+        bench.drive(**size.whole(**ports))
+        record = Record()
+        bench.cycle(record, start=1)
+        for _ in range(20):
+            pins = bench.cycle(record)
+            assert pins["cfg_err"] and not pins["busy"] and not pins["amp_start"] and pins["offer"] is None
+        record = bench.frame(size.whole())
+        assert record.pins[0]["cfg_err"] and not any(pins["cfg_err"] for pins in record.pins[1:])
+        assert record.messages == messages(size.scan(size.whole()))
+
+    @SETTINGS
+    @given(st.integers(0, 3), st.integers(0, 1), st.integers(0, 80), seeds)
+    def test_reset_at_any_moment(self, mode, overlap, cycles, seed):
+        size = self.sizes[0]
+        ports = size.whole(mask=0x842, mode=mode, overlap=overlap)
+        bench = self.bench(size, randomly(seed)[0])
+        bench.drive(**ports)
+        record = Record()
+        bench.cycle(record, start=1)
+        for _ in range(cycles):
+            bench.cycle(record)
+        bench = self.bench(size, randomly(seed)[0])
+        pins = bench.cycle(Record())
+        assert pins == dict(busy=0, done=0, cfg_err=0, amp_start=0, amp_row=0, four_tap=ports["mode"] == 3,
+                            hold_free=1, cycles=0, offer=None)
+        self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
+
+    @SETTINGS
+    @given(st.sampled_from([2**24 - 1, 0x842]), st.integers(0, 3), st.integers(0, 30), st.integers(0, 1),
+           st.integers(0, 1), seeds)
+    def test_amplifiers_refuse(self, mask, row, cycles, with_done, overlap, seed):
+        """amp_err: the offer that stands is taken, then nothing more; the next frame is whole again."""
+        size = self.sizes[0]
+        ports = size.whole(overlap=overlap, mask=mask)
+        golden = messages(size.scan(ports))
+        bench = self.bench(size, randomly(seed, (row, cycles, with_done))[0])
+        record = bench.frame(ports)
+        assert record.messages == golden[:len(record.messages)] and len(record.messages) < len(golden)
+        assert record.pins[-1] | {"cycles": 0, "amp_row": 0, "four_tap": 0} == dict(
+            busy=0, done=0, cfg_err=1, amp_start=0, amp_row=0, four_tap=0, hold_free=1, cycles=0, offer=None)
+        if (row, cycles) == (0, 0):
+            assert not record.messages
+        assert bench.cycle(Record())["cfg_err"]
+        record = bench.frame(ports)         # amp_err stands until its first amp_start
+        assert record.messages == golden and record.pins[-1]["done"]
+
+    @pytest.mark.parametrize("overlap, mode", [(0, 0), (1, 1), (1, 3)])
+    def test_with_amp_ctrl(self, overlap, mode):
+        size, timing = Size(7, 31, 2), AmpTiming(3, 9, 2, 2, 4, 1, n_cm=1)
+        ports = size.whole(overlap=overlap, mode=mode, mask=0x842)
+        _, converters = steadily(0, 0, 5)
+        bench = Bench(simulator(self.cls, size, self.verilog), amp_ctrl(timing, mode == 3), converters)
+        for _ in range(2):
+            record = bench.frame(ports)
+            self.check(record, size.scan(ports), overlap, None)
+            for (start, _), done in zip(record.starts, record.dones):
+                waits = sum(not pins["hold_free"] for pins in record.pins[start:done])
+                assert row_cycles(timing, mode == 3) < done - start <= row_cycles(timing, mode == 3) + 1 + waits
+        bench.amplifier = amp_ctrl(None, 0)     # all durations 0
+        bench.answer = next(bench.amplifier)
+        record = bench.frame(ports)
+        assert not record.taken and record.pins[-1]["cfg_err"] and len(record.starts) == 1
+
+    def test_addresses_of_the_largest_array(self):
+        size = LARGEST
+        bench = self.bench(size, steadily(3, 1, 0))
+        for ports in (size.whole(row0=254, col0=253, mode=3, overlap=1), size.whole(row0=200, col0=1, decimation=3)):
+            ports["mask"] = 1 << size.order[23]
+            self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
+
+    @pytest.mark.parametrize("arguments", [
+        dict(rows=0), dict(rows=1025), dict(cols=1537), dict(lanes=3), dict(lanes=64), dict(order=(0,) * 24),
+        dict(tile_cols=4, order=tuple(range(16)), cols=1028), dict(tile_rows=5)], ids=str)
+    def test_parameters(self, arguments):
+        with pytest.raises(ParameterError):
+            self.cls(**dict(rows=8, cols=12, lanes=2, order=Size(1, 1, 1).order) | arguments).elaborate()
+
+
+class TestReadoutSeqCL(TestReadoutSeqFL):
+    cls, overlaps = ReadoutSeqCL, True
+
+    @pytest.mark.parametrize("integrate, overlap", [(10, 0), (10, 1), (400, 1)])
+    def test_cycles(self, integrate, overlap):
+        """Without overlap, with a row that converts longer than it integrates, and the other way round."""
+        size, read, conversion = Size(7, 31, 2), 4, 6
+        ports = size.whole(mask=2**24 - 1, overlap=overlap, mode=2)
+        record = self.bench(size, steadily(integrate, read, conversion)).frame(ports)
+        rows, steps = 7, 2 * 6 * 3      # a tile row: six columns, three groups, two diodes
+        amp, convert = integrate + read + 1, steps + 3 + conversion
+        first, last = 1 + amp, convert + 1
+        if not overlap:
+            between = amp + convert
+        elif integrate == 400:
+            between = amp + 1
+        else:
+            between = read + 1 + convert
+        assert record.pins[-1]["cycles"] == first + (rows - 1) * between + last - 1
+        taken = [cycle for cycle, msg in record.taken if msg[0] == SAMPLE and msg[1] == 0]
+        assert taken == list(range(taken[0], taken[0] + steps))
+
+    @SETTINGS
+    @given(st.data(), seeds)
+    def test_same_cycles_as_the_cycle_level(self, data, seed):
+        size = data.draw(st.sampled_from(self.sizes))
+        ports = data.draw(configurations(size))
+        err_at = data.draw(st.none() | st.tuples(st.integers(0, 3), st.integers(0, 50), st.integers(0, 1)))
+
+        def trace(cls, verilog):
+            surroundings, noise = randomly(seed, err_at)
+            return Bench(simulator(cls, size, verilog), *surroundings).frame(ports, noise).pins
+        assert trace(self.cls, self.verilog) == trace(ReadoutSeqCL, False)
+
+
+class TestReadoutSeqRTL(TestReadoutSeqCL):
+    cls = ReadoutSeq
+
+
+class TestReadoutSeqVerilog(TestReadoutSeqRTL):
+    verilog = True
+    sizes = Size(7, 31, 2), Size(13, 75, 8)
