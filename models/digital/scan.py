@@ -74,7 +74,10 @@ class Scan:
                      if self.frame.mask >> self.tile.order[base + k] & 1 and first + k < self.cols)
 
     def steps(self, row):
-        """Steps of one row, in order: list of Step (with an empty ``enable`` only where the array ends)."""
+        """Steps of one row, in order: list of Step.
+
+        ``enable`` is 0 where the array ends, or decimation keeps no tile of the last group: nothing is converted.
+        """
         w, lanes = self.frame.window, self.lanes
         stride = 1 << self.frame.decimation
         groups = range(w.col0 // lanes, w.col1 // lanes + 1, max(1, stride // lanes))

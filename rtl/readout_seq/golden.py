@@ -2,7 +2,7 @@
 
 from models.digital.scan import Scan
 from models.parameters import MODES, FrameParameters, TileParameters, Window
-from rtl.messages import END, FRAME, ROW, SAMPLE, step_msg
+from rtl.messages import SAMPLE, step_msg
 
 from .ports import WINDOW
 
@@ -10,7 +10,6 @@ from .ports import WINDOW
 def configured_scan(s, rows, cols, lanes, tile):
     """The Scan that the ports of component ``s`` ask for. Raises ParameterError where no frame can start."""
     window = Window(*(int(getattr(s, name)) for name in WINDOW))
-    # the ports cannot hold a frame's other fields; a mask of 0 is refused here, one of unused types by Scan
     frame = FrameParameters(window, MODES[int(s.mode)], int(s.mask), decimation=int(s.decimation))
     return Scan(rows, cols, lanes, frame, tile)
 
@@ -28,5 +27,4 @@ def row_steps(scan, row):
 
 def mark(kind, lanes, row=0):
     """The FRAME, ROW or END message."""
-    assert kind in (FRAME, ROW, END)
     return step_msg(lanes)(kind, row)

@@ -159,4 +159,5 @@ class ReadoutSeq(Component):
 
     def line_trace(s):
         states = ("idle", "check", "wait", "drain", "frame", "row", "steps", "end")
-        return f"{states[int(s.state)]:5} amp {s.rows.line_trace()}{'*' if s.integrating else ' '} {s.steps.line_trace()}"
+        amp = f"amp {s.rows.line_trace()}{'*' if s.integrating else ' '}"
+        return f"{states[int(s.state)]:5} {amp} {s.steps.line_trace()}"

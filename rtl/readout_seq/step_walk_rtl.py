@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits8, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
 
-STRIDES = (1, 2, 4, 8)      # tiles, by decimation
+STRIDES = (1, 2, 4, 8)      # in tiles, by decimation
 
 
 class StepWalk(Component):
@@ -78,24 +78,10 @@ class StepWalk(Component):
                 if (s.col1 == last_col) & (s.next_k >= cols_there):
                     s.bound @= s.col1 - 1
 
-        STRIDE_MASK = [Bits8(n - 1) for n in STRIDES]
-        GROUP_STEP = [Bits8(max(1, n // lanes)) for n in STRIDES]
-        mask_0, mask_1, mask_2, mask_3 = STRIDE_MASK
-        step_0, step_1, step_2, step_3 = GROUP_STEP
-
         @update
         def up_stride():
-            s.stride_mask @= mask_0
-            s.group_step @= step_0
-            if s.decimation == 1:
-                s.stride_mask @= mask_1
-                s.group_step @= step_1
-            elif s.decimation == 2:
-                s.stride_mask @= mask_2
-                s.group_step @= step_2
-            elif s.decimation == 3:
-                s.stride_mask @= mask_3
-                s.group_step @= step_3
+            s.stride_mask @= (Bits8(1) << zext(s.decimation, 8)) - 1
+            s.group_step @= (s.stride_mask >> shift) + 1     # stride / lanes, or 1
 
         @update
         def up_group():
