@@ -49,7 +49,7 @@ class TestAmpCtrlFL:
         return sim
 
     def check_row(self, sim, timing, four_tap, free, noise=None):
-        """One row, cycle by cycle; ``free``: function of the cycle; ``noise``: random starts and durations while busy."""
+        """One row, cycle by cycle; ``free``: hold_free by cycle; ``noise``: random starts and durations while busy."""
         drive(sim, timing, four_tap, start=1)
         sim.sim_tick()
         drive(sim, start=0)
