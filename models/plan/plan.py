@@ -32,7 +32,7 @@ class Plan:
 def plan(scene, sensor, frame):
     """The Plan of one frame. scene: a Scene of the sensor's size. frame: FrameParameters. Raises ParameterError."""
     rows, cols = scene.shape
-    read = pixels_read(sensor, frame)
+    read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read
     taps = 4 if frame.mode == "tof" else 1
     captures, tap_note = _captures(scene, taps)
     angular, polarized = scene.angular, scene.polarization is not None
@@ -56,15 +56,6 @@ def plan(scene, sensor, frame):
                       f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles"))
     left_out = tuple({"what": what, "why": why, "saved": saved} for what, why, saved in notes)
     return Plan(angular, polarized, taps, captures, read, flat, left_out)
-
-
-def pixels_read(sensor, frame):
-    """Bool (rows, cols): pixels that the scan of ``frame`` visits. Raises ParameterError where there are none."""
-    scan = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile)
-    out = np.zeros((sensor.array.rows, sensor.array.cols), bool)
-    for row in scan.row_list:
-        out[row, scan.row_samples(row)[0]] = True
-    return out
 
 
 def _captures(scene, taps):
