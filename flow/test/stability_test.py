@@ -1,0 +1,23 @@
+import numpy as np
+
+from flow.stability import FRAMES, divider_cases, frame_case, phase_error, table
+from models.stability import Case
+
+
+def test_divider_cases_hold():
+    cases = divider_cases()
+    assert len(cases) == 5 and all(c.ok for c in cases)
+
+
+def test_phase_error_goes_the_short_way_round():
+    assert np.abs(phase_error(np.array([255]), np.array([-1]))).max() < 0.75
+
+
+def test_a_single_tile_through_the_verilog():
+    name, arguments = FRAMES[0]
+    assert frame_case(name, arguments).ok
+
+
+def test_table_marks_what_failed():
+    lines = table([Case("a", "0", "0", True), Case("b", "0", "1", False)]).splitlines()
+    assert lines[1].endswith("ok") and lines[2].endswith("FAILED")

@@ -1,0 +1,50 @@
+import csv
+
+import pytest
+
+from flow.tradeoff import SWEEPS, run
+from models.parameters import ParameterError
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory):
+    out = tmp_path_factory.mktemp("tradeoff")
+    return out, run(out, quick=True)
+
+
+def test_every_sweep_writes_its_table_and_plot(tables):
+    out, rows = tables
+    for name in SWEEPS:
+        with open(out / f"{name}.csv", newline="") as file:
+            read = list(csv.DictReader(file))
+        assert len(read) == len(rows[name]) and set(read[0]) == set(rows[name][0])
+        assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    assert {p.name for p in out.iterdir()} == {"tradeoff.html", *(f"{n}.{e}" for n in SWEEPS for e in ("csv", "png"))}
+
+
+def test_the_verilog_agreed_everywhere(tables):
+    for name in ("divider", "threshold", "noise"):
+        assert all(row["mismatches"] == 0 for row in tables[1][name])
+
+
+def test_wider_dividers_err_less_and_take_longer(tables):
+    for variant in ("radix2", "radix4", "pipelined", "cordic"):
+        narrow, wide = (row for row in tables[1]["divider"] if row["variant"] == variant)
+        assert wide["worst_lsb"] < narrow["worst_lsb"] and wide["latency"] > narrow["latency"]
+
+
+def test_higher_thresholds_send_less_and_err_more(tables):
+    rows = tables[1]["threshold"]
+    assert [r["bytes"] for r in rows] == sorted((r["bytes"] for r in rows), reverse=True)
+    assert rows[0]["psnr_edges_db"] > rows[-1]["psnr_edges_db"]
+
+
+def test_more_nodes_err_less_for_uniform_light(tables):
+    coarse, fine = (r["worst"] for r in tables[1]["views"] if r["light"] == "uniform" and r["views"] == 5)
+    assert fine < coarse / 10
+
+
+def test_unknown_sweep_is_named(tmp_path):
+    with pytest.raises(ParameterError, match="only = 'speed'"):
+        run(tmp_path / "out", ["speed"])
+    assert not (tmp_path / "out").exists()
