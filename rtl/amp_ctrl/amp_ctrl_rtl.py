@@ -30,8 +30,10 @@ class AmpCtrl(Component):
         # Logic
         @update
         def up_control():
-            s.zero @= ((s.t_reset == 0) | (s.t_int == 0) | (s.t_cm == 0) | (s.t_settle == 0)
-                       | (s.t_read == 0) | (s.t_guard == 0))
+            s.zero @= 0
+            if s.start:         # the condition only spares simulators the work
+                s.zero @= ((s.t_reset == 0) | (s.t_int == 0) | (s.t_cm == 0) | (s.t_settle == 0)
+                           | (s.t_read == 0) | (s.t_guard == 0))
             s.accept @= s.start & (s.state == IDLE)
             s.last @= (s.state != IDLE) & (s.count == 0)
             s.blocked @= (s.state == GUARD) & (s.after == REFERENCE) & ~s.hold_free

@@ -70,9 +70,6 @@ class ReadoutSeq(Component):
         def up_configuration():
             s.window_ok @= ((s.row0 <= s.row1) & (zext(s.row1, 9) <= last_row)      # nine bits: 255 may be the last
                             & (s.col0 <= s.col1) & (zext(s.col1, 9) <= last_col))
-            s.columns @= s.unmasked
-            if s.col0 == last_col:
-                s.columns @= s.unmasked & THERE
             s.four_tap @= s.mode == TOF
             s.steps.subs @= concat(s.mode == TOF, (s.mode == TOF) | (s.mode == RAW))
 
@@ -88,6 +85,14 @@ class ReadoutSeq(Component):
             s.landed @= s.listening & s.amp_done & ~s.amp_err
             s.drained @= (s.state == DRAIN) & s.bank_idle
             s.rows.look @= (s.idle & s.start) | (s.overlap & s.landed) | (~s.overlap & s.drained)
+
+        @update
+        def up_columns():
+            s.columns @= 0
+            if s.rows.look | s.landed:      # the condition only spares simulators the work
+                s.columns @= s.unmasked
+                if s.col0 == last_col:
+                    s.columns @= s.columns & THERE
 
         @update
         def up_decisions():

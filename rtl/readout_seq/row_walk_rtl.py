@@ -39,25 +39,21 @@ class RowWalk(Component):
 
         # Logic
         @update
-        def up_wanted():
-            s.wanted @= 0
-            if s.look:              # the conditions on `look` only spare simulators the work
-                for i in range(4):
-                    s.wanted[i] @= s.columns[6 * i:6 * i + 6] != 0
-
-        @update
         def up_candidates():
+            s.wanted @= 0
             s.far @= 0
             s.below @= 0
             s.beyond @= 0
-            if s.look:
+            if s.look:              # the conditions on `look` only spare simulators the work
+                for i in range(4):
+                    s.wanted[i] @= s.columns[6 * i:6 * i + 6] != 0
                 if s.first:
                     s.far @= zext(s.row0, 9)
                 else:
                     s.far @= zext(s.tile, 9) + (Bits9(1) << zext(s.decimation, 9))
                     s.below @= s.wanted & (BELOW << zext(s.in_tile, 4))
                     if s.tile == last_tile:
-                        s.below @= s.wanted & (BELOW << zext(s.in_tile, 4)) & PARTIAL
+                        s.below @= s.below & PARTIAL
                 if s.far <= zext(s.row1, 9):
                     s.beyond @= s.wanted
                     if s.far == last_tile:
@@ -65,20 +61,24 @@ class RowWalk(Component):
 
         @update
         def up_next():
-            s.choice @= s.beyond
-            s.next_tile @= s.far[0:8]
-            if s.below != 0:
-                s.choice @= s.below
-                s.next_tile @= s.tile
-            s.found @= s.choice != 0
+            s.choice @= 0
+            s.next_tile @= 0
             s.next_in_tile @= 3
-            if s.choice[0]:
-                s.next_in_tile @= 0
-            elif s.choice[1]:
-                s.next_in_tile @= 1
-            elif s.choice[2]:
-                s.next_in_tile @= 2
-            s.next_row @= zext(s.next_tile, 10) * tile_rows + zext(s.next_in_tile, 10)
+            s.next_row @= 0
+            if s.look:
+                s.choice @= s.beyond
+                s.next_tile @= s.far[0:8]
+                if s.below != 0:
+                    s.choice @= s.below
+                    s.next_tile @= s.tile
+                if s.choice[0]:
+                    s.next_in_tile @= 0
+                elif s.choice[1]:
+                    s.next_in_tile @= 1
+                elif s.choice[2]:
+                    s.next_in_tile @= 2
+                s.next_row @= zext(s.next_tile, 10) * tile_rows + zext(s.next_in_tile, 10)
+            s.found @= s.choice != 0
 
         @update_ff
         def up_row():

@@ -43,7 +43,6 @@ class StepWalk(Component):
         s.rest = Wire(6)
         s.bound = Wire(8)
         s.stride_mask = Wire(8)
-        s.group_step = Wire(8)
         s.next_last_tile = Wire(8)
         s.next_group = Wire(8)
 
@@ -59,11 +58,12 @@ class StepWalk(Component):
         # Logic: what comes next; the conditions only spare simulators the work
         @update
         def up_column():
-            s.pending @= s.columns if s.load else s.left
+            s.pending @= 0
             s.next_k @= 5
             s.rest @= 0
             s.bound @= s.col1
             if s.turn:
+                s.pending @= s.columns if s.load else s.left
                 s.rest @= s.pending & (s.pending - 1)
                 if s.pending[0]:
                     s.next_k @= 0
@@ -79,17 +79,18 @@ class StepWalk(Component):
                     s.bound @= s.col1 - 1
 
         @update
-        def up_stride():
-            s.stride_mask @= (Bits8(1) << zext(s.decimation, 8)) - 1
-            s.group_step @= (s.stride_mask >> shift) + 1     # stride / lanes, or 1
-
-        @update
         def up_group():
-            s.next_group @= s.group + s.group_step
-            s.next_last_tile @= s.last_tile
-            if s.turn:
-                s.next_group @= s.col0 >> shift
-                s.next_last_tile @= s.bound - ((s.bound - s.col0) & s.stride_mask)
+            s.stride_mask @= 0
+            s.next_group @= 0
+            s.next_last_tile @= 0
+            if s.regroup:
+                s.stride_mask @= (Bits8(1) << zext(s.decimation, 8)) - 1
+                if s.turn:
+                    s.next_group @= s.col0 >> shift
+                    s.next_last_tile @= s.bound - ((s.bound - s.col0) & s.stride_mask)
+                else:
+                    s.next_group @= s.group + (s.stride_mask >> shift) + 1      # by stride / lanes, or 1
+                    s.next_last_tile @= s.last_tile
 
         if lanes == 1:
             s.en //= 1
@@ -132,20 +133,19 @@ def add_lanes(s, lanes, shift, Lanes):
     s.next_en = Wire(Lanes)
 
     @update
-    def up_kept():
-        s.offset @= s.col0[0:few] & s.stride_mask[0:few]
-        s.kept @= ALL
-        if s.decimation == 1:
-            s.kept @= kept_1
-        elif s.decimation == 2:
-            s.kept @= kept_2
-        elif s.decimation == 3:
-            s.kept @= kept_3
-
-    @update
     def up_enable():
+        s.kept @= 0
+        s.offset @= 0
         s.next_en @= 0
         if s.regroup:
+            s.kept @= ALL
+            if s.decimation == 1:
+                s.kept @= kept_1
+            elif s.decimation == 2:
+                s.kept @= kept_2
+            elif s.decimation == 3:
+                s.kept @= kept_3
+            s.offset @= s.col0[0:few] & s.stride_mask[0:few]
             s.next_en @= s.kept << zext(s.offset, Lanes)
             if s.next_group == (s.col0 >> shift):
                 s.next_en @= s.next_en & (ALL << zext(s.col0[0:shift], Lanes))
