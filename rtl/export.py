@@ -59,6 +59,7 @@ def tidy(text):
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
     text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)
+    text = text.replace("always_comb begin", "always @* begin")     # Icarus 11.0 loops in the first (its issue 508)
     structs = sorted(set(re.findall(r"(?m)^} (\w+);", text)))
     short = [name.partition("__")[0] for name in structs]
     for name, plain in zip(structs, short, strict=True):
