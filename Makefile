@@ -8,13 +8,14 @@ READY := $(VENV)/.ready
 
 # Arguments of `make sim`, each also an option of `python -m talbot sim`
 SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
-sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) '$($(o))'))
+quoted = '$(subst ','\'',$(1))'
+sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o))))) $(if $(PHASE),--phase)
 
 .PHONY: help
 help:  ## this list
 	@echo "Talbot: from the optics of an angle-sensitive pixel to its byte stream. Targets:"
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
-	@echo "Arguments of sim: $(SIM_OPTIONS)   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
+	@echo "Arguments of sim: $(SIM_OPTIONS) PHASE=1   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
 
 $(READY): requirements.lock pyproject.toml flow/setup/venv.sh
 	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)'

@@ -9,9 +9,21 @@ from pathlib import Path
 from models.parameters import ParameterError
 
 
+def check_folder(field, path):
+    """Raise ParameterError unless ``path`` is a folder, or can become one, in which this user may write."""
+    path = Path(path)
+    there = next(p for p in (path.absolute(), *path.absolute().parents) if os.path.lexists(p))
+    if not there.is_dir():
+        raise ParameterError(f"{field} = {str(path)!r}: must be a folder; {there} is a file")
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise ParameterError(f"{field} = {str(path)!r}: must be a folder that you may write")
+
+
 @contextlib.contextmanager
-def staged(out):
+def staged(out, replaces=()):
     """A temporary folder beside its final names: on success each file in it moves into ``out``.
+
+    replaces: names of files of an earlier run that go then, where this one did not write them again.
 
     On any error or Ctrl-C the folder is removed and ``out`` stays as it was; an ``out`` that this
     made and left empty is removed too.
@@ -22,8 +34,11 @@ def staged(out):
     part = Path(tempfile.mkdtemp(prefix=".part-", dir=out))
     try:
         yield part
+        written = {path.name for path in part.iterdir()}
         for path in sorted(part.iterdir()):
             os.replace(path, out / path.name)
+        for name in set(replaces) - written:
+            (out / name).unlink(missing_ok=True)
     finally:
         shutil.rmtree(part, ignore_errors=True)
         if made:

@@ -16,7 +16,7 @@ def pixel_types(text):
         elif word.startswith("0x"):
             mask |= _number("types", word, 1, ALL_TYPES, base=16)
         else:
-            mask |= 1 << _number("types", word, 0, 23, hint=f"a type, 0x<mask> or one of {', '.join(TYPE_GROUPS)}")
+            mask |= 1 << _number("types", word, 0, 23, also=f", 0x<mask> or one of {', '.join(TYPE_GROUPS)}")
     return mask
 
 
@@ -42,11 +42,27 @@ def span(field, text, low, high):
     return a, b
 
 
-def _number(field, text, low, high, base=10, hint=None):
+def integer(field, text, low, high):
+    """An integer in low..high."""
+    return _number(field, str(text), low, high)
+
+
+def real(field, text, low, high):
+    """A number in [low, high]."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not low <= value <= high:
+        raise ParameterError(f"{field} = {text!r}: must be a number in [{low}, {high}]")
+    return value
+
+
+def _number(field, text, low, high, base=10, also=""):
     try:
         value = int(text, base)
     except ValueError:
         value = None
     if value is None or not low <= value <= high:
-        raise ParameterError(f"{field} = {text!r}: must be {hint or 'an integer'} in {low}..{high}")
+        raise ParameterError(f"{field} = {text!r}: must be an integer in {low}..{high}{also}")
     return value

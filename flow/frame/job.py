@@ -9,7 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
-from flow.files import staged
+from flow.files import check_folder, staged
 from models.afe import trim_codes, trim_gain
 from models.capture import Exposure, capture
 from models.digital.chip import front_end_of, golden_frame
@@ -23,14 +23,19 @@ from . import hardware
 from .summary import summarize
 
 
+STEPS = ("setup", "capture", "build", "rtl", "decode", "report")
+
+
 @dataclass
 class Clock:
-    """Wall clock of the named steps, in s."""
+    """Wall clock of the named steps, in s; ``note`` is told the name of each as it starts."""
 
     seconds: dict = field(default_factory=dict)
+    note: object = lambda name: None
 
     @contextmanager
     def step(self, name):
+        self.note(name)
         start = perf_counter()
         try:
             yield
@@ -102,25 +107,27 @@ def read_out(request, exposed, program, clock=None, waves=None):
         chip = hardware.simulate(program, sensor, frame, exposed.samples, exposed.front_end, waves=waves)
     with clock.step("decode"):
         golden = golden_frame(exposed.samples, sensor, frame, exposed.front_end)
-        decoded = decode_stream(chip.stream, sensor.tile)[0]
+        decoded = decode_stream(chip.stream, sensor.tile)[0]     # of a stream without a frame: StreamError
     return FrameResult(request, exposed, program, golden, chip, decoded)
 
 
 def run(request, note=lambda text: None):
     """Run the main job and write its files into ``request.folder``; returns the summary (a dict).
 
-    note: called with a line before each long step. Raises ParameterError, ToolError, OSError.
+    note: called with the name of each of `STEPS` as it starts, and with a line before each long part of one.
+    Raises ParameterError, ToolError, OSError.
     """
     from . import outputs       # Matplotlib: not before it is needed
 
-    clock = Clock()
+    check_folder("out", request.folder)
+    clock = Clock(note=note)
     with clock.step("setup"):
         scene, todo = see(request)
     with clock.step("capture"):
         exposed = expose(request, scene, todo)
     with clock.step("build"):
         program = hardware.program(request.sensor, todo.taps, bool(request.waves), note)
-    with staged(request.folder) as folder:
+    with staged(request.folder, outputs.NAMES) as folder:
         waves = (folder / "waves.vcd", *request.waves) if request.waves else None
         result = read_out(request, exposed, program, clock, waves)
         with clock.step("report"):

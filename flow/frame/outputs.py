@@ -10,6 +10,9 @@ from . import errors, pictures
 from .chip_picture import chip_svg
 from .report import render
 
+# Every name that some mode writes: what this run did not write is an earlier run's and goes
+NAMES = ("stream.bin", "decoded.npz", "report.html", "summary.json", "waves.vcd", "overview.png", "scene.png",
+         "differences.png", "image.png", "conversions.png", "phase.png", "edges.png", "views.png", "views_decoded.png")
 PHASE_TURN = 2 * np.pi / 256        # rad a code
 
 

@@ -1,13 +1,12 @@
 """One frame through the compiled bench: files in (samples, converter, host script), stream and status out."""
 
 import json
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-from .verilator import ToolError
+from .process import ToolError, finish
 
 WAIT, TRANSFER, STOP = b"\x01", b"\x02", b"\x00"
 
@@ -52,7 +51,7 @@ def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000
         if waves:
             arguments += [f"+waves={waves[0]}", f"+waves_row0={waves[1]}", f"+waves_row1={waves[2]}"]
         start = perf_counter()
-        result = subprocess.run([*simulator, program, *arguments], capture_output=True, text=True)
+        result = finish([*simulator, program, *arguments])
         spent = perf_counter() - start
         if result.returncode or not (folder / "activity").exists():
             tail = (result.stdout + result.stderr).strip()[-800:]

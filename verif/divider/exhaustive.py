@@ -10,13 +10,14 @@ import sys
 import numpy as np
 from tqdm import tqdm
 
+from flow.simulate.process import ToolError
 from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN
 from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN, QuadResult, phase_error
 from models.parameters import DIVIDERS, ChipParameters, ParameterError, SensorParameters, check_int
 from rtl.export import translate
 from rtl.quad_divider import golden, quad_divider, ratio_bits, timing
 
-from .simulator import SimulatorError, program, simulate
+from .simulator import program, simulate
 
 SEED, NOISE_FLOOR = 2**62 + 5, 100      # of the second run
 SCRAMBLE = 0x2545F                      # odd: i -> i * SCRAMBLE mod 2^18 visits every input once
@@ -81,7 +82,7 @@ def measure(variant, n_frac=8, iterations=10, rtl=True):
     variant, n_frac, iterations; latency and interval in cycles; worst and rms: phase error in LSB (256 = one turn).
     With ``rtl`` all of these are the Verilog's, and there are mismatches (against the golden model, both runs),
     cycles, seconds and mega_cycles_per_s (of the first run); without, they are the golden model's, and these are None.
-    Raises ParameterError, SimulatorError.
+    Raises ParameterError, ToolError.
     """
     latency, interval = timing(variant, n_frac, iterations)
     x, y = every_input()
@@ -139,7 +140,7 @@ def main(argv=None):
             found = measure(*config, rtl=not options.golden)
             mismatches += found["mismatches"] or 0
             tqdm.write(row(found))
-    except (ParameterError, SimulatorError, OSError) as error:
+    except (ParameterError, ToolError, OSError) as error:
         print(f"verif.divider.exhaustive: {error}", file=sys.stderr)
         return 2
     return 1 if mismatches else 0

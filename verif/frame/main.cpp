@@ -1,6 +1,7 @@
 // Clocks Bench in Verilator until it is done; writes what it took to +stats=FILE as JSON.
 // With tracing compiled in, +waves=FILE +waves_row0=N +waves_row1=N dump the cycles that convert those rows.
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -25,21 +26,30 @@ static const char* path(VerilatedContext& context, const char* name) {
 
 // VBench::eval() less its locks around message queues, which one thread does not need and which cost a tenth of the
 // time. The model is part of this translation unit (flow/simulate/verilator.py).
-static void evaluate(VBench& top) { VBench___024root___eval(top.rootp); }
+static void evaluate(VBench& top) {
+#ifdef WAVES
+  top.eval();       // it also marks what changed, for the trace
+#else
+  VBench___024root___eval(top.rootp);
+#endif
+}
 
 int main(int argc, char** argv) {
   VerilatedContext context;
   context.commandArgs(argc, argv);
-  const unsigned long long limit = argument(context, "max_cycles=", 1000000000L);
+  const std::uint64_t limit = argument(context, "max_cycles=", 1000000000L);
+#ifdef WAVES
+  context.traceEverOn(true);
+#endif
   VBench top{&context};
 #ifdef WAVES
   const unsigned row0 = argument(context, "waves_row0=", 0), row1 = argument(context, "waves_row1=", 0);
   VerilatedVcdC waves;
-  context.traceEverOn(true);
   top.trace(&waves, 99);
-  waves.open(path(context, "waves="));
+  const char* dumped = path(context, "waves=");
+  if (dumped) waves.open(dumped);
 #endif
-  unsigned long long cycles = 0;
+  std::uint64_t cycles = 0;
   top.reset = 1;
   top.eval();       // the initial blocks: reading the frame's files is not part of the clock loop
   const auto start = std::chrono::steady_clock::now();
@@ -47,7 +57,7 @@ int main(int argc, char** argv) {
     top.clk = 0;
     evaluate(top);
 #ifdef WAVES
-    const bool dump = top.row >= row0 && top.row <= row1;
+    const bool dump = dumped && top.row >= row0 && top.row <= row1;
     if (dump) waves.dump(2 * cycles);
 #endif
     top.clk = 1;
@@ -60,7 +70,7 @@ int main(int argc, char** argv) {
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   top.final();
 #ifdef WAVES
-  waves.close();
+  if (dumped) waves.close();
 #endif
   if (const char* name = path(context, "stats=")) {
     std::FILE* stats = std::fopen(name, "w");

@@ -18,7 +18,7 @@ def decode_file(path, out=None, tile=TileParameters()):
         try:
             frames = decode_stream(file.read(), tile)
         except StreamError as error:
-            raise StreamError(f"{path}: {error}") from None
+            raise StreamError(f"file = {path}: {error}") from None
     if out is not None:
         out = Path(out)
         for i, frame in enumerate(frames):

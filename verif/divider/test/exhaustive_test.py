@@ -5,8 +5,9 @@ from models.digital.divider import QuadResult, quad_divide
 from models.parameters import DIVIDERS
 from rtl.messages import DivReq, div_resp
 from rtl.quad_divider import timing
+from flow.simulate.process import ToolError
 from verif.divider.exhaustive import compare, every_input, main, measure, pack, row, unpack, verilog
-from verif.divider.simulator import SimulatorError, program, simulate
+from verif.divider.simulator import program, simulate
 
 X, Y = every_input()
 
@@ -58,7 +59,7 @@ def test_golden_figures_have_the_cycles_of_the_variant():
 
 
 def test_names_what_failed():
-    with pytest.raises(SimulatorError, match="verilator_bin failed"):
+    with pytest.raises(ToolError, match="verilator_bin failed"):
         program("module Bad (output logic y); assign y = nothing; endmodule", "Bad")
 
 
