@@ -29,10 +29,10 @@ def readme_table(sizes):
 # top: folder, what it does, latency, throughput, levels; each block's README has the contract and its tests hold it
 BLOCKS = {
     "AmpCtrl": ("amp_ctrl", "amplifier control FSM", "a row: its durations", "-", "FL = CL, RTL, Verilog"),
-    "ReadoutSeq": ("readout_seq", "rows, types, groups; what to leave out", "1 cycle a step", "1 step a cycle",
-                   "FL, CL, RTL, Verilog"),
-    "EdgeAdc": ("edge_adc", "one SAR lane with a zero window", "2 cycles a zero, 10 a code", "the same",
-                "FL, CL, RTL, Verilog"),
+    "ReadoutSeq": ("readout_seq", "rows, types, groups; what to leave out", "3 cycles to the first message",
+                   "1 step a cycle", "FL, CL, RTL, Verilog"),
+    "EdgeAdc": ("edge_adc", "one SAR lane with a zero window", "3 cycles a zero, 11 a code",
+                "a zero in 4 cycles, a code in 10", "FL, CL, RTL, Verilog"),
     "AdcBank": ("adc_bank", "8 lanes, results in order", "as its lanes", "1 sample a cycle", "FL, CL, RTL, Verilog"),
     "QuadDividerRadix2": ("quad_divider", "quadrature divider, restoring", "9 cycles", "1 in 10 cycles",
                           "FL, CL, RTL, Verilog; all 2^18 inputs"),
