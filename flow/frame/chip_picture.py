@@ -46,7 +46,7 @@ def _window(sensor, frame, x, y, w, h):
 def _lanes(sensor, x, y, w):
     lanes, step = sensor.chip.lanes, w / sensor.chip.lanes
     return [_rect(x + i * step + 1, y, max(step - 2, 0.5), 22, "#a9c3e0") for i in range(lanes)] \
-        + [_text(x + w / 2, y + 15, f"{lanes} converter lane{'s' if lanes > 1 else ''}", 11, fill="#222")]
+        + [_rect(x + w / 2 - 50, y + 3, 100, 16, "#a9c3e0"), _text(x + w / 2, y + 15, f"{lanes} converter lane{'s' if lanes > 1 else ''}", 11, fill="#222")]
 
 
 def _tile(sensor, frame, x, y, cell):

@@ -28,15 +28,18 @@ def figures(result, summary):
 def _threshold(result, summary):
     """PSNR of the decoded differences against bytes and frame time, each threshold run through the Verilog."""
     sensor, samples = result.request.sensor, result.exposed.samples
-    points = []
+    points, labelled = [], 0
     for threshold in LADDER:
         frame = replace(result.request.frame, threshold=threshold)
         golden = golden_frame(samples, sensor, frame, result.exposed.front_end)
         chip = hardware.simulate(result.program, sensor, frame, samples, result.exposed.front_end)
         quality = psnr(decoding_error(golden.sent, result.exposed.ideal, golden.read, frame))
-        if quality is not None:
-            points.append((len(chip.stream), quality,
-                           f"T={threshold}: {1e3 * chip.status['cycles'] / sensor.chip.f_clk:.2f} ms"))
+        if quality is None:
+            continue
+        apart = abs(len(chip.stream) - labelled) > 0.1 * labelled       # labels would lie on one another
+        label = f"T={threshold}: {1e3 * chip.status['cycles'] / sensor.chip.f_clk:.2f} ms" if apart else ""
+        labelled = len(chip.stream) if apart else labelled
+        points.append((len(chip.stream), quality, label))
     here = summary["stream_bytes"], summary["psnr_db"]
     return curves({"differences": points}, "bytes a frame", "PSNR (dB)",
                   "Threshold: error against bytes, and the chip's frame time", log_x=True,
