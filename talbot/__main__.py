@@ -1,7 +1,7 @@
 """`python -m talbot COMMAND`: the one program that the make targets call.
 
 Exit status: 0 right, 1 the chip and its golden model differ, a bound is missed or a stream is damaged, 2 bad input
-or environment (one line on standard error says which field, value and range), 130 interrupted, 143 terminated.
+or environment (one line on standard error says which field, value and range) or Ctrl-C, 143 terminated.
 """
 
 import argparse
@@ -40,8 +40,7 @@ def main(argv=None):
     try:
         return arguments.run(arguments)
     except KeyboardInterrupt:
-        print("\ntalbot: interrupted; nothing was left half-written", file=sys.stderr)
-        return 130
+        _refuse("interrupted; nothing was left half-written")
     except BrokenPipeError:                                     # the reader of our output went away
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
