@@ -5,8 +5,8 @@ python=$1 folder=$2
 
 fail() { echo "setup: $*" >&2; exit 2; }
 
-"$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
-    || fail "python = '$python': must be Python 3.11 or later (make PYTHON=/path/to/python3)"
+"$python" -c 'import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null \
+    || fail "python = '$python': must be Python 3.11, 3.12 or 3.13 (make PYTHON=/path/to/python3)"
 command -v g++ >/dev/null || fail "g++ = not found: a C++ compiler is needed (Debian: apt-get install g++)"
 
 if [ ! -x "$folder/bin/python" ]; then
