@@ -11,10 +11,14 @@ import warnings
 from pathlib import Path
 
 from pymtl3 import Component, DefaultPassGroup, connect
-from pymtl3.passes.backends.verilog import VerilogTranslationImportPass, VerilogTranslationPass
+from pymtl3.passes.backends.verilog import VerilogTBGenPass, VerilogTranslationImportPass, VerilogTranslationPass
 from pymtl3.stdlib.stream import SinkRTL, SourceRTL
 
 WORK = Path(__file__).parents[1] / "build" / "pymtl"
+
+# Called as observe(top, dut, verilog) for every simulator that is built, ahead of its reset: what is simulated, the
+# elaborated component under test, and the level; returns what is called ahead of each clock edge, or None.
+observers = []
 
 
 def verilator_folder():
@@ -56,8 +60,11 @@ def build(top, verilog=False, name=None):
             dut.set_metadata(VerilogTranslationImportPass.enable, True)
             dut.set_metadata(VerilogTranslationPass.explicit_module_name, name)
             top = VerilogTranslationImportPass()(top)
+    hooks = [hook for observe in observers if (hook := observe(top, dut, verilog))]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        if hooks:
+            top.set_metadata(VerilogTBGenPass.vtbgen_hooks, hooks)
         top.apply(DefaultPassGroup(linetrace=False))
     top.sim_reset()
     return top
