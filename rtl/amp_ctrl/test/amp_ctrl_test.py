@@ -137,3 +137,7 @@ class TestAmpCtrlRTL(TestAmpCtrlFL):
 
 class TestAmpCtrlVerilog(TestAmpCtrlRTL):
     verilog = True
+
+
+class TestAmpCtrlIcarus(TestAmpCtrlRTL):
+    verilog = "icarus"

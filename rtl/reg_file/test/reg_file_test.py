@@ -218,6 +218,10 @@ class TestVerilog(TestRTL):
     verilog = True
 
 
+class TestIcarus(TestRTL):
+    verilog = "icarus"
+
+
 def test_the_bank_resets_to_the_default_frame():
     """The map's resets are the defaults of models.parameters for the default sensor."""
     from models.parameters import SensorParameters
