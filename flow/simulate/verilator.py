@@ -100,13 +100,14 @@ def bench_program(build, note=lambda text: None):
                    (ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"), FRAME / "main.cpp", note)
 
 
-def bare_program(build, note=lambda text: None):
-    """Path of the chip alone in a bare clock loop (bare.cpp), for `make bench`. Raises ToolError."""
-    return _cached(build, "AspChip", (), (), FRAME / "bare.cpp", note)
+def bare_program(build, note=lambda text: None, main=FRAME / "bare.cpp"):
+    """Path of the chip alone with ``main`` around it: by default a bare clock loop, for `make bench`. Raises ToolError."""
+    return _cached(build, "AspChip", (), (), main, note)
 
 
 def _cached(build, top, options, sources, main, note):
-    key = _digest(_sources_digest(), build, top, options, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS)
+    key = _digest(_sources_digest(), main.read_bytes(), build, top, options, verilator_version(), CXX_FLAGS,
+                  VERILATOR_FLAGS)
     program = BUILD / "simulator" / key / "program"
     if program.exists():
         return program

@@ -1,0 +1,93 @@
+"""The small chip that the faults are tried on: its Verilog in Verilator, run under many waveforms at once."""
+
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from flow.frame.hardware import build_of
+from flow.simulate.verilator import ToolError, bare_program
+from models.digital.chip import golden_frame
+from models.digital.pattern import PatternEnd
+from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
+from models.parameters.registers import command, frame_writes, register_map, write_transfers
+
+from .waveform import BUSY, Trace, reset, rest, transfer, transfers
+
+ROWS, COLS, LANES = 8, 13, 2
+SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
+FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1)
+OUTPUTS = 3
+FRAMES = {          # test patterns: the comparators' pins rest
+    "edge": {"threshold": 4, "mask": 0x0F0F0F},
+    "raw": {"mode": "raw", "mask": 0x8040A1},
+    "phase": {"mode": "tof", "phase": True, "mask": 0x000103},
+}
+
+
+def frame_of(name):
+    return FrameParameters(SENSOR.full_window, test_pattern=True, timing=FAST, **FRAMES[name])
+
+
+@cache
+def golden(name):
+    """GoldenFrame of a frame of FRAMES."""
+    return golden_frame(None, SENSOR, frame_of(name), PatternEnd(ROWS, COLS))
+
+
+@cache
+def program():
+    return bare_program(build_of(SENSOR), main=Path(__file__).parent / "main.cpp")
+
+
+def run(waves):
+    """The chip under each of ``waves`` (uint8 arrays, see `waveform`), one after the other: list of Trace."""
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        wave, trace = Path(folder) / "wave", Path(folder) / "trace"
+        wave.write_bytes(b"".join(w.tobytes() for w in waves))
+        result = subprocess.run([program(), f"+wave={wave}", f"+trace={trace}"], capture_output=True, text=True)
+        if result.returncode:
+            raise ToolError(f"the chip under a waveform stopped with status {result.returncode}: {result.stderr[-800:]}")
+        out = np.frombuffer(trace.read_bytes(), np.uint8).reshape(-1, OUTPUTS)
+    ends = np.cumsum([w.size for w in waves])
+    return [Trace(w, out[end - w.size:end]) for w, end in zip(waves, ends, strict=True)]
+
+
+def resets():
+    """The configuration out of reset: dict address -> byte."""
+    window = SENSOR.full_window
+    return register_map().image(register_map().configuration, {"row1": window.row1, "col1": window.col1})
+
+
+@cache
+def configured(name):
+    """Waveform from reset up to where only `start` is missing."""
+    held = resets()
+    writes = [(address, byte) for address, byte in frame_writes(frame_of(name)) if held[address] != byte]
+    return np.concatenate([reset(), transfers(write_transfers(writes))])
+
+
+def start():
+    return transfer(command("start"))
+
+
+@dataclass(frozen=True, eq=False)
+class Quiet:
+    """A frame without a fault. before: waveform up to the end of `start`. length: cycles from there on while busy."""
+
+    before: np.ndarray
+    length: int
+    trace: Trace
+
+
+@cache
+def quiet(name):
+    """The frame ``name`` as it should be: Quiet."""
+    before = np.concatenate([configured(name), start()])
+    trace, = run([np.concatenate([before, rest(1000)])])
+    if trace.stream != golden(name).stream:
+        raise ToolError(f"frame {name}: without a fault, other bytes leave the chip than the golden model's")
+    return Quiet(before, int(np.flatnonzero(trace.flag(BUSY))[-1]) + 1 - before.size, trace)
