@@ -1,4 +1,7 @@
-"""The Icarus level of every block's tests: skipped with a reason where Icarus is missing, run on netlists on demand."""
+"""Tests that are slow run with --all. The Icarus level of the blocks' tests runs on netlists on demand; where Icarus
+
+is missing it is skipped with the reason.
+"""
 
 import re
 
@@ -6,6 +9,7 @@ import pytest
 
 
 def pytest_addoption(parser):
+    parser.addoption("--all", action="store_true", help="run the tests marked slow, too (make verify)")
     group = parser.getgroup("netlists", "run the Icarus level of the tests on netlists")
     group.addoption("--netlist", action="append", default=[], metavar="NAME=FILE[:MODULE]",
                     help="this Verilog in place of what the tests build as NAME (rtl/<block>/test): AmpCtrl=gates.v")
@@ -13,6 +17,7 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: runs with --all only")
     for option in config.getoption("netlist"):
         match = re.fullmatch(r"(\w+)=([^:]+)(?::(\w+))?", option)
         if not match:
@@ -28,6 +33,10 @@ def pytest_collection_modifyitems(config, items):
     if config.getoption("netlist"):
         config.hook.pytest_deselected(items=[item for item in items if item not in in_icarus])
         items[:] = in_icarus
+    if not config.getoption("all"):
+        slow = [item for item in items if item.get_closest_marker("slow")]
+        config.hook.pytest_deselected(items=slow)
+        items[:] = [item for item in items if item not in slow]
     if not installed():
         for item in in_icarus:
             item.add_marker(pytest.mark.skip(reason=MISSING))

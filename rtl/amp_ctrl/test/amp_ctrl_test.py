@@ -141,3 +141,7 @@ class TestAmpCtrlVerilog(TestAmpCtrlRTL):
 
 class TestAmpCtrlIcarus(TestAmpCtrlRTL):
     verilog = "icarus"
+
+    @pytest.mark.slow
+    def test_longest_durations(self, sim):
+        super().test_longest_durations(sim)
