@@ -18,9 +18,11 @@ def write_step(step, by_block, out=None):
 
 
 def sources(*folders):
-    """The files under these folders of the repository that decide a result, ascending: list of Path."""
-    return sorted(path for folder in folders for path in (ROOT / folder).rglob("*")
-                  if path.suffix in SOURCES and "__pycache__" not in path.parts)
+    """The files under these folders (or files) of the repository that decide a result, ascending: list of Path."""
+    named = [ROOT / folder for folder in folders]
+    found = {path for top in named for path in (top, *top.rglob("*")) if path.is_file()}
+    return sorted(path for path in found
+                  if path in named or path.suffix in SOURCES and "__pycache__" not in path.parts)
 
 
 def digest_of(*folders):

@@ -17,13 +17,15 @@ from verif.results import OUT, digest_of, write_step
 from .batch import BATCH, make_input, run_batch, try_input
 from .resync import AROUND, FRAMES, sweep
 
+DECIDES = ("models/digital", "models/parameters", *(f"verif/fuzz/{name}.py" for name in ("batch", "checks", "host",
+                                                                                         "streams")))
 CHANGES = 16        # wrong values tried at each byte of a real frame
 SEED = 1
 
 
 def batches(inputs, seed, folder):
     """Jobs for ``inputs`` inputs: list of Job."""
-    code = digest_of("models", "verif/fuzz")
+    code = digest_of(*DECIDES)
     counts = [BATCH] * (inputs // BATCH) + ([inputs % BATCH] if inputs % BATCH else [])
     return [Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, str(folder)), (code, count))
             for i, count in enumerate(counts)]
@@ -31,7 +33,7 @@ def batches(inputs, seed, folder):
 
 def sweeps(count, seed):
     """Jobs of the resynchronisation: list of Job."""
-    code = digest_of("models", "flow/frame", "verif/fuzz")
+    code = digest_of(*DECIDES, "models", "flow/frame", "verif/fuzz/resync.py")
     return [Job(f"resync-{name}-{around.replace(' ', '-')}", sweep, (name, around, count, seed), (code, count, seed))
             for name in FRAMES for around in AROUND]
 

@@ -7,6 +7,7 @@ import argparse
 import json
 import shutil
 import sys
+from functools import cache
 from pathlib import Path
 
 from models.parameters import ParameterError
@@ -14,20 +15,33 @@ from verif.jobs import Job, run
 from verif.results import OUT, ROOT, digest_of, write_step
 
 from .blocks import blocks_of, level_of
-from .run import TESTED, folders, run_folder
+from .run import folders, run_folder
 
-ALL = (*TESTED, "cells", "docs")
+DOCUMENT = "docs/stream.md"     # its examples are tested
+SILICON = "models", "rtl", "pixels", "cells", "flow", "verif/frame"
 FAILED = "failed"
 TOOLS = "iverilog", "yosys", "g++", "z3"        # where one is missing, tests are skipped
 
 
+def decides(folder):
+    """Folders and files whose contents decide the results of the tests in ``folder``: tuple."""
+    top, own = folder.split("/")[0], folder.removesuffix("/test")
+    if top == "models":
+        return "models", DOCUMENT
+    if top != "verif":
+        return (*SILICON, top, DOCUMENT)
+    others = sorted(f"verif/{path.name}" for path in (ROOT / "verif").iterdir()
+                    if path.name not in ("report", "__pycache__"))
+    return (*SILICON, DOCUMENT, *others, own)
+
+
 def jobs(wanted, seconds):
     """A Job a folder, the longest first. seconds: dict folder -> of its last run."""
-    models, everything = digest_of("models", "docs"), digest_of(*ALL)
-    setup = (ROOT / "pyproject.toml").read_bytes(), *map(shutil.which, TOOLS)
+    digest = cache(digest_of)
+    setup = [(ROOT / name).read_bytes() for name in ("pyproject.toml", "conftest.py")] + [*map(shutil.which, TOOLS)]
     ordered = sorted(wanted, key=lambda folder: -seconds.get(folder, 1e9))
-    return [Job(folder.replace("/", "-"), run_folder, (folder,),
-                (models if folder.startswith("models/") else everything, *setup)) for folder in ordered]
+    return [Job(folder.replace("/", "-"), run_folder, (folder,), (digest(*decides(folder)), *setup))
+            for folder in ordered]
 
 
 def forget(planned, done, store):

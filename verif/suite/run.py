@@ -21,10 +21,10 @@ def folders():
                    if not path.name.endswith("_bench_test.py")})
 
 
-def run_folder(folder, root=ROOT):
+def run_folder(folder, root=ROOT, options=("--all",)):
     """Run the tests of ``folder`` (not of folders below): dict folder, seconds, cases.
 
-    cases: list of {test, outcome, seconds, message}; outcome: 'passed', 'failed' or 'skipped'. Where pytest itself
+    options: of pytest; --all runs the tests marked slow, too. cases: list of {test, outcome, seconds, message}; outcome: 'passed', 'failed' or 'skipped'. Where pytest itself
     ends badly, that is a failed case too.
     """
     root = Path(root)
@@ -33,7 +33,7 @@ def run_folder(folder, root=ROOT):
     with tempfile.TemporaryDirectory(prefix="talbot-") as out:
         report = Path(out) / "report.xml"
         command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-p", "no:cacheprovider", f"--junitxml={report}",
-                   "-o", "junit_family=xunit1", *files]
+                   "-o", "junit_family=xunit1", *options, *files]
         # Compiled models lie in a folder a worker (rtl/testbench.py): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:

@@ -3,8 +3,8 @@
 import pytest
 
 from rtl.tops import TOPS
-from verif.results import ROOT
-from verif.suite.__main__ import empty, forget, jobs, main, summarize
+from verif.results import ROOT, sources
+from verif.suite.__main__ import decides, empty, forget, jobs, main, summarize
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
 from verif.suite.run import folders, run_folder
 
@@ -35,7 +35,7 @@ def repository(tmp_path):
 
 
 def test_outcomes_of_a_folder(repository):
-    cases = run_folder("a", repository)["cases"]
+    cases = run_folder("a", repository, ())["cases"]
     assert [(c["test"], c["outcome"]) for c in cases] == [
         ("a/x_test.py::TestRTL::test_good", "passed"), ("a/x_test.py::test_bad", "failed"),
         ("a/x_test.py::test_left_out", "skipped")]
@@ -43,7 +43,7 @@ def test_outcomes_of_a_folder(repository):
 
 
 def test_a_file_that_cannot_be_read_is_a_failure(repository):
-    cases = run_folder("b", repository)["cases"]
+    cases = run_folder("b", repository, ())["cases"]
     assert any(c["outcome"] == "failed" and "no_such_module" in c["message"] for c in cases)
 
 
@@ -70,7 +70,7 @@ def test_a_divider_counts_for_what_it_names():
 
 
 def test_counts_by_block(repository):
-    found = summarize([run_folder("a", repository) | {"folder": "rtl/edge_adc/test"}])["EdgeAdc"]
+    found = summarize([run_folder("a", repository, ()) | {"folder": "rtl/edge_adc/test"}])["EdgeAdc"]
     tests = found["tests"]
     assert (tests["passed"], tests["failed"], tests["skipped"]) == (1, 1, 1) and tests["levels"] == {"RTL": 1}
     assert found["simulators"] == ["PyMTL3"] and len(found["open_points"]) == 2 and set(found) == set(empty())
@@ -85,6 +85,14 @@ def test_failures_are_tried_again(tmp_path):
     cases = [[{"outcome": "passed"}], [{"outcome": "passed"}, {"outcome": "failed"}]]
     forget(planned, [{"cases": c} for c in cases], tmp_path)
     assert [path.exists() for path in kept] == [True, False]
+
+
+def test_what_decides_a_folders_results():
+    assert decides("models/digital/test") == ("models", "docs/stream.md")
+    assert "verif/report" not in decides("rtl/edge_adc/test") and "verif/jobs.py" in decides("verif/fuzz/test")
+    assert "verif/report" in decides("verif/report/test") and "verif/report" not in decides("verif/fuzz/test")
+    one, two = sources("verif/jobs.py"), sources("verif")
+    assert one == [ROOT / "verif" / "jobs.py"] and one[0] in two and ROOT / "verif/report/limits.json" in two
 
 
 def test_an_unknown_folder(capsys):
