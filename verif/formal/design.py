@@ -17,17 +17,18 @@ def exported(proof):
 
 
 def wrapper(proof):
-    """The wrapper as Yosys reads it: macros, generated tables, then the file."""
+    """The wrapper as Yosys reads it: macros, generated tables, then the files."""
     macros = "".join(f"`define {name} {value}\n" for name, value in proof.defines.items())
     made = "".join(tables.TABLES[name](proof) for name in proof.generated)
-    return f"{macros}{made}{proof.wrapper.read_text()}"
+    return f"{macros}{made}{proof.text}"
 
 
-def broken(proof, texts, label):
-    """``texts`` with the bug of property ``label``. Raises ParameterError unless it has exactly one place."""
+def broken(proof, texts, wrapped, label):
+    """(texts, wrapped) with the bug of property ``label``. Raises ParameterError unless it has exactly one place."""
     twin = proof.twins[label]
-    distinct = {text: module for module, text in texts.items()}
-    places = sum(text.count(twin.find) for text in distinct)
+    places = wrapped.count(twin.find) if twin.wrapper else sum(text.count(twin.find) for text in set(texts.values()))
     if places != 1:
         raise ParameterError(f"{proof.name}.twins.{label}.find = {twin.find!r}: must occur once, occurs {places} times")
-    return {module: text.replace(twin.find, twin.replace) for module, text in texts.items()}
+    if twin.wrapper:
+        return texts, wrapped.replace(twin.find, twin.replace)
+    return {module: text.replace(twin.find, twin.replace) for module, text in texts.items()}, wrapped

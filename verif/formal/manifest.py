@@ -17,11 +17,16 @@ LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
 
 @dataclass(frozen=True)
 class Twin:
-    """A deliberate bug: ``find``, which must occur once in the exported Verilog, becomes ``replace``."""
+    """A deliberate bug: ``find``, which must occur once in the exported Verilog, becomes ``replace``.
+
+    wrapper: it lies in the wrapper's sources instead, for a property of the reference itself. depth: steps within
+    which the failure lies, if not the proof's twin_depth.
+    """
 
     find: str
     replace: str
     depth: int | None = None
+    wrapper: bool = False
 
 
 @dataclass(frozen=True)
@@ -33,7 +38,8 @@ class Proof:
     divider, n_frac, iterations that differ from the default. method: 'induction' (base and step, unbounded) or
     'bounded'. depth: steps of the base; induction is tried up to it. cover_depth, twin_depth: steps within which every
     cover point and every twin's failure must lie. engines: the first also serves covers and twins. timeout: s.
-    generated: names in verif.formal.tables, text put before the wrapper. defines: macros of the wrapper.
+    generated: names in verif.formal.tables, text put before the wrapper.
+    sources: files read before the wrapper. defines: macros of the wrapper.
     why: what the depth rests on. twins: property -> Twin.
     """
 
@@ -53,6 +59,7 @@ class Proof:
     twin_engine: str | None = None
     timeout: int = 300
     generated: tuple = ()
+    sources: tuple = ()
     defines: dict = field(default_factory=dict)
     fast: bool = False
 
@@ -67,6 +74,11 @@ class Proof:
     def _check(self, key, value, choices):
         if value not in choices:
             raise ParameterError(f"{self.name}.{key} = {value}: must be one of {', '.join(choices)}")
+
+    @property
+    def text(self):
+        """The sources and the wrapper."""
+        return "\n".join(path.read_text() for path in (*self.sources, self.wrapper))
 
     @property
     def sensor_parameters(self):
@@ -113,11 +125,12 @@ def _proof(folder, entry):
     entry = dict(entry)
     entry["wrapper"] = folder / entry["wrapper"]
     entry["twins"] = {name: Twin(**twin) for name, twin in entry["twins"].items()}
-    for key in ("engines", "generated"):
-        if key in entry:
-            entry[key] = tuple(entry[key])
+    for key in ("engines", "generated", "sources"):
+        entry[key] = tuple(entry.get(key, ()))
+    entry["engines"] = entry["engines"] or ENGINES[:1]
+    entry["sources"] = tuple(folder / name for name in entry["sources"])
     proof = Proof(**entry)
-    properties, _, covers = labels(proof.wrapper.read_text())
+    properties, _, covers = labels(proof.text)
     if set(properties) != set(proof.twins):
         odd = ", ".join(sorted(set(properties) ^ set(proof.twins)))
         raise ParameterError(f"{proof.name}.twins = {odd}: every property must have a twin, and every twin a property")

@@ -31,7 +31,7 @@ def cover(proof, texts, wrapper):
     with Workplace(texts, wrapper, proof.top) as place:
         _, output, wall = place.check(engine, ["-c", "-t", str(proof.cover_depth)], proof.timeout)
     reached = set(re.findall(r"Reached cover statement at (\w+)", output))
-    named = manifest.labels(proof.wrapper.read_text())[2]
+    named = manifest.labels(proof.text)[2]
     return {"reached": [n for n in named if n in reached], "missing": [n for n in named if n not in reached],
             "wall_s": round(wall, 2)}
 
@@ -57,9 +57,9 @@ def jobs(proof):
                                            (*base, proof.depth, version("yosys"), version(engine)))))
     found.append(("cover", "", Job(f"{proof.name}.cover", cover, (proof, texts, wrapper), (*base, proof.cover_depth))))
     for label, bug in proof.twins.items():
-        bad = design.broken(proof, texts, label)
-        found.append(("twin", label, Job(f"{proof.name}.{label}", twin, (proof, label, bad, wrapper),
-                                         (*base, *sorted(bad.values()), bug.depth or proof.twin_depth))))
+        bad, around = design.broken(proof, texts, wrapper, label)
+        found.append(("twin", label, Job(f"{proof.name}.{label}", twin, (proof, label, bad, around),
+                                         (*base, *sorted(bad.values()), around, bug.depth or proof.twin_depth))))
     return found
 
 
