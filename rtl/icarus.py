@@ -113,9 +113,10 @@ class Driven:
         except BrokenPipeError:
             pass        # what it said stands in what is left to read
         line = self.receive()
-        if not line.strip(b"01xzXZ\n") == b"" or not line:
+        if not line or line.strip(b"01xz\n"):
             said = line + self.process.stdout.read(2000)
-            raise IcarusError(f"the simulation ended early: {said.decode(errors='replace').strip() or 'it said nothing'}")
+            said = said.decode(errors="replace").strip() or "it said nothing"
+            raise IcarusError(f"the simulation ended early: {said}")
         return line
 
     def unknown(self, line):

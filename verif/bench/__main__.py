@@ -47,9 +47,7 @@ def jobs_of(blocks, simulators, seed):
 
 
 def summary(results):
-    """The step's part of the final summary by block, and its failures: texts. results: dict (block, simulator) -> bench.
-
-    """
+    """(the step's part of the final summary by block, failures: texts). results: dict (block, simulator) -> `bench`."""
     by_block, failures = {}, []
     for (block, simulator), result in results.items():
         here = by_block.setdefault(block, {"tests": Counter(passed=0, failed=0), "simulators": {}, "open_points": []})
@@ -70,7 +68,7 @@ def summary(results):
 
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m verif.bench", description=__doc__)
-    parser.add_argument("--block", action="append", choices=DESIGNS, help="a block (may be repeated); default: every one")
+    parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: every one")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
     parser.add_argument("--seed", type=int, default=1, help="of the tests' random numbers (%(default)s)")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")

@@ -1,4 +1,4 @@
-"""AdcBank in cocotb: steps of any lanes at any pace, with comparators that know the values, against the golden search."""
+"""AdcBank in cocotb: steps of any lanes at any pace, with comparators, against the golden search."""
 
 import random
 

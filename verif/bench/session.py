@@ -21,7 +21,8 @@ def main(simulator, module, folder, results, seed, tests, *rest):
                      build_args=BUILD_ARGS[simulator], timescale=("1ns", "1ps"))
         built.touch()
     runner.test(test_module=module, hdl_toplevel=TOP, hdl_toplevel_lang="verilog", build_dir=folder, test_dir=folder,
-                results_xml=results, seed=seed, testcase=tests.split(",") if tests else None, plusargs=list(plusargs), timescale=("1ns", "1ps"))
+                results_xml=results, seed=seed, testcase=tests.split(",") if tests else None, plusargs=list(plusargs),
+                timescale=("1ns", "1ps"))
 
 
 if __name__ == "__main__":

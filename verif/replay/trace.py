@@ -70,8 +70,8 @@ def load(path, cycles=True):
     """The Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
     head = json.loads(Path(path).read_text())
     lines = Path(path).with_suffix(".trace").read_text().splitlines() if cycles else []
-    return Trace(head["cls"], head["module"], _tuples(head["arguments"]), tuple(Port(**p) for p in head["ports"]), lines,
-                 [tuple(test) for test in head["tests"]], head["cycles"])
+    return Trace(head["cls"], head["module"], _tuples(head["arguments"]), tuple(Port(**p) for p in head["ports"]),
+                 lines, [tuple(test) for test in head["tests"]], head["cycles"])
 
 
 def _tuples(value):

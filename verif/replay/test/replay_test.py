@@ -86,7 +86,7 @@ def test_a_message_counts_while_it_is_valid(recorded, folder):
 
 def test_a_simulation_without_an_end_does_not_match(recorded, folder):
     path, verilog = recorded
-    bug = planted(verilog, folder, "endmodule", "  reg spin; initial spin = 0; always @(spin) spin <= ~spin;\nendmodule")
+    bug = planted(verilog, folder, "endmodule", "reg s; initial s = 0; always @(s) s <= ~s;\nendmodule")
     found = replay_files([path], [bug], seconds=1)
     assert [(m.port, m.expected) for m in found] == [("simulation", "an end")]
 
