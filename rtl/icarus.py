@@ -72,10 +72,10 @@ def compile_program(program, sources, top, texts=()):
         raise IcarusError(MISSING)
     program.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        files = [str(source) for source in sources]
-        for number, text in enumerate(texts):
-            files.append(f"{folder}/text{number}.v")
-            Path(files[-1]).write_text(text)
+        files = [f"{folder}/text{number}.v" for number in range(len(texts))]
+        for file, text in zip(files, texts):
+            Path(file).write_text(text)
+        files += map(str, sources)      # behind the bench: its time scale is that of cells that have none
         part = program.with_name(f".{program.name}.part-{os.getpid()}")
         result = subprocess.run(["iverilog", "-g2012", "-s", top, "-o", part, *files], capture_output=True, text=True,
                                 timeout=300)

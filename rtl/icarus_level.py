@@ -36,7 +36,7 @@ def program(dut, name):
             raise IcarusError(f"netlist = {path}: no such file")
         return kept_program(name, [path, *cells], "DrivenBench", [driven(module or cls.__name__, ports)])
     text = translate_component(cls(*dut._dsl.args, **dut._dsl.kwargs), cls.__name__)
-    return kept_program(name, [], "DrivenBench", [text, driven(cls.__name__, ports)])
+    return kept_program(name, [], "DrivenBench", [driven(cls.__name__, ports), text])
 
 
 class Conversation:
