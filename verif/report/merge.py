@@ -4,6 +4,7 @@ from rtl.tops import TOPS
 from verif.suite.blocks import BLOCKS
 
 COVERAGE = "line", "toggle", "branch", "fsm", "functional"
+SIMULATORS = {"pymtl": "PyMTL3", "verilator": "Verilator", "icarus": "Icarus"}
 MUTANTS = "made", "equivalent", "killed", "survived"
 PROVEN = "proven"
 
@@ -21,8 +22,16 @@ def summarize(by_steps):
     summary = {block: empty() for block in BLOCKS}
     for by_block in by_steps:
         for block, entry in by_block.items():
-            _merge(summary.setdefault(block, empty()), entry)
+            _merge(summary.setdefault(block, empty()), _named(entry))
     return summary
+
+
+def _named(entry):
+    """An entry whose simulators are a list of names; where they came with counts, these are its ``benches``."""
+    simulators = entry.get("simulators", [])
+    names = [SIMULATORS.get(name, name) for name in simulators]
+    benches = {"benches": dict(zip(names, simulators.values()))} if isinstance(simulators, dict) else {}
+    return entry | {"simulators": names} | benches
 
 
 def _merge(into, entry, adding=False):

@@ -50,9 +50,14 @@ def run_step(step, out):
     seconds = perf_counter() - start
     problem = "" if status in (0, 1) else f"step {step.name} = exit status {status}: must be 0 (see what it said)"
     by_block, unread = read_step(step, out)
-    if status == 1 and not unread and not any(entry.get("open_points") for entry in by_block.values()):
-        problem = f"step {step.name} = exit status 1: its results name no open point for it"
+    if status == 1 and not unread and not explained(by_block):
+        problem = f"step {step.name} = exit status 1: its results name no failed test or open point for it"
     return Outcome(step, seconds, problem or unread, by_block)
+
+
+def explained(by_block):
+    """True when the results tell why their step ended with status 1."""
+    return any(entry.get("open_points") or entry.get("tests", {}).get("failed") for entry in by_block.values())
 
 
 def exists(module):

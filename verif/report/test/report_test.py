@@ -47,6 +47,14 @@ def test_what_all_steps_bring_is_merged():
     assert set(summarize([])) == set(BLOCKS)
 
 
+def test_simulators_that_come_with_counts():
+    one = {"EdgeAdc": {"simulators": ["PyMTL3", "Icarus"]}}
+    two = {"EdgeAdc": {"simulators": {"icarus": {"passed": 3, "failed": 0}, "verilator": {"passed": 2, "failed": 0}}}}
+    entry = summarize([one, two])["EdgeAdc"]
+    assert entry["simulators"] == ["PyMTL3", "Icarus", "Verilator"]
+    assert entry["benches"] == {"Icarus": {"passed": 3, "failed": 0}, "Verilator": {"passed": 2, "failed": 0}}
+
+
 def test_nothing_falls_when_all_is_well():
     assert limits.fallen(everything(), LOWEST) == []
 
@@ -114,7 +122,8 @@ STEP = "import json, pathlib, sys\npathlib.Path({out!r}).write_text({text!r})\ns
 @pytest.mark.parametrize("text, status, problem", [
     ('{"AmpCtrl": {"open_points": []}}', 0, ""),
     ('{"AmpCtrl": {"open_points": ["x"]}}', 1, ""),
-    ('{"AmpCtrl": {"open_points": []}}', 1, "step one = exit status 1: its results name no open point for it"),
+    ('{"AmpCtrl": {"tests": {"passed": 1, "failed": 1}}}', 1, ""),
+    ('{"AmpCtrl": {"open_points": []}}', 1, "step one = exit status 1: its results name no failed test or open point for it"),
     ('{"AmpCtrl": {"open_points": []}}', 2, "step one = exit status 2: must be 0 (see what it said)"),
     ("[1]", 0, "step one = no results: one.json is no dict of blocks"),
     ("{", 0, "step one = no results: one.json: ")])
