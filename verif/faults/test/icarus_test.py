@@ -8,7 +8,7 @@ from rtl.icarus import MISSING, installed
 from verif.faults.chip import configured, quiet, run, start
 from verif.faults.waveform import PULSE_HIGH, PULSE_LOW, RDY, RESET, rest, transfer
 
-pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
+pytestmark = [pytest.mark.skipif(not installed(), reason=MISSING), pytest.mark.slow]
 
 
 def faults():
