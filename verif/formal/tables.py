@@ -31,4 +31,10 @@ def cordic_angle(proof):
     return case("cordic_angle", 4, 5 + iterations, angles(iterations))
 
 
-TABLES = {"phase_of_ratio": phase_of_ratio, "cordic_angle": cordic_angle}
+def type_at(proof):
+    """type_at(position): pixel type at a position of the tile, row by row."""
+    order = proof.sensor_parameters.tile.order
+    return case("type_at", 5, 5, order)
+
+
+TABLES = {"type_at": type_at, "phase_of_ratio": phase_of_ratio, "cordic_angle": cordic_angle}
