@@ -36,6 +36,22 @@ sim-help: $(READY)  ## the arguments of make sim, explained
 test: $(READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores)
 	@$(PY) -m pytest -n auto --dist loadfile
 
+.PHONY: formal
+formal: $(READY)  ## properties of every block proven, and that each catches its broken twin (needs Yosys, z3: make tools)
+	@$(PY) -m verif.formal
+
+.PHONY: coverage
+coverage: $(READY)  ## line, toggle, branch, state machines and test plans: 100 %
+	@$(PY) -m verif.coverage
+
+.PHONY: mutate
+mutate: $(READY)  ## bugs planted in the RTL, each of which a test must find
+	@$(PY) -m verif.mutation
+
+.PHONY: verify
+verify: $(READY)  ## all of the verification: build/verify/report.html; goes on where it was (under 45 minutes on 2 cores)
+	@$(PY) -m verif.report
+
 .PHONY: verilog
 verilog: $(READY)  ## build/verilog/<top>.v, linted
 	@$(PY) -m rtl.export --out build/verilog --check
@@ -61,7 +77,7 @@ bench: $(READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
 
 .PHONY: tools
-tools:  ## Icarus, a native Verilator and Yosys from Debian's packages (needs root)
+tools:  ## Icarus, a native Verilator, Yosys and z3 from Debian's packages (needs root)
 	@bash flow/setup/tools.sh
 
 .PHONY: clean

@@ -72,7 +72,11 @@ def tidy(text):
 
 def translate(name, sensor):
     """The Verilog of top ``name`` for ``sensor``, as text. Raises ParameterError."""
-    top = build_top(name, sensor)
+    return translate_component(build_top(name, sensor), name)
+
+
+def translate_component(top, name):
+    """The Verilog of the unelaborated component ``top`` as module ``name``, as text."""
     top.elaborate()
     for component, module in module_names(top, name).items():
         component.set_metadata(VerilogTranslationPass.explicit_module_name, module)

@@ -1,7 +1,7 @@
-"""One test bench for every level of a block: FL, CL, RTL and the translated Verilog in Verilator.
+"""One test bench for every level of a block: FL, CL, RTL, the translated Verilog in Verilator and in Icarus.
 
 A block's tests drive a component through its ports only. `build` prepares any level of it for
-simulation; a test class for the Verilog level overrides one attribute, ``verilog = True``.
+simulation; a test class for the Verilog levels overrides one attribute, ``verilog = True`` or ``verilog = "icarus"``.
 """
 
 import contextlib
@@ -11,10 +11,14 @@ import warnings
 from pathlib import Path
 
 from pymtl3 import Component, DefaultPassGroup, connect
-from pymtl3.passes.backends.verilog import VerilogTranslationImportPass, VerilogTranslationPass
+from pymtl3.passes.backends.verilog import VerilogTBGenPass, VerilogTranslationImportPass, VerilogTranslationPass
 from pymtl3.stdlib.stream import SinkRTL, SourceRTL
 
 WORK = Path(__file__).parents[1] / "build" / "pymtl"
+
+# Called as observe(top, dut, verilog) for every simulator that is built, ahead of its reset: what is simulated, the
+# elaborated component under test, and the level; returns what is called ahead of each clock edge, or None.
+observers = []
 
 
 def verilator_folder():
@@ -44,22 +48,38 @@ def _verilator(name):
 def build(top, verilog=False, name=None):
     """Elaborate ``top`` and make it ready to simulate; returns the simulator.
 
-    verilog: replace ``top.dut`` (or ``top`` itself, if it has none) by its translated Verilog.
+    verilog: replace ``top.dut`` (or ``top`` itself, if it has none) by its translated Verilog in Verilator (True) or
+    in Icarus ('icarus': the slower one, which knows X, and which takes a netlist in place of the translation).
     name: an explicit module name; one a parameter set, since the compiled model is reused by name.
     """
     top.elaborate()
     dut = getattr(top, "dut", top)
-    if verilog:
-        name = name or type(dut).__name__
+    name = name or type(dut).__name__
+    if verilog == "icarus":
+        top = _in_icarus(top, dut, name)
+    elif verilog:
         with _verilator(name), warnings.catch_warnings():
             warnings.simplefilter("ignore")     # PyMTL3 3.1.17's translator warns about its own code
             dut.set_metadata(VerilogTranslationImportPass.enable, True)
             dut.set_metadata(VerilogTranslationPass.explicit_module_name, name)
             top = VerilogTranslationImportPass()(top)
+    hooks = [hook for observe in observers if (hook := observe(top, dut, verilog))]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        if hooks:
+            top.set_metadata(VerilogTBGenPass.vtbgen_hooks, hooks)
         top.apply(DefaultPassGroup(linetrace=False))
     top.sim_reset()
+    return top
+
+
+def _in_icarus(top, dut, name):
+    from rtl.icarus_level import icarus_level
+    module = icarus_level(dut, name)
+    if dut is top:
+        module.elaborate()
+        return module
+    top.replace_component_with_obj(dut, module)
     return top
 
 

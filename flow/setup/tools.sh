@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys.
+# Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3.
 set -euo pipefail
-packages=(iverilog verilator yosys)
+packages=(iverilog verilator yosys z3)
 
 if ! command -v apt-get >/dev/null; then
     echo "tools: apt-get = not found: install ${packages[*]} with this system's own package manager" >&2

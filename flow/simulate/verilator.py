@@ -57,7 +57,7 @@ def _sources_digest():
     """Digest of every file from which the Verilog is made: an unchanged one needs no export."""
     files = sorted(p for folder in ("rtl", "models/parameters", "pixels", "verif/frame")
                    for p in (ROOT / folder).rglob("*")
-                   if p.suffix in (".py", ".rdl", ".sv", ".cpp") and "test" not in p.parts)
+                   if p.suffix in (".py", ".rdl", ".sv", ".cpp") and not {"test", "formal"} & set(p.parts))
     return digest(*(part for p in files for part in (p.relative_to(ROOT), p.read_bytes())))
 
 
@@ -73,13 +73,14 @@ def bench_program(build, note=lambda text: None):
                    (ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"), FRAME / "main.cpp", note)
 
 
-def bare_program(build, note=lambda text: None):
-    """Path of the chip alone in a bare clock loop (bare.cpp), for `make bench`. Raises ToolError."""
-    return _cached(build, "AspChip", (), (), FRAME / "bare.cpp", note)
+def bare_program(build, note=lambda text: None, main=FRAME / "bare.cpp"):
+    """Path of the chip alone with ``main`` around it: by default a bare clock loop, for `make bench`. Raises ToolError."""
+    return _cached(build, "AspChip", (), (), main, note)
 
 
 def _cached(build, top, options, sources, main, note):
-    key = digest(_sources_digest(), build, top, options, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS)
+    key = digest(_sources_digest(), main.read_bytes(), build, top, options, verilator_version(), CXX_FLAGS,
+                 VERILATOR_FLAGS)
 
     def make(work):
         note("exporting the chip's Verilog")
@@ -99,7 +100,7 @@ def _compile(build, work, main):
     # One translation unit: the whole model and its clock loop are optimized together.
     unit = work / "unit.cpp"
     unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted((work / "obj").glob("*.cpp")), main]))
-    run(["g++", *CXX_FLAGS, *(["-DWAVES", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1"] if build.waves else []), "-I", work / "obj", "-I", include,
-          "-I", include / "vltstd", unit, *(include / r for r in runtime), "-pthread", "-o", work / "program"],
-        env={"TMPDIR": str(work)})
+    traced = ["-DWAVES", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1"] if build.waves else []
+    run(["g++", *CXX_FLAGS, *traced, "-I", work / "obj", "-I", include, "-I", include / "vltstd", unit,
+         *(include / r for r in runtime), "-pthread", "-o", work / "program"], env={"TMPDIR": str(work)})
     unit.unlink()

@@ -75,8 +75,9 @@ class AspChipFL(Component):
                     s.job = None
             elif s.regs.start:
                 cfg_err, amp_err = begin()
-            s.busy <<= s.job is not None
-            s.regs.status <<= chip_status()(s.job is not None, done, cfg_err, amp_err)
+            busy = done or s.job is not None        # until `done` is set
+            s.busy <<= busy
+            s.regs.status <<= chip_status()(busy, done, cfg_err, amp_err)
             s.regs.cycles <<= s.spent
             s.regs.conversions_made <<= s.run.made if s.run else 0
             s.regs.conversions_left_out <<= s.run.left_out if s.run else 0

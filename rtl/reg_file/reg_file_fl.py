@@ -26,6 +26,7 @@ class RegFileFL(Component):
 
         s.bank = RegisterBank({"row1": last_row, "col1": last_col})
         s.was_high = s.command = None
+        s.was_free = False          # csn has been high since reset
         s.bits, s.out = [], 0
 
         chip = register_map()
@@ -60,7 +61,8 @@ class RegFileFL(Component):
             high = bool(s.sclk)
             if s.reset:
                 s.bank.__init__({"row1": last_row, "col1": last_col})
-            if s.reset or s.csn:
+            s.was_free = not s.reset and (s.was_free or bool(s.csn))
+            if s.csn or not s.was_free:
                 s.bits, s.command, s.out = [], None, 0
             elif high and not s.was_high:
                 rising()

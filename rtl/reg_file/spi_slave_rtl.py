@@ -7,7 +7,7 @@ class SpiSlave(Component):
     """Bytes in as strobes, bytes out on demand; MSB first.
 
     rx, rx_val: a whole byte came in (one cycle). tx is taken at the falling edge that follows it, when
-    tx_take is high. selected: csn is low. sclk at most clk / 8.
+    tx_take is high. selected: csn is low, and was high once since reset. sclk at most clk / 8.
     """
 
     def construct(s):
@@ -25,6 +25,7 @@ class SpiSlave(Component):
         s.sclk_sync = Wire(3)
         s.csn_sync = Wire(2)
         s.mosi_sync = Wire(2)
+        s.was_free = Wire()         # csn has been high: what is left of a transfer that a reset cut is no transfer
         s.rise = Wire()
         s.fall = Wire()
         s.count = Wire(3)
@@ -35,7 +36,7 @@ class SpiSlave(Component):
 
         @update
         def up_edges():
-            s.selected @= ~s.csn_sync[1]
+            s.selected @= ~s.csn_sync[1] & s.was_free
             s.rise @= Bits1(0)
             s.fall @= Bits1(0)
             s.rx_val @= Bits1(0)
@@ -51,12 +52,14 @@ class SpiSlave(Component):
         def up_sync():
             if s.reset:
                 s.sclk_sync <<= Bits3(0)
-                s.csn_sync <<= Bits2(3)
+                s.csn_sync <<= Bits2(0)
                 s.mosi_sync <<= Bits2(0)
+                s.was_free <<= Bits1(0)
             else:
                 s.sclk_sync <<= concat(s.sclk_sync[0:2], s.sclk)
                 s.csn_sync <<= concat(s.csn_sync[0], s.csn)
                 s.mosi_sync <<= concat(s.mosi_sync[0], s.mosi)
+                s.was_free <<= s.was_free | s.csn_sync[1]
 
         @update_ff
         def up_shift():

@@ -9,7 +9,7 @@ from .frame import DecodedFrame
 from .header import HEADER_BYTES, MAGIC, StreamError, read_header
 from .payload import frame_ends
 from .resync import Search
-from .trailer import TRAILER_BYTES
+from .trailer import COUNTED_BYTES, TRAILER_BYTES
 
 MEMORY_MAX = 1 << 30        # bytes of samples that decode_stream returns at most
 SEARCH_MAX = 1 << 28, 64    # samples decoded on trial to find rows again: at most so many, and more for each byte
@@ -62,13 +62,27 @@ def _find_header(data, at, tile):
         except ParameterError as error:
             reason = reason or str(error)
         else:
-            if mended is None or position == at:    # with a byte changed, only where a header must be
+            # with a byte changed, only where a header must be, and not what a cut one and the next make together
+            if mended is None or position == at and _good_header(data, at + 1, at + HEADER_BYTES) < 0:
                 notes = [f"byte {position + mended}: byte of the header mended"] if mended is not None else []
                 if position > at:
                     notes.append(f"byte {at}: {position - at} bytes skipped: {reason}")
                 return position, header, layout, sent, notes
         position = data.find(MAGIC, position + 1)
     return at, None, None, b"", [reason]
+
+
+def _good_header(data, start, stop):
+    """Where the first undamaged header starts in data[start:stop], or -1."""
+    position = data.find(MAGIC, start, stop + len(MAGIC) - 1)
+    while position >= 0:
+        try:
+            if read_header(data[position:position + HEADER_BYTES])[2] is None:
+                break
+        except StreamError:
+            pass
+        position = data.find(MAGIC, position + 1, stop + len(MAGIC) - 1)
+    return position
 
 
 def _decode_frame(data, frame, sent, tile, limit):
@@ -83,13 +97,17 @@ def _decode_frame(data, frame, sent, tile, limit):
             ordinal, at, tail = body.total, stop - TRAILER_BYTES, mended
         else:
             ordinal, at, tail, limit = _decode_around(body, frame, ordinal, at, stop, limit)
+    trailer_end = min(at + TRAILER_BYTES, len(data))
     if tail:
         frame.made, frame.left_out, notes = tail
+        following = _good_header(data, at + COUNTED_BYTES, trailer_end) if notes else -1
+        if following >= 0:      # these are no bytes of the trailer
+            trailer_end, notes = following, [f"the trailer ends after {following - at} of {TRAILER_BYTES} bytes"]
         frame.errors += [f"byte {at}: {note}" for note in notes]
     else:
         frame.errors.append(f"byte {at}: the trailer is damaged or missing")
     ends = tail or ordinal == body.total and frame_ends(body.view, at + TRAILER_BYTES, len(data))
-    frame.stop = min(at + TRAILER_BYTES, len(data)) if ends else stop
+    frame.stop = trailer_end if ends else stop
     return limit
 
 

@@ -35,9 +35,14 @@ def frame_writes(frame, trims=None):
 
 
 def write_transfers(writes):
-    """SPI transfers for (address, byte) pairs: list of bytes, each a command and data at ascending addresses."""
+    """SPI transfers for (address, byte) pairs: list of bytes, each a command and data at ascending addresses.
+
+    Raises ParameterError for an address beyond 127 or a byte beyond 255.
+    """
     out, last = [], None
     for address, byte in writes:
+        check_int("address", address, 0, 127)
+        check_int(f"byte for address {address}", byte, 0, 255)
         if last is not None and address == last + 1 and len(out[-1]) < TRANSFER_MAX:
             out[-1].append(byte)
         else:

@@ -220,6 +220,10 @@ class TestAdcBankVerilog(TestAdcBankRTL):
     verilog = True
 
 
+class TestAdcBankIcarus(TestAdcBankRTL):
+    verilog = "icarus"
+
+
 @pytest.mark.parametrize("cls", [AdcBankFL, AdcBankCL, AdcBank])
 @pytest.mark.parametrize("lanes", [1, 2, 32])
 def test_other_numbers_of_lanes(cls, lanes):

@@ -137,3 +137,11 @@ class TestAmpCtrlRTL(TestAmpCtrlFL):
 
 class TestAmpCtrlVerilog(TestAmpCtrlRTL):
     verilog = True
+
+
+class TestAmpCtrlIcarus(TestAmpCtrlRTL):
+    verilog = "icarus"
+
+    @pytest.mark.slow
+    def test_longest_durations(self, sim):
+        super().test_longest_durations(sim)

@@ -170,3 +170,7 @@ class TestVerilog(FrameTests):
             streams.append(bytes(bench.stream))
             cycles.append(bench.status()["cycles"])
         assert streams[0] == streams[1] and cycles[0] < cycles[1]
+
+
+class TestIcarus(TestVerilog):
+    verilog, examples = "icarus", 3

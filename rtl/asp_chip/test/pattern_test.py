@@ -57,3 +57,7 @@ class TestRTLTwoLanes(TestRTL):
 
 class TestVerilog(TestRTL):
     verilog = True
+
+
+class TestIcarus(TestRTL):
+    verilog = "icarus"

@@ -172,3 +172,7 @@ class TestEdgeAdcRTL(TestEdgeAdcCL):
 
 class TestEdgeAdcVerilog(TestEdgeAdcRTL):
     verilog = True
+
+
+class TestEdgeAdcIcarus(TestEdgeAdcRTL):
+    verilog = "icarus"

@@ -151,6 +151,10 @@ class TestPhasePathVerilog(TestPhasePathRTL):
     verilog = True
 
 
+class TestPhasePathIcarus(TestPhasePathRTL):
+    verilog = "icarus"
+
+
 @pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
 @pytest.mark.parametrize("chip", [ChipParameters(1, "radix2", 4), ChipParameters(32, "pipelined", 12),
                                   ChipParameters(4, "cordic", 8, 6)], ids=lambda c: c.divider)

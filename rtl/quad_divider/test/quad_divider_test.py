@@ -187,6 +187,10 @@ class TestVerilog(TestRTL):
     configs = [Config(v) for v in DIVIDERS] + [Config("radix4", 7)]
 
 
+class TestIcarus(TestVerilog):
+    verilog = "icarus"
+
+
 @pytest.mark.parametrize("arguments, field", [
     (("radix8",), "divider = 'radix8'"), (("radix2", 3), "n_frac = 3"), (("radix4", 17), "n_frac = 17"),
     (("cordic", 8, 3), "iterations = 3"), (("cordic", 8, 17), "iterations = 17")])

@@ -227,3 +227,7 @@ class TestReadoutSeqRTL(TestReadoutSeqCL):
 class TestReadoutSeqVerilog(TestReadoutSeqRTL):
     verilog = True
     sizes = Size(7, 31, 2), Size(13, 75, 8)
+
+
+class TestReadoutSeqIcarus(TestReadoutSeqVerilog):
+    verilog = "icarus"

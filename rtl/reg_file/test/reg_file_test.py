@@ -154,6 +154,30 @@ class TestFL:
             bench.spi.transfer(bytes((0x80 | a, 0x55, 0x66)), cut)
             assert bench.read(a, 2) == (b"\x55\x22" if cut >= 16 else b"\x11\x22"), cut
 
+    def test_reset_in_a_transfer(self):
+        """What is left of the transfer is no transfer, until csn has been high."""
+        bench = self.bench()
+        for bit in range(1, 24):
+            left = [bit]
+
+            def tick(left=left):
+                left[0] -= 1        # reset for one cycle, that many SPI clocks into the transfer
+                bench.sim.reset @= left[0] == 0
+                bench.tick()
+
+            left[0] = 2 * bench.spi.half * bit
+            bench.spi.tick = tick
+            bench.spi.transfer(b"\x00" + 5 * command("start") + bytes((0x80 | FIRST, 0x05)))
+            bench.spi.tick = bench.tick
+            assert bench.starts == 0 and bench.read(FIRST, 2) == self.resets(), bit
+            bench.write([(FIRST, 0x05)])
+            assert bench.read(FIRST) == b"\x05"
+
+    @staticmethod
+    def resets():
+        bank = RegisterBank({"row1": LAST_ROW, "col1": LAST_COL})
+        return bytes(bank.read(FIRST + i, False, [0, 0, 0]) for i in range(2))
+
     def test_loop_back(self):
         bench = self.bench()
         address = CHIP["loop_back"].byte
@@ -216,6 +240,10 @@ class TestRTL(TestFL):
 
 class TestVerilog(TestRTL):
     verilog = True
+
+
+class TestIcarus(TestRTL):
+    verilog = "icarus"
 
 
 def test_the_bank_resets_to_the_default_frame():

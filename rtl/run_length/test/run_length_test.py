@@ -210,3 +210,7 @@ class TestRunLength(TestRunLengthCL):
 
 class TestRunLengthVerilog(TestRunLength):
     verilog = True
+
+
+class TestRunLengthIcarus(TestRunLength):
+    verilog = "icarus"

@@ -210,6 +210,15 @@ def test_bytes_around_frames_are_told():
     assert "3 bytes are no frame" in frames[1].errors[1]
 
 
+@pytest.mark.parametrize("name", FRAMES)
+def test_a_frame_cut_short_anywhere_costs_the_next_one_nothing(name):
+    """As where the chip is reset in a frame: a header that the next one runs into is not mended with its bytes."""
+    _, samples, data = sent(name)
+    for length in range(len(data)):
+        last = decode_stream(data[:length] + data)[-1]
+        assert last.complete and last.start == length and np.array_equal(last.samples, samples), length
+
+
 @settings(max_examples=200, deadline=None)
 @given(headers(), st.integers(0, 2**32 - 1), st.data())
 def test_fuzz(header, seed, draw):

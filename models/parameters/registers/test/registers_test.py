@@ -70,6 +70,13 @@ def test_trims_out_of_range(trims, field):
         frame_writes(FrameParameters(FULL), trims)
 
 
+@pytest.mark.parametrize("writes, field", [
+    ([(128, 0)], "address"), ([(5, 1), (-1, 0)], "address"), ([(3, 256)], "byte for address 3"), ([(3, -1)], "byte")])
+def test_writes_of_what_is_no_byte(writes, field):
+    with pytest.raises(ParameterError, match=f"^{field}.* = "):
+        write_transfers(writes)
+
+
 def test_status_round_trip():
     bank = RegisterBank()
     bank.set("done")

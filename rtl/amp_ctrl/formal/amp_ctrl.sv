@@ -1,0 +1,153 @@
+// AmpCtrl for every configuration and every pattern of start, reset and hold_free; the inputs are free in every cycle.
+//
+// Coming back to idle is shown by a rank, a number that is 0 in idle, never grows while a row is under way, and falls
+// in every cycle but those of the guard before `read` in which hold_free is low. So a row ends after finitely many
+// cycles in which hold_free is high, whatever the configuration.
+
+module AmpCtrlProof (
+  input clk, input reset, input start, input four_tap, input hold_free,
+  input [15:0] t_reset, input [15:0] t_int, input [15:0] t_cm, input [15:0] t_settle, input [15:0] t_read,
+  input [15:0] t_guard, input [7:0] n_cm
+);
+  wire pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample, busy, done, cfg_err;
+  wire [1:0] tap;
+  AmpCtrl dut (.*);
+
+  localparam IDLE = 0, GUARD = 1, RESET = 2, INTEGRATE = 3, CM_RESET = 4, REFERENCE = 5, SIGNAL = 6;
+  (* hierconn *) wire [2:0] \dut.state ;
+  (* hierconn *) wire [2:0] \dut.after ;
+  (* hierconn *) wire [15:0] \dut.count ;
+  (* hierconn *) wire [7:0] \dut.resets ;
+  (* hierconn *) wire [15:0] \dut.d_reset ;
+  (* hierconn *) wire [15:0] \dut.d_int ;
+  (* hierconn *) wire [15:0] \dut.d_cm ;
+  (* hierconn *) wire [15:0] \dut.d_settle ;
+  (* hierconn *) wire [15:0] \dut.d_read ;
+  (* hierconn *) wire [15:0] \dut.d_guard ;
+  (* hierconn *) wire [7:0] \dut.d_n_cm ;
+  (* hierconn *) wire [0:0] \dut.d_four ;
+  wire [2:0] state = \dut.state ;
+  wire [2:0] after = \dut.after ;
+  wire [15:0] count = \dut.count ;
+  wire [7:0] resets = \dut.resets ;
+
+  // What the last accepted start asked for
+  reg four;
+  reg [15:0] d_reset, d_int, d_cm, d_settle, d_read, d_guard;
+  reg [7:0] d_n_cm;
+  wire zero = t_reset == 0 || t_int == 0 || t_cm == 0 || t_settle == 0 || t_read == 0 || t_guard == 0;
+  wire accept = start && !busy && !reset;
+  always @(posedge clk) begin
+    if (accept) begin
+      four <= four_tap; d_n_cm <= n_cm;
+      d_reset <= t_reset; d_int <= t_int; d_cm <= t_cm;
+      d_settle <= t_settle; d_read <= t_read; d_guard <= t_guard;
+    end
+  end
+
+  // The cycle before
+  reg first = 1;
+  reg was_reset, was_accept, was_zero, was_free, was_busy, was_read, was_ref;
+  reg [3:0] was;
+  wire [3:0] phases = {pixel_reset, integrate, cm_reset, read};
+  reg [30:0] was_rank;
+  always @(posedge clk) begin
+    first <= 0; was_reset <= reset; was_accept <= accept; was_zero <= zero; was_free <= hold_free;
+    was_busy <= busy; was <= phases; was_rank <= rank; was_ref <= ref_ctl;
+  end
+
+  // Cycles of the present phase or pause so far, and integrations and common-mode resets of this tap
+  reg [17:0] length;
+  reg [8:0] integrations, cm_resets;
+  wire begins = phases != was || (ref_ctl != was_ref);
+  wire [17:0] so_far = begins ? 1 : length[17] ? length : length + 1;
+  wire [8:0] integrations_now = integrations + (integrate && !was[2]);
+  wire [8:0] cm_resets_now = cm_resets + (cm_reset && !was[1]);
+  always @(posedge clk) begin
+    length <= reset ? 0 : so_far;
+    integrations <= reset || pixel_reset ? 0 : integrations_now;
+    cm_resets <= reset || pixel_reset ? 0 : cm_resets_now;
+  end
+
+  // The rank: taps, common-mode resets, phases and cycles still to come, the weightiest first
+  reg [3:0] place;
+  always @* begin
+    case (state)
+      RESET: place = 8;
+      INTEGRATE: place = 6;
+      CM_RESET: place = 4;
+      REFERENCE: place = 2;
+      SIGNAL: place = 1;
+      default: place = after == RESET ? 9 : after == INTEGRATE ? 7 : after == CM_RESET ? 5 : after == REFERENCE ? 3 : 0;
+    endcase
+  end
+  wire [7:0] still = place >= 8 ? d_n_cm : resets;      // loaded at the end of the pixel reset
+  wire [30:0] rank = busy ? {1'b1, four ? ~tap : 2'b0, still, place, count} : 0;
+
+  reg [15:0] duration;
+  always @* begin
+    case (state)
+      RESET: duration = d_reset;
+      INTEGRATE: duration = d_int;
+      CM_RESET: duration = d_cm;
+      REFERENCE: duration = d_settle;
+      default: duration = d_read;
+    endcase
+  end
+
+  always @* begin
+    if (first) assume (reset);
+    if (!first && was_reset)
+      p_reset: assert ({phases, shutter, ref_ctl, sample, tap, busy, done, cfg_err} == 0);
+    if (!first && !was_reset) begin
+      // Phases never overlap: of two, one has ended and a cycle with none lies between
+      p_exclusive: assert ((phases & (phases - 1)) == 0);
+      p_apart: assert (was == 0 || phases == 0 || phases == was);
+      // Everything rests when no row is under way
+      p_rest: assert (busy || {phases, shutter, ref_ctl, sample, tap} == 0);
+      // It comes back to idle
+      p_progress: assert (!was_busy || (was_free ? rank < was_rank : rank <= was_rank));
+      p_done: assert (done == (was_busy && !busy));
+      // A start moves it, unless a duration is zero
+      p_start: assert (!was_accept || (was_zero ? !busy && cfg_err : busy && !cfg_err));
+      p_still: assert (was_busy || was_accept || !busy);
+      // The sample-and-hold is overwritten only when it is free
+      p_hold: assert (!(read && !was[0]) || was_free);
+      // Every phase lasts as long as configured, every pause at least as long
+      p_reset_length: assert (!(was[3] && !pixel_reset) || length == d_reset);
+      p_int_length: assert (!(was[2] && !integrate) || length == d_int);
+      p_cm_length: assert (!(was[1] && !cm_reset) || length == d_cm);
+      p_settle_length: assert (!(was_ref && !ref_ctl) || length == d_settle && read);
+      p_read_length: assert (!(was[0] && !was_ref && !read) || length == d_read);
+      p_guard_length: assert (!(was == 0 && phases != 0) || length >= d_guard);
+      p_cm_count: assert (!(read && !was[0]) || cm_resets == d_n_cm && integrations == d_n_cm + 1);
+      // The reference level is sampled in its last cycle, the signal in its last
+      p_sample: assert (sample == (ref_ctl ? so_far == d_settle : read && so_far == d_read));
+    end
+    if (!first) begin
+      inv_state: assert (state != 7 && busy == (state != IDLE));
+      inv_after: assert (state == IDLE || (after != CM_RESET || resets != 0) && after != GUARD && after < SIGNAL);
+      inv_pins: assert (phases == {state == RESET, state == INTEGRATE, state == CM_RESET, state >= REFERENCE}
+                        && ref_ctl == (state == REFERENCE) && sample == (state >= REFERENCE && count == 0));
+      inv_captured: assert (!busy || {\dut.d_reset , \dut.d_int , \dut.d_cm , \dut.d_settle , \dut.d_read ,
+                                      \dut.d_guard , \dut.d_n_cm , \dut.d_four }
+                                     == {d_reset, d_int, d_cm, d_settle, d_read, d_guard, d_n_cm, four});
+      inv_saturated: assert (length <= 18'h20000);
+      inv_positive: assert (!busy || d_reset && d_int && d_cm && d_settle && d_read && d_guard);
+      inv_length: assert (!busy || (state == GUARD ? so_far + count >= d_guard && count < d_guard
+                                    : so_far + count == duration));
+      inv_resets: assert (!(busy && place < 8 && place > 0)
+                          || cm_resets_now + resets == d_n_cm + (place == 4)
+                             && integrations_now == cm_resets_now + (place != 7 && place != 4)
+                             && (place > 3 || resets == 0) && (place < 4 || place > 5 || resets != 0));
+      inv_tap: assert (busy ? four || tap == 0 : tap == 0);
+    end
+  end
+
+  always @* if (!first && !was_reset) begin
+    c_row: cover (done && d_n_cm == 1);
+    c_taps: cover (tap == 1 && read);
+    c_refused: cover (cfg_err);
+    c_waits: cover (read && !was[0] && length > 8);
+  end
+endmodule

@@ -1,0 +1,181 @@
+// ReadoutSeq hands on exactly the steps of docs/chip.md (Scan order), each once and in that order, for every window, mask,
+// decimation, mode and overlap, and whatever the amplifiers, the bank and `rdy` do.
+//
+// Order: the steps of a frame ascend strictly in (row, k, group, sub), and each is one that the document wants.
+// Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is wanted, it has been sent when END
+// is offered. The document's words stand in `column_ok`, `row_ok` and `lanes_of`, and nowhere else.
+
+module ReadoutSeqProof (
+  input clk, input reset, input start, input amp_done, input amp_err, input bank_idle, input step__rdy,
+  input [1:0] mode, input [23:0] mask, input [7:0] row0, input [7:0] row1, input [7:0] col0, input [7:0] col1,
+  input [1:0] decimation, input overlap,
+  input [9:0] p_row, input [2:0] p_k, input [7:0] p_group, input [1:0] p_sub
+);
+  wire [9:0] amp_row;
+  wire amp_start, busy, cfg_err, done, four_tap, hold_free, step__val;
+  wire [63:0] cycles;
+  wire [24 + `LANES:0] step__msg;
+  ReadoutSeq dut (.*);
+
+  wire [1:0] kind = step__msg[24 + `LANES -: 2];
+  wire [9:0] row = step__msg[22 + `LANES -: 10];
+  wire [7:0] group = step__msg[12 + `LANES -: 8];
+  wire [2:0] k = step__msg[4 + `LANES -: 3];
+  wire [1:0] sub = step__msg[1 + `LANES -: 2];
+  wire [`LANES - 1:0] en = step__msg[`LANES - 1:0];
+  localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3;
+
+  // The document
+  wire [7:0] stride_mask = (8'd1 << decimation) - 8'd1;
+  wire [1:0] subs = mode == 3 ? 3 : mode == 2 ? 1 : 0;
+  wire window_ok = row0 <= row1 && row1 < (`ROWS + 3) / 4 && col0 <= col1 && col1 < (`COLS + 5) / 6;
+  function column_ok(input [1:0] row_in_tile, input [2:0] k);
+    column_ok = k < 6 && mask[type_at(6 * row_in_tile + k)] && 6 * {4'b0, col0} + k < `COLS;
+  endfunction
+  function [5:0] columns_of(input [1:0] row_in_tile);
+    integer i;
+    for (i = 0; i < 6; i = i + 1) columns_of[i] = column_ok(row_in_tile, i);
+  endfunction
+  function row_ok(input [9:0] row);
+    row_ok = row[9:2] >= row0 && row[9:2] <= row1 && ((row[9:2] - row0) & stride_mask) == 0 && row < `ROWS
+             && columns_of(row[1:0]) != 0;
+  endfunction
+  function [`LANES - 1:0] lanes_of(input [7:0] group, input [2:0] k);
+    integer lane;
+    reg [12:0] tile;
+    for (lane = 0; lane < `LANES; lane = lane + 1) begin
+      tile = `LANES * {5'b0, group} + lane;
+      lanes_of[lane] = tile >= col0 && tile <= col1 && ((tile[7:0] - col0) & stride_mask) == 0 && 6 * tile + k < `COLS;
+    end
+  endfunction
+  wire wanted = row_ok(p_row) && column_ok(p_row[1:0], p_k) && lanes_of(p_group, p_k) != 0 && p_sub <= subs;
+
+  // The frame so far: what has been sent, whether the fixed step is among it, what came last
+  reg first = 1, was_busy, was_reset, was_val, was_rdy, was_start_ok, was_start_bad;
+  reg [24 + `LANES:0] was_msg;
+  reg seen, framed, rows_sent, sampled;
+  reg [22:0] last;
+  wire [22:0] here = {row, k, group, sub}, there = {p_row, p_k, p_group, p_sub};
+  wire taken = step__val && step__rdy;
+  wire sampling = step__val && kind == SAMPLE;
+  wire [93:0] choice = {mode, mask, row0, row1, col0, col1, decimation, overlap, there};
+  reg [93:0] was_choice;
+  reg was_start;
+  always @(posedge clk) begin
+    first <= 0; was_busy <= busy; was_reset <= reset; was_val <= step__val; was_rdy <= step__rdy; was_msg <= step__msg;
+    was_choice <= choice;
+    was_start <= start && !busy;
+    was_start_ok <= start && !busy && window_ok && wanted;
+    was_start_bad <= start && !busy && !window_ok;
+    if (reset || !busy) begin
+      seen <= 0; framed <= 0; rows_sent <= 0; sampled <= 0; last <= 0;
+    end else if (taken) begin
+      framed <= framed || kind == FRAME;
+      rows_sent <= rows_sent || kind == ROW;
+      sampled <= kind == SAMPLE;
+      seen <= seen || (kind == SAMPLE && here == there);
+      if (kind == ROW) last <= {row, 13'b0};
+      else if (kind == SAMPLE) last <= here;
+    end
+  end
+
+  // Inside
+  (* hierconn *) wire [2:0] \dut.state ;
+  (* hierconn *) wire \dut.integrating ;
+  (* hierconn *) wire \dut.failing ;
+  (* hierconn *) wire [9:0] \dut.row ;
+  (* hierconn *) wire [7:0] \dut.rows.tile ;
+  (* hierconn *) wire [1:0] \dut.rows.in_tile ;
+  (* hierconn *) wire [7:0] \dut.steps.last_tile ;
+  (* hierconn *) wire [5:0] \dut.steps.left ;
+  localparam CHECK = 1, WAIT = 2, DRAIN = 3;
+  wire [2:0] state = \dut.state ;
+  wire integrating = \dut.integrating ;
+  wire [9:0] current = \dut.row ;
+  wire [7:0] last_tile = \dut.steps.last_tile ;
+  wire [5:0] left = \dut.steps.left ;
+  wire [5:0] columns = columns_of(current[1:0]);
+  wire landed = rows_sent || !hold_free;      // a row of this frame is in the sample-and-holds, or was
+  wire [7:0] bound = 6 * {4'b0, col1} + k < `COLS ? col1 : col1 - 8'd1;
+  wire loaded = busy && !hold_free && state != 6 && state != DRAIN, walking = loaded || state == 6;
+  wire [7:0] group_mask = stride_mask >> `SHIFT;
+
+  wire [24 + `LANES:0] used = {2'b11, {10{kind == ROW || kind == SAMPLE}}, {13 + `LANES{kind == SAMPLE}}};
+
+  always @* begin
+    if (first) assume (reset);
+    else begin
+      // RegFile locks the configuration while a frame runs
+      assume (!(busy || was_start) || choice == was_choice);
+      // AmpCtrl reads a row only while the sample-and-holds are free (p_hold there), and they are until it is done
+      assume (!amp_done || hold_free);
+    end
+    if (!first && !was_reset) begin
+      p_wanted: assert (!sampling || row_ok(row) && column_ok(row[1:0], k) && sub <= subs);
+      p_lanes: assert (!sampling || en != 0 && en == lanes_of(group, k));
+      p_ascending: assert (!(sampling && sampled) || here > last);
+      p_complete: assert (!(step__val && kind == END && wanted) || seen);
+      p_rows: assert (!(step__val && kind == ROW) || row_ok(row) && framed && (!rows_sent || row > last[22:13]));
+      p_row_first: assert (!sampling || rows_sent && row == last[22:13]);
+      p_frame: assert (!(step__val && kind == FRAME) || !framed);
+      p_end: assert (!(step__val && kind == END) || rows_sent && sampled);
+      // An offer stands: its kind, a ROW's row, all of a SAMPLE
+      p_stable: assert (!was_val || was_rdy || step__val && ((step__msg ^ was_msg) & used) == 0);
+      p_start: assert (!was_start_ok || busy);
+      p_refuse: assert (!was_start_bad || !busy && cfg_err);
+    end
+    if (!first) begin
+      inv_busy: assert (busy == (state != 0) && step__val == state[2] && (!state[2] || kind == state[1:0]));
+      inv_idle: assert (busy || !integrating && hold_free && !amp_start);
+      inv_amp_start: assert (!amp_start || integrating);
+      inv_failing: assert (!\dut.failing || step__val && !integrating);
+      inv_amp_row: assert (amp_row == {\dut.rows.tile , \dut.rows.in_tile });
+      inv_window: assert (!busy || window_ok);
+      inv_exposed: assert (!busy || row_ok(amp_row));
+      inv_landed: assert (!(busy && landed) || row_ok(current) && current <= amp_row);
+      inv_stages: assert (!busy || (state == CHECK || state == 4 ? !framed && !rows_sent
+                                    : framed && (state == WAIT || state == 5 || rows_sent)));
+      inv_hold: assert (!busy || (state == CHECK || state == 4 || state == WAIT || state == 7 ? 1 : !hold_free));
+      inv_free: assert (state != 7 || hold_free && !integrating);
+      inv_launch: assert (!busy || \dut.failing || (landed ? integrating == (amp_row != current) : integrating));
+      inv_wait: assert (state != WAIT || \dut.failing || integrating || !hold_free);
+      inv_early: assert (!(state == CHECK && amp_start) || hold_free);
+      inv_overlap: assert (!(busy && !overlap && integrating) || hold_free);
+      inv_row: assert (!rows_sent || !busy || (state == WAIT || state == 5 ? last[22:13] <= current : last[22:13] == current)
+                       && (!hold_free || last[22:13] == current));
+      inv_row_next: assert (!(state == 5 && rows_sent) || last[22:13] < current);
+      inv_row_wait: assert (!(state == WAIT && rows_sent && !hold_free) || last[22:13] < current);
+      inv_sampled: assert (!busy || sampled == (rows_sent && (state == WAIT || state == DRAIN || state == 7 || state == 5
+                                                || state == 6 && last[12:0] != 0) ) || state == 6);
+      // Where the steps are in their row
+      inv_column: assert (!walking || column_ok(current[1:0], k) && left == (columns & ~((6'd2 << k) - 6'd1)));
+      inv_last_tile: assert (!walking || last_tile == bound - ((bound - col0) & stride_mask));
+      inv_group: assert (!walking || group >= (col0 >> `SHIFT) && group <= (last_tile >> `SHIFT)
+                         && ((group - (col0 >> `SHIFT)) & group_mask) == 0);
+      inv_sub: assert (!walking || sub <= subs);
+      inv_lanes: assert (!walking || en != 0 && en == lanes_of(group, k));
+      inv_first_step: assert (!loaded || (columns & ((6'd1 << k) - 6'd1)) == 0 && group == (col0 >> `SHIFT) && sub == 0);
+      inv_last: assert (state != 6 || !sampled || last < here);
+      // What has been sent, of the fixed step
+      inv_seen: assert (!(busy && wanted) || seen == (state == 6 ? there < here
+                                                      : state == DRAIN || state == 7 ? p_row <= current
+                                                      : !rows_sent ? 1'b0
+                                                      : state == 5 || !hold_free ? p_row < current : p_row <= current));
+      // No wanted row lies between two that follow each other
+      inv_first_row: assert (!(busy && wanted && !landed) || p_row >= amp_row);
+      inv_first_landed: assert (!(busy && wanted && landed && !rows_sent) || p_row >= current);
+      inv_next_landed: assert (!(busy && wanted && rows_sent && !hold_free && (state == WAIT || state == 5))
+                               || p_row <= last[22:13] || p_row >= current);
+      inv_next_row: assert (!(busy && wanted && landed && integrating) || p_row <= current || p_row >= amp_row);
+      inv_no_row: assert (!(wanted && landed && !integrating && !\dut.failing
+                            && (state == 7 || overlap && busy)) || p_row <= current);
+    end
+  end
+
+  always @* if (!first && !was_reset) begin
+    c_frame: cover (done && seen);
+    c_rows: cover (step__val && kind == ROW && rows_sent);
+    c_groups: cover (sampling && sampled && row == last[22:13] && group > last[9:2]);
+    c_given_up: cover (cfg_err && was_busy);
+  end
+endmodule

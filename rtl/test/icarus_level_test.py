@@ -1,0 +1,100 @@
+"""The Icarus level: as PyMTL, cycle by cycle, through a harness too; an X behind the reset fails."""
+
+import pytest
+from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
+
+from rtl.icarus import MISSING, IcarusError, installed
+from rtl.testbench import build
+
+pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
+LEVELS = False, "icarus"
+
+
+class Counter(Component):
+    """Counts `step`; `carry` says, in the same cycle, that the next count is 0."""
+
+    def construct(s):
+        s.step, s.value, s.carry = InPort(4), OutPort(4), OutPort()
+
+        @update
+        def up_carry():
+            s.carry @= s.value + s.step == 0
+
+        @update_ff
+        def up_value():
+            if s.reset:
+                s.value <<= 0
+            else:
+                s.value <<= s.value + s.step
+
+
+class Careless(Component):
+    """A register without a reset."""
+
+    def construct(s):
+        s.step, s.value = InPort(4), OutPort(4)
+
+        @update_ff
+        def up_value():
+            if s.step == 3:
+                s.value <<= s.step
+
+
+class Around(Component):
+    """A harness: the counter's step is its own count's carry, beside an input."""
+
+    def construct(s, dut):
+        s.step, s.value = InPort(4), OutPort(4)
+        s.dut = dut
+        connect(s.value, s.dut.value)
+
+        @update
+        def up_step():
+            s.dut.step @= s.step ^ 1 if s.value == 5 else s.step
+
+
+def seen(sim, steps):
+    """(value, and carry where there is one) ahead of every clock edge."""
+    out = []
+    for step in steps:
+        sim.step @= step
+        sim.sim_eval_combinational()
+        out.append((int(sim.value), int(getattr(sim, "carry", 0))))
+        sim.sim_tick()
+    return out
+
+
+STEPS = [1, 1, 3, 0, 1, 15, 0, 2, 15, 15, 1, 7, 9, 5] * 4
+
+
+def test_every_cycle_is_pymtl_s():
+    runs = [seen(build(Counter(), level), STEPS) for level in LEVELS]
+    assert runs[0] == runs[1] and any(carry for _, carry in runs[0])
+
+
+def test_in_a_harness():
+    runs = [seen(build(Around(Counter()), level), STEPS) for level in LEVELS]
+    assert runs[0] == runs[1] and any(value == 5 for value, _ in runs[0])
+
+
+def test_an_output_follows_an_input_within_the_cycle():
+    sim = build(Counter(), "icarus")
+    for step, carry in ((0, 1), (1, 0), (0, 1)):
+        sim.step @= step
+        sim.sim_eval_combinational()
+        assert int(sim.carry) == carry and int(sim.value) == 0
+
+
+def test_x_must_not_leave_reset():
+    with pytest.raises(AssertionError, match="cycle 1: value = xxxx"):
+        build(Careless(), "icarus")
+
+
+def test_a_simulation_that_ends_early_says_so(monkeypatch, tmp_path):
+    from rtl import icarus_level
+    path = tmp_path / "Counter.v"
+    path.write_text("module Counter(input clk, reset, input [3:0] step, output [3:0] value, output carry);\n"
+                    "  assign value = 0, carry = 0;\n  initial #150 $finish;\nendmodule\n")
+    monkeypatch.setitem(icarus_level.netlists, "Counter", (path, None))
+    with pytest.raises(IcarusError, match="ended early"):
+        seen(build(Counter(), "icarus"), STEPS)

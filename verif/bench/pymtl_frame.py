@@ -1,0 +1,45 @@
+"""The frame of the chip's bench in PyMTL's own simulation of the RTL, with the front end in Python at its pins."""
+
+import numpy as np
+
+from models.parameters.registers import frame_writes
+from rtl.asp_chip.test.chip_bench import ChipBench
+from rtl.testbench import build
+from rtl.tops import build_top
+
+from .exposure import FRONT_END, SENSOR, TRIMS, samples
+
+LAST_DECISION = 14      # the noise of a sample has this many values (pixels/README.md)
+
+
+class FrontEndBench(ChipBench):
+    """ChipBench with the imperfect converters of pixels/afe.sv."""
+
+    def __init__(self, sim, mode):
+        self.index, self.decision = np.zeros(SENSOR.chip.lanes, int), 0
+        super().__init__(sim, SENSOR.chip.lanes, held=FRONT_END.values(samples(), mode))
+
+    def sample(self):
+        super().sample()
+        sim, self.decision = self.sim, -1
+        for lane in (lane for lane in range(self.lanes) if sim.en[lane]):
+            col = self.tile_cols * (self.lanes * int(sim.group) + lane) + int(sim.k)
+            self.index[lane] = np.ravel_multi_index((int(sim.sub), int(sim.row), col), self.held.shape)
+            self.taken[lane] = FRONT_END.converter.held(self.taken[lane], lane, self.index[lane])
+
+    def answers(self):
+        sim, bits = self.sim, 0
+        self.decision = min(self.decision + 1, LAST_DECISION)
+        for lane in range(self.lanes):
+            dac = int(sim.dac[8 * lane:8 * lane + 8])
+            bits |= int(FRONT_END.converter.compare(self.taken[lane], dac, bool(sim.unsigned_), lane,
+                                                    self.index[lane], self.decision)) << lane
+        return bits
+
+
+def pymtl_stream(frame):
+    """The bytes of ``frame``, one of verif.bench.exposure.FRAMES."""
+    bench = FrontEndBench(build(build_top("AspChip", SENSOR)), frame.mode)
+    bench.write(frame_writes(frame, TRIMS))
+    bench.start()
+    return bytes(bench.stream)

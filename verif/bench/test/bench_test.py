@@ -1,0 +1,74 @@
+"""The cocotb benches pass in both simulators, tell what is wrong, and never wait for ever."""
+
+import json
+
+import pytest
+
+from models.digital.chip import golden_frame
+from rtl.icarus import MISSING, installed
+from verif.bench import run
+from verif.bench.__main__ import CHIP, SAME, main, summary
+from verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
+from verif.bench.pymtl_frame import pymtl_stream
+
+needs_icarus = pytest.mark.skipif(not installed(), reason=MISSING)
+SMALL = "raw, a window"
+
+
+def streams_of(simulators, tmp_path):
+    """The bytes of one frame of the chip's bench in each of the simulators."""
+    for simulator in simulators:
+        file = tmp_path / simulator
+        tests = run.simulate(run.DESIGNS[CHIP], simulator, tests=["the_shown_frame"],
+                             environment={"BENCH_STREAM": str(file), "BENCH_FRAME": SMALL})
+        assert tests == [("the_shown_frame", None)]
+        yield file.read_bytes()
+
+
+@needs_icarus
+def test_a_bench_passes_and_counts(tmp_path, capsys):
+    assert main(["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]) == 0
+    by_block = json.loads((tmp_path / "bench.json").read_text())
+    assert by_block == {"PhasePath": {"tests": {"passed": 2, "failed": 0}, "open_points": [],
+                                      "simulators": {"icarus": {"passed": 2, "failed": 0}}}}
+
+
+@needs_icarus
+def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
+    good = run.sources
+
+    def planted(design):
+        texts = good(design)
+        key, stall = f"{design.block}.v", "divider__send__val & send__rdy"
+        assert texts[key].count(stall) == 1
+        return texts | {key: texts[key].replace(stall, "divider__send__val")}
+    monkeypatch.setattr(run, "sources", planted)
+    arguments = ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]
+    for _ in range(2):      # a failure is not kept: it is tried again
+        assert main(arguments) == 1
+        assert "PhasePath in icarus: any_taps_at_any_pace: " in capsys.readouterr().err
+    assert not list((tmp_path / "bench").iterdir())
+
+
+@needs_icarus
+def test_a_simulation_without_an_end_is_stopped(monkeypatch):
+    monkeypatch.setattr(run, "SECONDS", 2)
+    monkeypatch.setattr(run, "sources", lambda design: {
+        f"{run.TOP}.v": run.flat(design).replace("endmodule", "reg s; initial s = 0; always @(s) s <= ~s;\nendmodule")
+        .replace("PhasePath dut", "//")})
+    with pytest.raises(run.BenchError, match="PhasePath in icarus: no end after 2 s"):
+        run.simulate(run.DESIGNS["PhasePath"], "icarus")
+
+
+def test_streams_that_differ_fail():
+    results = {(CHIP, name): {"tests": [], "stream": "00"} for name in ("pymtl", "icarus")}
+    assert summary(results)[1] == []
+    results[CHIP, "verilator"] = {"tests": [], "stream": None}
+    assert len(summary(results)[1]) == 1 and SAME in summary(results)[1][0]
+
+
+@needs_icarus
+@pytest.mark.slow
+def test_pymtl_icarus_and_verilator_give_the_same_bytes(tmp_path):
+    golden = golden_frame(samples(), SENSOR, FRAMES[SMALL], FRONT_END).stream
+    assert [*streams_of(run.SIMULATORS, tmp_path), pymtl_stream(FRAMES[SMALL])] == [golden] * 3

@@ -1,0 +1,79 @@
+"""`python -m verif.coverage`: line, toggle, branch, state machine and functional coverage: build/verify/coverage.json.
+
+A block's own tests are recorded and replayed into its exported Verilog. Exit status 1 where anything is below 100 %.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from models.parameters import ParameterError
+from rtl.tops import TOPS
+from verif.jobs import Job, run
+from verif.replay import RecordError, load
+from verif.results import OUT, digest_of, write_step
+
+from .measure import measure
+from .program import ProgramError
+from .testplan import folder_of, load_plan, plan_file
+from .traces import recorded
+from .verdict import judge
+
+
+def measure_jobs(plans, traces):
+    """A Job a trace, and the block of each: two lists."""
+    jobs, blocks, code = [], [], digest_of("verif/coverage", "rtl")
+    for block, paths in traces.items():
+        plan = plans[block]
+        registers = [machine.registers for machine in plan.machines_of(block)]
+        for path in paths:
+            name = load(path, cycles=False).name
+            jobs.append(Job(f"{block}-{name}", measure, (str(path), plan.folder, registers, plan.cover),
+                            (path, path.with_suffix(".trace"), registers, plan.cover, code)))
+            blocks.append(block)
+    return jobs, blocks
+
+
+def measured(plans, store):
+    """Verdict by block. plans: dict block -> TestPlan. store: folder of kept results."""
+    traces = recorded(plans, store.parent / "traces")
+    jobs, blocks = measure_jobs(plans, traces)
+    results = run(jobs, store, "coverage")
+    return {block: judge(block, plan, [result for of, result in zip(blocks, results, strict=True) if of == block])
+            for block, plan in plans.items()}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="python -m verif.coverage", description=__doc__.split("`: ")[1],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of coverage.json; default: build/verify")
+    return parser
+
+
+def main(argv=None):
+    """Returns 0, 1 below 100 %, 2 where nothing could be measured."""
+    options = arguments().parse_args(argv)
+    try:
+        files = {block: plan_file(folder_of(block)) for block in options.only or TOPS}
+        loaded = {file: load_plan(file) for file in dict.fromkeys(files.values())}
+        plans = {block: loaded[file] for block, file in files.items()}
+        for block, plan in plans.items():
+            if block not in plan.blocks:
+                raise ParameterError(f"{files[block].name}: blocks = {plan.blocks}: must have {block}")
+        verdicts = measured(plans, options.out / "coverage")
+    except (ParameterError, ProgramError, RecordError, OSError) as error:
+        print(f"verif.coverage: {error}", file=sys.stderr)
+        return 2
+    write_step("coverage", {block: {"coverage": v.coverage, "excluded": v.excluded, "open_points": v.errors + v.missing}
+                            for block, v in verdicts.items()}, options.out)
+    for block, verdict in verdicts.items():
+        figures = ", ".join(f"{kind} {'-' if value is None else f'{value:g} %'}" for kind, value in verdict.coverage.items())
+        print(f"{block}: {figures}; {verdict.excluded} points excluded")
+        for text in verdict.errors + verdict.missing:
+            print(f"  {text}")
+    return int(not all(verdict.complete for verdict in verdicts.values()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,172 @@
+"""Verilog and the ports of a trace as a compiled program that replays the trace: verilated, cached by content."""
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from rtl.ports import places, split, total_width, validity
+from rtl.testbench import verilator_folder
+from verif.results import ROOT
+
+CACHE = ROOT / "build" / "replay"
+MAIN = Path(__file__).parent / "main.cpp"
+VERILATE = ("--cc", "--prefix", "VDut", "--x-assign", "fast", "--x-initial", "unique", "--noassert", "--no-timing",
+            "-Wno-lint", "-Wno-fatal")
+COVERAGE = ("--coverage-line", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
+CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")   # the flag is Verilator's own requirement
+RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
+SECONDS = 900           # a tool that takes longer hangs
+
+
+class ProgramError(RuntimeError):
+    """A tool is missing or failed; the message says which."""
+
+
+class ToolTimeout(ProgramError):
+    """A tool was stopped at its time limit."""
+
+
+def tool(command, seconds=SECONDS, **options):
+    """Output of a command. Raises ProgramError, ToolTimeout."""
+    env = dict(os.environ, VERILATOR_ROOT=str(verilator_folder()))
+    try:
+        result = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=env, timeout=seconds,
+                                **options)
+    except FileNotFoundError:
+        raise ProgramError(f"{command[0]}: not found; install it with: make tools") from None
+    except subprocess.TimeoutExpired:
+        raise ToolTimeout(f"{Path(command[0]).name}: no end after {seconds} s") from None
+    if result.returncode:
+        said = (result.stderr or result.stdout).strip()[-1500:]
+        raise ProgramError(f"{Path(command[0]).name} ended with status {result.returncode}: {said}")
+    return result.stdout
+
+
+def _cxx_name(verilog):
+    """Verilator's name of a Verilog identifier."""
+    return verilog.replace("__", "___05F")
+
+
+def _assign(port, low):
+    name = _cxx_name(port.name)
+    if port.width > 64:
+        return f"set_wide(top.{name}, from, {low}, {port.width});"
+    return f"top.{name} = bits(from, {low}, {port.width});"
+
+
+def _same(port, low):
+    name = _cxx_name(port.name)
+    if port.width > 64:
+        return f"same_wide(top.{name}, want, {low}, {port.width})"
+    return f"top.{name} == bits(want, {low}, {port.width})"
+
+
+def _joined(top, machine):
+    """The registers of one state machine as one number: a C++ expression."""
+    value = "std::uint64_t{0}"
+    for name, width in machine:
+        value = f"({value} << {width} | top.rootp->{_cxx_name(top)}__DOT__{_cxx_name(name).replace('.', '__DOT__')})"
+    return value
+
+
+def header(top, ports, registers=(), mutant=False):
+    """ports.h for module ``top``: C++ text.
+
+    registers: a tuple a state machine, of pairs (hierarchical name below the top, 'control.state'; bits), the highest
+    first. mutant: the top has an input `mutant`.
+    """
+    inputs, outputs = split(ports)
+    where, valid = places(outputs), validity(ports)
+    checks = []
+    for port, low in where.items():
+        same = _same(port, low)
+        if port in valid:       # a message counts while it is valid
+            same = f"!bits(want, {where[valid[port]]}, 1) || {same}"
+        checks.append(f"  if (!({same})) return false;")
+    states = [f"    case {i}: return {_joined(top, machine)};" for i, machine in enumerate(registers)]
+    return "\n".join([
+        f"constexpr int IN_BITS = {total_width(inputs)}, OUT_BITS = {total_width(outputs)}, STATES = {len(states)};",
+        "static void drive(VDut& top, const Words& from) {",
+        *(f"  {_assign(port, low)}" for port, low in places(inputs).items()), "}",
+        "static bool fits(const VDut& top, const Words& want) {", *checks, "  return true;", "}",
+        f"static void mutate(VDut& top, std::uint64_t number) {{ {'top.mutant = number;' if mutant else ''} }}",
+        "static std::uint64_t state(const VDut& top, int i) {", "  switch (i) {", *states,
+        "    default: return 0;", "  }", "}", ""])
+
+
+@dataclass(frozen=True)
+class Program:
+    """folder: with `replay`, the program, and `dut.v`, its Verilog."""
+
+    folder: Path
+
+    def run(self, trace, *options):
+        """Replay the file ``trace``: dict run number -> first cycle that differs, -1 for none. Raises ProgramError."""
+        out = tool([self.folder / "replay", trace, *options])
+        return {int(number): int(cycle) for number, cycle in (line.split() for line in out.splitlines())}
+
+
+def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=False):
+    """The Program of module ``top`` of ``verilog`` (text), compiled once for the same content. Raises ProgramError."""
+    verilator = verilator_folder() / "bin" / "verilator_bin"
+    flags = (*VERILATE, *(COVERAGE if coverage else ("-O3",)))
+    lines = header(top, ports, registers, mutant)
+    version = tool([verilator, "--version"])
+
+    def make(folder):
+        runtime = _runtime(version)
+        source, public, model = folder / "dut.v", folder / "public.vlt", folder / "model"
+        source.write_text(verilog)
+        (folder / "ports.h").write_text(lines)
+        public.write_text("`verilator_config\n" + "".join(
+            f'public_flat_rd -module "*" -var "{name}"\n' for name in sorted({name.split(".")[-1] for machine in registers for name, _ in machine})))
+        tool([verilator, *flags, "--top-module", top, "--Mdir", "model", "public.vlt", "dut.v"], cwd=folder)
+        unit = folder / "unit.cpp"
+        unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]))
+        include = verilator_folder() / "include"
+        tool([*CXX, "-O0" if coverage else "-O1", f"-DVM_COVERAGE={int(coverage)}", "-I", model, "-I", folder, "-I", include,
+              "-I", include / "vltstd", unit, *(runtime / f"{name}.o" for name in RUNTIME), "-pthread",
+              "-o", folder / "replay"])
+        shutil.rmtree(model)
+        unit.unlink()
+
+    digest = _digest(version, CXX, flags, MAIN.read_text(), lines, top, verilog)
+    return Program(_cached(f"{top}-{digest}", make))
+
+
+def _digest(*parts):
+    return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:16]
+
+
+def _cached(name, make):
+    """The folder ``name`` of the cache, whole: there, or made now by ``make(folder)``."""
+    folder = CACHE / name
+    if not folder.exists():
+        CACHE.mkdir(parents=True, exist_ok=True)
+        part = Path(tempfile.mkdtemp(prefix=".part-", dir=CACHE))
+        try:
+            make(part)
+            try:
+                part.rename(folder)
+            except OSError:             # another process was faster
+                if not folder.exists():
+                    raise
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
+    return folder
+
+
+def _runtime(version):
+    """Folder with the object files of Verilator's run time."""
+    include = verilator_folder() / "include"
+
+    def make(folder):
+        for name in RUNTIME:
+            tool([*CXX, "-O1", "-DVM_COVERAGE=1", "-I", include, "-c", include / f"{name}.cpp", "-o",
+                  folder / f"{name}.o"])
+
+    return _cached(f"runtime-{_digest(version, CXX)}", make)

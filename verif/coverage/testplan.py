@@ -1,0 +1,207 @@
+"""Test plans: verif/<folder>.testplan.yaml, each promise of a block's README with its cover points and tests."""
+
+import ast
+import importlib
+import inspect
+from dataclasses import dataclass, fields
+from functools import cache
+from pathlib import Path
+
+import yaml
+
+from models.parameters import ParameterError, SensorParameters
+from rtl.tops import TOPS, build_top
+from verif.results import ROOT
+
+KINDS = "line", "branch", "toggle"
+
+
+@dataclass(frozen=True)
+class Promise:
+    """promise: what a README says. cover: functional cover points that show that it was tried. tests: that check it."""
+
+    promise: str
+    cover: tuple
+    tests: tuple
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A state machine. registers: pairs (hierarchical name, bits) that hold its state, the highest bits first.
+    states: dict name -> value. transitions: pairs of names, outside reset. blocks: that have it, default all.
+    """
+
+    registers: tuple
+    states: dict
+    transitions: tuple
+    blocks: tuple = ()
+
+
+@dataclass(frozen=True)
+class Exclusion:
+    """Points that need not be hit. kind: of KINDS. at: 'Module.signal', 'Module.signal[7:4]', or 'Module: text of the
+    line'. what: the arm or edge ('else', '0->1') if not all. reason: why. blocks: that it holds for, default all.
+    """
+
+    kind: str
+    at: str
+    reason: str
+    what: str = ""
+    blocks: tuple = ()
+
+
+@dataclass(frozen=True)
+class TestPlan:
+    """blocks: of rtl.tops, one folder's. See the other classes here."""
+
+    __test__ = False        # not a test class
+    folder: str
+    blocks: tuple
+    promises: tuple
+    machines: tuple
+    exclusions: tuple
+
+    def machines_of(self, block):
+        return [machine for machine in self.machines if block in (machine.blocks or self.blocks)]
+
+    def exclusions_of(self, block):
+        return [exclusion for exclusion in self.exclusions if block in (exclusion.blocks or self.blocks)]
+
+    @property
+    def cover(self):
+        """Names of the functional cover points, ascending."""
+        return sorted({name for promise in self.promises for name in promise.cover})
+
+
+@cache
+def folder_of(block):
+    """Folder of a block of rtl.tops below rtl/."""
+    return type(build_top(block, SensorParameters())).__module__.split(".")[1]
+
+
+def plan_file(folder):
+    return ROOT / "verif" / f"{folder}.testplan.yaml"
+
+
+def load_plan(path):
+    """The TestPlan of a file, checked. Raises ParameterError that names the field."""
+    path = Path(path)
+    try:
+        raw = yaml.safe_load(path.read_text())
+    except (OSError, yaml.YAMLError) as error:
+        raise ParameterError(f"testplan = {path}: {error}") from None
+    name = path.name
+    _keys(name, raw, {"blocks", "promises", "fsm", "exclude"}, {"blocks", "promises"})
+    folder = name.removesuffix(".testplan.yaml")
+    blocks = _texts(f"{name}: blocks", raw["blocks"])
+    for block in blocks:
+        if block not in TOPS or folder_of(block) != folder:
+            raise ParameterError(f"{name}: blocks = {block!r}: must be a top in rtl/{folder}")
+    plan = TestPlan(
+        folder, blocks,
+        tuple(_promise(f"{name}: promises[{i}]", entry) for i, entry in enumerate(raw["promises"])),
+        tuple(_machine(f"{name}: fsm[{i}]", entry, blocks) for i, entry in enumerate(raw.get("fsm") or ())),
+        tuple(_exclusion(f"{name}: exclude[{i}]", entry, blocks) for i, entry in enumerate(raw.get("exclude") or ())))
+    _check_tests(name, plan)
+    _check_cover(name, plan)
+    return plan
+
+
+def _keys(field, entry, allowed, needed):
+    if not isinstance(entry, dict):
+        raise ParameterError(f"{field} = {entry!r}: must be a mapping of {', '.join(sorted(allowed))}")
+    for key in entry:
+        if key not in allowed:
+            raise ParameterError(f"{field}.{key} = {entry[key]!r}: unknown key, must be one of {', '.join(sorted(allowed))}")
+    for key in needed:
+        if not entry.get(key):
+            raise ParameterError(f"{field}.{key} = {entry.get(key)!r}: must be there and not empty")
+
+
+def _entry(field, entry, kind):
+    """The values of a mapping for the dataclass ``kind``."""
+    names = {f.name for f in fields(kind)}
+    _keys(field, entry, names, {f.name for f in fields(kind) if f.default is f.default_factory})
+    return entry
+
+
+def _texts(field, value):
+    if not isinstance(value, list) or not all(isinstance(text, str) and text for text in value):
+        raise ParameterError(f"{field} = {value!r}: must be a list of texts")
+    if len(set(value)) != len(value):
+        raise ParameterError(f"{field} = {value!r}: must name each once")
+    return tuple(value)
+
+
+def _promise(field, entry):
+    _entry(field, entry, Promise)
+    return Promise(str(entry["promise"]), _texts(f"{field}.cover", entry["cover"]),
+                   _texts(f"{field}.tests", entry["tests"]))
+
+
+def _blocks(field, entry, blocks):
+    named = _texts(f"{field}.blocks", entry.get("blocks", []))
+    for block in named:
+        if block not in blocks:
+            raise ParameterError(f"{field}.blocks = {block!r}: must be one of {', '.join(blocks)}")
+    return named
+
+
+def _machine(field, entry, blocks):
+    _entry(field, entry, Machine)
+    states = entry["states"]
+    if not isinstance(states, dict) or len(set(states.values())) != len(states):
+        raise ParameterError(f"{field}.states = {states!r}: must map names to different numbers")
+    steps = []
+    for text in _texts(f"{field}.transitions", entry["transitions"]):
+        start, _, end = (part.strip() for part in text.partition(">"))
+        if start not in states or end not in states:
+            raise ParameterError(f"{field}.transitions = {text!r}: must be 'state > state' of {', '.join(states)}")
+        steps.append((start, end))
+    registers = entry["registers"]
+    if not isinstance(registers, dict) or not all(isinstance(bits, int) and 1 <= bits <= 32 for bits in registers.values()):
+        raise ParameterError(f"{field}.registers = {registers!r}: must map names to bits, 1..32")
+    return Machine(tuple(registers.items()), states, tuple(steps), _blocks(field, entry, blocks))
+
+
+def _exclusion(field, entry, blocks):
+    _entry(field, entry, Exclusion)
+    if entry["kind"] not in KINDS:
+        raise ParameterError(f"{field}.kind = {entry['kind']!r}: must be one of {', '.join(KINDS)}")
+    return Exclusion(entry["kind"], str(entry["at"]), str(entry["reason"]), str(entry.get("what", "")),
+                     _blocks(field, entry, blocks))
+
+
+@cache
+def tests_in(folder):
+    """Names of the test functions in the files of ``folder``, methods too: frozenset."""
+    return frozenset(name for path in sorted((ROOT / folder).glob("*_test.py")) for name in _tests_of(path))
+
+
+def _tests_of(path):
+    return {node.name for node in ast.walk(ast.parse(path.read_text()))
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test")}
+
+
+def _check_tests(name, plan):
+    """A test is a function's name in rtl/<folder>/test, or 'path/to/file_test.py::function'."""
+    for i, promise in enumerate(plan.promises):
+        for test in promise.tests:
+            file, _, function = test.rpartition("::")
+            there = tests_in(f"rtl/{plan.folder}/test") if not file else \
+                _tests_of(ROOT / file) if (ROOT / file).is_file() else ()
+            if function not in there:
+                raise ParameterError(f"{name}: promises[{i}].tests = {test!r}: no such test")
+
+
+def _check_cover(name, plan):
+    """Every cover point is a function of verif/coverage/points/<folder>.py, and the other way round."""
+    module = importlib.import_module(f"verif.coverage.points.{plan.folder}")
+    there = {key for key, value in vars(module).items()
+             if inspect.isfunction(value) and value.__module__ == module.__name__ and not key.startswith("_")}
+    for i, promise in enumerate(plan.promises):
+        for point in promise.cover:
+            if point not in there:
+                raise ParameterError(f"{name}: promises[{i}].cover = {point!r}: no function in points/{plan.folder}.py")
+    if unused := there - set(plan.cover):
+        raise ParameterError(f"{name}: promises.cover = {sorted(unused)}: cover points that belong to no promise")

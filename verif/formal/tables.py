@@ -1,0 +1,40 @@
+"""What wrappers need of the golden models, as Verilog functions: dict name -> text of a Proof."""
+
+import numpy as np
+
+from models.digital.cordic import angles
+from models.digital.divider import quad_divide
+
+
+def case(name, in_bits, out_bits, values):
+    """A function that looks ``values`` (integers, by index) up."""
+    lines = "".join(f"    {in_bits}'d{i}: {name} = {out_bits}'d{value};\n" for i, value in enumerate(values))
+    return (f"function [{out_bits - 1}:0] {name}(input [{in_bits - 1}:0] at);\n  case (at)\n{lines}"
+            f"    default: {name} = 0;\n  endcase\nendfunction\n")
+
+
+def phase_of_ratio(proof):
+    """phase_of_ratio(ratio): LSB from the octant's axis, by the golden divider on a vector that has the ratio."""
+    bits = proof.sensor_parameters.chip.n_frac
+    larger, smaller = np.meshgrid(np.arange(1, 256), np.arange(256), indexing="ij")
+    inside = smaller < larger
+    found = quad_divide(larger[inside], smaller[inside], bits)
+    table = dict(zip(found.ratio.tolist(), found.phase.tolist()))
+    top = quad_divide(1, 1, bits)           # the diagonal: octant 1, counted back from the axis at 64
+    table[int(top.ratio)] = 64 - int(top.phase)
+    return case("phase_of_ratio", bits, 8, [table.get(r, 0) for r in range(1 << bits)])
+
+
+def cordic_angle(proof):
+    """cordic_angle(i): atan(2^-(i + 1)) as the golden CORDIC counts it."""
+    iterations = proof.sensor_parameters.chip.cordic_iterations
+    return case("cordic_angle", 4, 5 + iterations, angles(iterations))
+
+
+def type_at(proof):
+    """type_at(position): pixel type at a position of the tile, row by row."""
+    order = proof.sensor_parameters.tile.order
+    return case("type_at", 5, 5, order)
+
+
+TABLES = {"type_at": type_at, "phase_of_ratio": phase_of_ratio, "cordic_angle": cordic_angle}

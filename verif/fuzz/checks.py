@@ -1,0 +1,96 @@
+"""What must hold of the decoder's answer to any input at all."""
+
+import contextlib
+import io
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from models.digital.stream import StreamError, decode_file, decode_stream
+from models.digital.stream.__main__ import main as decode_command
+from models.parameters import TileParameters
+
+
+class Broken(AssertionError):
+    """An answer is not what the decoder promises; one line."""
+
+
+def demand(holds, text):
+    if not holds:
+        raise Broken(text)
+
+
+def check_stream(case):
+    """Decode a Case; returns its frames, [] where they are a StreamError. Raises Broken, or what the decoder raised."""
+    try:
+        frames = decode_stream(case.data, case.tile)
+    except StreamError as error:
+        demand("\n" not in str(error) and str(error), f"the StreamError is no line: {error!r}")
+        demand(case.sent is None, f"a frame with at most one wrong byte is refused: {error}")
+        return []
+    demand(frames, "neither frames nor a StreamError")
+    at = 0
+    for frame in frames:
+        _check_frame(frame, at, len(case.data))
+        at = frame.stop
+    if case.sent:
+        _check_survived(case, frames)
+    return frames
+
+
+def _check_frame(frame, at, size):
+    header, rows = frame.header, frame.layout.rows.tolist()
+    demand(at <= frame.start < frame.stop <= size, f"bytes {frame.start}..{frame.stop} behind {at}, of {size}")
+    demand(frame.samples.shape == (header.rows, header.cols, header.subs), f"samples are {frame.samples.shape}")
+    demand(set(frame.bad_rows) <= set(rows) and frame.bad_rows == sorted(set(frame.bad_rows)),
+           f"bad rows {frame.bad_rows} of {rows}")
+    demand(frame.complete or frame.errors, "incomplete without a word")
+    unread = np.ones(header.rows, bool)
+    unread[rows] = False
+    unread[frame.bad_rows] = True
+    demand(not frame.samples[unread].any(), "samples in a row that is bad or was not sent")
+    if header.edge and frame.samples.size:
+        low, high = -128, 127
+    else:
+        low, high = 0, 255
+    demand(frame.samples.min() >= low and frame.samples.max() <= high, "samples out of their range")
+
+
+def _check_survived(case, frames):
+    frame, = frames if len(frames) == 1 else (None,)
+    demand(frame is not None, f"{len(frames)} frames of one")
+    demand(frame.header == case.sent.header, "another header")
+    demand(frame.complete, f"incomplete: {frame.errors}")
+    demand(np.array_equal(frame.samples, case.sent.samples), "other samples than were sent")
+    demand(bool(frame.errors) == (case.data != case.sent.data), f"errors told: {frame.errors}")
+
+
+def check_file(case, frames):
+    """The same Case through a file, `decode_file` and the command: the same answer, one line an error."""
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        source, out = Path(folder) / "stream.bin", Path(folder) / "decoded.npz"
+        source.write_bytes(case.data)
+        try:
+            again = decode_file(source, out, case.tile)
+        except StreamError as error:
+            demand(not frames and str(source) in str(error), f"decode_file refuses what decode_stream reads: {error}")
+        else:
+            demand(len(again) == len(frames), "decode_file and decode_stream differ")
+            names = [out.name] + [f"decoded-{i}.npz" for i in range(1, len(frames))]
+            demand(sorted(p.name for p in Path(folder).glob("*.npz")) == sorted(names), "files are missing")
+            for name, frame in zip(names, frames, strict=True):
+                with np.load(out.with_name(name)) as kept:
+                    demand(np.array_equal(kept["samples"], frame.samples), f"{name} holds other samples")
+        if case.tile == TileParameters():
+            _check_command(source, frames)
+
+
+def _check_command(source, frames):
+    said, told = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
+        status = decode_command([str(source)])
+    wanted = 2 if not frames else int(any(frame.errors for frame in frames))
+    demand(status == wanted, f"exit status {status}, not {wanted}")
+    demand(len(said.getvalue().splitlines()) == len(frames), "not one line a frame")
+    demand(status != 2 or told.getvalue().count("\n") == 1, "an error of more than one line")

@@ -1,0 +1,182 @@
+"""Inputs for the decoder: good frames, and everything that can happen to them."""
+
+import struct
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+
+from models.digital.stream import StreamHeader, encode_frame
+from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES, MAGIC
+from models.parameters import LANES, MODES, FrameParameters, ParameterError, TileParameters, Window
+
+SMALL_TILE = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
+TILES = TileParameters(), SMALL_TILE
+FRAMES_MAX = 3              # frames in one input
+NOISE_MAX = 400             # random bytes in one place
+
+
+@dataclass(frozen=True, eq=False)
+class Sent:
+    """A good frame. samples: int64 (rows, cols, subs), zero where nothing is read. data: its bytes."""
+
+    header: StreamHeader
+    tile: TileParameters
+    samples: np.ndarray
+    data: bytes
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One input. kind: a name of KINDS. sent: the frame that must come out in spite of all, or None."""
+
+    kind: str
+    data: bytes
+    tile: TileParameters
+    sent: Sent | None = None
+
+
+def random_header(rng):
+    """(StreamHeader, TileParameters) of a small array of which something is read."""
+    while True:
+        tile = TILES[int(rng.random() < 0.2)]
+        rows, cols = int(rng.integers(1, 21)), int(rng.integers(1, 51))
+        row0, row1 = sorted(rng.integers(0, -(-rows // tile.rows), 2).tolist())
+        col0, col1 = sorted(rng.integers(0, -(-cols // tile.cols), 2).tolist())
+        mode = MODES[rng.integers(len(MODES))]
+        mask = int(rng.integers(1, 1 << tile.n_types)) if rng.random() < 0.5 else (1 << tile.n_types) - 1
+        frame = FrameParameters(
+            Window(row0, row1, col0, col1), mode, mask, int(rng.integers(0, 128)) if rng.random() < 0.5 else 4,
+            int(rng.integers(0, 4)), mode == "tof" and rng.random() < 0.5, frame_number=int(rng.integers(0, 65536)))
+        header = StreamHeader.from_frame(rows, cols, LANES[rng.integers(len(LANES))], frame, tile)
+        try:
+            header.layout(tile)
+        except ParameterError:      # nothing to read
+            continue
+        return header, tile
+
+
+def random_frame(rng):
+    """A good frame of a small array: Sent."""
+    header, tile = random_header(rng)
+    shape, layout = (header.rows, header.cols, header.subs), header.layout(tile)
+    codes = rng.integers(0, 256, shape)
+    if header.edge:
+        codes = np.clip(np.rint(rng.laplace(0, rng.choice([3, 20, 80]), shape)), -128, 127).astype(int)
+        codes[(rng.random(shape) > rng.choice([0.05, 0.3, 1])) | (abs(codes) < header.threshold)] = 0
+    samples = np.zeros(shape, int)
+    for ordinal, row in enumerate(layout.rows):
+        here = row, layout.places_of(ordinal)
+        samples.reshape(header.rows, -1)[here] = codes.reshape(header.rows, -1)[here]
+    made, left_out = (int(n) for n in rng.integers(0, 2**32, 2))
+    return Sent(header, tile, samples, encode_frame(header, samples, made, left_out, tile))
+
+
+def _pick(pool, rng):
+    return pool[rng.integers(len(pool))]
+
+
+def _place(data, rng):
+    """A position in a frame, in its header no more often than not: a header that is lost says nothing of the rest."""
+    return int(rng.integers(HEADER_BYTES if rng.random() < 0.8 else 0, len(data)))
+
+
+def _noise(rng):
+    """Random bytes, zeros or ones: at most NOISE_MAX."""
+    size = int(rng.integers(1, NOISE_MAX + 1))
+    return (rng.bytes, bytes, lambda n: b"\xff" * n)[rng.integers(3)](size)
+
+
+def _wrong_byte(data, rng):
+    out = bytearray(data)
+    out[_place(data, rng)] ^= int(rng.integers(1, 256))
+    return bytes(out)
+
+
+def clean(sent, pool, rng):
+    return sent.data
+
+
+def one_wrong_byte(sent, pool, rng):
+    return _wrong_byte(sent.data, rng)
+
+
+def wrong_bytes(sent, pool, rng):
+    data = sent.data
+    for _ in range(rng.integers(2, 21)):
+        data = _wrong_byte(data, rng)
+    return data
+
+
+def cut(sent, pool, rng):
+    at = _place(sent.data, rng)
+    return sent.data[:at] if rng.random() < 0.7 else sent.data[at:]
+
+
+def insertion(sent, pool, rng):
+    at = _place(sent.data, rng)
+    return sent.data[:at] + _noise(rng)[:int(rng.integers(1, NOISE_MAX))] + sent.data[at:]
+
+
+def deletion(sent, pool, rng):
+    first, last = sorted((_place(sent.data, rng), _place(sent.data, rng)))
+    return sent.data[:first] + sent.data[last:]
+
+
+def doubled(sent, pool, rng):
+    first, last = sorted((_place(sent.data, rng), _place(sent.data, rng)))
+    return sent.data[:last] + sent.data[first:]
+
+
+def splice(sent, pool, rng):
+    other = _pick(pool, rng).data
+    return sent.data[:_place(sent.data, rng)] + other[_place(other, rng):]
+
+
+def several(sent, pool, rng):
+    """Some frames one after the other, each whole or damaged by one of the ways above, noise between."""
+    out = b""
+    for _ in range(rng.integers(2, FRAMES_MAX + 1)):
+        damage = (clean, one_wrong_byte, cut, deletion, insertion)[rng.integers(5)]
+        out += damage(_pick(pool, rng), pool, rng) + (_noise(rng) if rng.random() < 0.2 else b"")
+    return out
+
+
+def hostile(sent, pool, rng):
+    """A header whose CRC-32 fits and whose fields are extreme or impossible, then anything."""
+    fields = bytearray(sent.header.to_bytes()[:FIELD_BYTES])
+    for _ in range(rng.integers(1, 6)):
+        at = int(rng.integers(4, FIELD_BYTES))
+        if at in (9, 11) and rng.random() < 0.5:        # rows, cols
+            fields[at:at + 2] = struct.pack(">H", int(rng.choice([0, 1, 63, 256, 1024, 1025, 1536, 1537, 65535])))
+        else:
+            fields[at] = int(rng.choice([0, 1, 2, 0x7F, 0x80, 0xFF, rng.integers(256)]))
+    body = _noise(rng) if rng.random() < 0.5 else _pick(pool, rng).data[HEADER_BYTES:]
+    return bytes(fields) + struct.pack(">I", zlib.crc32(fields)) + body
+
+
+def noise(sent, pool, rng):
+    """No stream at all, but for a magic number here and there."""
+    return b"".join((MAGIC if rng.random() < 0.5 else b"") + _noise(rng) for _ in range(rng.integers(1, 4)))
+
+
+def nothing(sent, pool, rng):
+    return rng.bytes(int(rng.integers(0, HEADER_BYTES + 2)))
+
+
+SURVIVED = "clean", "one wrong byte"        # of these every sample must come out
+KINDS = {      # name: (function, share of the inputs)
+    "clean": (clean, 0.03), "one wrong byte": (one_wrong_byte, 0.15), "wrong bytes": (wrong_bytes, 0.17),
+    "cut": (cut, 0.09), "insertion": (insertion, 0.09), "deletion": (deletion, 0.09), "doubled": (doubled, 0.07),
+    "splice": (splice, 0.09), "several frames": (several, 0.08), "hostile header": (hostile, 0.08),
+    "noise": (noise, 0.05), "nothing": (nothing, 0.01)}
+_NAMES, _SHARES = tuple(KINDS), np.cumsum([share for _, share in KINDS.values()])
+
+
+def make_case(pool, rng):
+    """One input: Case. pool: sequence of Sent. The tile that the decoder is told is now and then another one."""
+    kind = _NAMES[int(np.searchsorted(_SHARES, rng.random() * _SHARES[-1]))]
+    sent = _pick(pool, rng)
+    right = kind in SURVIVED
+    tile = sent.tile if right or rng.random() < 0.95 else _pick(TILES, rng)
+    return Case(kind, KINDS[kind][0](sent, pool, rng), tile, sent if right else None)

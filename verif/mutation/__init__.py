@@ -1,0 +1,1 @@
+"""Mutants of the RTL, and whether the tests notice them."""

@@ -1,0 +1,101 @@
+"""`python -m verif.mutation`: mutants of every block's RTL, and what the tests make of them: build/verify/mutation.json.
+
+A seeded sample by Yosys, spread over the modules of each block, is given the cycles that the block's tests were
+recorded with. A mutant that they do not notice is compared with the original by induction. What is left has survived:
+a bug of the tests. Exit status 1 if there is one.
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from models.parameters import ParameterError
+from rtl.tops import TOPS
+from verif.coverage.program import ProgramError, compile_program
+from verif.coverage.testplan import folder_of
+from verif.coverage.traces import recorded
+from verif.divider.simulator import SimulatorError
+from verif.jobs import Job, run
+from verif.replay import RecordError, load
+from verif.results import OUT, digest_of, write_step
+
+from .mutants import generate, with_mutants
+from .score import KILLED, SURVIVED, try_mutant
+from .equivalence import EQUIVALENT
+
+SEED = 1
+NUMBERS = {"AmpCtrl": 70, "ReadoutSeq": 100, "EdgeAdc": 50, "AdcBank": 50, "QuadDividerRadix2": 40,
+           "QuadDividerRadix4": 40, "QuadDividerPipelined": 40, "Cordic": 50, "PhasePath": 60, "RunLength": 120,
+           "RegFile": 70, "AspChip": 50}
+CODE = "verif/mutation", "verif/coverage", "verif/divider"
+
+
+def plant(block, path, store, number, seed):
+    """Mutants of the trace ``path``'s component, into a folder of ``store``: (the folder, list of Mutant)."""
+    trace = load(path, cycles=False)
+    verilog = trace.verilog()
+    mutants = generate(verilog, trace.cls, folder_of(block), number, seed)
+    text = with_mutants(verilog, trace.cls, mutants)
+    folder = Path(store) / block
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "mutants.v").write_text(text)
+    compile_program(text, trace.cls, trace.ports, mutant=True)
+    return folder, mutants
+
+
+def score(blocks, store, factor=1.0, seed=SEED):
+    """By block: (list of Mutant, list of what `try_mutant` says of each)."""
+    traces = recorded(blocks, store.parent / "traces")
+    jobs, made, code = [], {}, digest_of(*CODE)
+    for block in blocks:
+        path = traces[block][0]
+        folder, made[block] = plant(block, path, store, max(4, round(factor * NUMBERS[block])), seed)
+        for mutant in made[block]:
+            jobs.append(Job(f"{block}-{mutant.number}", try_mutant, (str(path), str(folder), mutant.number, ""),
+                            (path.with_suffix(".trace"), folder / "mutants.v", code)))
+    results = iter(run(jobs, store / "results", "mutants"))
+    return {block: (mutants, [next(results) for _ in mutants]) for block, mutants in made.items()}
+
+
+def summary(mutants, results):
+    """What a block's entry in mutation.json says."""
+    count = {name: sum(r["result"] == name for r in results) for name in (EQUIVALENT, KILLED, SURVIVED)}
+    left = [f"mutant {mutant} = survived, difference {result['difference']}"
+            for mutant, result in zip(mutants, results, strict=True) if result["result"] == SURVIVED]
+    return {"mutants": {"made": len(mutants), **count}, "open_points": left}
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="python -m verif.mutation", description=__doc__.split("`: ")[1],
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
+    parser.add_argument("--seed", type=int, default=SEED, help="of the sample (%(default)s)")
+    parser.add_argument("--factor", type=float, default=1.0, help="of the sample's size (%(default)s)")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of mutation.json; default: build/verify")
+    return parser
+
+
+def main(argv=None):
+    """Returns 0, 1 with survivors, 2 where nothing could be measured."""
+    options = arguments().parse_args(argv)
+    try:
+        if not 0 < options.factor <= 100:
+            raise ParameterError(f"factor = {options.factor}: must be in 0..100")
+        scores = score(options.only or list(TOPS), options.out / "mutation", options.factor, options.seed)
+    except (ParameterError, ProgramError, SimulatorError, RecordError, OSError) as error:
+        print(f"verif.mutation: {error}", file=sys.stderr)
+        return 2
+    found = {block: summary(*both) for block, both in scores.items()}
+    write_step("mutation", found, options.out)
+    for block, entry in found.items():
+        print(f"{block}: {json.dumps(entry['mutants'])}")
+        for text in entry["open_points"]:
+            print(f"  {text}")
+    whole = {name: sum(entry["mutants"][name] for entry in found.values()) for name in ("made", EQUIVALENT, KILLED, SURVIVED)}
+    print(f"all, seed {options.seed}: {json.dumps(whole)}")
+    return int(whole[SURVIVED] > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

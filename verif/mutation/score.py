@@ -1,0 +1,59 @@
+"""One mutant against the tests: their recorded cycles, all inputs of a divider, and then the equivalence check."""
+
+from pathlib import Path
+
+from models.parameters import SensorParameters
+from rtl.quad_divider import golden, ratio_bits
+from verif.coverage.program import compile_program
+from verif.divider import exhaustive, simulator
+from verif.replay import load
+
+from .equivalence import DIFFERENT, EQUIVALENT, compare
+from .mutants import yosys
+
+KILLED, SURVIVED = "killed", "survived"
+VARIANTS = {"QuadDividerRadix2": "radix2", "QuadDividerRadix4": "radix4", "QuadDividerPipelined": "pipelined",
+            "Cordic": "cordic"}
+
+
+def try_mutant(path, folder, number, assumed):
+    """What becomes of mutant ``number``: dict result ('killed', 'equivalent', 'survived'), by, cycle, difference.
+
+    path: of the trace whose component is mutated. folder: with mutants.v, all mutants of it. assumed: see
+    equivalence.miter. by: the test that notices. difference: of a survivor, cycles to the difference that is known
+    to exist, or 'unknown'.
+    """
+    head, verilog = load(path, cycles=False), (Path(folder) / "mutants.v").read_text()
+    program = compile_program(verilog, head.cls, head.ports, mutant=True)
+    cycle = program.run(Path(path).with_suffix(".trace"), "--mutants", str(number), str(number))[number]
+    if cycle >= 0:
+        return {"result": KILLED, "by": head.test_at(cycle), "cycle": cycle}
+    if head.cls in VARIANTS and not divides_right(verilog, head, number):
+        return {"result": KILLED, "by": "verif/divider/test/exhaustive_test.py", "cycle": -1}
+    verdict, cycles = compare(verilog, head.cls, head.ports, number, assumed)
+    if verdict == EQUIVALENT:
+        return {"result": EQUIVALENT}
+    return {"result": SURVIVED, "difference": cycles if verdict == DIFFERENT else verdict}
+
+
+def divides_right(verilog, head, number):
+    """True if mutant ``number`` of a divider gives the golden response for all 2^18 inputs."""
+    n_frac = head.arguments[0] if head.cls != "Cordic" else SensorParameters().chip.n_frac
+    iterations = head.arguments[0] if head.cls == "Cordic" else SensorParameters().chip.cordic_iterations
+    config = VARIANTS[head.cls], n_frac, iterations
+    bench = simulator.program(one_mutant(verilog, head.cls, number), head.cls)
+    x, y = exhaustive.every_input()
+    expected = golden(*config, x, y, 0)
+    try:
+        responses, _ = simulator.simulate(bench, exhaustive.pack(x, y))
+    except simulator.SimulatorError:        # it answers what nobody asked
+        return False
+    return not exhaustive.count_mismatches(exhaustive.unpack(responses, ratio_bits(*config[:2])), expected)
+
+
+def one_mutant(verilog, top, number):
+    """The Verilog of ``top`` with mutant ``number`` and without the input that picks one: text."""
+    pick = f"; setattr -unset keep w:mutant; connect -set mutant 16'd{number}; delete -input w:mutant"
+    text = yosys(f"read_verilog -sv mutants.v; hierarchy -check -top {top}; flatten; proc; cd {top}{pick}; cd ..; opt; "
+                 "write_verilog -noattr one.v", {"mutants.v": verilog})["one.v"].decode()
+    return "/* verilator lint_off UNOPTFLAT */\n" + text

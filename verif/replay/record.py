@@ -1,0 +1,42 @@
+"""The tests of a block, run once with their ports recorded."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from models.parameters import SensorParameters
+from rtl.tops import build_top
+
+ROOT = Path(__file__).parents[2]
+WHOLE = "AspChip"       # a frame of the chip is too long for PyMTL: its tests run whole at the Verilog level only
+
+
+class RecordError(RuntimeError):
+    """The tests of a block fail; the message holds what pytest said last."""
+
+
+def tests_of(block):
+    """(class, folder of the tests) of a block of rtl.tops. Raises ParameterError."""
+    cls = type(build_top(block, SensorParameters()))
+    return cls.__name__, Path(sys.modules[cls.__module__].__file__).parent / "test"
+
+
+def record(block, folder, level=None):
+    """Run the block's tests and save a trace a parameter set in ``folder``: their .json paths, the longest first.
+
+    level: 'RTL' or 'Verilog', by default whichever runs all of them. Raises ParameterError, RecordError.
+    """
+    cls, tests = tests_of(block)
+    folder = Path(folder).resolve()
+    folder.mkdir(parents=True, exist_ok=True)
+    level = level or ("Verilog" if block == WHOLE else "RTL")
+    program = ("import sys, pytest; from verif.replay.recorder import Plugin; "
+               "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))")
+    # PyMTL is a pytest plugin: that it is imported ahead of pytest is meant. A seed: the same traces every time.
+    options = ["-p", "no:cacheprovider", "-W", "ignore::pytest.PytestAssertRewriteWarning", "--hypothesis-seed=1"]
+    result = subprocess.run([sys.executable, "-c", program, cls, folder, level, *options, tests], cwd=ROOT,
+                            capture_output=True, text=True)
+    if result.returncode:
+        raise RecordError(f"{block}: its tests fail:\n{(result.stdout + result.stderr).strip()[-2000:]}")
+    files = sorted(folder.glob(f"{cls}.trace")) + sorted(folder.glob(f"{cls}.????????.trace"))
+    return [path.with_suffix(".json") for path in sorted(files, key=lambda path: -path.stat().st_size)]

@@ -1,0 +1,86 @@
+"""A pytest plugin that records what tests do at a component's ports: `-p verif.replay.recorder`, Verilog level too."""
+
+import os
+from pathlib import Path
+
+from rtl import testbench
+from rtl.ports import packed, ports_of, split
+
+from .trace import Trace
+
+LEVELS = ("cls", "component", "level")      # names under which a test class holds the component of its level
+
+
+class Recorder:
+    """Traces of the components of class ``cls`` that `rtl.testbench.build` makes, at one level.
+
+    cls: name of the class. verilog: of simulators of the translated Verilog, else of those of PyMTL.
+    """
+
+    def __init__(self, cls, verilog=False):
+        self.cls, self.verilog = cls, verilog
+        self.parts, self.test = [], ""
+
+    def observe(self, top, dut, verilog):
+        """See rtl.testbench.observers."""
+        if type(dut).__name__ != self.cls or verilog != self.verilog:
+            return None
+        ports, arguments = ports_of(dut), (*dut._dsl.args, *dut._dsl.kwargs.values())
+        part = Trace(self.cls, type(dut).__module__, arguments, ports)
+        self.parts.append(part)
+        return self._hook(part, top, "s.dut" if hasattr(top, "dut") else "s")
+
+    def _hook(self, part, top, component):
+        inputs, outputs = (packed(group, component) for group in split(part.ports))
+        values = eval(f"lambda s: (({inputs}), ({outputs}))")       # called every cycle: no loop over ports in it
+        lines, tests = part.lines, part.tests
+
+        def hook():
+            if not tests or tests[-1][1] != self.test:
+                tests.append((len(lines), self.test))
+            lines.append("%d %x %x" % (not lines, *values(top)))
+        return hook
+
+    def traces(self):
+        """One Trace a parameter set: what its simulators did, one after the other. The longest first."""
+        out = {}
+        for part in self.parts:
+            whole = out.setdefault(part.arguments, Trace(part.cls, part.module, part.arguments, part.ports))
+            whole.tests += [(len(whole.lines) + first, test) for first, test in part.tests]
+            whole.lines += part.lines
+        return sorted(out.values(), key=lambda trace: -len(trace.lines))
+
+
+class Plugin:
+    """Runs the tests of one level only and saves their traces.
+
+    folder: of the files. level: 'RTL', or 'Verilog' for the translated Verilog in Verilator.
+    """
+
+    def __init__(self, cls, folder, level="RTL"):
+        self.recorder, self.folder = Recorder(cls, level == "Verilog"), Path(folder)
+
+    def pytest_collection_modifyitems(self, config, items):
+        kept = [item for item in items if self._at_level(item)]
+        config.hook.pytest_deselected(items=[item for item in items if item not in kept])
+        items[:] = kept
+
+    def _at_level(self, item):
+        """Is a test of the recorded level, or without a level."""
+        if item.cls is None:
+            return True
+        parts = [getattr(item.cls, name) for name in LEVELS if hasattr(item.cls, name)]
+        if any(getattr(part, "__module__", "").endswith(("_fl", "_cl")) for part in parts):
+            return False
+        return getattr(item.cls, "verilog", False) is self.recorder.verilog
+
+    def pytest_sessionstart(self):
+        testbench.observers.append(self.recorder.observe)
+
+    def pytest_runtest_setup(self, item):
+        self.recorder.test = item.nodeid
+
+    def pytest_sessionfinish(self):
+        testbench.observers.remove(self.recorder.observe)
+        for trace in self.recorder.traces():
+            trace.save(self.folder)

@@ -1,0 +1,121 @@
+"""Recorded traces driven into Verilog, in Icarus: every output in every cycle as the tests saw it, and never X."""
+
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from rtl.icarus import TIMESCALE, IcarusError, compile_program, instance
+from rtl.ports import places, split, total_width, validity
+
+from .trace import load
+
+SECONDS = 300       # a simulation that takes longer hangs
+
+
+@dataclass(frozen=True)
+class Mismatch:
+    """test: that drove the cycle. cycle: of the trace. port: in the Verilog. got: binary, with x and z."""
+
+    test: str
+    cycle: int
+    port: str
+    expected: str
+    got: str
+
+    def __str__(self):
+        return f"{self.test}: cycle {self.cycle}: {self.port}: expected {self.expected}, got {self.got}"
+
+
+def bench(top, ports, strict=False):
+    """Verilog of module ReplayBench: it drives the cycles of +trace=FILE into module ``top``, to the first mismatch.
+
+    The msg of an output stream counts when its val is 1, or always if ``strict``; X and Z never match.
+    """
+    inputs, outputs = split(ports)
+    where, valid = places(outputs), {} if strict else validity(ports)
+    care = [f"{{{port.width}{{want[{where[valid[port]]}]}}}}" if port in valid else f"{{{port.width}{{1'b1}}}}"
+            for port in reversed(outputs)]
+    bits = total_width(outputs)
+    return f"""{TIMESCALE}module ReplayBench;
+  reg clk = 0, fresh;
+  reg [{total_width(inputs) - 1}:0] in;
+  reg [{bits - 1}:0] want;
+  wire [{bits - 1}:0] got;
+  wire [{bits - 1}:0] care = {{{", ".join(care)}}};
+{instance(top, ports)}
+  integer file, cycle = 0;
+  reg [8*1024-1:0] name;
+  initial begin
+    if (!$value$plusargs("trace=%s", name)) $fatal(1, "+trace=FILE is missing");
+    file = $fopen(name, "r");
+    if (file == 0) $fatal(1, "+trace: cannot be read");
+    while ($fscanf(file, "%b %h %h", fresh, in, want) == 3) begin
+      #40;
+      if (!fresh && (((got ^ want) & care) !== {bits}'b0 || ^got === 1'bx)) begin
+        $display("MISMATCH %0d %b %b", cycle, want, got);
+        $finish;
+      end
+      clk = 1;
+      #50 clk = 0;
+      #10 cycle = cycle + 1;
+    end
+    $display("END %0d", cycle);
+    $finish;
+  end
+endmodule
+"""
+
+
+def replay_files(traces, verilog, top=None, cells=(), strict=False, seconds=SECONDS):
+    """Drive recorded traces into Verilog, up to the first cycle that differs: list of its Mismatch, [] if none does.
+
+    traces: .json files of Trace.save, of one parameter set or of modules with the same ports and behaviour.
+    verilog, cells: files. top: their module, by default the traces' class. seconds: limit of a simulation.
+    One compilation, then a run a trace. Raises IcarusError where there is nothing to compare.
+    """
+    heads = [(Path(path), load(path, cycles=False)) for path in traces]
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        program = Path(folder) / "replay.vvp"
+        compile_program(program, [*verilog, *cells], "ReplayBench",
+                        [bench(top or heads[0][1].cls, heads[0][1].ports, strict)])
+        for path, head in heads:
+            if found := _run(program, path, head, strict, seconds):
+                return found
+    return []
+
+
+def replay(trace, verilog, top=None, cells=(), strict=False, seconds=SECONDS):
+    """As `replay_files`, of a Trace in memory."""
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        return replay_files([trace.save(folder)], verilog, top, cells, strict, seconds)
+
+
+def _run(program, path, head, strict, seconds):
+    command = ["vvp", "-n", program, f"+trace={path.with_suffix('.trace')}"]
+    try:
+        result = subprocess.run(command, capture_output=True, text=True, timeout=seconds)
+    except subprocess.TimeoutExpired:
+        return [Mismatch(head.cls, 0, "simulation", "an end", f"none after {seconds} s")]
+    verdict = result.stdout.split("\n")
+    verdict = next((line.split() for line in verdict if line.startswith(("MISMATCH ", "END "))), None)
+    if result.returncode or not verdict:
+        raise IcarusError(f"the replay of {path.stem} ended early:\n{(result.stdout + result.stderr).strip()[-2000:]}")
+    if verdict[0] == "END":
+        if int(verdict[1]) != head.cycles:
+            raise IcarusError(f"the replay of {path.stem} read {verdict[1]} of {head.cycles} cycles")
+        return []
+    return _differences(head, int(verdict[1]), *verdict[2:], strict)
+
+
+def _differences(head, cycle, want, got, strict):
+    """The ports that differ in ``cycle``; want, got: packed outputs in binary, highest bit first."""
+    outputs, out = split(head.ports)[1], []
+    valid = {} if strict else validity(head.ports)
+    value = {port: tuple(bits[::-1][low:low + port.width][::-1] for bits in (want, got))
+             for port, low in places(outputs).items()}
+    for port, (expected, seen) in value.items():
+        matters = port not in valid or value[valid[port]][0] == "1"
+        if seen.strip("01") or matters and seen != expected:
+            out.append(Mismatch(head.test_at(cycle), cycle, port.name, expected, seen))
+    return out

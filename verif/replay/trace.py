@@ -1,0 +1,84 @@
+"""What a test saw at a component's ports, cycle by cycle, as a file that a simulation can be held against."""
+
+import hashlib
+import importlib
+import json
+import os
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+from rtl.ports import Port, places, split
+
+
+@dataclass
+class Trace:
+    """Every cycle of the simulators of one component with one parameter set.
+
+    cls, module, arguments: the component, `cls(*arguments)` of `module`. ports: of rtl.ports.ports_of.
+    lines: a cycle each, 'fresh inputs outputs': fresh is 1 in a simulator's first cycle, where registers hold
+    anything; the rest are hexadecimal numbers packed as rtl.ports.places, settled ahead of the clock edge.
+    tests: (first cycle, name) of what drove them, ascending.
+    """
+
+    cls: str
+    module: str
+    arguments: tuple
+    ports: tuple
+    lines: list = field(default_factory=list)
+    tests: list = field(default_factory=list)
+    cycles: int = 0         # where the lines were left in their file
+
+    @property
+    def name(self):
+        """Of the files: the class and, where it has parameters, a digest of them."""
+        if not self.arguments:
+            return self.cls
+        return f"{self.cls}.{hashlib.sha256(repr(self.arguments).encode()).hexdigest()[:8]}"
+
+    def component(self):
+        """The component, not elaborated."""
+        return getattr(importlib.import_module(self.module), self.cls)(*self.arguments)
+
+    def verilog(self):
+        """Its Verilog as text; the module is named `cls`."""
+        from rtl.export import translate_component
+        return translate_component(self.component(), self.cls)
+
+    def test_at(self, cycle):
+        """Name of the test that a cycle belongs to."""
+        return next((name for first, name in reversed(self.tests) if first <= cycle), "")
+
+    def values(self, cycle):
+        """(inputs, outputs) of a cycle: dicts of a port's name in the Verilog -> int."""
+        _, *packed = self.lines[cycle].split()
+        return tuple({port.name: int(number, 16) >> low & (1 << port.width) - 1 for port, low in places(group).items()}
+                     for group, number in zip(split(self.ports), packed))
+
+    def save(self, folder):
+        """Write <name>.trace, the cycles, and <name>.json, the rest; returns the latter's path."""
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        head = {"cls": self.cls, "module": self.module, "arguments": self.arguments, "cycles": len(self.lines),
+                "ports": [asdict(port) for port in self.ports], "tests": self.tests}
+        _write(folder / f"{self.name}.trace", "\n".join(self.lines) + "\n")
+        path = folder / f"{self.name}.json"
+        _write(path, json.dumps(head, indent=1) + "\n")
+        return path
+
+
+def load(path, cycles=True):
+    """The Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
+    head = json.loads(Path(path).read_text())
+    lines = Path(path).with_suffix(".trace").read_text().splitlines() if cycles else []
+    return Trace(head["cls"], head["module"], _tuples(head["arguments"]), tuple(Port(**p) for p in head["ports"]),
+                 lines, [tuple(test) for test in head["tests"]], head["cycles"])
+
+
+def _tuples(value):
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def _write(path, text):
+    part = path.with_name(f".{path.name}.part-{os.getpid()}")
+    part.write_text(text)
+    os.replace(part, path)

@@ -1,0 +1,1 @@
+"""Every pytest test of the repository, counted by block and level."""

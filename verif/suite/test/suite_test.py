@@ -1,0 +1,100 @@
+"""The suite's counting, on small test files of its own."""
+
+import pytest
+
+from rtl.tops import TOPS
+from verif.results import ROOT, sources
+from verif.suite.__main__ import decides, empty, forget, jobs, main, summarize
+from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
+from verif.suite.run import folders, run_folder
+
+FILE = """
+import pytest
+
+class TestRTL:
+    def test_good(self):
+        pass
+
+def test_bad():
+    assert 1 == 2, "one is not two"
+
+def test_left_out():
+    pytest.skip("no tool")
+"""
+
+
+@pytest.fixture
+def repository(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "a" / "x_test.py").write_text(FILE)
+    (tmp_path / "a" / "x_bench_test.py").write_text("def test_slow(): assert False")
+    (tmp_path / "b").mkdir()
+    (tmp_path / "b" / "y_test.py").write_text("import no_such_module")
+    (tmp_path / "pyproject.toml").write_text("[tool.pytest.ini_options]\npython_files = '*_test.py'\n")
+    return tmp_path
+
+
+def test_outcomes_of_a_folder(repository):
+    cases = run_folder("a", repository, ())["cases"]
+    assert [(c["test"], c["outcome"]) for c in cases] == [
+        ("a/x_test.py::TestRTL::test_good", "passed"), ("a/x_test.py::test_bad", "failed"),
+        ("a/x_test.py::test_left_out", "skipped")]
+    assert "one is not two" in cases[1]["message"] and "no tool" in cases[2]["message"]
+
+
+def test_a_file_that_cannot_be_read_is_a_failure(repository):
+    cases = run_folder("b", repository, ())["cases"]
+    assert any(c["outcome"] == "failed" and "no_such_module" in c["message"] for c in cases)
+
+
+def test_every_folder_has_a_block():
+    prefixes = [prefix for prefix, _ in FOLDERS]
+    assert all(prefix == "" or (ROOT / prefix).is_dir() for prefix in prefixes)
+    found = {block for folder in folders() for block in blocks_of(folder)}
+    assert found == set(BLOCKS) and set(TOPS) <= found
+    assert folders() and all(folder.split("/")[-1] == "test" for folder in folders())
+
+
+@pytest.mark.parametrize("test, level", [
+    ("rtl/x/test/x_test.py::TestIcarusTwoLanes::test_a", "Icarus"), ("rtl/x/test/x_test.py::TestVerilog::test_a", "Verilator"),
+    ("rtl/x/test/x_test.py::TestRTL::test_a", "RTL"), ("rtl/x/test/x_test.py::TestCL::test_a", "CL"),
+    ("rtl/x/test/x_test.py::test_verilog", ""), ("verif/frame/test/f.py::test_icarus_same", "Icarus"),
+    ("verif/faults/test/f.py::test_x", "Verilator"), ("models/test/x_test.py::TestThing::test_a", "")])
+def test_levels(test, level):
+    assert level_of(test) == level
+
+
+def test_a_divider_counts_for_what_it_names():
+    assert blocks_of("rtl/quad_divider/test", "x::test_y[radix4-3]") == ("QuadDividerRadix4",)
+    assert len(blocks_of("rtl/quad_divider/test", "x::test_y")) == 4
+
+
+def test_counts_by_block(repository):
+    found = summarize([run_folder("a", repository, ()) | {"folder": "rtl/edge_adc/test"}])["EdgeAdc"]
+    tests = found["tests"]
+    assert (tests["passed"], tests["failed"], tests["skipped"]) == (1, 1, 1) and tests["levels"] == {"RTL": 1}
+    assert found["simulators"] == ["PyMTL3"] and len(found["open_points"]) == 2 and set(found) == set(empty())
+    assert found["open_points"][0].startswith("test a/x_test.py::test_bad = failed: ")
+
+
+def test_failures_are_tried_again(tmp_path):
+    planned = jobs(["models/test", "rtl/test"], {"rtl/test": 5})
+    kept = [tmp_path / f"{job.name}.{job.digest}.json" for job in planned]
+    for path in kept:
+        path.write_text("{}")
+    cases = [[{"outcome": "passed"}], [{"outcome": "passed"}, {"outcome": "failed"}]]
+    forget(planned, [{"cases": c} for c in cases], tmp_path)
+    assert [path.exists() for path in kept] == [True, False]
+
+
+def test_what_decides_a_folders_results():
+    assert decides("models/digital/test") == ("models", "docs/stream.md")
+    assert "verif/report" not in decides("rtl/edge_adc/test") and "verif/jobs.py" in decides("verif/fuzz/test")
+    assert "verif/report" in decides("verif/report/test") and "verif/report" not in decides("verif/fuzz/test")
+    one, two = sources("verif/jobs.py"), sources("verif")
+    assert one == [ROOT / "verif" / "jobs.py"] and one[0] in two and ROOT / "verif/report/limits.json" in two
+
+
+def test_an_unknown_folder(capsys):
+    assert main(["--folder", "nowhere"]) == 2
+    assert capsys.readouterr().err.startswith("verif.suite: folder = 'nowhere': must be one of ")

@@ -1,0 +1,57 @@
+"""Jobs: results in order, each computed once, a failed run goes on from where it was."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from models.parameters import ParameterError
+from verif.jobs import Job, run
+
+
+def square(number, log):
+    if number < 0:
+        raise ValueError("negative")
+    with Path(log).open("a") as file:
+        file.write(f"{number}\n")
+    return {"square": number * number}
+
+
+def jobs_of(numbers, log):
+    return [Job(f"n{n}", square, (n, str(log)), (n,)) for n in numbers]
+
+
+def test_results_in_order_and_each_once(tmp_path):
+    log = tmp_path / "log"
+    for _ in range(2):
+        results = run(jobs_of(range(6), log), tmp_path / "store", "squares", workers=2)
+        assert [r["square"] for r in results] == [0, 1, 4, 9, 16, 25]
+    assert sorted(map(int, log.read_text().split())) == list(range(6))
+
+
+def test_a_failed_run_keeps_what_was_done(tmp_path):
+    log, store = tmp_path / "log", tmp_path / "store"
+    with pytest.raises(ValueError, match="negative"):
+        run(jobs_of([1, 2, -1], log), store, "squares", workers=1)
+    done = {json.loads(p.read_text())["square"] for p in store.iterdir()}
+    assert done == {1, 4}
+    run(jobs_of([1, 2, 3], log), store, "squares", workers=1)
+    assert sorted(map(int, log.read_text().split())) == [1, 2, 3]
+
+
+def test_other_inputs_are_another_job(tmp_path):
+    log = tmp_path / "log"
+    run([Job("a", square, (2, str(log)), ("x",))], tmp_path / "store", "one", workers=1)
+    run([Job("a", square, (3, str(log)), ("y",))], tmp_path / "store", "one", workers=1)
+    assert log.read_text().split() == ["2", "3"]
+
+
+def test_two_jobs_of_one_name(tmp_path):
+    with pytest.raises(ParameterError, match="two have one name"):
+        run([Job("a", square, (1, "x")), Job("a", square, (1, "x"))], tmp_path, "one")
+
+
+def test_no_scheduler_there(tmp_path, monkeypatch):
+    monkeypatch.setenv("SCHEDULER", "nonsense://nowhere")
+    with pytest.raises(ParameterError, match="SCHEDULER = 'nonsense://nowhere'"):
+        run([Job("a", square, (1, "x"))], tmp_path, "one")
