@@ -91,7 +91,7 @@ def main(argv=None):
         if options.only:
             return show(options.seed, *options.only)
         for mark in folder.glob("at.*"):
-            mark.unlink()
+            mark.unlink(missing_ok=True)
         done = run(batches(options.inputs, options.seed, folder), folder, "fuzz")
         swept = run(sweeps(options.changes, options.seed), folder, "resync") if options.changes else []
     except (ParameterError, OSError) as error:
