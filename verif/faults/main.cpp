@@ -1,4 +1,4 @@
-// The chip alone under a waveform: +wave=FILE has a byte of pins for every cycle, +trace=FILE gets OUTPUTS bytes a cycle.
+// The chip alone under a waveform: +wave=FILE has a byte of pins for every cycle, +trace=FILE gets three bytes a cycle.
 // In: bit 0 sclk, 1 csn, 2 mosi, 3 link_rdy, 4 reset, 5 reset pulses while the clock is low, 6 ... while it is high.
 // Out, as they are ahead of the clock's edge: link_data; flags; phases (waveform.py names the bits).
 #include <cstdio>
@@ -31,7 +31,8 @@ int main(int argc, char** argv) {
     if (pins >> 5 & 1) pulse(chip);
     const unsigned char out[] = {
         static_cast<unsigned char>(chip.link_data),
-        static_cast<unsigned char>(chip.link_val | chip.frame_sync << 1 | chip.busy << 2 | chip.miso << 3 | chip.hold << 4),
+        static_cast<unsigned char>(chip.link_val | chip.frame_sync << 1 | chip.busy << 2 | chip.miso << 3 |
+                                   chip.hold << 4),
         static_cast<unsigned char>(chip.pixel_reset | chip.shutter << 1 | chip.ref_ctl << 2 | chip.integrate << 3 |
                                    chip.cm_reset << 4 | chip.read << 5 | chip.sample << 6 | (chip.tap != 0) << 7)};
     std::fwrite(out, 1, sizeof out, trace);

@@ -91,7 +91,7 @@ def main(argv=None):
         if options.only:
             return show(options.seed, *options.only)
         for mark in folder.glob("at.*"):
-            mark.unlink()
+            mark.unlink(missing_ok=True)
         done = run(batches(options.inputs, options.seed, folder), folder, "fuzz")
         swept = run(sweeps(options.changes, options.seed), folder, "resync") if options.changes else []
     except (ParameterError, OSError) as error:
@@ -117,7 +117,8 @@ def show(seed, batch, index):
 
 def report(found):
     fuzz, resync, host = found["Decoder"]["fuzz"], found["Decoder"]["resync"], found["Host"]["fuzz"]
-    print(f"decoder: {fuzz['inputs']:,} inputs, {fuzz['failures']} failures, slowest {1e3 * fuzz['seconds_max']:.0f} ms")
+    slowest = 1e3 * fuzz["seconds_max"]
+    print(f"decoder: {fuzz['inputs']:,} inputs, {fuzz['failures']} failures, slowest {slowest:.0f} ms")
     print(f"host and registers: {host['inputs']:,} inputs, {host['failures']} failures")
     print(f"resynchronisation: {resync['tried']:,} wrong bytes, {resync['failures']} cost more than a row")
     for block in found.values():

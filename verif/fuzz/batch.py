@@ -107,7 +107,7 @@ def run_batch(seed, batch, count, folder):
                 except Exception as error:
                     failures.append(_told(target, index, target, error, None))
         faulthandler.cancel_dump_traceback_later()
-    (folder / f"at.{batch}").unlink()
+    (folder / f"at.{batch}").unlink(missing_ok=True)   # a killed run's process may be at the same batch
     return {"batch": batch, "inputs": count, "host": host, "files": files, "outcomes": dict(outcomes),
             "kinds": dict(kinds), "seconds_max": slowest, "failures": failures}
 

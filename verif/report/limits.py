@@ -66,7 +66,8 @@ def check(block, found, wanted):
 
 def limit_text(sides):
     """'at least 100', or the reason why there is no such figure."""
-    held = [f"{'at least' if side == 'min' else 'at most'} {number_text(sides[side])}" for side in SIDES if side in sides]
+    held = [f"{'at least' if side == 'min' else 'at most'} {number_text(sides[side])}"
+            for side in SIDES if side in sides]
     return " and ".join(held) or sides[NONE]
 
 

@@ -24,8 +24,8 @@ def folders():
 def run_folder(folder, root=ROOT, options=("--all",)):
     """Run the tests of ``folder`` (not of folders below): dict folder, seconds, cases.
 
-    options: of pytest; --all runs the tests marked slow, too. cases: list of {test, outcome, seconds, message}; outcome: 'passed', 'failed' or 'skipped'. Where pytest itself
-    ends badly, that is a failed case too.
+    options: of pytest; --all runs the tests marked slow, too. cases: list of {test, outcome, seconds, message}; outcome:
+    'passed', 'failed' or 'skipped'. Where pytest itself ends badly, that is a failed case too.
     """
     root = Path(root)
     files = sorted(str(p.relative_to(root)) for p in (root / folder).glob("*_test.py")

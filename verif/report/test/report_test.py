@@ -123,7 +123,8 @@ STEP = "import json, pathlib, sys\npathlib.Path({out!r}).write_text({text!r})\ns
     ('{"AmpCtrl": {"open_points": []}}', 0, ""),
     ('{"AmpCtrl": {"open_points": ["x"]}}', 1, ""),
     ('{"AmpCtrl": {"tests": {"passed": 1, "failed": 1}}}', 1, ""),
-    ('{"AmpCtrl": {"open_points": []}}', 1, "step one = exit status 1: its results name no failed test or open point for it"),
+    ('{"AmpCtrl": {"open_points": []}}', 1,
+     "step one = exit status 1: its results name no failed test or open point for it"),
     ('{"AmpCtrl": {"open_points": []}}', 2, "step one = exit status 2: must be 0 (see what it said)"),
     ("[1]", 0, "step one = no results: one.json is no dict of blocks"),
     ("{", 0, "step one = no results: one.json: ")])

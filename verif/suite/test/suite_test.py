@@ -56,7 +56,8 @@ def test_every_folder_has_a_block():
 
 
 @pytest.mark.parametrize("test, level", [
-    ("rtl/x/test/x_test.py::TestIcarusTwoLanes::test_a", "Icarus"), ("rtl/x/test/x_test.py::TestVerilog::test_a", "Verilator"),
+    ("rtl/x/test/x_test.py::TestIcarusTwoLanes::test_a", "Icarus"),
+    ("rtl/x/test/x_test.py::TestVerilog::test_a", "Verilator"),
     ("rtl/x/test/x_test.py::TestRTL::test_a", "RTL"), ("rtl/x/test/x_test.py::TestCL::test_a", "CL"),
     ("rtl/x/test/x_test.py::test_verilog", ""), ("verif/frame/test/f.py::test_icarus_same", "Icarus"),
     ("verif/faults/test/f.py::test_x", "Verilator"), ("models/test/x_test.py::TestThing::test_a", "")])
