@@ -1,6 +1,5 @@
 """The small chip that the faults are tried on: its Verilog in Verilator, run under many waveforms at once."""
 
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from functools import cache
@@ -9,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from flow.frame.hardware import build_of
-from flow.simulate.verilator import ToolError, bare_program
+from flow.simulate.process import ToolError, finish
+from flow.simulate.verilator import bare_program
 from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
 from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
 from models.parameters.registers import command, frame_writes, register_map, write_transfers
-
 from rtl.export import translate
 from rtl.icarus import kept_program
 
@@ -63,7 +62,7 @@ def run(waves, icarus=False):
         wave, trace = Path(folder) / "wave", Path(folder) / "trace"
         wave.write_bytes(b"".join(w.tobytes() for w in waves))
         command = ["vvp", "-n", icarus_program()] if icarus else [program()]
-        result = subprocess.run([*command, f"+wave={wave}", f"+trace={trace}"], capture_output=True, text=True)
+        result = finish([*command, f"+wave={wave}", f"+trace={trace}"])
         if result.returncode or not trace.exists():
             raise ToolError(f"the chip under a waveform stopped with status {result.returncode}: "
                             f"{(result.stdout + result.stderr)[-800:]}")
