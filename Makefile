@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
+TESTS_READY := $(VENV)/.tests-ready
 
 # Arguments of `make sim`, each also an option of `python -m talbot sim`
 SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
@@ -18,11 +19,15 @@ help:  ## this list
 	@echo "Arguments of sim: $(SIM_OPTIONS) PHASE=1   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
 
 $(READY): requirements.lock pyproject.toml flow/setup/venv.sh
-	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)'
+	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements.lock
+	@touch $@
+
+$(TESTS_READY): $(READY) requirements-test.lock
+	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-test.lock
 	@touch $@
 
 .PHONY: setup
-setup: $(READY)  ## the Python environment in .venv, from the lock file
+setup: $(TESTS_READY)  ## the Python environment in .venv with all that tests use, from the lock files
 
 .PHONY: sim
 sim: $(READY)  ## a scene through the golden models and the chip's Verilog: build/sim/<scene>/report.html
@@ -33,23 +38,23 @@ sim-help: $(READY)  ## the arguments of make sim, explained
 	@$(PY) -m talbot sim --help
 
 .PHONY: test
-test: $(READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores)
+test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores)
 	@$(PY) -m pytest -n auto --dist loadfile
 
 .PHONY: formal
-formal: $(READY)  ## properties of every block proven, and that each catches its broken twin (needs Yosys, z3: make tools)
+formal: $(TESTS_READY)  ## properties of every block proven, and that each catches its broken twin (needs Yosys, z3: make tools)
 	@$(PY) -m verif.formal
 
 .PHONY: coverage
-coverage: $(READY)  ## line, toggle, branch, state machines and test plans: 100 %
+coverage: $(TESTS_READY)  ## line, toggle, branch, state machines and test plans: 100 %
 	@$(PY) -m verif.coverage
 
 .PHONY: mutate
-mutate: $(READY)  ## bugs planted in the RTL, each of which a test must find
+mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must find
 	@$(PY) -m verif.mutation
 
 .PHONY: verify
-verify: $(READY)  ## all of the verification: build/verify/report.html; goes on where it was (under 45 minutes on 2 cores)
+verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was (under 45 minutes on 2 cores)
 	@$(PY) -m verif.report
 
 .PHONY: verilog
@@ -73,7 +78,7 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: bench
-bench: $(READY)  ## speed and memory (pytest-benchmark)
+bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
 
 .PHONY: tools

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The Python environment: venv.sh PYTHON FOLDER. Every package at the version and hash of requirements.lock.
+# The Python environment: venv.sh PYTHON FOLDER LOCK. Every package at the version and hash of the file LOCK.
 set -euo pipefail
-python=$1 folder=$2
+python=$1 folder=$2 lock=$3
 
 fail() { echo "setup: $*" >&2; exit 2; }
 
@@ -16,7 +16,7 @@ if [ ! -x "$folder/bin/python" ]; then
         || fail "venv = unavailable in '$python': install python3-venv (Debian: apt-get install python3-venv) or virtualenv"
 fi
 
-echo "setup: installing the locked packages"
-"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
+echo "setup: installing the packages of $lock"
+"$folder/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes -r "$lock"
 "$folder/bin/python" -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 echo "setup: ready"
