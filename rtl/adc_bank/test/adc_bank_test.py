@@ -1,5 +1,6 @@
 """AdcBank at every level, with the analog front end at its pins: steps in, the golden model's codes out, in order."""
 
+import contextlib
 from functools import cache
 
 import numpy as np
@@ -177,6 +178,15 @@ class TestAdcBankFL:
         for at, some in zip(holds, enabled):
             assert not any(got.idle[at:at + (3 if some else 1)])
         assert got.idle[-1]
+
+    def test_reset_at_any_moment(self):
+        """Nothing is left of the steps, conversions and results under way."""
+        Step = step_msg(LANES)
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), *[Step(SAMPLE, 0, 1, 2, 0, 0xDB)] * 3, Step(END, 0, 0, 0, 0, 0)]
+        for cycles in range(2, 40, 3):
+            with contextlib.suppress(AssertionError):       # it does not end: nothing is taken behind some cycles
+                self.run(steps, "edge", 1, [(True, True)] * 20 + [(True, False)] * 40, cycles)
+            self.check(steps, "edge", 10)
 
 
 class TestAdcBankCL(TestAdcBankFL):

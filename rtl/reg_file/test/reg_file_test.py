@@ -133,6 +133,39 @@ class TestFL:
         bench.spi.transfer(command("start"))
         assert bench.read(CHIP["busy"].byte)[0] == 0
 
+    def test_an_event_in_the_cycle_that_clears_it_stays(self):
+        """... and one a cycle earlier does not; a start clears in the cycle ahead of its strobe, a 1 at the same place."""
+        strobe = self.tick_of_the_strobe()
+        for name in ("start", "done"):
+            for tick, stays in ((strobe - 1, 0), (strobe, 1), (strobe + 1, 1)):
+                bench = self.bench()
+                self.transfer_with_event(bench, command(name), tick)
+                assert bench.read(CHIP["busy"].byte)[0] >> CHIP["done"].shift & 1 == stays, (name, tick - strobe)
+
+    def tick_of_the_strobe(self):
+        """Clock edges from the beginning of a transfer of `start` to the one behind which the strobe is high."""
+        bench, ticks = self.bench(), []
+
+        def tick():
+            bench.tick()
+            ticks.append(bench.starts)
+        bench.spi.tick = tick
+        bench.spi.transfer(command("start"))
+        return ticks.index(1)
+
+    @staticmethod
+    def transfer_with_event(bench, data, at):
+        """A transfer with `done` high ahead of its clock edge number ``at``."""
+        ticks = [0]
+
+        def tick():
+            bench.status(done=ticks[0] == at)
+            bench.tick()
+            ticks[0] += 1
+        bench.spi.tick = tick
+        bench.spi.transfer(data)
+        bench.spi.tick = bench.tick
+
     def test_counters_are_taken_at_their_first_byte(self):
         bench = self.bench()
         counters = {f.name: 0x0123456789ABCDEF * (i + 1) & (1 << 64) - 1 for i, f in enumerate(CHIP.counters)}

@@ -171,6 +171,11 @@ class TestRunLengthFL:
         frame, = decode_stream(got)
         assert len(got) == 40 and (frame.made, frame.left_out) == (1, 2) and len(frame.bad_rows) == ROWS
 
+    def test_rows_without_samples(self):
+        """A mark each: the CRC of nothing, and the row."""
+        got = self.bench(header_of()).run([ScanMsg(FRAME, 0), ScanMsg(ROW, 4), ScanMsg(ROW, 517), ScanMsg(END, 0)])
+        assert got[26:-14] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in (4, 517))
+
     def test_reset_in_a_frame(self):
         header = header_of(threshold=3)
         samples = samples_of(header, 6)
