@@ -4,7 +4,7 @@ import hashlib
 from pathlib import Path
 
 from verif.jobs import Job, run
-from verif.replay import record
+from verif.replay import load, record
 from verif.results import OUT, ROOT, sources
 
 STORE = OUT / "traces"
@@ -22,7 +22,7 @@ def digest():
 
 
 def recorded(blocks, store=STORE):
-    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths, the longest trace first."""
+    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths, the one of most cycles first."""
     now, store = digest(), Path(store)
     jobs = [Job(block, _record, (block, str(store / f"{block}-{now}")), (now,)) for block in blocks]
     for job in jobs:
@@ -33,4 +33,4 @@ def recorded(blocks, store=STORE):
 
 
 def _record(block, folder):
-    return [str(path) for path in record(block, folder)]
+    return [str(path) for path in sorted(record(block, folder), key=lambda path: -load(path, cycles=False).cycles)]

@@ -149,8 +149,11 @@ class TestAmpCtrlFL:
                 expected = golden.send(True)
 
     def test_every_number_of_common_mode_resets(self, sim):
-        for bit in range(8):
-            self.check_row(self.fresh(sim), AmpTiming(1, 1, 1, 1, 1, 1, n_cm=1 << bit), 0, lambda _: True)
+        for number in (*(1 << bit for bit in range(8)), 0):
+            self.check_row(self.fresh(sim), AmpTiming(1, 1, 1, 1, 1, 1, n_cm=number), 0, lambda _: True)
+
+    def test_read_waits_for_the_hold(self, sim):
+        self.check_row(self.fresh(sim), AmpTiming(1, 2, 3, 2, 1, 2, n_cm=1), 1, lambda cycle: cycle % 50 > 45)
 
 
 class TestAmpCtrlRTL(TestAmpCtrlFL):

@@ -121,7 +121,7 @@ class TestPhasePathFL:
     def test_reset_at_any_moment(self):
         """Nothing is left of the message inside, the taps of a step and the division under way."""
         frame = [(3, [[[200, 9, 77], [30, 8, 76], [10, 7, 75], [99, 6, 74]]] * 2)]
-        for cycles in range(1, 50, 2):
+        for cycles in range(1, 50, 4):
             for on in (True, False):
                 with contextlib.suppress(AssertionError):       # it does not end: nothing leaves behind some cycles
                     self.run(messages(frame), on, 0, [(True, True)] * 30 + [(True, False)] * 30, cycles)

@@ -97,6 +97,19 @@ class TestFL:
         read = bench.read(FIRST, max(CHIP.writable()) - FIRST + 1)
         assert all(read[address - FIRST] == byte for address, byte in writes)
 
+    def test_every_bit_of_every_register(self):
+        """All bytes at once: the bits that exist are kept, the others read 0; counters and loop-back the same."""
+        bench, writable, last = self.bench(), CHIP.writable(), max(CHIP.writable())
+        for value in (0xFF, 0):
+            bench.status(**{f.name: value * 0x0101010101010101 for f in CHIP.counters})
+            bench.spi.transfer(bytes((0x80 | FIRST, *[value] * (last - FIRST + 1))))
+            assert bench.read(FIRST, last - FIRST + 1) == bytes(
+                value & writable.get(a, 0) for a in range(FIRST, last + 1))
+            for counter in CHIP.counters:
+                assert bench.read(counter.byte, 8) == bytes([value] * 8)
+            bench.spi.transfer(bytes((0x80 | CHIP["loop_back"].byte, value)))
+            assert bench.loop[-1] == value
+
     def test_start_is_one_strobe(self):
         bench = self.bench()
         bench.spi.transfer(command("start"))

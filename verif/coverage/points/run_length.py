@@ -132,8 +132,12 @@ def sample_ahead_of_the_first_row(p):
     return _sample(p) & (since_frame >= 0) & ((since_row < 0) | (since_row > since_frame))
 
 
-def counts_of_all_bits(p):
-    return _out(p) & (p.made > 1 << 31) & (p.left_out >> 16 > 0)
+def made_of_all_bits(p):
+    return _out(p) & (p.made == 0xFFFFFFFF)
+
+
+def left_out_of_all_bits(p):
+    return _out(p) & (p.left_out == 0xFFFFFFFF)
 
 
 def reset_in_a_frame(p):
