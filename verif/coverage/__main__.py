@@ -22,14 +22,14 @@ from .verdict import judge
 
 def measure_jobs(plans, traces):
     """A Job a trace, and the block of each: two lists."""
-    jobs, blocks, code = [], [], digest_of("verif/coverage", "rtl")
+    jobs, blocks, code = [], [], digest_of("verif/coverage")
     for block, paths in traces.items():
         plan = plans[block]
         registers = [machine.registers for machine in plan.machines_of(block)]
         for path in paths:
             name = load(path, cycles=False).name
             jobs.append(Job(f"{block}-{name}", measure, (str(path), plan.folder, registers, plan.cover),
-                            (path, path.with_suffix(".trace"), registers, plan.cover, code)))
+                            (str(path), registers, plan.cover, code)))
             blocks.append(block)
     return jobs, blocks
 

@@ -1,26 +1,36 @@
 """The recorded traces of blocks, kept while nothing changes that decides them."""
 
+import hashlib
 from pathlib import Path
 
 from verif.jobs import Job, run
-from verif.replay import record
-from verif.results import OUT, digest_of
+from verif.replay import load, record
+from verif.results import OUT, ROOT, sources
 
 STORE = OUT / "traces"
 DECIDES = "rtl", "models", "pixels", "verif/replay"
 
 
+def digest():
+    """Of all that decides a trace: text. Proofs beside the blocks do not."""
+    h = hashlib.sha256()
+    for path in sources(*DECIDES):
+        if path.suffix in (".py", ".rdl") and "formal" not in path.parts:
+            h.update(str(path.relative_to(ROOT)).encode())
+            h.update(path.read_bytes())
+    return h.hexdigest()[:16]
+
+
 def recorded(blocks, store=STORE):
-    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths, the longest trace first."""
-    digest = digest_of(*DECIDES)[:16]
-    jobs = []
-    for block in blocks:
-        folder = Path(store) / f"{block}-{digest}"
-        # A kept result whose files were removed is no result
-        jobs.append(Job(block, _record, (block, str(folder)), (digest, folder.exists())))
+    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths, the one of most cycles first."""
+    now, store = digest(), Path(store)
+    jobs = [Job(block, _record, (block, str(store / f"{block}-{now}")), (now,)) for block in blocks]
+    for job in jobs:
+        if not Path(job.arguments[1]).exists():         # its files were removed: the kept result is none
+            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)
     return {block: [Path(path) for path in paths]
             for block, paths in zip(blocks, run(jobs, store, "recorded tests"), strict=True)}
 
 
 def _record(block, folder):
-    return [str(path) for path in record(block, folder)]
+    return [str(path) for path in sorted(record(block, folder), key=lambda path: -load(path, cycles=False).cycles)]

@@ -4,6 +4,7 @@ import numpy as np
 
 from models.digital.cordic import angles
 from models.digital.divider import quad_divide
+from models.parameters.registers import register_map
 
 
 def case(name, in_bits, out_bits, values):
@@ -37,4 +38,26 @@ def type_at(proof):
     return case("type_at", 5, 5, order)
 
 
-TABLES = {"type_at": type_at, "phase_of_ratio": phase_of_ratio, "cordic_angle": cordic_angle}
+def registers(proof):
+    """bit_address, bit_place, bit_writable, bit_reset of each bit of the configuration's struct, and macros."""
+    chip, sensor = register_map(), proof.sensor_parameters
+    resets = {"row1": sensor.tile_rows - 1, "col1": sensor.tile_cols - 1}
+    bits = []       # from the struct's lowest bit: (address, place, writable, reset)
+    writable = chip.writable()
+    for f in chip.trims:
+        for i in range(8 * f.size):
+            address = f.address + i // 8
+            bits.append((address, i % 8, writable.get(address, 0) >> i % 8 & 1, f.reset >> i & 1))
+    for f in reversed([f for f in chip.configuration if f.name != "trim"]):
+        for i in range(f.width):
+            at = f.lsb + i
+            bits.append((f.address + at // 8, at % 8, 1, resets.get(f.name, f.reset) >> i & 1))
+    columns = [case(name, 10, width, column) for (name, width), column in zip(
+        (("bit_address", 7), ("bit_place", 3), ("bit_writable", 1), ("bit_reset", 1)), zip(*bits))]
+    image = [address for address, *_ in bits]
+    macros = {"CFG_BITS": len(bits), "FIRST": min(image), "LAST": max(image), "START": chip["start"].byte,
+              "STATUS": chip["busy"].byte, "LOOP": chip["loop_back"].byte, "CYCLES": chip["cycles"].byte}
+    return "".join(f"`define {name} {value}\n" for name, value in macros.items()) + "".join(columns)
+
+
+TABLES = {"type_at": type_at, "registers": registers, "phase_of_ratio": phase_of_ratio, "cordic_angle": cordic_angle}

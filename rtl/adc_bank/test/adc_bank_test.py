@@ -1,5 +1,6 @@
 """AdcBank at every level, with the analog front end at its pins: steps in, the golden model's codes out, in order."""
 
+import contextlib
 from functools import cache
 
 import numpy as np
@@ -76,6 +77,7 @@ class Run:
         sim.sim_tick()
         sim.reset @= 0
         self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
+        self.held = []          # row, group, k, sub, en at each hold
         steps, cycle, ends = list(steps), 0, sum(int(m.kind) == END for m in steps)
         while ends > len(self.counts) or steps or self.idle[-1:] != [True]:
             offer, ready = pattern[cycle % len(pattern)]
@@ -87,6 +89,8 @@ class Run:
             if steps and offer and sim.step.rdy:
                 steps.pop(0)
             self.hold.append(bool(sim.hold))
+            if sim.hold:
+                self.held.append(tuple(int(getattr(sim.dut, name)) for name in ("row", "group", "k", "sub", "en")))
             self.idle.append(bool(sim.idle))
             if sim.scan.val and ready:
                 self.messages.append((int(sim.scan.msg.kind), int(sim.scan.msg.data)))
@@ -177,6 +181,26 @@ class TestAdcBankFL:
         for at, some in zip(holds, enabled):
             assert not any(got.idle[at:at + (3 if some else 1)])
         assert got.idle[-1]
+
+    def test_all_bits_of_the_address(self):
+        """Row, group, k and sub come to the pins as they are; without a lane nothing is sampled there."""
+        Step = step_msg(LANES)
+        values = 0x3FF, 0, 0x155, 0x2AA
+        steps = [Step(FRAME, 0, 0, 0, 0, 0)]
+        for value in values:
+            steps += [Step(ROW, value, 0, 0, 0, 0), Step(SAMPLE, value, value & 0xFF, value & 7, value & 3, 0)]
+        got = self.run([*steps, Step(END, 0, 0, 0, 0, 0)], "edge", 10)
+        assert got.messages == [(FRAME, 0), *((ROW, value) for value in values), (END, 0)]
+        assert got.held == [(value, value & 0xFF, value & 7, value & 3, 0) for value in values]
+
+    def test_reset_at_any_moment(self):
+        """Nothing is left of the steps, conversions and results under way."""
+        Step = step_msg(LANES)
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), *[Step(SAMPLE, 0, 1, 2, 0, 0xDB)] * 3, Step(END, 0, 0, 0, 0, 0)]
+        for cycles in range(2, 40, 6):
+            with contextlib.suppress(AssertionError):       # it does not end: nothing is taken behind some cycles
+                self.run(steps, "edge", 1, [(True, True)] * 20 + [(True, False)] * 40, cycles)
+            self.check(steps, "edge", 10)
 
 
 class TestAdcBankCL(TestAdcBankFL):

@@ -130,6 +130,31 @@ class TestAmpCtrlFL:
             sim.sim_tick()
         assert high == 65535
 
+    @pytest.mark.parametrize("name", DURATIONS)
+    def test_all_bits_of_the_configuration(self, sim, name):
+        """A duration with one high bit is long: its phase still stands some cycles on, when a reset ends the row."""
+        for bit in range(16):
+            self.fresh(sim)
+            timing = AmpTiming(**{**dict.fromkeys(DURATIONS, 1), name: 1 << bit | 1}, n_cm=bit % 2)
+            drive(sim, timing, start=1)
+            sim.sim_tick()
+            drive(sim, AmpTiming(1, 1, 1, 1, 1, 1, n_cm=0), start=0)
+            golden = row_waveform(timing, False)
+            expected = next(golden)
+            for cycle in range(24):
+                assert pins(sim) == vars(expected), f"bit {bit}, cycle {cycle}"
+                if expected.done:
+                    break
+                sim.sim_tick()
+                expected = golden.send(True)
+
+    def test_every_number_of_common_mode_resets(self, sim):
+        for number in (*(1 << bit for bit in range(8)), 0):
+            self.check_row(self.fresh(sim), AmpTiming(1, 1, 1, 1, 1, 1, n_cm=number), 0, lambda _: True)
+
+    def test_read_waits_for_the_hold(self, sim):
+        self.check_row(self.fresh(sim), AmpTiming(1, 2, 3, 2, 1, 2, n_cm=1), 1, lambda cycle: cycle % 50 > 45)
+
 
 class TestAmpCtrlRTL(TestAmpCtrlFL):
     level = AmpCtrl

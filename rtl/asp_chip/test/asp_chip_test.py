@@ -9,7 +9,7 @@ from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
 from models.parameters import (MODES, AmpTiming, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
                                SensorParameters, Window)
-from models.parameters.registers import frame_writes, register_map
+from models.parameters.registers import frame_writes, read_transfer, register_map
 from rtl.asp_chip import AspChip, AspChipFL
 from rtl.testbench import build
 
@@ -18,7 +18,7 @@ from .chip_bench import ChipBench
 ROWS, COLS, LANES = 8, 13, 2
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
 FULL = SENSOR.full_window
-FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1)
+FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)
 PATTERN = PatternEnd(ROWS, COLS)
 CHIP = register_map()
 
@@ -159,6 +159,19 @@ class TestRTL(ChipTests):
 
 class TestVerilog(FrameTests):
     component, verilog, examples = AspChip, True, 15
+
+    def test_every_configuration_bit(self):
+        """All of them high, then low, over SPI; the pins show what they show, and the next frame is whole."""
+        bench, writable = self.bench(), CHIP.writable()
+        first, last = min(writable), max(writable)
+        for value, mode in ((0xFF, 3), (0, 0)):
+            bench.spi.transfer(bytes((0x80 | first, *[value] * (last - first + 1))))
+            assert bench.spi.transfer(read_transfer(first, last - first + 1))[1:] == bytes(
+                value & writable.get(address, 0) for address in range(first, last + 1))
+            assert int(bench.sim.mode) == mode and bool(bench.sim.unsigned_) == (mode != 0) and not bench.sim.busy
+            assert int(bench.sim.balance) == (0x3FF if value else 0)
+        bench.registers = dict.fromkeys(writable, 0)
+        self.check(bench, FRAMES["edge"], golden_frame(None, SENSOR, FRAMES["edge"], PATTERN))
 
     def test_overlap_saves_time(self):
         """The next row integrates while one converts: the bytes are the same, the frame is shorter."""

@@ -1,5 +1,6 @@
 """EdgeAdc at every level: held values in, the golden model's codes out, whatever the timing of go and rdy."""
 
+import contextlib
 from functools import cache
 
 import numpy as np
@@ -164,6 +165,17 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
                 bench.go_at, bench.dacs = [0], [[]]
             bench.cycle += 1
         assert bench.dacs[0] == [138, 119, 128, 192, 224, 208, 200, 196]
+
+    def test_reset_at_any_moment(self):
+        """Nothing of the conversion under way, or of results that wait, is left."""
+        for cycles in range(1, 26, 2):
+            bench = self.bench([60.0, -50.0], False, 10)
+            with contextlib.suppress(AssertionError):       # it never ends: nothing is taken
+                bench.run([(0, False)], limit=cycles)
+            again = self.bench([0.0, 99.0], False, 10)
+            again.sim.sim_eval_combinational()
+            assert not again.sim.busy and not again.sim.out.val and again.sim.free
+            assert again.run().results == expected([0.0, 99.0], False, 10), cycles
 
 
 class TestEdgeAdcRTL(TestEdgeAdcCL):

@@ -1,5 +1,6 @@
 """PhasePath at every level: taps in, the golden model's phase and amplitude out, marks in their places."""
 
+import contextlib
 from functools import cache
 
 import numpy as np
@@ -116,6 +117,15 @@ class TestPhasePathFL:
         taps = [[30, 31], [0, 0], [0, 0], [0, 0]]
         got = self.run(messages([(0, [taps])]), True, 31)
         assert [data for _, data in got.messages[2:-1]] == [0, 0, 0, 31]
+
+    def test_reset_at_any_moment(self):
+        """Nothing is left of the message inside, the taps of a step and the division under way."""
+        frame = [(3, [[[200, 9, 77], [30, 8, 76], [10, 7, 75], [99, 6, 74]]] * 2)]
+        for cycles in range(1, 50, 4):
+            for on in (True, False):
+                with contextlib.suppress(AssertionError):       # it does not end: nothing leaves behind some cycles
+                    self.run(messages(frame), on, 0, [(True, True)] * 30 + [(True, False)] * 30, cycles)
+                assert self.run(messages(frame), True).messages == expected(frame, self.chip, 0), cycles
 
 
 class TestPhasePathCL(TestPhasePathFL):

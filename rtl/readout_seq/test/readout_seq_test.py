@@ -1,6 +1,7 @@
 """ReadoutSeq at every level: the golden scan's messages and rows, whatever the timing around it."""
 
 import random
+from itertools import count
 
 import pytest
 from hypothesis import HealthCheck, given, settings, strategies as st
@@ -153,6 +154,34 @@ class TestReadoutSeqFL:
         record = bench.frame(ports)         # amp_err stands until its first amp_start
         assert record.messages == golden and record.pins[-1]["done"]
 
+    @pytest.mark.parametrize("row", [0, 1])
+    def test_amplifiers_refuse_whatever_is_on_offer(self, row):
+        """amp_err in any cycle of FRAME, ROW, the steps, and while the bank converts the last of them."""
+        size = self.sizes[0]
+        ports = size.whole(overlap=1, mask=0x842)
+        golden, seen = messages(size.scan(ports)), set()
+        for cycles in range(1, 60, 5):
+            turns = count()
+            bench = self.bench(size, (amplifiers(lambda: 25, lambda: 2, (row, cycles, 0)),
+                                      bank(lambda turns=turns: int(next(turns) % 6 == 5), lambda: 9)))
+            record = bench.frame(ports)
+            assert record.messages == golden[:len(record.messages)] and record.pins[-1]["cfg_err"]
+            seen.add(len(record.messages))
+            assert bench.frame(ports).messages == golden
+        assert len(seen) > (row if self.overlaps else 0)
+
+    def test_a_start_in_the_cycle_of_done_is_taken(self):
+        size = Size(7, 31, 2)
+        ports = size.whole(mask=1)
+        bench, record = self.bench(size, steadily(3, 1, 0)), Record()
+        bench.drive(**ports)
+        bench.cycle(record, start=1)
+        for _ in range(2):
+            while not bench.sim.done:
+                bench.cycle(record)
+            bench.cycle(record, start=1)
+        assert record.messages == 2 * messages(size.scan(ports)) and bench.sim.busy
+
     @pytest.mark.parametrize("overlap, mode", [(0, 0), (1, 1), (1, 3)])
     def test_with_amp_ctrl(self, overlap, mode):
         size, timing = Size(7, 31, 2), AmpTiming(3, 9, 2, 2, 4, 1, n_cm=1)
@@ -173,7 +202,8 @@ class TestReadoutSeqFL:
     def test_addresses_of_the_largest_array(self):
         size = LARGEST
         bench = self.bench(size, steadily(3, 1, 0))
-        for ports in (size.whole(row0=254, col0=253, mode=3, overlap=1), size.whole(row0=200, col0=1, decimation=3)):
+        for ports in (size.whole(row0=254, col0=253, mode=3, overlap=1), size.whole(row0=200, col0=1, decimation=3),
+                      size.whole(row1=0, col1=0)):
             ports["mask"] = 1 << size.order[23]
             self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
 

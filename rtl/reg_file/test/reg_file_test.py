@@ -97,6 +97,19 @@ class TestFL:
         read = bench.read(FIRST, max(CHIP.writable()) - FIRST + 1)
         assert all(read[address - FIRST] == byte for address, byte in writes)
 
+    def test_every_bit_of_every_register(self):
+        """All bytes at once: the bits that exist are kept, the others read 0; counters and loop-back the same."""
+        bench, writable, last = self.bench(), CHIP.writable(), max(CHIP.writable())
+        for value in (0xFF, 0):
+            bench.status(**{f.name: value * 0x0101010101010101 for f in CHIP.counters})
+            bench.spi.transfer(bytes((0x80 | FIRST, *[value] * (last - FIRST + 1))))
+            assert bench.read(FIRST, last - FIRST + 1) == bytes(
+                value & writable.get(a, 0) for a in range(FIRST, last + 1))
+            for counter in CHIP.counters:
+                assert bench.read(counter.byte, 8) == bytes([value] * 8)
+            bench.spi.transfer(bytes((0x80 | CHIP["loop_back"].byte, value)))
+            assert bench.loop[-1] == value
+
     def test_start_is_one_strobe(self):
         bench = self.bench()
         bench.spi.transfer(command("start"))
@@ -132,6 +145,39 @@ class TestFL:
         assert bench.read(CHIP["busy"].byte)[0] == both[0] + both[2]
         bench.spi.transfer(command("start"))
         assert bench.read(CHIP["busy"].byte)[0] == 0
+
+    def test_an_event_in_the_cycle_that_clears_it_stays(self):
+        """... and one a cycle earlier does not; a start clears in the cycle ahead of its strobe, a 1 at the same place."""
+        strobe = self.tick_of_the_strobe()
+        for name in ("start", "done"):
+            for tick, stays in ((strobe - 1, 0), (strobe, 1), (strobe + 1, 1)):
+                bench = self.bench()
+                self.transfer_with_event(bench, command(name), tick)
+                assert bench.read(CHIP["busy"].byte)[0] >> CHIP["done"].shift & 1 == stays, (name, tick - strobe)
+
+    def tick_of_the_strobe(self):
+        """Clock edges from the beginning of a transfer of `start` to the one behind which the strobe is high."""
+        bench, ticks = self.bench(), []
+
+        def tick():
+            bench.tick()
+            ticks.append(bench.starts)
+        bench.spi.tick = tick
+        bench.spi.transfer(command("start"))
+        return ticks.index(1)
+
+    @staticmethod
+    def transfer_with_event(bench, data, at):
+        """A transfer with `done` high ahead of its clock edge number ``at``."""
+        ticks = [0]
+
+        def tick():
+            bench.status(done=ticks[0] == at)
+            bench.tick()
+            ticks[0] += 1
+        bench.spi.tick = tick
+        bench.spi.transfer(data)
+        bench.spi.tick = bench.tick
 
     def test_counters_are_taken_at_their_first_byte(self):
         bench = self.bench()

@@ -1,5 +1,6 @@
 """RunLength at every level: the golden encoder's bytes, whatever the timing of either side."""
 
+import contextlib
 from functools import cache
 
 import numpy as np
@@ -113,9 +114,9 @@ class TestRunLengthFL:
         got = self.bench(header, made, left_out).run(messages_of(header, samples), offered, taken)
         assert got == encode_frame(header, samples, made, left_out)
 
-    @pytest.mark.parametrize("kind", ["zeros", "noise", "alternating", "one", "last", "least", "inside"])
+    @pytest.mark.parametrize("kind", ["zeros", "noise", "alternating", "one", "last", "least", "inside", "highest"])
     def test_extreme_rows(self, kind):
-        header = header_of(threshold=5 if kind == "inside" else 0)
+        header = header_of(threshold={"inside": 5, "highest": 127}.get(kind, 0))
         samples = np.zeros((ROWS, COLS, 1), int)
         if kind == "noise":
             samples = np.random.default_rng(0).integers(-128, 128, samples.shape)
@@ -130,6 +131,8 @@ class TestRunLengthFL:
             samples[:] = np.arange(-3, 3).repeat(6)[:, None]
         elif kind == "inside":      # codes that no converter gives under this threshold
             samples[:] = np.arange(-18, 18)[:, None] // 2
+        elif kind == "highest":
+            samples[:] = np.array([-128, -127, 0, 127])[np.arange(COLS) % 4][:, None]
         got = self.bench(header, 2**32 - 1, 0).run(messages_of(header, samples))
         assert got == encode_frame(header, samples, 2**32 - 1, 0)
 
@@ -163,7 +166,8 @@ class TestRunLengthFL:
         samples = samples_of(header, 4)
         messages = messages_of(header, samples)
         stray = [ScanMsg(SAMPLE, 3), ScanMsg(ROW, 1), ScanMsg(SAMPLE, 3), ScanMsg(END, 0)]
-        got = self.bench(header).run(stray + messages[:1] + [ScanMsg(SAMPLE, 9)] + messages[1:])
+        bench = self.bench(header)
+        got = bench.run(stray + messages[:1] + [ScanMsg(SAMPLE, 9)] + messages[1:20] + messages[:1] + messages[20:])
         assert got == encode_frame(header, samples, 0, 0)
 
     def test_a_frame_without_rows(self):
@@ -171,11 +175,39 @@ class TestRunLengthFL:
         frame, = decode_stream(got)
         assert len(got) == 40 and (frame.made, frame.left_out) == (1, 2) and len(frame.bad_rows) == ROWS
 
+    def test_rows_without_samples(self):
+        """A mark each: the CRC of nothing, and the row."""
+        rows = 4, 0x3FF, 0, 0x155, 0x2AA, 0
+        got = self.bench(header_of()).run([ScanMsg(FRAME, 0), *(ScanMsg(ROW, row) for row in rows), ScanMsg(END, 0)])
+        assert got[26:-14] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
+
+    def test_the_longest_tokens(self):
+        """The order of the values' code falls, the runs' one rises to its end, then the largest values come."""
+        row = np.zeros(384, int)
+        row[:24], row[150::2], row[270:] = 1, 0, 0
+        row[[269, 383]], row[382] = -128, 127
+        wide = StreamHeader.from_frame(1, 384, 1, FrameParameters(Window(0, 0, 0, 63), threshold=1))
+        messages = [ScanMsg(FRAME, 0), ScanMsg(ROW, 0), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in row)]
+        got = self.bench(header_of(threshold=1)).run([*messages, ScanMsg(END, 0)])
+        layout, samples = wide.layout(), np.zeros((1, 384, 1), int)
+        samples[0, layout.places_of(0), 0] = row
+        assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
+
+    def test_counts_of_all_bits(self):
+        for made, left_out in ((2**32 - 1, 0), (0, 2**32 - 1), (0x5A5A5A5A, 0xA5A5A5A5), (0, 0)):
+            frame, = decode_stream(self.bench(header_of(), made, left_out).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)]))
+            assert (frame.made, frame.left_out) == (made, left_out)
+
     def test_reset_in_a_frame(self):
         header = header_of(threshold=3)
         samples = samples_of(header, 6)
         messages = messages_of(header, samples)
         bench = self.bench(header)
+        bench.run(messages[:100])
+        for cycles in (27, 36):     # the link sticks: bytes wait everywhere
+            with contextlib.suppress(AssertionError):
+                self.bench(header).run(messages, taken=[True] * cycles + [False] * 50, limit=cycles + 30)
+            assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
         bench.run(messages[:100])
         assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
 
@@ -206,6 +238,19 @@ class TestRunLengthCL(TestRunLengthFL):
 
 class TestRunLength(TestRunLengthCL):
     cls = RunLength
+
+    def test_all_bits_of_the_header(self):
+        """The ports of a header, whatever they say; the other levels look at what is a frame only."""
+        ports = {"row0": 13, "row1": 14, "col0": 15, "col1": 16, "mask": 17, "frame_number": 20}
+        for value in (-1, 0, 0x555555, 0xAAAAAA, 0):
+            bench, at = self.bench(header_of()), 0
+            for name in ports:
+                port = getattr(bench.sim, name)
+                port @= value & (1 << port.nbits) - 1
+            got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)])
+            for name, at in ports.items():
+                size = getattr(bench.sim, name).nbits // 8
+                assert int.from_bytes(got[at:at + size], "big") == value & (1 << 8 * size) - 1, name
 
 
 class TestRunLengthVerilog(TestRunLength):

@@ -1,0 +1,180 @@
+"""Coverage counts what is reached and only that; plans and exclusions that do not hold are errors."""
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from models.parameters import ParameterError
+from rtl.edge_adc import EdgeAdc
+from verif.coverage.measure import Point, measure, sources_of
+from verif.coverage.ports import Recorded
+from verif.coverage.program import ProgramError, compile_program
+from verif.coverage.spi import transfers
+from verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
+from verif.coverage.verdict import judge, matches
+from verif.replay.recorder import Recorder
+from rtl import testbench
+from rtl.tops import TOPS
+
+CYCLES = [(1, 1, 0)] * 3 + [(1, 0, 1)] * 30 + [(0, 0, 1)] * 30      # go, reset, comparator
+
+
+def recorded_cycles():
+    """The Trace of one EdgeAdc that converts with a comparator that is always high."""
+    recorder = Recorder("EdgeAdc")
+    testbench.observers.append(recorder.observe)
+    try:
+        sim = testbench.build(EdgeAdc())
+        for go, reset, comparator in CYCLES:
+            sim.go @= go
+            sim.reset @= reset
+            sim.comparator @= comparator
+            sim.out.rdy @= 1
+            sim.sim_tick()
+    finally:
+        testbench.observers.remove(recorder.observe)
+    trace, = recorder.traces()
+    return trace
+
+
+@pytest.fixture(scope="module")
+def trace():
+    return recorded_cycles()
+
+
+@pytest.fixture(scope="module")
+def result(trace, tmp_path_factory):
+    path = trace.save(tmp_path_factory.mktemp("coverage"))
+    return measure(path, "edge_adc", [(("state", 3),)], ["go_from_idle", "zero_by_the_window"])
+
+
+def plan(*exclusions):
+    return TestPlan("edge_adc", ("EdgeAdc",), (SimpleNamespace(cover=("go_from_idle", "zero_by_the_window")),),
+                    (Machine((("state", 3),), {"idle": 0, "above": 1, "search": 4},
+                             (("idle", "search"), ("search", "idle"), ("idle", "above"))),), exclusions)
+
+
+@pytest.mark.parametrize("folder", sorted({folder_of(block) for block in TOPS}))
+def test_every_plan_holds(folder):
+    assert load_plan(plan_file(folder)).blocks == tuple(block for block in TOPS if folder_of(block) == folder)
+
+
+def test_what_no_cycle_reaches_is_named(result):
+    verdict = judge("EdgeAdc", plan(), [result])
+    assert verdict.coverage["functional"] == 50.0 and verdict.coverage["fsm"] == round(400 / 6, 2)
+    assert "functional edge_adc: zero_by_the_window" in verdict.missing
+    assert "fsm state: idle > above" in verdict.missing and "fsm state: above" in verdict.missing
+    assert 0 < verdict.coverage["branch"] < 100 and 0 < verdict.coverage["toggle"] < 100
+    assert any(re.match(r"branch rtl/edge_adc/edge_adc_rtl.py:\d+ EdgeAdc line \d+: if of 'if \( magnitude < ", text)
+               for text in verdict.missing)
+    assert not any("toggle" in text and "go[0]" in text for text in verdict.missing)
+
+
+def test_exclusions(result):
+    code = "if ( magnitude < { { 1 { 1'b0 } }, threshold } ) begin"
+    good = [Exclusion("toggle", "EdgeAdc.threshold", "tied"), Exclusion("branch", f"EdgeAdc: {code}", "dead", "if")]
+    before, after = judge("EdgeAdc", plan(), [result]), judge("EdgeAdc", plan(*good), [result])
+    assert after.excluded == 15 and len(after.missing) == len(before.missing) - 15 and not after.errors
+    hit = judge("EdgeAdc", plan(Exclusion("toggle", "EdgeAdc.go", "wrong")), [result])
+    assert any("is hit" in text for text in hit.errors)
+    nothing = judge("EdgeAdc", plan(Exclusion("line", "EdgeAdc: no such line", "wrong")), [result])
+    assert nothing.errors == ["exclude line 'EdgeAdc: no such line': there is no such point"]
+
+
+def test_bits_of_an_exclusion():
+    bit = Point("toggle", "M", "row[9]:0->1", "", 0, 1, "")
+    assert matches(Exclusion("toggle", "M.row[9:7]", ""), bit) and matches(Exclusion("toggle", "M.row", ""), bit)
+    assert matches(Exclusion("toggle", "M.row[9]", "", "0->1"), bit)
+    assert not matches(Exclusion("toggle", "M.row[8:0]", ""), bit)
+    assert not matches(Exclusion("toggle", "M.row[9]", "", "1->0"), bit)
+    assert not matches(Exclusion("toggle", "N.row[9]", ""), bit)
+
+
+def test_a_transition_out_of_the_plan_is_an_error(result):
+    wrong = [[0, 0, 4, 1, 7]]
+    assert judge("EdgeAdc", plan(), [result | {"states": wrong}]).errors == [
+        "fsm state: search > above: no such transition in the plan"]
+    in_reset = [[0, 1, 4, 1, 7]]
+    assert not judge("EdgeAdc", plan(), [result | {"states": in_reset}]).errors
+
+
+def test_another_parameter_set_counts(result):
+    other = result | {"functional": {"go_from_idle": 0, "zero_by_the_window": 3}}
+    assert judge("EdgeAdc", plan(), [result, other]).coverage["functional"] == 100.0
+
+
+def test_verilog_that_does_something_else_is_not_measured(trace, tmp_path):
+    fresh, inputs, outputs = trace.lines[10].split()
+    lines = list(trace.lines)
+    lines[10] = f"{fresh} {inputs} {int(outputs, 16) ^ 1:x}"
+    changed = type(trace)(trace.cls, trace.module, trace.arguments, trace.ports, lines, trace.tests)
+    with pytest.raises(ProgramError, match="cycle 10"):
+        measure(changed.save(tmp_path), "edge_adc", [], [])
+
+
+def test_a_program_is_compiled_once(trace):
+    verilog = trace.verilog()
+    first = compile_program(verilog, "EdgeAdc", trace.ports, coverage=True)
+    before = (first.folder / "replay").stat().st_mtime_ns
+    assert compile_program(verilog, "EdgeAdc", trace.ports, coverage=True) == first
+    assert (first.folder / "replay").stat().st_mtime_ns == before
+
+
+def test_lines_have_their_python(trace):
+    where = sources_of(trace.verilog())
+    lines = trace.verilog().splitlines()
+    at = next(i for i, line in enumerate(lines) if "trial <= kept |" in line)
+    module, source = where[at + 1]
+    assert module == "EdgeAdc" and re.fullmatch(r"rtl/edge_adc/edge_adc_rtl.py:\d+", source)
+
+
+def test_ports_by_cycle(trace):
+    p = Recorded(trace)
+    assert p.go[3:6].tolist() == [1, 1, 1] and p.fresh.nonzero()[0].tolist() == [0]
+    assert p.was(p.go)[4] == 1 and p.was(p.go)[0] == 0
+    assert p.since(p.go == 1)[-1] == 30 and p.since(p.go == 2).max() == -1
+    with pytest.raises(AttributeError, match="no port gone"):
+        p.gone
+
+
+def test_transfers_of_pins():
+    bits = [1, 0, 0, 0, 0, 0, 0, 1, 1, 1]
+    pins = {"csn": [1] * 4, "sclk": [0] * 4, "mosi": [0] * 4}
+    for bit in bits:
+        pins["csn"] += [0] * 8
+        pins["sclk"] += [0] * 4 + [1] * 4
+        pins["mosi"] += [bit] * 8
+    for name, rest in (("csn", 1), ("sclk", 0), ("mosi", 0)):
+        pins[name] += [rest] * 8
+    arrays = {name: np.array(values) for name, values in pins.items()}
+    p = SimpleNamespace(**arrays, reset=np.zeros(len(pins["csn"]), int), fresh=np.zeros(len(pins["csn"]), bool))
+    found, = transfers(p)
+    assert found.data == b"\x81" and found.bits == 2 and found.half == 4 and found.writes and not found.cut
+
+
+GOOD = """
+blocks: [EdgeAdc]
+promises:
+  - {promise: it converts, cover: [], tests: [test_every_code]}
+"""
+
+
+@pytest.mark.parametrize("old, new, said", [
+    ("blocks: [EdgeAdc]", "blocks: [AmpCtrl]", "must be a top in rtl/edge_adc"),
+    ("blocks:", "block:", "unknown key"),
+    ("cover: [], ", "", r"promises\[0\].cover"),
+    ("cover: []", "cover: []", r"promises\[0\].cover = \[\]"),
+    ("cover: []", "cover: [no_such_point]", "no function in points"),
+    ("cover: []", "cover: [go_from_idle]", "belong to no promise"),
+    ("test_every_code", "test_gone", "no such test"),
+    ("tests: [test_every_code]", "tests: []", r"promises\[0\].tests"),
+    ("test_every_code", "'verif/faults/test/gone_test.py::test_x'", "no such test"),
+    ("tests:", "checks:", "unknown key"),
+])
+def test_a_plan_that_does_not_hold_is_refused(tmp_path, old, new, said):
+    path = tmp_path / "edge_adc.testplan.yaml"
+    path.write_text(GOOD.replace(old, new))
+    with pytest.raises(ParameterError, match=said):
+        load_plan(path)

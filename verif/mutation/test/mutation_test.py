@@ -1,0 +1,103 @@
+"""Mutants differ from the original where they say; the equivalence check says 'equivalent' of what is, and only then."""
+
+import subprocess
+
+import pytest
+
+from verif.coverage.program import compile_program
+from verif.coverage.test.coverage_test import recorded_cycles
+from verif.mutation.equivalence import DIFFERENT, EQUIVALENT, compare
+from verif.mutation.mutants import Mutant, generate, shares, with_mutants
+from verif.mutation.score import KILLED, SURVIVED, one_mutant, try_mutant
+from verif.mutation.__main__ import main, summary
+import shutil
+
+pytestmark = pytest.mark.skipif(not (shutil.which("yosys") and shutil.which("yosys-abc")), reason="needs Yosys: make tools")
+
+# A counter whose upper bit is never looked at, and a register that no output shows
+SMALL = """
+// At rtl/small/small_rtl.py
+module Small(input clk, input [0:0] reset, input [0:0] up, output [1:0] count);
+  logic [1:0] n;
+  logic [1:0] hidden;
+  // At rtl/small/small_rtl.py:7
+  always_ff @(posedge clk) begin
+    if ( reset ) begin n <= 2'd0; hidden <= 2'd0; end
+    else begin hidden <= n; n <= up ? n + 2'd1 : n; end
+  end
+  assign count = n;
+endmodule
+"""
+
+
+@pytest.fixture(scope="module")
+def small():
+    from rtl.ports import Port
+    ports = (Port("reset", 1, False), Port("up", 1, False), Port("count", 2, True))
+    mutants = generate(SMALL, "Small", "small", 12, 3)
+    return ports, mutants, with_mutants(SMALL, "Small", mutants)
+
+
+def test_the_sample_is_seeded_and_spread(small):
+    _, mutants, _ = small
+    assert mutants == generate(SMALL, "Small", "small", 12, 3) != generate(SMALL, "Small", "small", 12, 4)
+    assert [m.number for m in mutants] == list(range(1, len(mutants) + 1)) and 4 <= len(mutants) <= 12
+    assert {m.module for m in mutants} == {"Small"} and all(m.source.startswith("rtl/small/") for m in mutants)
+    parts = shares({"A": 400, "B": 25, "C": 0}, 50)
+    assert parts == {"A": 40, "B": 10}
+
+
+def test_equivalence(small):
+    """Against simulation of all short inputs: a mutant that differs there is never called equivalent."""
+    ports, mutants, text = small
+    program = compile_program(text, "Small", ports, mutant=True)
+    said = {m.number: compare(text, "Small", ports, m.number) for m in [Mutant(0, "", "", 0, "", ""), *mutants]}
+    assert said[0] == (EQUIVALENT, 0)
+    differs = simulated(program, len(mutants))
+    for mutant in mutants:
+        verdict, cycles = said[mutant.number]
+        assert verdict == (DIFFERENT if differs[mutant.number] >= 0 else EQUIVALENT), mutant
+        assert (cycles > 0) == (verdict == DIFFERENT)
+    assert {DIFFERENT} <= {verdict for verdict, _ in said.values()}
+
+
+def simulated(program, number, pattern=(0, 1, 1, 1, 0, 1, 1, 0, 1, 1)):
+    """First cycle in which each mutant differs from the golden counter."""
+    lines, n = ["1 1 0", "0 1 0"], 0
+    for up in pattern * 3:
+        lines.append(f"0 {up << 1:x} {n:x}")
+        n = n + up & 3
+    lines += [f"0 1 {n:x}", "0 0 0", "0 0 0"]
+    trace = program.folder / "counter.trace"
+    trace.write_text("\n".join(lines) + "\n")
+    found = program.run(trace, "--mutants", "0", str(number))
+    assert found.pop(0) == -1
+    return found
+
+
+def test_what_becomes_of_a_mutant(tmp_path):
+    """With few tests some are killed by name and some survive; a mutant of nothing is equivalent."""
+    trace = recorded_cycles()
+    path, verilog = trace.save(tmp_path), trace.verilog()
+    mutants = generate(verilog, "EdgeAdc", "edge_adc", 8, 1)
+    (tmp_path / "mutants.v").write_text(with_mutants(verilog, "EdgeAdc", mutants))
+    results = [try_mutant(str(path), str(tmp_path), m.number, "") for m in mutants]
+    assert {KILLED, SURVIVED} <= {r["result"] for r in results}
+    assert try_mutant(str(path), str(tmp_path), 0, "")["result"] == EQUIVALENT
+    entry = summary(mutants, results)
+    assert sum(entry["mutants"][k] for k in ("killed", "equivalent", "survived")) == entry["mutants"]["made"] == len(mutants)
+    assert len(entry["open_points"]) == entry["mutants"]["survived"]
+    assert all("rtl/edge_adc/edge_adc_rtl.py" in text for text in entry["open_points"])
+
+
+def test_one_mutant_alone(small, tmp_path):
+    _, mutants, text = small
+    one = one_mutant(text, "Small", mutants[0].number)
+    assert "mutant" not in one.split(";")[0] and one_mutant(text, "Small", 0) != one
+    (tmp_path / "one.v").write_text(one)
+    subprocess.run(["yosys", "-q", "-p", f"read_verilog {tmp_path}/one.v; hierarchy -check -top Small"], check=True)
+
+
+def test_arguments(capsys, tmp_path):
+    assert main(["--factor", "0", "--out", str(tmp_path)]) == 2
+    assert "factor = 0.0" in capsys.readouterr().err
