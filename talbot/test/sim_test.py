@@ -121,22 +121,21 @@ def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
     assert not out and not list(tmp_path.iterdir())
 
 
-def started(tmp_path, *more, **options):
-    """`python -m talbot sim` of a sensor that no other test compiles, on its way."""
-    words = [sys.executable, "-m", "talbot", "sim", "--scene", "coins", "--rows", "14", "--cols", "26", "--lanes", "2",
-             "--out", str(tmp_path / "out"), *more]
+def started(tmp_path, rows):
+    """`python -m talbot sim` of a sensor that no other test compiles, on its way, to be interrupted."""
+    words = [sys.executable, "-m", "talbot", "sim", "--scene", "coins", "--rows", str(rows), "--cols", "26", "--lanes", "2",
+             "--out", str(tmp_path / "out"), "--waves", "0:1"]
+    # A job in the background (of a CI, say) ignores Ctrl-C, and so would its children
     return subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                            start_new_session=True, **options)
+                            start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
 
 
-@pytest.mark.parametrize("sent, status", [(signal.SIGINT, 2), (signal.SIGTERM, 143)])
-def test_interrupted_in_the_compiler(tmp_path, sent, status):
+@pytest.mark.parametrize("sent, status, rows", [(signal.SIGINT, 2, 14), (signal.SIGTERM, 143, 15)])
+def test_interrupted_in_the_compiler(tmp_path, sent, status, rows):
     cache = ROOT / "build" / "simulator"
     before = set(cache.iterdir()) if cache.exists() else set()
-    child = started(tmp_path, "--waves", "0:1")       # waves: not in the cache
-    for line in child.stderr:
-        if "translating" in line:
-            break
+    child = started(tmp_path, rows)
+    assert any("translating" in line for line in child.stderr)
     child.send_signal(sent)
     _, err = child.communicate(timeout=30)
     assert child.returncode == status and "Traceback" not in err
