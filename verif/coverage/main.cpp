@@ -1,9 +1,11 @@
-// Recorded cycles driven into verilated Verilog: `program TRACE [--points FILE] [--states FILE] [--mutants FIRST LAST]`.
+// Recorded cycles driven into verilated Verilog:
+// `program TRACE [--points FILE] [--states FILE] [--mutants FIRST LAST]`.
 //
 // TRACE: lines 'fresh inputs outputs' (verif/replay/trace.py). Writes 'number cycle' a run to stdout: the first cycle
 // with an output that the trace does not have, or -1. Without --mutants there is one run, number 0; with it, a run for
 // every value FIRST..LAST of the input `mutant`, a fresh model each, to its first difference.
-// --points: Verilator's coverage. --states: 'register reset from to times' a line, of registers in consecutive cycles.
+// --points: Verilator's coverage; FILE.first has it behind the first cycle, in which constants take their values.
+// --states: 'register reset from to times' a line, of registers in consecutive cycles.
 
 #include <cstdint>
 #include <cstdio>
@@ -72,7 +74,8 @@ static std::vector<Cycle> read_trace(const char* name) {
     const char* in = line + 2;
     const std::size_t in_length = std::strcspn(in, " \n");
     const char* want = in + in_length + 1;
-    cycles.push_back({line[0] == '1', number(in, in_length, IN_BITS), number(want, std::strcspn(want, " \n"), OUT_BITS)});
+    const std::size_t want_length = std::strcspn(want, " \n");
+    cycles.push_back({line[0] == '1', number(in, in_length, IN_BITS), number(want, want_length, OUT_BITS)});
   }
   std::free(line);
   std::fclose(file);
@@ -110,7 +113,7 @@ static long run(const std::vector<Cycle>& cycles, std::uint64_t mutant, bool all
     top->eval();
     top->clk = 0;
 #if VM_COVERAGE
-    if (!cycle) context.coveragep()->zero();    // a constant that took its value has not moved
+    if (!cycle && points) context.coveragep()->write(std::string(points) + ".first");
 #endif
     ++cycle;
   }
@@ -130,8 +133,11 @@ int main(int argc, char** argv) {
     const std::string option = argv[i];
     if (option == "--points" && i + 1 < argc) points = argv[++i];
     else if (option == "--states" && i + 1 < argc) states = argv[++i];
-    else if (option == "--mutants" && i + 2 < argc) first = std::atol(argv[++i]), last = std::atol(argv[++i]), all = false;
-    else return 2;
+    else if (option == "--mutants" && i + 2 < argc) {
+      first = std::atol(argv[++i]);
+      last = std::atol(argv[++i]);
+      all = false;
+    } else return 2;
   }
 #if !VM_COVERAGE
   if (points) return 2;
@@ -148,7 +154,8 @@ int main(int argc, char** argv) {
     if (!file) return 4;
     for (const auto& [key, times] : steps)
       std::fprintf(file, "%d %d %llu %llu %ld\n", std::get<0>(key), std::get<1>(key),
-                   static_cast<unsigned long long>(std::get<2>(key)), static_cast<unsigned long long>(std::get<3>(key)), times);
+                   static_cast<unsigned long long>(std::get<2>(key)),
+                   static_cast<unsigned long long>(std::get<3>(key)), times);
     if (std::fclose(file)) return 4;
   }
   return 0;

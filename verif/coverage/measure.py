@@ -55,8 +55,25 @@ def sources_of(verilog):
 
 
 def read_points(path, verilog):
-    """The counts of Verilator's file ``path`` for ``verilog`` (text): dict Point -> times."""
+    """The counts of Verilator's file ``path`` for ``verilog`` (text): dict Point -> times.
+
+    Toggles are those behind the first cycle.
+    """
     lines, where = verilog.splitlines(), sources_of(verilog)
+    rows, first = read_counts(path), read_counts(f"{path}.first")
+    found, alike = {}, {}
+    for place, count in sorted(rows.items()):
+        kind, module, line, _, what = place
+        code = " ".join(lines[line - 1].split())
+        same = kind, module, what, code
+        nth = alike[same] = alike.get(same, -1) + 1
+        found[Point(kind, module, what, code, nth, line, where[line][1])] = \
+            count - (first[place] if kind == "toggle" else 0)
+    return found
+
+
+def read_counts(path):
+    """The rows of Verilator's file: dict (kind, module, line, column, what) -> times."""
     rows = {}
     for row in Path(path).read_text().splitlines():
         if not row.startswith("C "):
@@ -65,15 +82,10 @@ def read_points(path, verilog):
         fields = dict(part.split("\x02", 1) for part in text.split("\x01") if part)
         kind, _, module = fields["page"].partition("/")
         if kind in KINDS:
-            place = KINDS[kind], module, int(fields["l"]), int(fields["n"]), fields["o"]
+            what = fields["o"].replace("___05F", "__")      # Verilator's way to write a name's two underscores
+            place = KINDS[kind], module, int(fields["l"]), int(fields["n"]), what
             rows[place] = rows.get(place, 0) + int(count)
-    found, alike = {}, {}
-    for (kind, module, line, _, what), count in sorted(rows.items()):
-        code = " ".join(lines[line - 1].split())
-        same = kind, module, what, code
-        nth = alike[same] = alike.get(same, -1) + 1
-        found[Point(kind, module, what, code, nth, line, where[line][1])] = count
-    return found
+    return rows
 
 
 def measure(path, folder, registers, points):

@@ -39,12 +39,12 @@ class Machine:
 
 @dataclass(frozen=True)
 class Exclusion:
-    """Points that need not be hit. kind: of KINDS. at: 'Module.signal', 'Module.signal[7:4]', or 'Module: text of the
-    line'. what: the arm or edge ('else', '0->1') if not all. reason: why. blocks: that it holds for, default all.
+    """Points that need not be hit. kind: of KINDS. at: each 'Module.signal', 'Module.signal[7:4]', or 'Module: text of
+    the line'. what: the arm or edge ('else', '0->1') if not all. reason: why. blocks: that it holds for, default all.
     """
 
     kind: str
-    at: str
+    at: tuple
     reason: str
     what: str = ""
     blocks: tuple = ()
@@ -168,8 +168,8 @@ def _exclusion(field, entry, blocks):
     _entry(field, entry, Exclusion)
     if entry["kind"] not in KINDS:
         raise ParameterError(f"{field}.kind = {entry['kind']!r}: must be one of {', '.join(KINDS)}")
-    return Exclusion(entry["kind"], str(entry["at"]), str(entry["reason"]), str(entry.get("what", "")),
-                     _blocks(field, entry, blocks))
+    return Exclusion(entry["kind"], _texts(f"{field}.at", entry["at"]), str(entry["reason"]),
+                     str(entry.get("what", "")), _blocks(field, entry, blocks))
 
 
 @cache

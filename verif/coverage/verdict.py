@@ -37,19 +37,48 @@ def points_of(measures):
     return {(point := Point(*values)): hits[point.key] for *values, _ in measures[0]["points"]}
 
 
-def matches(exclusion, point):
-    """True if ``exclusion`` is of ``point``."""
+def matches(exclusion, at, point):
+    """True if the place ``at`` of ``exclusion`` is ``point``."""
     if exclusion.kind != point.kind:
         return False
     if point.kind != "toggle":
-        module, _, code = exclusion.at.partition(": ")
+        module, _, code = at.partition(": ")
         return (module, code) == (point.module, point.code) and exclusion.what in ("", point.what)
-    signal, _, edge = point.what.partition(":")
-    stem, bits = re.fullmatch(r"(.*?)((?:\[\d+\])?)", signal).groups()
-    name, low, high = re.fullmatch(r"(.*?)(?:\[(\d+)(?::(\d+))?\])?", exclusion.at).group(1, 3, 2)
-    if name not in (f"{point.module}.{stem}", f"*.{stem}") or exclusion.what not in ("", edge):
+    stem, bit, edge = split_toggle(point.what)
+    name, high, low = re.fullmatch(r"(.*?)(?:\[(\d+)(?::(\d+))?\])?", at).groups()
+    if name != f"{point.module}.{stem}" or exclusion.what not in ("", edge):
         return False
-    return high is None or bool(bits) and int(low or high) <= int(bits[1:-1]) <= int(high)
+    return high is None or int(low or high) <= bit <= int(high)
+
+
+def split_toggle(what):
+    """('signal', 3, '0->1') of 'signal[3]:0->1'."""
+    stem, bit, edge = re.fullmatch(r"(.*?)(?:\[(\d+)\])?:(.*)", what).groups()
+    return stem, int(bit or 0), edge
+
+
+def told(points):
+    """What is missing of one kind: texts, the bits of a signal together."""
+    texts, signals = [], {}
+    for point in points:
+        where = f"{point.kind} {point.source} {point.module} line {point.line}"
+        if point.kind == "toggle":
+            stem, bit, edge = split_toggle(point.what)
+            signals.setdefault((where, stem, edge), []).append(bit)
+        else:
+            texts.append(f"{where}: {point.what} of {point.code!r}")
+    return texts + [f"{where}: {stem}[{ranges(bits)}] {edge}" for (where, stem, edge), bits in signals.items()]
+
+
+def ranges(bits):
+    """'9:7,3' of 3, 7, 8, 9."""
+    out = []
+    for bit in sorted(bits):
+        if out and bit == out[-1][1] + 1:
+            out[-1][1] = bit
+        else:
+            out.append([bit, bit])
+    return ",".join(f"{high}:{low}" if high > low else f"{low}" for low, high in reversed(out))
 
 
 def judge(block, plan, measures):
@@ -57,21 +86,19 @@ def judge(block, plan, measures):
     verdict, points = Verdict(), points_of(measures)
     excluded = set()
     for exclusion in plan.exclusions_of(block):
-        found = [point for point in points if matches(exclusion, point)]
-        where = f"exclude {exclusion.kind} {exclusion.at!r}{' ' + exclusion.what if exclusion.what else ''}"
-        if not found:
-            verdict.errors.append(f"{where}: there is no such point")
-        for point in found:
-            if points[point]:
-                verdict.errors.append(f"{where}: {point.what} of {point.source} is hit {points[point]} times")
-        excluded.update(found)
+        for at in exclusion.at:
+            found = [point for point in points if matches(exclusion, at, point)]
+            where = f"exclude {exclusion.kind} {at!r}{' ' + exclusion.what if exclusion.what else ''}"
+            if not found:
+                verdict.errors.append(f"{where}: there is no such point")
+            verdict.errors += [f"{where}: {point.what} of {point.source} is hit {points[point]} times"
+                               for point in found if points[point]]
+            excluded.update(found)
     verdict.excluded = len(excluded)
     for kind in KINDS:
         wanted = [point for point in points if point.kind == kind and point not in excluded]
         verdict.count(kind, wanted, [point for point in wanted if points[point]])
-        verdict.missing += [f"{kind} {point.source} {point.module} line {point.line}: {point.what}"
-                            + ("" if kind == "toggle" else f" of {point.code!r}")
-                            for point in wanted if not points[point]]
+        verdict.missing += told([point for point in wanted if not points[point]])
     judge_machines(verdict, plan.machines_of(block), measures)
     wanted = plan.cover
     hit = [name for name in wanted if any(result["functional"][name] for result in measures)]

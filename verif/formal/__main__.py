@@ -96,6 +96,18 @@ def table(found):
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
 
 
+def chosen(proofs, options):
+    """Those of ``proofs`` that the command line asks for. Raises ParameterError where it asks for none."""
+    unknown = set(options.proof or ()) - {proof.name for proof in proofs}
+    if unknown:
+        raise ParameterError(f"proof = {', '.join(sorted(unknown))}: must be the name of a proof")
+    found = [proof for proof in proofs if (not options.only or proof.block in options.only)
+             and (not options.proof or proof.name in options.proof)]
+    if not found:
+        raise ParameterError(f"only = {', '.join(options.only or options.proof)}: must be a block with proofs")
+    return found
+
+
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m verif.formal", description=__doc__.split("`: ")[1])
     parser.add_argument("--only", action="append", metavar="BLOCK", choices=TOPS, help="a block (may be repeated)")
@@ -108,11 +120,7 @@ def arguments():
 def main(argv=None):
     options = arguments().parse_args(argv)
     try:
-        proofs = [proof for proof in manifest.every()
-                  if (not options.only or proof.block in options.only)
-                  and (not options.proof or proof.name in options.proof)]
-        if not proofs:
-            raise ParameterError(f"only = {', '.join(options.only or options.proof or ())}: has no proofs")
+        proofs = chosen(manifest.every(), options)
         found = collect(proofs, options.out / "formal", options.workers)
         with staged(options.out) as part:
             (part / "formal.json").write_text(json.dumps(summary(found), indent=1) + "\n")

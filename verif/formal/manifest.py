@@ -61,7 +61,6 @@ class Proof:
     generated: tuple = ()
     sources: tuple = ()
     defines: dict = field(default_factory=dict)
-    fast: bool = False
 
     def __post_init__(self):
         self._check("block", self.block, TOPS)

@@ -1,11 +1,15 @@
-"""One mutant against the tests: their recorded cycles, all inputs of a divider, and then the equivalence check."""
+"""One mutant against the tests: their recorded cycles, all inputs of a divider, the equivalence check, the proofs."""
 
+import re
 from pathlib import Path
 
 from models.parameters import SensorParameters
 from rtl.quad_divider import golden, ratio_bits
 from verif.coverage.program import compile_program
 from verif.divider import exhaustive, simulator
+from verif.formal import design, manifest
+from verif.formal.engine import PROVEN
+from verif.formal.prove import prove
 from verif.replay import load
 
 from .equivalence import DIFFERENT, EQUIVALENT, compare
@@ -33,7 +37,20 @@ def try_mutant(path, folder, number, assumed):
     verdict, cycles = compare(verilog, head.cls, head.ports, number, assumed)
     if verdict == EQUIVALENT:
         return {"result": EQUIVALENT}
+    if proof := broken_proof(verilog, head, number):
+        return {"result": KILLED, "by": f"proof {proof}", "cycle": -1}
     return {"result": SURVIVED, "difference": cycles if verdict == DIFFERENT else verdict}
+
+
+def broken_proof(verilog, head, number):
+    """Name of a proof of the mutated design that no longer goes through, or None."""
+    original = re.sub(r"(?m)^\s*//.*\n", "", head.verilog())
+    for proof in manifest.every():
+        if list(proof.modules) == [head.cls] and design.exported(proof)[head.cls] == original:
+            text = {head.cls: one_mutant(verilog, head.cls, number)}
+            if prove(proof, proof.engines[0], text, design.wrapper(proof))["result"] != PROVEN:
+                return proof.name
+    return None
 
 
 def divides_right(verilog, head, number):
@@ -53,7 +70,7 @@ def divides_right(verilog, head, number):
 
 def one_mutant(verilog, top, number):
     """The Verilog of ``top`` with mutant ``number`` and without the input that picks one: text."""
-    pick = f"; setattr -unset keep w:mutant; connect -set mutant 16'd{number}; delete -input w:mutant"
-    text = yosys(f"read_verilog -sv mutants.v; hierarchy -check -top {top}; flatten; proc; cd {top}{pick}; cd ..; opt; "
+    pick = f"setattr -unset keep w:mutant; connect -set mutant 16'd{number}; delete -input w:mutant"
+    text = yosys(f"read_verilog -sv mutants.v; hierarchy -check -top {top}; proc; cd {top}; {pick}; cd ..; "
                  "write_verilog -noattr one.v", {"mutants.v": verilog})["one.v"].decode()
     return "/* verilator lint_off UNOPTFLAT */\n" + text

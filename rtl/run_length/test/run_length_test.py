@@ -183,14 +183,16 @@ class TestRunLengthFL:
 
     def test_the_longest_tokens(self):
         """The order of the values' code falls, the runs' one rises to its end, then the largest values come."""
-        row = np.zeros(384, int)
-        row[:24], row[150::2], row[270:] = 1, 0, 0
-        row[[269, 383]], row[382] = -128, 127
-        wide = StreamHeader.from_frame(1, 384, 1, FrameParameters(Window(0, 0, 0, 63), threshold=1))
-        messages = [ScanMsg(FRAME, 0), ScanMsg(ROW, 0), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in row)]
+        wide = StreamHeader.from_frame(8, 600, 1, FrameParameters(Window(0, 1, 0, 99), threshold=1))
+        layout, samples, messages = wide.layout(), np.zeros((8, 600, 1), int), [ScanMsg(FRAME, 0)]
+        for row, run in enumerate((127, 85, 42, 8, 119, 64, 1, 100)):
+            codes = np.zeros(600, int)
+            codes[:8 + row] = 1
+            at = 8 + row + 8 + 16 + 32 + 64 + run
+            codes[[at, at + 1 + 32 + 64 + 127 - run]] = 127 - 255 * (row % 2), -128 + row
+            samples[row, layout.places_of(row), 0] = codes
+            messages += [ScanMsg(ROW, row), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes)]
         got = self.bench(header_of(threshold=1)).run([*messages, ScanMsg(END, 0)])
-        layout, samples = wide.layout(), np.zeros((1, 384, 1), int)
-        samples[0, layout.places_of(0), 0] = row
         assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
 
     def test_counts_of_all_bits(self):

@@ -13,7 +13,7 @@ from verif.coverage.ports import Recorded
 from verif.coverage.program import ProgramError, compile_program
 from verif.coverage.spi import transfers
 from verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
-from verif.coverage.verdict import judge, matches
+from verif.coverage.verdict import judge, matches, ranges
 from verif.replay.recorder import Recorder
 from rtl import testbench
 from rtl.tops import TOPS
@@ -69,27 +69,28 @@ def test_what_no_cycle_reaches_is_named(result):
     assert 0 < verdict.coverage["branch"] < 100 and 0 < verdict.coverage["toggle"] < 100
     assert any(re.match(r"branch rtl/edge_adc/edge_adc_rtl.py:\d+ EdgeAdc line \d+: if of 'if \( magnitude < ", text)
                for text in verdict.missing)
-    assert not any("toggle" in text and "go[0]" in text for text in verdict.missing)
+    assert any(re.match(r"toggle .*: threshold\[6:0\] 0->1", text) for text in verdict.missing)
+    assert not any(re.match(r"toggle .*: go\[", text) for text in verdict.missing)
 
 
 def test_exclusions(result):
     code = "if ( magnitude < { { 1 { 1'b0 } }, threshold } ) begin"
-    good = [Exclusion("toggle", "EdgeAdc.threshold", "tied"), Exclusion("branch", f"EdgeAdc: {code}", "dead", "if")]
+    good = [Exclusion("toggle", ("EdgeAdc.threshold",), "tied"),
+            Exclusion("branch", (f"EdgeAdc: {code}",), "dead", "if")]
     before, after = judge("EdgeAdc", plan(), [result]), judge("EdgeAdc", plan(*good), [result])
-    assert after.excluded == 15 and len(after.missing) == len(before.missing) - 15 and not after.errors
-    hit = judge("EdgeAdc", plan(Exclusion("toggle", "EdgeAdc.go", "wrong")), [result])
+    assert after.excluded == 15 and len(after.missing) == len(before.missing) - 3 and not after.errors
+    hit = judge("EdgeAdc", plan(Exclusion("toggle", ("EdgeAdc.go",), "wrong")), [result])
     assert any("is hit" in text for text in hit.errors)
-    nothing = judge("EdgeAdc", plan(Exclusion("line", "EdgeAdc: no such line", "wrong")), [result])
+    nothing = judge("EdgeAdc", plan(Exclusion("line", ("EdgeAdc: no such line",), "wrong")), [result])
     assert nothing.errors == ["exclude line 'EdgeAdc: no such line': there is no such point"]
 
 
 def test_bits_of_an_exclusion():
     bit = Point("toggle", "M", "row[9]:0->1", "", 0, 1, "")
-    assert matches(Exclusion("toggle", "M.row[9:7]", ""), bit) and matches(Exclusion("toggle", "M.row", ""), bit)
-    assert matches(Exclusion("toggle", "M.row[9]", "", "0->1"), bit)
-    assert not matches(Exclusion("toggle", "M.row[8:0]", ""), bit)
-    assert not matches(Exclusion("toggle", "M.row[9]", "", "1->0"), bit)
-    assert not matches(Exclusion("toggle", "N.row[9]", ""), bit)
+    for at, what, fits in (("M.row[9:7]", "", True), ("M.row", "", True), ("M.row[9]", "0->1", True),
+                           ("M.row[8:0]", "", False), ("M.row[9]", "1->0", False), ("N.row[9]", "", False)):
+        assert matches(Exclusion("toggle", (at,), "", what), at, bit) == fits, (at, what)
+    assert ranges([9, 3, 7, 8]) == "9:7,3"
 
 
 def test_a_transition_out_of_the_plan_is_an_error(result):

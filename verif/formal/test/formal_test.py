@@ -1,0 +1,115 @@
+"""The runner itself: what it proves, what it refuses, and that a weakened property cannot hide."""
+
+import dataclasses
+import json
+import re
+import shutil
+
+import pytest
+
+from models.parameters import ParameterError
+from verif.formal import __main__ as command
+from verif.formal import design, manifest
+from verif.formal.engine import FormalError, tool
+from verif.formal.prove import cover, prove, twin
+
+try:
+    for name in ("yosys", "yosys-smtbmc", "boolector"):
+        tool(name)
+except FormalError as missing:
+    pytest.skip(str(missing), allow_module_level=True)
+
+
+@pytest.fixture(scope="module")
+def queue():
+    """The proof of the byte queue: small, and every kind of job has something to do."""
+    return next(proof for proof in manifest.every() if proof.name == "byte_queue")
+
+
+def changed(proof, folder, find, replace):
+    """``proof`` with a wrapper in which ``find`` became ``replace``."""
+    text = proof.wrapper.read_text()
+    assert text.count(find) == 1
+    path = folder / proof.wrapper.name
+    path.write_text(text.replace(find, replace))
+    return dataclasses.replace(proof, wrapper=path, engines=("boolector",))
+
+
+def test_every_property_has_a_twin_that_finds_its_place():
+    for proof in manifest.every():
+        assert set(manifest.labels(proof.text)[0]) == set(proof.twins), proof.name
+        assert all(bug.find != bug.replace for bug in proof.twins.values()), proof.name
+
+
+def test_the_byte_queue_is_proven_and_its_twins_fail(queue, tmp_path):
+    assert command.main(["--proof", queue.name, "--out", str(tmp_path), "--workers", "1"]) == 0
+    proofs = json.loads((tmp_path / "formal.json").read_text())["RunLength"]["proofs"]
+    assert {proof["name"] for proof in proofs} == {f"byte_queue.{label}" for label in queue.twins}
+    assert all(proof["result"] == "proven" and proof["twin_fails"] and proof["depth"] == "unbounded"
+               for proof in proofs)
+
+
+def test_a_property_that_is_always_true_is_caught_through_its_twin(queue, tmp_path):
+    statement = re.search(r"p_order: assert \((.*)\);", queue.wrapper.read_text())[0]
+    weak = changed(queue, tmp_path, statement, "p_order: assert (1 || following);")
+    texts, wrapper = design.exported(weak), design.wrapper(weak)
+    proven = prove(weak, "boolector", texts, wrapper)
+    bad, around = design.broken(weak, texts, wrapper, "p_order")
+    caught = twin(weak, "p_order", bad, around)
+    assert proven["result"] == "proven" and not caught["fails"]
+    found = [(weak, {"boolector": proven}, {"missing": []}, {"p_order": caught})]
+    assert command.problems(found) == ["RunLength.byte_queue.p_order = passed with its bug in the design: must fail"]
+
+
+def test_a_wrong_property_is_not_proven(queue, tmp_path):
+    wrong = changed(queue, tmp_path, "assert (inside <= 2 &&", "assert (inside <= 1 &&")
+    result = prove(wrong, "boolector", design.exported(wrong), design.wrapper(wrong))
+    assert result["result"] == "failed" and result["failing"] == ["p_room"]
+
+
+def test_what_only_induction_refutes_is_unknown(queue, tmp_path):
+    """A step that fails is no counterexample, and no proof."""
+    loose = changed(queue, tmp_path, "\\dut.count == inside && inside <= 2", "inside <= 3")
+    result = prove(dataclasses.replace(loose, depth=1), "boolector", design.exported(loose), design.wrapper(loose))
+    assert result["result"] == "unknown"
+    found = [(loose, {"boolector": result}, {"missing": []}, {})]
+    assert "= unknown by boolector: must be proven" in command.problems(found)[0]
+
+
+def test_an_answer_that_does_not_come_in_time_is_unknown(queue):
+    late = dataclasses.replace(queue, timeout=0.01)
+    assert prove(late, "boolector", design.exported(late), design.wrapper(late))["result"] == "unknown"
+
+
+def test_assumptions_that_contradict_each_other_reach_no_cover_point(queue, tmp_path):
+    vacuous = changed(queue, tmp_path, "assume (!put || ready);", "assume (!put);")
+    found = cover(vacuous, design.exported(vacuous), design.wrapper(vacuous))
+    assert found["missing"] == ["c_full", "c_through"]
+
+
+def test_a_bug_without_its_place_and_a_property_without_a_twin_are_refused(queue, tmp_path):
+    texts, wrapper = design.exported(queue), design.wrapper(queue)
+    lost = dataclasses.replace(queue, twins={"p_order": manifest.Twin("no such text", "")})
+    with pytest.raises(ParameterError, match="p_order.find = 'no such text': must occur once, occurs 0 times"):
+        design.broken(lost, texts, wrapper, "p_order")
+    shutil.copy(queue.wrapper, tmp_path)
+    (tmp_path / "proofs.yaml").write_text(
+        "- {name: q, block: RunLength, wrapper: byte_queue.sv, top: ByteQueueProof, modules: {ByteQueue: RunLength},\n"
+        "   method: induction, depth: 3, why: x, twins: {p_order: {find: a, replace: b}}}\n")
+    with pytest.raises(ParameterError, match="q.twins = p_last, p_room, p_stable, p_val: every property must have a twin"):
+        manifest.read(tmp_path / "proofs.yaml")
+
+
+@pytest.mark.parametrize("text, message", [
+    ("assert (a);", "label = none"), ("cover (a);", "label = none"),
+    ("x: assert (a); x: cover (b);", "label = x: must occur once")])
+def test_labels_are_there_and_differ(text, message):
+    with pytest.raises(ParameterError, match=message):
+        manifest.labels(text)
+
+
+def test_a_block_without_proofs_and_an_unknown_one_are_refused(capsys):
+    assert command.main(["--proof", "nothing"]) == 2
+    assert capsys.readouterr().err == "verif.formal: proof = nothing: must be the name of a proof\n"
+    with pytest.raises(SystemExit):
+        command.main(["--only", "Nothing"])
