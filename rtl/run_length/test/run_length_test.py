@@ -187,8 +187,9 @@ class TestRunLengthFL:
         What a row begins with brings the runs' order to 0, and the token to its place.
         """
         begins = ((1, 1, 1), (1, 1, 4, 1, 1), (1, 1, 1, 1, 4), (1, 1, 1, 1), (1, 1, 1, 1, 9), (1, 1, 1, 2),
-                  (1, 1, 4, 1), (9, 1, 1, 1), (9, 1), (1, 9, 9), (9, 1, 1), (1, 1))
-        runs = 127, 85, 42, 8, 119, 64, 1, 100, 85, 42, 21, 3
+                  (1, 1, 4, 1), (9, 1, 1, 1), (9, 1), (1, 9, 9), (9, 1, 1), (1, 1), (1, 1, 4), (1, 9, 1), (1, 4, 9, 9),
+                  (1, 1, 4, 4))
+        runs = 127, 85, 42, 8, 119, 64, 1, 100, 85, 42, 21, 3, 127, 85, 42, 90
         rows = len(begins)
         wide = StreamHeader.from_frame(rows, 384, 1, FrameParameters(Window(0, rows // 4 - 1, 0, 63), threshold=1))
         layout, samples, messages = wide.layout(), np.zeros((rows, 384, 1), int), [ScanMsg(FRAME, 0)]
