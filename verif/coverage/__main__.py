@@ -68,7 +68,8 @@ def main(argv=None):
     write_step("coverage", {block: {"coverage": v.coverage, "excluded": v.excluded, "open_points": v.errors + v.missing}
                             for block, v in verdicts.items()}, options.out)
     for block, verdict in verdicts.items():
-        figures = ", ".join(f"{kind} {'-' if value is None else f'{value:g} %'}" for kind, value in verdict.coverage.items())
+        figures = ", ".join(f"{kind} {'-' if value is None else f'{value:g} %'}"
+                            for kind, value in verdict.coverage.items())
         print(f"{block}: {figures}; {verdict.excluded} points excluded")
         for text in verdict.errors + verdict.missing:
             print(f"  {text}")

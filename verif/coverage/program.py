@@ -122,8 +122,8 @@ def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=Fa
         source, public, model = folder / "dut.v", folder / "public.vlt", folder / "model"
         source.write_text(verilog)
         (folder / "ports.h").write_text(lines)
-        public.write_text("`verilator_config\n" + "".join(
-            f'public_flat_rd -module "*" -var "{name}"\n' for name in sorted({name.split(".")[-1] for machine in registers for name, _ in machine})))
+        names = sorted({name.split(".")[-1] for machine in registers for name, _ in machine})
+        public.write_text("`verilator_config\n" + "".join(f'public_flat_rd -module "*" -var "{n}"\n' for n in names))
         tool([verilator, *flags, "--top-module", top, "--Mdir", "model", "public.vlt", "dut.v"], cwd=folder)
         unit = folder / "unit.cpp"
         unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]))

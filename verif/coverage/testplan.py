@@ -112,7 +112,8 @@ def _keys(field, entry, allowed, needed):
         raise ParameterError(f"{field} = {entry!r}: must be a mapping of {', '.join(sorted(allowed))}")
     for key in entry:
         if key not in allowed:
-            raise ParameterError(f"{field}.{key} = {entry[key]!r}: unknown key, must be one of {', '.join(sorted(allowed))}")
+            raise ParameterError(
+                f"{field}.{key} = {entry[key]!r}: unknown key, must be one of {', '.join(sorted(allowed))}")
     for key in needed:
         if not entry.get(key):
             raise ParameterError(f"{field}.{key} = {entry.get(key)!r}: must be there and not empty")
@@ -159,7 +160,7 @@ def _machine(field, entry, blocks):
             raise ParameterError(f"{field}.transitions = {text!r}: must be 'state > state' of {', '.join(states)}")
         steps.append((start, end))
     registers = entry["registers"]
-    if not isinstance(registers, dict) or not all(isinstance(bits, int) and 1 <= bits <= 32 for bits in registers.values()):
+    if not isinstance(registers, dict) or not all(isinstance(n, int) and 1 <= n <= 32 for n in registers.values()):
         raise ParameterError(f"{field}.registers = {registers!r}: must map names to bits, 1..32")
     return Machine(tuple(registers.items()), states, tuple(steps), _blocks(field, entry, blocks))
 

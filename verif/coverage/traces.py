@@ -3,6 +3,8 @@
 import hashlib
 from pathlib import Path
 
+from models.parameters import SensorParameters
+from rtl.tops import build_top
 from verif.jobs import Job, run
 from verif.replay import load, record
 from verif.results import OUT, ROOT, sources
@@ -22,7 +24,10 @@ def digest():
 
 
 def recorded(blocks, store=STORE):
-    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths, the one of most cycles first."""
+    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths.
+
+    The first is that of the default sensor's parameters if the tests have them, else the one of most cycles.
+    """
     now, store = digest(), Path(store)
     jobs = [Job(block, _record, (block, str(store / f"{block}-{now}")), (now,)) for block in blocks]
     for job in jobs:
@@ -33,4 +38,10 @@ def recorded(blocks, store=STORE):
 
 
 def _record(block, folder):
-    return [str(path) for path in sorted(record(block, folder), key=lambda path: -load(path, cycles=False).cycles)]
+    top = build_top(block, SensorParameters())
+    default = repr((*top._dsl.args, *top._dsl.kwargs.values()))
+
+    def rank(path):
+        head = load(path, cycles=False)
+        return repr(head.arguments) != default, -head.cycles
+    return [str(path) for path in sorted(record(block, folder), key=rank)]

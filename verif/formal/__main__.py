@@ -15,7 +15,7 @@ from rtl.tops import TOPS
 from verif import jobs as regression
 
 from . import manifest
-from .engine import PROVEN, UNKNOWN, FormalError, version
+from .engine import PROVEN, UNKNOWN, FormalError, tool_or_none, version
 from .prove import jobs
 
 OUT = Path("build/verify")
@@ -23,7 +23,7 @@ OUT = Path("build/verify")
 
 def collect(proofs, store, workers=-1):
     """Run every job of ``proofs``: list of (Proof, dict engine -> result, cover result, dict label -> twin result)."""
-    planned = [(proof, jobs(proof)) for proof in proofs]
+    planned = [(proof, jobs(proof, present(proof))) for proof in proofs]
     every = [job for _, entries in planned for _, _, job in entries]
     results = iter(regression.run(every, store, "formal", workers))
     found = []
@@ -41,6 +41,11 @@ def collect(proofs, store, workers=-1):
                 twins[name] = result
         found.append((proof, engines, covers, twins))
     return found
+
+
+def present(proof):
+    """The engines of a proof that are here: its first, which must be, and others that are installed."""
+    return [proof.engines[0], *(engine for engine in proof.engines[1:] if tool_or_none(engine))]
 
 
 def entries(found):
@@ -125,6 +130,10 @@ def main(argv=None):
         with staged(options.out) as part:
             (part / "formal.json").write_text(json.dumps(summary(found), indent=1) + "\n")
         print(table(found))
+        for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
+            if not tool_or_none(engine):
+                print(f"verif.formal: {engine} = not found: second engine left out; make tools installs it",
+                      file=sys.stderr)
     except (ParameterError, FormalError, OSError) as error:
         print(f"verif.formal: {error}", file=sys.stderr)
         return 2

@@ -60,7 +60,7 @@ def script(designs, wrapper, top, only=None):
     designs: module -> file. only: the one assertion that stays.
     """
     lines = []
-    for module, file in designs.items():        # apart: two exported files may share the names of their parts
+    for module, file in designs.items():        # apart: files may share the names of their parts
         lines += [f"read_verilog -sv {file}", f"hierarchy -check -top {module}", "proc", "flatten",
                   f"design -stash {module}"]
     lines += [f"design -copy-from {module} -as {module} {module}" for module in designs]
@@ -70,8 +70,10 @@ def script(designs, wrapper, top, only=None):
         lines += ["async2sync", "chformal -lower"]
     asserts = "t:$assert"
     if only:
-        lines += [f"select -assert-count 1 {asserts} c:{only} %i", f"chformal -assert -remove {asserts} c:{only} %d"]
-    lines += ["setundef -undriven -anyseq", "opt -keepdc -nodffe -nosdff", "check -assert", "write_smt2 -wires proof.smt2"]
+        lines += [f"select -assert-count 1 {asserts} c:{only} %i",
+                  f"chformal -assert -remove {asserts} c:{only} %d"]
+    lines += ["setundef -undriven -anyseq", "opt -keepdc -nodffe -nosdff", "check -assert",
+              "write_smt2 -wires proof.smt2"]
     return "\n".join(lines) + "\n"
 
 

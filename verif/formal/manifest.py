@@ -56,7 +56,6 @@ class Proof:
     cover_depth: int = 20
     twin_depth: int = 20
     engines: tuple = ("boolector",)
-    twin_engine: str | None = None
     timeout: int = 300
     generated: tuple = ()
     sources: tuple = ()

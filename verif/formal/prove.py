@@ -27,10 +27,10 @@ def prove(proof, engine, texts, wrapper):
 
 def cover(proof, texts, wrapper):
     """Which cover points are reached within cover_depth: dict reached, missing, wall_s."""
-    engine = proof.twin_engine or proof.engines[0]
+    engine = proof.engines[0]
     with Workplace(texts, wrapper, proof.top) as place:
         _, output, wall = place.check(engine, ["-c", "-t", str(proof.cover_depth)], proof.timeout)
-    reached = set(re.findall(r"Reached cover statement at (\w+)", output))
+    reached = set(re.findall(r"Reached cover statement(?: in step \d+)? at (?:\S+: )?(\w+)", output))
     named = manifest.labels(proof.text)[2]
     return {"reached": [n for n in named if n in reached], "missing": [n for n in named if n not in reached],
             "wall_s": round(wall, 2)}
@@ -38,7 +38,7 @@ def cover(proof, texts, wrapper):
 
 def twin(proof, label, texts, wrapper):
     """Whether the broken design violates the one property: dict fails, wall_s, said."""
-    engine = proof.twin_engine or proof.engines[0]
+    engine = proof.engines[0]
     depth = proof.twins[label].depth or proof.twin_depth
     with Workplace(texts, wrapper, proof.top, only=label) as place:
         status, output, wall = place.check(engine, ["-t", str(depth)], proof.timeout)
@@ -47,12 +47,12 @@ def twin(proof, label, texts, wrapper):
             "step": int(steps[-1]) if steps else None}
 
 
-def jobs(proof):
-    """Every job of a proof: list of (kind, label or engine, Job). Raises ParameterError."""
+def jobs(proof, engines):
+    """Every job of a proof by ``engines``: list of (kind, label or engine, Job). Raises ParameterError, FormalError."""
     texts, wrapper = design.exported(proof), design.wrapper(proof)
     base = (*SOURCES, *sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout)
     found = []
-    for engine in proof.engines:
+    for engine in engines:
         found.append(("proof", engine, Job(f"{proof.name}.{engine}", prove, (proof, engine, texts, wrapper),
                                            (*base, proof.depth, version("yosys"), version(engine)))))
     found.append(("cover", "", Job(f"{proof.name}.cover", cover, (proof, texts, wrapper), (*base, proof.cover_depth))))

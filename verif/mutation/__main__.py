@@ -1,4 +1,4 @@
-"""`python -m verif.mutation`: mutants of every block's RTL, and what the tests make of them: build/verify/mutation.json.
+"""`python -m verif.mutation`: mutants of the RTL, and what the tests make of them: build/verify/mutation.json.
 
 A seeded sample by Yosys, spread over the modules of each block, is given the cycles that the block's tests were
 recorded with. A mutant that they do not notice is compared with the original by induction. What is left has survived:
@@ -21,14 +21,14 @@ from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 
 from .mutants import generate, with_mutants
-from .score import KILLED, SURVIVED, try_mutant
-from .equivalence import EQUIVALENT
+from .score import EQUIVALENT, KILLED, SURVIVED, judge, try_tests
 
 SEED = 1
 NUMBERS = {"AmpCtrl": 70, "ReadoutSeq": 100, "EdgeAdc": 50, "AdcBank": 50, "QuadDividerRadix2": 40,
            "QuadDividerRadix4": 40, "QuadDividerPipelined": 40, "Cordic": 50, "PhasePath": 60, "RunLength": 120,
            "RegFile": 70, "AspChip": 50}
-CODE = "verif/mutation", "verif/coverage", "verif/divider"
+FOLDERS = sorted({folder_of(block) for block in TOPS})
+JUDGES = "verif/mutation", "verif/divider", "verif/formal", *(f"rtl/{folder}/formal" for folder in FOLDERS)
 
 
 def plant(block, path, store, number, seed):
@@ -45,16 +45,23 @@ def plant(block, path, store, number, seed):
 
 
 def score(blocks, store, factor=1.0, seed=SEED):
-    """By block: (list of Mutant, list of what `try_mutant` says of each)."""
+    """By block: (list of Mutant, list of what `try_tests` or `judge` says of each)."""
     traces = recorded(blocks, store.parent / "traces")
-    jobs, made, code = [], {}, digest_of(*CODE)
+    tests, judges, made = [], [], {}
+    replayed, judged = digest_of("verif/coverage"), digest_of(*JUDGES)
     for block in blocks:
         path = traces[block][0]
         folder, made[block] = plant(block, path, store, max(4, round(factor * NUMBERS[block])), seed)
         for mutant in made[block]:
-            jobs.append(Job(f"{block}-{mutant.number}", try_mutant, (str(path), str(folder), mutant.number, ""),
-                            (path.with_suffix(".trace"), folder / "mutants.v", code)))
-    results = iter(run(jobs, store / "results", "mutants"))
+            name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant.number)
+            text = folder / "mutants.v"
+            tests.append(Job(name, try_tests, arguments, (path.with_suffix(".trace"), text, replayed)))
+            judges.append(Job(name, judge, arguments, (text, judged)))      # whatever the tests are
+    results = run(tests, store / "tests", "mutants against the tests")
+    left = [i for i, result in enumerate(results) if result["result"] == SURVIVED]
+    for i, result in zip(left, run([judges[i] for i in left], store / "judged", "what is left"), strict=True):
+        results[i] = result
+    results = iter(results)
     return {block: (mutants, [next(results) for _ in mutants]) for block, mutants in made.items()}
 
 
@@ -89,10 +96,11 @@ def main(argv=None):
     found = {block: summary(*both) for block, both in scores.items()}
     write_step("mutation", found, options.out)
     for block, entry in found.items():
-        print(f"{block}: {json.dumps(entry['mutants'])}")
+        print(f"{block}: {json.dumps(entry['mutants'])}", flush=True)
         for text in entry["open_points"]:
             print(f"  {text}")
-    whole = {name: sum(entry["mutants"][name] for entry in found.values()) for name in ("made", EQUIVALENT, KILLED, SURVIVED)}
+    whole = {name: sum(entry["mutants"][name] for entry in found.values())
+             for name in ("made", EQUIVALENT, KILLED, SURVIVED)}
     print(f"all, seed {options.seed}: {json.dumps(whole)}")
     return int(whole[SURVIVED] > 0)
 

@@ -1,4 +1,4 @@
-"""One mutant against the tests: their recorded cycles, all inputs of a divider, the equivalence check, the proofs."""
+"""One mutant: against the tests' recorded cycles; then all inputs of a divider, the equivalence check, the proofs."""
 
 import re
 from pathlib import Path
@@ -20,25 +20,32 @@ VARIANTS = {"QuadDividerRadix2": "radix2", "QuadDividerRadix4": "radix4", "QuadD
             "Cordic": "cordic"}
 
 
-def try_mutant(path, folder, number, assumed):
-    """What becomes of mutant ``number``: dict result ('killed', 'equivalent', 'survived'), by, cycle, difference.
+def try_tests(path, folder, number):
+    """What the recorded tests make of mutant ``number``: dict result ('killed' or 'survived'), by, cycle.
 
-    path: of the trace whose component is mutated. folder: with mutants.v, all mutants of it. assumed: see
-    equivalence.miter. by: the test that notices. difference: of a survivor, cycles to the difference that is known
-    to exist, or 'unknown'.
+    path: of the trace whose component is mutated. folder: with mutants.v, all mutants of it. by: the test that notices.
     """
     head, verilog = load(path, cycles=False), (Path(folder) / "mutants.v").read_text()
     program = compile_program(verilog, head.cls, head.ports, mutant=True)
     cycle = program.run(Path(path).with_suffix(".trace"), "--mutants", str(number), str(number))[number]
     if cycle >= 0:
         return {"result": KILLED, "by": head.test_at(cycle), "cycle": cycle}
+    return {"result": SURVIVED}
+
+
+def judge(path, folder, number):
+    """What a mutant is that the recorded tests do not notice: dict result ('killed', 'equivalent', 'survived'), by.
+
+    difference: of a survivor, cycles to the difference that is known to exist, or 'unknown'.
+    """
+    head, verilog = load(path, cycles=False), (Path(folder) / "mutants.v").read_text()
     if head.cls in VARIANTS and not divides_right(verilog, head, number):
-        return {"result": KILLED, "by": "verif/divider/test/exhaustive_test.py", "cycle": -1}
-    verdict, cycles = compare(verilog, head.cls, head.ports, number, assumed)
+        return {"result": KILLED, "by": "verif/divider/test/exhaustive_test.py"}
+    verdict, cycles = compare(verilog, head.cls, head.ports, number)
     if verdict == EQUIVALENT:
         return {"result": EQUIVALENT}
     if proof := broken_proof(verilog, head, number):
-        return {"result": KILLED, "by": f"proof {proof}", "cycle": -1}
+        return {"result": KILLED, "by": f"proof {proof}"}
     return {"result": SURVIVED, "difference": cycles if verdict == DIFFERENT else verdict}
 
 

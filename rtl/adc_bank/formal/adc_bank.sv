@@ -1,6 +1,6 @@
 // AdcBank with two lanes: every step's messages leave in order, each once, with the codes of what its lanes sampled,
-// whatever `rdy` and the values are. A lane is followed as in rtl/edge_adc/formal/lane.sv; a step that waits is kept in a
-// queue of two, with the lanes whose results have not left.
+// whatever `rdy` and the values are. A lane is followed as in rtl/edge_adc/formal/lane.sv; a step that waits is kept
+// in a queue of two, with the lanes whose results have not left.
 
 module AdcBankProof (
   input clk, input reset, input [26:0] step__msg, input step__val, input scan__rdy, input [1:0] mode,
@@ -37,12 +37,15 @@ module AdcBankProof (
   wire [1:0] due0, due1;
   wire [8:0] result0, result1;    // converted, code
   wire holds0, holds1;
-  Lane lane0 (.clk(clk), .reset(reset), .go(hold && en[0]), .unsigned_(mode != 0), .threshold(threshold), .value(value0),
+  Lane lane0 (.clk(clk), .reset(reset), .go(hold
+          && en[0]), .unsigned_(mode != 0), .threshold(threshold), .value(value0),
               .dac(dac[7:0]), .val(full0), .rdy(taken[0]), .code(\dut.lane0.code ), .converted(\dut.lane0.search_made ),
               .state(state0), .comparator(comparator[0]), .due(due0), .due_code(result0[7:0]),
               .due_converted(result0[8]), .holds(holds0));
-  Lane lane1 (.clk(clk), .reset(reset), .go(hold && en[1]), .unsigned_(mode != 0), .threshold(threshold), .value(value1),
-              .dac(dac[15:8]), .val(full1), .rdy(taken[1]), .code(\dut.lane1.code ), .converted(\dut.lane1.search_made ),
+  Lane lane1 (.clk(clk), .reset(reset), .go(hold
+          && en[1]), .unsigned_(mode != 0), .threshold(threshold), .value(value1),
+              .dac(dac[15:8]), .val(full1), .rdy(taken[1]), .code(\dut.lane1.code ),
+                      .converted(\dut.lane1.search_made ),
               .state(state1), .comparator(comparator[1]), .due(due1), .due_code(result1[7:0]),
               .due_converted(result1[8]), .holds(holds1));
 
@@ -116,7 +119,8 @@ module AdcBankProof (
                                      : is_sample && front_lanes == remaining));
       inv_waiting: assert (!waits || waiting[13:12] == pins_kind && waiting[11:2] == row
                            && (pins_kind != SAMPLE || waiting[1:0] == en));
-      inv_hold: assert (!hold || at_pins && pins_kind == SAMPLE && !(state0 != 0 && !(state0 == SEARCH && dac[0] && !full0))
+      inv_hold: assert (!hold || at_pins && pins_kind == SAMPLE && !(state0 != 0 && !(state0 == SEARCH && dac[0]
+              && !full0))
                                  && !(state1 != 0 && !(state1 == SEARCH && dac[8] && !full1)));
       inv_quiet: assert (quiet == 0 || !(idle && !scan__val && inside != 0) || drains || quiet < 1);
     end

@@ -67,8 +67,8 @@ class ChipTests:
         options, loop = CHIP["loop_enable"], CHIP["loop_back"].byte
         bench.write([(options.byte, 1 << options.shift)])
         bench.sync.clear()
-        bench.spi.transfer(bytes((0x80 | loop, *b"Talbot")))
-        assert bytes(bench.stream) == b"Talbot" and not any(bench.sync)
+        bench.spi.transfer(bytes((0x80 | loop, *b"Talbot\xff\0")))
+        assert bytes(bench.stream) == b"Talbot\xff\0" and not any(bench.sync)
 
 
 class FrameTests(ChipTests):

@@ -1,7 +1,8 @@
 // What a lane must send, kept beside it: the ideal comparator's answer to its DAC, and the codes that are due.
 //
-// `value` is what stands at the lane's input: the sample-and-hold takes it with `go`. It is an integer in LSB beyond the
-// range of both codes, so that clipping is met, and its comparator is the one of docs/chip.md: high when value >= level(dac).
+// `value` is what stands at the lane's input: the sample-and-hold takes it with `go`. It is an integer in LSB beyond
+// the range of both codes, so that clipping is met, and its comparator is the one of docs/chip.md: high when value >=
+// level(dac).
 
 module Lane (
   input clk, input reset, input go, input unsigned_, input [6:0] threshold, input signed [9:0] value, input [7:0] dac,

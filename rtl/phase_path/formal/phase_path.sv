@@ -1,5 +1,5 @@
-// PhasePath with two lanes and the radix-4 divider: off, messages pass in order; on, the four taps of every sample become
-// one request, and its response two messages, in order. That the response is right is the divider's proof.
+// PhasePath with two lanes and the radix-4 divider: off, messages pass in order; on, the four taps of every sample
+// become one request, and its response two messages, in order. That the response is right is the divider's proof.
 //
 // `lane`, any lane, is followed through the store.
 
@@ -97,7 +97,8 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
       if (kind == SAMPLE) assume (tap == 0 ? index < 1 || last : last == (index == samples));
     end
     if (!first && !was_reset) begin
-      p_request: assert (!asks || here && tapped && msg_tap == 3 && (msg_index != lane || \dut.divider.recv__msg == {x, y}));
+      p_request: assert (!asks || here && tapped && msg_tap == 3 && (msg_index != lane
+              || \dut.divider.recv__msg == {x, y}));
       p_answer: assert (!(send__val && asked) || send__msg == answer);
       p_pass: assert (!(send__val && !asked) || passes && send__msg == passed);
       p_room: assert (!recv__rdy || !here || goes);

@@ -1,5 +1,6 @@
-// CORDIC: every request gets one response, its own, and it is the golden model's (models/digital/cordic.py), which turns
-// here beside it in the README's formats with the model's table of angles. `request` and `floor` are any request, fixed.
+// CORDIC: every request gets one response, its own, and it is the golden model's (models/digital/cordic.py), which
+// turns here beside it in the README's formats with the model's table of angles. `request` and `floor` are any
+// request, fixed.
 
 module CordicProof (
   input clk, input reset, input [17:0] recv__msg, input recv__val, input send__rdy, input [7:0] noise_floor

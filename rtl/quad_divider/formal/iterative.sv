@@ -1,7 +1,7 @@
 // An iterative divider (`DUT, `DIGITS digits): every request gets one response, its own, and it is the specified one.
 //
-// `request` and `floor` are any request, fixed: what is shown for it is shown for all. The invariant behind it is that the
-// state is that of the long division of its operands after as many bits.
+// `request` and `floor` are any request, fixed: what is shown for it is shown for all. The invariant behind it is that
+// the state is that of the long division of its operands after as many bits.
 
 module IterativeProof (
   input clk, input reset, input [17:0] recv__msg, input recv__val, input send__rdy, input [7:0] noise_floor

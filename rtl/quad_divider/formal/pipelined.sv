@@ -1,5 +1,6 @@
-// The pipelined divider: requests move from stage to stage only together, so responses leave in their order; each is the
-// specified one. `request` and `floor` are any request, fixed; `mine` marks the stage that holds one of them, `watch`ed at random.
+// The pipelined divider: requests move from stage to stage only together, so responses leave in their order; each is
+// the specified one. `request` and `floor` are any request, fixed; `mine` marks the stage that holds one of them,
+// `watch`ed at random.
 
 module PipelinedProof (
   input clk, input reset, input [17:0] recv__msg, input recv__val, input send__rdy, input [7:0] noise_floor,

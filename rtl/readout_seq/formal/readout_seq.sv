@@ -1,9 +1,9 @@
-// ReadoutSeq hands on exactly the steps of docs/chip.md (Scan order), each once and in that order, for every window, mask,
-// decimation, mode and overlap, and whatever the amplifiers, the bank and `rdy` do.
+// ReadoutSeq hands on exactly the steps of docs/chip.md (Scan order), each once and in that order, for every window,
+// mask, decimation, mode and overlap, and whatever the amplifiers, the bank and `rdy` do.
 //
 // Order: the steps of a frame ascend strictly in (row, k, group, sub), and each is one that the document wants.
-// Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is wanted, it has been sent when END
-// is offered. The document's words stand in `column_ok`, `row_ok` and `lanes_of`, and nowhere else.
+// Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is wanted, it has been sent when
+// END is offered. The document's words stand in `column_ok`, `row_ok` and `lanes_of`, and nowhere else.
 
 module ReadoutSeqProof (
   input clk, input reset, input start, input amp_done, input amp_err, input bank_idle, input step__rdy,
@@ -141,11 +141,13 @@ module ReadoutSeqProof (
       inv_wait: assert (state != WAIT || \dut.failing || integrating || !hold_free);
       inv_early: assert (!(state == CHECK && amp_start) || hold_free);
       inv_overlap: assert (!(busy && !overlap && integrating) || hold_free);
-      inv_row: assert (!rows_sent || !busy || (state == WAIT || state == 5 ? last[22:13] <= current : last[22:13] == current)
+      inv_row: assert (!rows_sent || !busy || (state == WAIT || state == 5 ? last[22:13] <= current
+              : last[22:13] == current)
                        && (!hold_free || last[22:13] == current));
       inv_row_next: assert (!(state == 5 && rows_sent) || last[22:13] < current);
       inv_row_wait: assert (!(state == WAIT && rows_sent && !hold_free) || last[22:13] < current);
-      inv_sampled: assert (!busy || sampled == (rows_sent && (state == WAIT || state == DRAIN || state == 7 || state == 5
+      inv_sampled: assert (!busy || sampled == (rows_sent && (state == WAIT || state == DRAIN || state == 7
+              || state == 5
                                                 || state == 6 && last[12:0] != 0) ) || state == 6);
       // Where the steps are in their row
       inv_column: assert (!walking || column_ok(current[1:0], k) && left == (columns & ~((6'd2 << k) - 6'd1)));
@@ -154,7 +156,8 @@ module ReadoutSeqProof (
                          && ((group - (col0 >> `SHIFT)) & group_mask) == 0);
       inv_sub: assert (!walking || sub <= subs);
       inv_lanes: assert (!walking || en != 0 && en == lanes_of(group, k));
-      inv_first_step: assert (!loaded || (columns & ((6'd1 << k) - 6'd1)) == 0 && group == (col0 >> `SHIFT) && sub == 0);
+      inv_first_step: assert (!loaded || (columns & ((6'd1 << k) - 6'd1)) == 0 && group == (col0 >> `SHIFT)
+              && sub == 0);
       inv_last: assert (state != 6 || !sampled || last < here);
       // What has been sent, of the fixed step
       inv_seen: assert (!(busy && wanted) || seen == (state == 6 ? there < here

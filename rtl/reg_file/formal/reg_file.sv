@@ -1,8 +1,8 @@
 // RegFile from its pins: what SPI transfers write, they write, and nothing else ever changes.
 //
-// `bit_of` is any bit of the configuration, fixed; `bit_address`, `bit_place`, `bit_writable` and `bit_reset` come from the
-// register map (verif/formal/tables.py). Bytes are put together here anew from the pins, two flip-flops late, as the
-// README says of the oversampled SPI; whatever the pins do, so also transfers that are cut short.
+// `bit_of` is any bit of the configuration, fixed; `bit_address`, `bit_place`, `bit_writable` and `bit_reset` come
+// from the register map (verif/formal/tables.py). Bytes are put together here anew from the pins, two flip-flops late,
+// as the README says of the oversampled SPI; whatever the pins do, so also transfers that are cut short.
 
 module RegFileProof (
   input clk, input reset, input sclk, input csn, input mosi, input [3:0] status, input loop__rdy,
@@ -105,7 +105,8 @@ module RegFileProof (
       p_read_status: assert (!(was_fetch && was_address == `STATUS) || fetched == {3'b0, was_sticky, was_busy});
       p_read_counter: assert (!(was_fetch && was_address == `CYCLES + 3) || fetched == was_snapshot[31:24]);
       p_snapshot: assert (!(was_fetch && was_address == `CYCLES) || \dut.snapshot == was_cycles);
-      p_keeps: assert (was_fetch && (was_address == `CYCLES || was_address == `CYCLES + 8 || was_address == `CYCLES + 16)
+      p_keeps: assert (was_fetch && (was_address == `CYCLES || was_address == `CYCLES + 8
+              || was_address == `CYCLES + 16)
                        || \dut.snapshot == was_snapshot);
     end
     if (!first) begin

@@ -1,9 +1,9 @@
 // PayloadPacker, for rows of any length and any pattern of `rdy`.
 //
-// Tokens: the model decoder beside the packer reads each token as it is made, with any bits behind it (`tail`), and finds the
-// samples that went in since the token before, and the token's length. Bytes: any bit of any token, chosen by `watch` and
-// `which`, leaves at its place, and every byte is full but for zeros at the end of the row. Together: a row's bytes, decoded,
-// are its samples.
+// Tokens: the model decoder beside the packer reads each token as it is made, with any bits behind it (`tail`), and
+// finds the samples that went in since the token before, and the token's length. Bytes: any bit of any token, chosen
+// by `watch` and `which`, leaves at its place, and every byte is full but for zeros at the end of the row. Together: a
+// row's bytes, decoded, are its samples.
 
 module PayloadProof (
   input clk, input reset, input restart, input push, input flush, input coded, input [6:0] threshold, input [7:0] code,
@@ -81,8 +81,10 @@ module PayloadProof (
 
   always @* begin
     if (first) assume (reset);
-    // RunLengthCtrl: one thing at a time, samples and ends of rows only while there is room, a row begins when all has left
-    assume (push + flush + restart <= 1 && (ready || !push && !flush) && (inside == 0 || !restart) && !(ended && (push || flush)));
+    // RunLengthCtrl: one thing at a time, samples and ends of rows only while there is room, a row begins when all has
+    // left
+    assume (push + flush + restart <= 1 && (ready || !push && !flush) && (inside == 0 || !restart) && !(ended
+            && (push || flush)));
     if (!first && !was_reset) assume (coded == was_coded && threshold == was_threshold || ended || fresh);
     if (!first && !was_reset) begin
       p_length: assert (!makes || decoded_length == length && valid);

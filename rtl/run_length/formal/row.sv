@@ -1,8 +1,8 @@
-// RunLength and the model decoder: a frame of one short row comes back as it went in, for all codes, thresholds and row
-// indices. The samples are `SAMPLES; the decoder keeps the bytes behind the header and takes a token a cycle.
+// RunLength and the model decoder: a frame of one short row comes back as it went in, for all codes, thresholds and
+// row indices. The samples are `SAMPLES; the decoder keeps the bytes behind the header and takes a token a cycle.
 //
-// The messages come and the bytes leave without waiting: what waiting does is the part of the unbounded proofs (payload,
-// byte_queue, stream).
+// The messages come and the bytes leave without waiting: what waiting does is the part of the unbounded proofs
+// (payload, byte_queue, stream).
 
 module RowProof (input clk, input reset, input [7:0] codes_in);
   (* anyconst *) wire [8 * `SAMPLES - 1:0] codes;

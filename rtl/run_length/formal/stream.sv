@@ -1,6 +1,6 @@
-// RunLength puts the bytes of docs/stream.md into its queue, frame after frame of any length, whatever waits: header, each
-// row's payload as the packer gives it and its mark, trailer. The packer's part is `payload`, the queue's `byte_queue`; what
-// these assume of the control is asserted here (p_packer, p_queue).
+// RunLength puts the bytes of docs/stream.md into its queue, frame after frame of any length, whatever waits: header,
+// each row's payload as the packer gives it and its mark, trailer. The packer's part is `payload`, the queue's
+// `byte_queue`; what these assume of the control is asserted here (p_packer, p_queue).
 
 module StreamProof (
   input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
@@ -67,7 +67,8 @@ module StreamProof (
   wire taken = recv__val && recv__rdy;
   wire [1:0] kind = recv__msg[11:10];
   wire in_rows = taken && part == ROWS;
-  wire [175:0] header = {"TLBT", 8'd1, 2'b0, decimation, 1'b0, phase, mode, 1'b0, threshold, 8'd`LANES, 8'h46, 16'd`ROWS,
+  wire [175:0] header = {"TLBT", 8'd1, 2'b0, decimation, 1'b0, phase, mode, 1'b0, threshold, 8'd`LANES, 8'h46,
+          16'd`ROWS,
                          16'd`COLS, row0, row1, col0, col1, mask, frame_number};
   wire [31:0] long_value = ~long_crc;
   wire [207:0] header_bytes = {header, long_value};
@@ -142,7 +143,8 @@ module StreamProof (
     if (!first && !was_reset) begin
       p_octet: assert (!put || (part == HEADER || part == TRAILER || part == MARK || payload) && octet == wanted);
       p_whole: assert (!(put && part == MARK && !payload) || \dut.packer.count == 0);
-      p_push: assert (push == (in_rows && open && kind == SAMPLE) && flush == (in_rows && open && (kind == ROW || kind == END)));
+      p_push: assert (push == (in_rows && open && kind == SAMPLE) && flush == (in_rows && open && (kind == ROW
+              || kind == END)));
       p_code: assert (\dut.packer.code == recv__msg[7:0] && \dut.packer.threshold == threshold
                       && \dut.packer.coded == (mode == 0));
       p_packer: assert (push + flush + restart <= 1 && (\dut.packer.ready || !push && !flush)
@@ -155,7 +157,8 @@ module StreamProof (
       p_stable: assert (!was_val || was_rdy || send__val && send__msg == was_msg);
     end
     if (!first) begin
-      inv_part: assert (\dut.control.state == part && part <= DRAIN && \dut.control.index == n && \dut.control.open == open);
+      inv_part: assert (\dut.control.state == part && part <= DRAIN && \dut.control.index == n
+              && \dut.control.open == open);
       inv_index: assert (part == HEADER ? n < 26 : part == MARK ? n < 2 : part == TRAILER ? n < 14 : n == 0);
       inv_ending: assert (part != MARK && part != TRAILER || \dut.control.ending == ending && ending == !open);
       inv_rows: assert (part != HEADER && part != ROWS || !\dut.control.ending && !ending);
@@ -170,7 +173,8 @@ module StreamProof (
       inv_marked: assert (!(part == MARK && n == 1) || \dut.packer.count == 0);
       inv_fresh: assert (fresh || part != IDLE && part != HEADER && part != TRAILER && part != DRAIN);
       inv_ended: assert (ended == (part == MARK));
-      inv_queue: assert (\dut.queue.count <= 2 && (part != IDLE && !(part == HEADER && n == 0) || \dut.queue.count == 0));
+      inv_queue: assert (\dut.queue.count <= 2 && (part != IDLE && !(part == HEADER && n == 0)
+              || \dut.queue.count == 0));
       inv_sync: assert (frame_sync == !(part == IDLE || part == HEADER && n == 0));
     end
   end

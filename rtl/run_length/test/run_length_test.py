@@ -182,14 +182,21 @@ class TestRunLengthFL:
         assert got[26:-14] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
 
     def test_the_longest_tokens(self):
-        """The order of the values' code falls, the runs' one rises to its end, then the largest values come."""
-        wide = StreamHeader.from_frame(8, 600, 1, FrameParameters(Window(0, 1, 0, 99), threshold=1))
-        layout, samples, messages = wide.layout(), np.zeros((8, 600, 1), int), [ScanMsg(FRAME, 0)]
-        for row, run in enumerate((127, 85, 42, 8, 119, 64, 1, 100)):
-            codes = np.zeros(600, int)
-            codes[:8 + row] = 1
-            at = 8 + row + 8 + 16 + 32 + 64 + run
-            codes[[at, at + 1 + 32 + 64 + 127 - run]] = 127 - 255 * (row % 2), -128 + row
+        """The runs' order rises to its end, then the largest value comes: a token of 22 to 24 bits at every place.
+
+        What a row begins with brings the runs' order to 0, and the token to its place.
+        """
+        begins = ((1, 1, 1), (1, 1, 4, 1, 1), (1, 1, 1, 1, 4), (1, 1, 1, 1), (1, 1, 1, 1, 9), (1, 1, 1, 2),
+                  (1, 1, 4, 1), (9, 1, 1, 1), (9, 1), (1, 9, 9), (9, 1, 1), (1, 1), (1, 1, 4), (1, 9, 1), (1, 4, 9, 9),
+                  (1, 1, 4, 4))
+        runs = 127, 85, 42, 8, 119, 64, 1, 100, 85, 42, 21, 3, 127, 85, 42, 90
+        rows = len(begins)
+        wide = StreamHeader.from_frame(rows, 384, 1, FrameParameters(Window(0, rows // 4 - 1, 0, 63), threshold=1))
+        layout, samples, messages = wide.layout(), np.zeros((rows, 384, 1), int), [ScanMsg(FRAME, 0)]
+        for row, (begin, run) in enumerate(zip(begins, runs)):
+            codes = np.zeros(384, int)
+            codes[:len(begin)] = begin
+            codes[len(begin) + 127 + run] = -128
             samples[row, layout.places_of(row), 0] = codes
             messages += [ScanMsg(ROW, row), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes)]
         got = self.bench(header_of(threshold=1)).run([*messages, ScanMsg(END, 0)])

@@ -63,7 +63,7 @@ def test_a_property_that_is_always_true_is_caught_through_its_twin(queue, tmp_pa
 
 def test_a_wrong_property_is_not_proven(queue, tmp_path):
     wrong = changed(queue, tmp_path, "assert (inside <= 2 &&", "assert (inside <= 1 &&")
-    result = prove(wrong, "boolector", design.exported(wrong), design.wrapper(wrong))
+    result = prove(dataclasses.replace(wrong, depth=8), "boolector", design.exported(wrong), design.wrapper(wrong))
     assert result["result"] == "failed" and result["failing"] == ["p_room"]
 
 
@@ -96,7 +96,7 @@ def test_a_bug_without_its_place_and_a_property_without_a_twin_are_refused(queue
     (tmp_path / "proofs.yaml").write_text(
         "- {name: q, block: RunLength, wrapper: byte_queue.sv, top: ByteQueueProof, modules: {ByteQueue: RunLength},\n"
         "   method: induction, depth: 3, why: x, twins: {p_order: {find: a, replace: b}}}\n")
-    with pytest.raises(ParameterError, match="q.twins = p_last, p_room, p_stable, p_val: every property must have a twin"):
+    with pytest.raises(ParameterError, match="q.twins = p_last, p_room, p_stable, p_val: every property must"):
         manifest.read(tmp_path / "proofs.yaml")
 
 

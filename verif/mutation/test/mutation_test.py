@@ -1,18 +1,20 @@
-"""Mutants differ from the original where they say; the equivalence check says 'equivalent' of what is, and only then."""
+"""Mutants differ from the original; the equivalence check says 'equivalent' of what is, and only of that."""
 
+import shutil
 import subprocess
 
 import pytest
 
+from rtl.asp_chip.balance_rtl import Balance
 from verif.coverage.program import compile_program
-from verif.coverage.test.coverage_test import recorded_cycles
+from verif.coverage.test.coverage_test import recorded, recorded_cycles
+from verif.mutation.__main__ import main, summary
 from verif.mutation.equivalence import DIFFERENT, EQUIVALENT, compare
 from verif.mutation.mutants import Mutant, generate, shares, with_mutants
-from verif.mutation.score import KILLED, SURVIVED, one_mutant, try_mutant
-from verif.mutation.__main__ import main, summary
-import shutil
+from verif.mutation.score import KILLED, SURVIVED, judge, one_mutant, try_tests
 
-pytestmark = pytest.mark.skipif(not (shutil.which("yosys") and shutil.which("yosys-abc")), reason="needs Yosys: make tools")
+pytestmark = pytest.mark.skipif(not (shutil.which("yosys") and shutil.which("yosys-abc")),
+                                reason="needs Yosys: make tools")
 
 # A counter whose upper bit is never looked at, and a register that no output shows
 SMALL = """
@@ -75,19 +77,35 @@ def simulated(program, number, pattern=(0, 1, 1, 1, 0, 1, 1, 0, 1, 1)):
     return found
 
 
-def test_what_becomes_of_a_mutant(tmp_path):
-    """With few tests some are killed by name and some survive; a mutant of nothing is equivalent."""
-    trace = recorded_cycles()
-    path, verilog = trace.save(tmp_path), trace.verilog()
-    mutants = generate(verilog, "EdgeAdc", "edge_adc", 8, 1)
-    (tmp_path / "mutants.v").write_text(with_mutants(verilog, "EdgeAdc", mutants))
-    results = [try_mutant(str(path), str(tmp_path), m.number, "") for m in mutants]
+def planted(trace, folder, of, number):
+    """(path of the trace, folder of the mutants, list of Mutant)."""
+    path, verilog = trace.save(folder), trace.verilog()
+    mutants = generate(verilog, trace.cls, of, number, 1)
+    (folder / "mutants.v").write_text(with_mutants(verilog, trace.cls, mutants))
+    return str(path), str(folder), mutants
+
+
+def test_what_tests_do_not_notice_survives(tmp_path):
+    """A block without proofs, and one recorded cycle."""
+    trace = recorded("Balance", Balance((1, 0, 3, 2), 2, 2, 2, 4), [{"row": 1, "k": 1, "trims": 0x2110}])
+    path, folder, mutants = planted(trace, tmp_path, "asp_chip", 8)
+    results = [try_tests(path, folder, m.number) for m in mutants]
     assert {KILLED, SURVIVED} <= {r["result"] for r in results}
-    assert try_mutant(str(path), str(tmp_path), 0, "")["result"] == EQUIVALENT
+    results = [judge(path, folder, m.number) if r["result"] == SURVIVED else r for m, r in zip(mutants, results)]
+    assert {KILLED, SURVIVED} <= {r["result"] for r in results}
+    assert all(r["difference"] > 0 for r in results if r["result"] == SURVIVED)
+    assert judge(path, folder, 0)["result"] == EQUIVALENT
     entry = summary(mutants, results)
-    assert sum(entry["mutants"][k] for k in ("killed", "equivalent", "survived")) == entry["mutants"]["made"] == len(mutants)
+    count = entry["mutants"]
+    assert count["killed"] + count["equivalent"] + count["survived"] == count["made"] == len(mutants)
     assert len(entry["open_points"]) == entry["mutants"]["survived"]
-    assert all("rtl/edge_adc/edge_adc_rtl.py" in text for text in entry["open_points"])
+    assert all("rtl/asp_chip/balance_rtl.py" in text for text in entry["open_points"])
+
+
+def test_what_a_proof_notices_is_killed(tmp_path):
+    path, folder, mutants = planted(recorded_cycles(), tmp_path, "edge_adc", 4)
+    left = [m for m in mutants if try_tests(path, folder, m.number)["result"] == SURVIVED]
+    assert any(judge(path, folder, m.number).get("by", "").startswith("proof ") for m in left[:2])
 
 
 def test_one_mutant_alone(small, tmp_path):
