@@ -10,12 +10,12 @@ import json
 import sys
 from pathlib import Path
 
+from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 from verif.coverage.program import ProgramError, compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
-from verif.divider.simulator import SimulatorError
 from verif.jobs import Job, run
 from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
@@ -90,7 +90,7 @@ def main(argv=None):
         if not 0 < options.factor <= 100:
             raise ParameterError(f"factor = {options.factor}: must be in 0..100")
         scores = score(options.only or list(TOPS), options.out / "mutation", options.factor, options.seed)
-    except (ParameterError, ProgramError, SimulatorError, RecordError, OSError) as error:
+    except (ParameterError, ProgramError, ToolError, RecordError, OSError) as error:
         print(f"verif.mutation: {error}", file=sys.stderr)
         return 2
     found = {block: summary(*both) for block, both in scores.items()}
