@@ -1,6 +1,7 @@
 """Folders that are expensive to make, kept by name: whole, or not there."""
 
 import hashlib
+import os
 import shutil
 import tempfile
 from pathlib import Path
@@ -21,7 +22,7 @@ def cached(folder, make):
     if folder.exists():
         return folder
     folder.parent.mkdir(parents=True, exist_ok=True)
-    part = Path(tempfile.mkdtemp(prefix=".part-", dir=folder.parent))
+    part = Path(tempfile.mkdtemp(prefix=f".part-{os.getpid()}-", dir=folder.parent))     # whose it is, should it stay
     try:
         make(part)
         try:
