@@ -6,9 +6,9 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
+from flow.jobs import Job, run
 from models.parameters import ParameterError
 from rtl.icarus import MISSING, installed
-from verif.jobs import Job, run
 from verif.results import OUT, digest_of, write_step
 
 from .exposure import FRAMES

@@ -7,9 +7,9 @@ import argparse
 import sys
 from pathlib import Path
 
+from flow.jobs import Job, run
 from models.parameters import ParameterError
 from rtl.tops import TOPS
-from verif.jobs import Job, run
 from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 

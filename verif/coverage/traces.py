@@ -3,9 +3,9 @@
 import hashlib
 from pathlib import Path
 
+from flow.jobs import Job, run
 from models.parameters import SensorParameters
 from rtl.tops import build_top
-from verif.jobs import Job, run
 from verif.replay import load, record
 from verif.results import OUT, ROOT, sources
 

@@ -9,10 +9,10 @@ import json
 import sys
 from pathlib import Path
 
+from flow import jobs as regression
 from flow.files import staged
 from models.parameters import ParameterError
 from rtl.tops import TOPS
-from verif import jobs as regression
 
 from . import manifest
 from .engine import PROVEN, UNKNOWN, FormalError, tool_or_none, version

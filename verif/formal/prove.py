@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from verif.jobs import Job
+from flow.jobs import Job
 
 from . import design, manifest
 from .engine import FAILED, PROVEN, UNKNOWN, Workplace, version

@@ -10,8 +10,8 @@ from pathlib import Path
 
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
+from flow.jobs import Job, run
 from models.parameters import ParameterError, check_int
-from verif.jobs import Job, run
 from verif.results import OUT, digest_of, write_step
 
 from .batch import BATCH, make_input, run_batch, try_input

@@ -10,13 +10,13 @@ import json
 import sys
 from pathlib import Path
 
+from flow.jobs import Job, run
 from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 from verif.coverage.program import ProgramError, compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
-from verif.jobs import Job, run
 from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 

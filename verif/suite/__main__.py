@@ -10,8 +10,8 @@ import sys
 from functools import cache
 from pathlib import Path
 
+from flow.jobs import Job, run
 from models.parameters import ParameterError
-from verif.jobs import Job, run
 from verif.results import OUT, ROOT, digest_of, write_step
 
 from .blocks import blocks_of, level_of

@@ -90,10 +90,10 @@ def test_failures_are_tried_again(tmp_path):
 
 def test_what_decides_a_folders_results():
     assert decides("models/digital/test") == ("models", "docs/stream.md")
-    assert "verif/report" not in decides("rtl/edge_adc/test") and "verif/jobs.py" in decides("verif/fuzz/test")
+    assert "verif/report" not in decides("rtl/edge_adc/test") and "verif/results.py" in decides("verif/fuzz/test")
     assert "verif/report" in decides("verif/report/test") and "verif/report" not in decides("verif/fuzz/test")
-    one, two = sources("verif/jobs.py"), sources("verif")
-    assert one == [ROOT / "verif" / "jobs.py"] and one[0] in two and ROOT / "verif/report/limits.json" in two
+    one, two = sources("verif/results.py"), sources("verif")
+    assert one == [ROOT / "verif" / "results.py"] and one[0] in two and ROOT / "verif/report/limits.json" in two
 
 
 def test_an_unknown_folder(capsys):

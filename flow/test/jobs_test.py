@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from flow.jobs import Job, run
 from models.parameters import ParameterError
-from verif.jobs import Job, run
 
 
 def square(number, log):
