@@ -57,7 +57,7 @@ def score(blocks, store, factor=1.0, seed=SEED):
         decides = path.with_suffix(".trace"), text, tried
         whole.append(Job(block, try_original, (str(path), str(folder)), decides))
         for mutant in made[block]:
-            name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant.number)
+            name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
             judges.append(Job(name, judge, arguments, (text, judged)))      # whatever the tests are
     run(whole, store / "tests", "tests without a mutant")

@@ -4,7 +4,7 @@ import re
 import tempfile
 from pathlib import Path
 
-from rtl.ports import split, validity
+from rtl.ports import Port, split, validity
 from verif.coverage.program import ToolTimeout, tool
 
 from .mutants import BITS, yosys
@@ -43,12 +43,25 @@ def miter(top, ports, number):
         "endmodule", ""])
 
 
-def compare(verilog, top, ports, number):
+def module_ports(verilog, module):
+    """Ports of a module that Yosys wrote, but clk and mutant: tuple of Port."""
+    text = re.search(rf"(?s)^module {module}\(.*?^endmodule", verilog, re.MULTILINE)[0]
+    found = re.findall(r"^  (input|output) (?:\[(\d+):0\] )?(\w+) *;", text, re.MULTILINE)
+    return tuple(Port(name.replace("__", "."), int(high or 0) + 1, way == "output")
+                 for way, high, name in found if name not in ("clk", "mutant"))
+
+
+def the_same(verilog, module, number):
+    """True if mutant ``number`` changes nothing at the ports of its own ``module``, which is small."""
+    return compare(verilog, module, module_ports(verilog, module), number, ENGINES[:1])[0] == EQUIVALENT
+
+
+def compare(verilog, top, ports, number, engines=ENGINES):
     """EQUIVALENT, DIFFERENT or UNKNOWN, and the cycles to the difference found (0 for none). verilog: with mutants."""
     files = yosys(SCRIPT.replace("\n", " "), {"mutants.v": verilog, "miter.v": miter(top, ports, number)})
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         (Path(folder) / "miter.aig").write_bytes(files["miter.aig"])
-        for engine, seconds in ENGINES:
+        for engine, seconds in engines:
             try:
                 said = tool(["yosys-abc", "-c", f"read_aiger miter.aig; strash; {engine}"], seconds, cwd=folder)
             except ToolTimeout:

@@ -2,13 +2,17 @@
 
 import contextlib
 import io
+import re
 import sys
 
 import pytest
 from hypothesis import Phase, settings
 
 from rtl import testbench
+from rtl.export import translate_component
 from rtl.icarus import Driven
+from rtl.ports import ports_of
+from verif.coverage.program import compile_program
 from verif.replay import whole_level
 from verif.replay.recorder import OneLevel
 from verif.results import ROOT
@@ -36,23 +40,30 @@ class Limited(Driven):
 
 
 class Trial(OneLevel):
-    """A pytest plugin: the tests of the recorded level, mutant ``number`` in place of the traced component.
+    """A pytest plugin: the tests of the recorded level, a mutant in place of the traced component, or of the module in
+    it that is mutated.
 
-    head: Trace without its lines. program: of the mutants. cycles: that a simulator may run.
+    head: Trace without its lines. verilog: text with all mutants. mutant: Mutant, or None for the original. cycles:
+    that a simulator may run.
     """
 
-    def __init__(self, head, program, number, cycles):
+    def __init__(self, head, verilog, mutant, cycles):
         super().__init__(whole_level(head.cls) == "Verilog")
-        self.head, self.command, self.cycles = head, [program.folder / "replay", "--drive", str(number)], cycles
+        self.head, self.verilog_text, self.mutant, self.cycles = head, verilog, mutant, cycles
         self.failed, self.took_place = "", False
 
     def stand_in(self, dut, verilog):
         """See rtl.testbench.stand_ins."""
-        arguments = (*dut._dsl.args, *dut._dsl.kwargs.values())
-        if (type(dut).__name__, verilog, arguments) != (self.head.cls, self.verilog, self.head.arguments):
+        name, arguments = type(dut).__name__, (*dut._dsl.args, *dut._dsl.kwargs.values())
+        if name == self.head.cls:
+            if verilog is not self.verilog or arguments != self.head.arguments:
+                return None
+        elif not self.mutant or name != self.mutant.module or not same_module(self.head, type(dut), arguments):
             return None
         self.took_place = True
-        return Limited(self.command, self.head.ports, self.cycles)
+        program, ports = compile_program(self.verilog_text, name, ports_of(dut), mutant=True), ports_of(dut)
+        number = self.mutant.number if self.mutant else 0
+        return Limited([program.folder / "replay", "--drive", str(number)], ports, self.cycles)
 
     def pytest_sessionstart(self):
         testbench.stand_ins.append(self.stand_in)
@@ -65,9 +76,17 @@ class Trial(OneLevel):
         testbench.stand_ins.remove(self.stand_in)
 
 
-def attempt(head, program, number, tests, cycles):
-    """Run ``tests`` (node ids or folders) on mutant ``number``, 0 for none: Trial. Other arguments: see there."""
-    trial = Trial(head, program, number, cycles)
+def same_module(head, cls, arguments):
+    """True if a component of its own is the module of that name in the traced one, parameters and all."""
+    name = cls.__name__
+    alone, within = (re.search(rf"(?s)^module {name}\b.*?^endmodule", re.sub(r"(?m)^\s*//.*\n", "", text), re.MULTILINE)
+                     for text in (translate_component(cls(*arguments), name), head.verilog()))
+    return bool(within) and alone[0] == within[0]
+
+
+def attempt(head, verilog, mutant, tests, cycles):
+    """Run ``tests`` (node ids, files or folders) on a mutant: Trial. Arguments: see there."""
+    trial = Trial(head, verilog, mutant, cycles)
     for name in [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]:
         del sys.modules[name]               # tests keep their simulators
     settings.register_profile("trial", phases=(Phase.explicit, Phase.generate), database=None)
