@@ -195,10 +195,13 @@ class TestAdcBankFL:
 
     @pytest.mark.parametrize("row", (0, 1))
     def test_one_lane_alone(self, row):
-        """The result of the only lane leaves when it is there, and not before: of every lane."""
+        """The result of the only lane leaves when it is there, and not before; until then `idle` is low."""
         Step = step_msg(LANES)
         steps = [Step(SAMPLE, row, 0, 2, 0, 1 << lane) for lane in range(LANES)]
-        self.check([Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)], "edge", 10)
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
+        got = self.run(steps, "edge", 10)
+        assert (got.messages, got.counts) == expected(steps, LANES, "edge", 10)
+        assert not any(any(got.idle[at:at + 3]) for at in np.flatnonzero(got.hold))
 
     def test_pins_after_reset(self):
         self.test_all_bits_of_the_address()
