@@ -12,6 +12,11 @@ from .mutants import BITS, yosys
 # Engines in turn, each with its limit in seconds: a proof that is easy, a search for a difference, a proof that is not
 ENGINES = (("scorr; dc2; scorr; pdr -T 4", 15), ("bmc3 -F 200 -T 10", 20), ("scorr; dc2; scorr; pdr -T 40", 60))
 
+# What a block's neighbours promise (docs/chip.md): inputs that stand while an output of it is high; RegFile's proof of
+# p_write shows it. And outputs that mean something only while another one is high.
+STANDS = {"ReadoutSeq": ("busy", ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap"))}
+MEANS = {"ReadoutSeq": {"amp_row": "busy"}}
+
 EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
 # The machine code of the miter: two-input gates and flip-flops that start at 0
@@ -23,7 +28,7 @@ aigmap; opt_clean; stat; write_aiger -zinit -symbols miter.aig"""
 def miter(top, ports, number):
     """Verilog of module Miter: `bad` where an output of mutant ``number`` of ``top`` differs, behind the first reset.
 
-    A message counts while it is valid.
+    A message counts while it is valid, and all of it while the neighbours keep their promises.
     """
     inputs, outputs = split(ports)
     valid = validity(ports)
@@ -36,11 +41,22 @@ def miter(top, ports, number):
         pins = [".clk(clk)", f".mutant({BITS}'d{which})", *(f".{p.name}({p.name})" for p in inputs),
                 *(f".{p.name}({prefix}{p.name})" for p in outputs)]
         lines.append(f"  {top} {name}({', '.join(pins)});")
-    differ = [f"{valid[p].name} & ({p.name} != other_{p.name})" if p in valid else f"({p.name} != other_{p.name})"
-              for p in outputs]
+    valid = {p.name: v.name for p, v in valid.items()} | MEANS.get(top, {})
+    differ = [f"({valid.get(p.name, 1)} & ({p.name} != other_{p.name}))" for p in outputs]
     return "\n".join([
-        *lines, "  always @(posedge clk) started <= 1;", f"  assign bad = started & ({' | '.join(differ)});",
-        "endmodule", ""])
+        *lines, *promises(top), "  always @(posedge clk) started <= 1;",
+        f"  assign bad = started & promised & ({' | '.join(differ)});", "endmodule", ""])
+
+
+def promises(top):
+    """Verilog of `promised`: all that the neighbours of ``top`` promise has been kept so far."""
+    if top not in STANDS:
+        return ["  wire promised = 1;"]
+    while_high, names = STANDS[top]
+    now = "{" + ", ".join(names) + "}"
+    return ["  reg kept = 1;", f"  reg [$bits({now}) - 1:0] before;",
+            f"  wire promised = kept & (~{while_high} | reset | {now} == before);",
+            f"  always @(posedge clk) begin kept <= promised; before <= {now}; end"]
 
 
 def module_ports(verilog, module):
