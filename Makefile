@@ -6,6 +6,7 @@ VENV := .venv
 PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
 TESTS_READY := $(VENV)/.tests-ready
+LAYOUT_READY := $(VENV)/.layout-ready
 
 # Arguments of `make sim`, each also an option of `python -m talbot sim`
 SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
@@ -24,6 +25,10 @@ $(READY): requirements.lock pyproject.toml flow/setup/venv.sh
 
 $(TESTS_READY): $(READY) requirements-test.lock
 	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-test.lock
+	@touch $@
+
+$(LAYOUT_READY): $(READY) requirements-layout.lock
+	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-layout.lock
 	@touch $@
 
 .PHONY: setup
