@@ -27,8 +27,9 @@ $(TESTS_READY): $(READY) requirements-test.lock
 	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-test.lock
 	@touch $@
 
-$(LAYOUT_READY): $(READY) requirements-layout.lock
+$(LAYOUT_READY): $(READY) requirements-layout.lock requirements-pdk.lock
 	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-layout.lock
+	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-pdk.lock
 	@touch $@
 
 .PHONY: setup
