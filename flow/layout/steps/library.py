@@ -1,0 +1,79 @@
+"""The cells of a process as the other steps want them: for Coriolis, KLayout, Yosys and simulators."""
+
+import importlib
+import json
+from dataclasses import dataclass, field
+
+from flow.platforms.embedded import process
+from flow.steps import Step
+
+from .. import liberty
+from ..netlist import SUPPLIES
+
+DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground", "q": "out", "nq": "out",
+              "one": "out", "zero": "out", "co": "out", "s": "out"}
+
+
+@dataclass(frozen=True)
+class LibraryParameters:
+    """pdk: the process."""
+
+    pdk: str = field(default="sky130")
+
+
+class Library(Step):
+    """PDKMaster's cells -> files. platform: the process's own description, whose text belongs to the result."""
+
+    name = "library"
+    inputs = {"platform": "platform"}
+    outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
+               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib"}
+    Parameters = LibraryParameters
+    metrics = {"cells": ""}
+    uses = (liberty,)
+    shared = True
+    tools = ("python pdkmaster", "python c4m-flexcell", "python klayout")
+
+    def run(self, inputs, outputs):
+        known, make = process(self.parameters.pdk)
+        package = importlib.import_module(known.package)
+        description = importlib.import_module(f"{known.package}.pdkmaster")
+        library = make()
+        cells = [cell for cell in library.cells if cell.name != "Gallery"]
+        _coriolis(outputs["coriolis"], description, library)
+        _klayout(outputs, description, package, library)
+        areas = {cell.name: _area(cell) for cell in cells}
+        outputs["areas"].write_text(json.dumps(areas, indent=1))
+        ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
+        outputs["liberty"].write_text(liberty.liberty(ports, areas))
+        return {"cells": len(cells)}
+
+
+def _area(cell):
+    box = cell.layout.boundary
+    return round((box.right - box.left) * (box.top - box.bottom), 4)
+
+
+def _coriolis(folder, description, library):
+    from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
+    spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
+    export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
+    package = folder / "exported"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "techno.py").write_text(export())
+    (package / "StdCellLib.py").write_text(export(library))
+
+
+def _klayout(outputs, description, package, library):
+    from pdkmaster.io.klayout import FileExporter, export2db
+    from pdkmaster.io.spice import SpiceNetlistFactory
+    devices = package.prims_spiceparams
+    decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
+    outputs["drc"].write_text(decks["drc"])
+    outputs["lvs"].write_text(decks["lvs"])
+    export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
+              add_pin_label=True).write(str(outputs["gds"]))
+    netlists = SpiceNetlistFactory(params=devices)
+    outputs["spice"].write_text("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
+                                        if cell.name != "Gallery"))
