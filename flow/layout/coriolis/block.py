@@ -1,4 +1,4 @@
-"""A block of Coriolis with the order that straps need: clock trunk, then straps, then pins, then the cells."""
+"""A block of Coriolis with power straps: pins, then the clock's trunk, then straps beside both, then the cells."""
 
 import time
 
@@ -7,11 +7,10 @@ from coriolis.plugins.block.block import Block
 from coriolis.plugins.block.configuration import BlockConf, IoPin
 
 from .session import CLOCK
-from .straps import Straps
+from .straps import PIN_CLEARANCE_UM, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
 SPARE_ROWS = 8          # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
-PIN_CLEARANCE_UM = 1.6  # of a pin from a strap's axis
 
 
 def make_block(cell, request, framework):
@@ -49,6 +48,7 @@ class TalbotBlock(Block):
         super().__init__(conf)
         self.request, self.times, self.straps, self.pins = request, {}, [], []
         self.power = Straps(conf.cell, request)
+        self.setUnexpandPins(IoPin.WEST | IoPin.EAST | IoPin.SOUTH | IoPin.NORTH)      # else some come off their wires
 
     def _timed(self, phase, call):
         begin = time.perf_counter()
@@ -57,18 +57,14 @@ class TalbotBlock(Block):
         return result
 
     def placeIoPins(self):
-        """Nothing yet: the straps, which pins keep clear of, wait for the clock trunk."""
-
-    checkIoPins = placeIoPins
+        for side, nets in self.request["pins"].items():
+            self.pins += spread(side, nets, self.request, self.power.even())
+        self.conf.ioPins = [IoPin(SIDES[side], net, u(at), 0, 1) for side, net, at in self.pins]
+        super().placeIoPins()
 
     def addHTrees(self):
         self._timed("clock_tree", super().addHTrees)
-        self.straps = self.power.positions()
-        for side, nets in self.request["pins"].items():
-            self.pins += spread(side, nets, self.request, self.straps)
-        self.conf.ioPins = [_io_pin(*pin) for pin in self.pins]
-        super().placeIoPins()
-        super().checkIoPins()
+        self.straps = self.power.positions([at for side, _, at in self.pins if side in ("north", "south")])
 
     def place(self):
         self._timed("placement", super().place)
@@ -76,11 +72,6 @@ class TalbotBlock(Block):
     def route(self):
         self._timed("power", self.power.create)
         return self._timed("routing", super().route)
-
-
-def _io_pin(side, net, offset_um):
-    from coriolis.plugins.block.configuration import IoPin
-    return IoPin(SIDES[side], net, u(offset_um), 0, 1)
 
 
 def spread(side, nets, request, straps):

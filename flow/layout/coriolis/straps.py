@@ -4,6 +4,7 @@ from coriolis.helpers import u
 from coriolis.Hurricane import Box, DataBase, DbU, Horizontal, Pad, UpdateSession, Vertical
 
 CLEARANCE_UM = 0.8
+PIN_CLEARANCE_UM = 1.6  # of a strap's axis from a pin beneath it
 
 
 class Straps:
@@ -14,17 +15,21 @@ class Straps:
         self.layer = DataBase.getDB().getTechnology().getLayer
         self.names = [wire["name"] for wire in request["wires"]]
 
-    def positions(self):
-        """x of every strap (um), each as near its place in an even pitch as what runs there allows: list."""
-        width, strap = self.request["width_um"], self.request["strap_um"]
+    def even(self):
+        """x of every strap (um) in an even pitch: list."""
+        width = self.request["width_um"]
         count = 2 * max(1, round(width / self.request["strap_pitch_um"]))
-        taken = [(a - CLEARANCE_UM, b + CLEARANCE_UM) for a, _, b, _ in self._signals(self.names[-1])]
-        for k in range(count):
-            ideal = width * (k + 0.5) / count
-            free = (ideal + step * 0.5 * sign for step in range(int(width / count)) for sign in (1, -1)
-                    if all(ideal + step * 0.5 * sign + strap / 2 < a or ideal + step * 0.5 * sign - strap / 2 > b
-                           for a, b in taken))
-            x = next(free, None)
+        return [width * (k + 0.5) / count for k in range(count)]
+
+    def positions(self, pins):
+        """x of every strap (um), as near to `even` as what runs there and the pins at x in ``pins`` allow: list."""
+        half = self.request["strap_um"] / 2
+        taken = [(a - CLEARANCE_UM - half, b + CLEARANCE_UM + half) for a, _, b, _ in self._signals(self.names[-1])]
+        taken += [(x - PIN_CLEARANCE_UM, x + PIN_CLEARANCE_UM) for x in pins]
+        even = self.even()
+        for ideal in even:
+            moves = (step * 0.5 * sign for step in range(int(self.request["width_um"] / len(even))) for sign in (1, -1))
+            x = next((ideal + move for move in moves if not any(a < ideal + move < b for a, b in taken)), None)
             if x is None:
                 raise SystemExit(f"coriolis: no place for a strap near x = {ideal:.1f} um")
             self.x.append(round(self._on_grid(x), 3))
