@@ -9,6 +9,7 @@ from flow.simulate.process import ToolError, finish
 from models.parameters import check_real
 
 from .steps.drc import Drc
+from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs
@@ -50,6 +51,7 @@ def embedded(design, options):
         Floorplan(FloorplanParameters(options.utilization, row_um=known.row_um, site_um=known.site_um)),
         PlaceRoute(PlaceRouteParameters(options.pdk, clock.port)),
         StreamOut(StreamOutParameters(options.pdk, clock.port)),
+        Equivalence(EquivalenceParameters(design.top, clock.port)),
         Drc(),
         Lvs(),
     ]

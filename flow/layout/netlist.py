@@ -8,6 +8,7 @@ from pathlib import Path
 from flow.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
+REGISTER = "_reg"           # behind a register's name: its flip-flop
 
 
 @dataclass(frozen=True)
@@ -78,9 +79,8 @@ class Netlist:
                 if not isinstance(bit, int):
                     raise StepError(f"netlist of {top}: pin {pin} of a {cell['type']} is constant {bit}")
                 pins[pin] = names.setdefault(bit, f"n{bit}")
-            holds = cell["type"].startswith("dff")
-            instances.append(Instance(registers[cell["connections"]["q"][0]] if holds else f"u{number}",
-                                      cell["type"], pins))
+            name = registers[cell["connections"]["q"][0]] + REGISTER if is_register(cell["type"]) else f"u{number}"
+            instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 
     def verilog(self):
@@ -117,6 +117,11 @@ class Netlist:
         for i in self.instances:
             lines.append(f".gate {i.cell} " + " ".join(f"{pin}={net_names[net]}" for pin, net in i.pins.items()))
         return "\n".join([*lines, ".end", ""])
+
+
+def is_register(cell):
+    """Whether the library's cell of that name holds a bit."""
+    return cell.startswith("dff")
 
 
 def _escaped(name):

@@ -6,7 +6,8 @@ from flow.simulate.process import run
 from flow.steps import Step
 from models.parameters import check_int, check_real
 
-from ..netlist import Netlist
+from .. import netlist as netlist_module
+from ..netlist import Netlist, is_register
 
 SCRIPT = """
 read_verilog -sv {rtl}
@@ -42,6 +43,7 @@ class Synthesis(Step):
     outputs = {"netlist": "netlist.json", "verilog": "netlist.v"}
     Parameters = SynthesisParameters
     metrics = {"cells": "", "flip_flops": "", "cell_area_um2": "um2"}
+    uses = (netlist_module,)
     tools = ("yosys",)
 
     def run(self, inputs, outputs):
@@ -59,4 +61,4 @@ class Synthesis(Step):
         area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
         files["json"].unlink()
         return {"cells": len(netlist.instances), "cell_area_um2": float(area),
-                "flip_flops": sum(i.cell.startswith("dff") for i in netlist.instances)}
+                "flip_flops": sum(is_register(i.cell) for i in netlist.instances)}
