@@ -1,26 +1,31 @@
 """`python -m flow.layout DESIGN`: Verilog to a checked layout in build/layout/<design>/."""
 
 import argparse
+import json
+import shutil
 import sys
 from pathlib import Path
 
+from flow.files import staged
 from flow.simulate.process import ToolError
 from flow.steps import Runner, StepError
 from models.parameters import ParameterError
 from talbot.progress import Steps
 
 from .design import DESIGNS, design
-from .embedded import Options, embedded, files
+from .embedded import Options, back, files, front, layout
+from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
+RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report"}
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.layout", description=__doc__.splitlines()[0])
     parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
     parser.add_argument("--pdk", default="sky130", help="process (%(default)s)")
-    parser.add_argument("--utilization", type=float, default=0.5, help="cells' area by core area (%(default)s)")
-    parser.add_argument("--to", help="stop behind this step")
+    parser.add_argument("--utilization", type=float,
+                        help="cells' area by core area at which the search for the smallest begins; default: the design's")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
 
@@ -29,22 +34,25 @@ def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         chosen = design(options.design)
-        steps = embedded(chosen, Options(options.pdk, options.utilization))
-        names = [step.name for step in steps]
-        if options.to and options.to not in names:
-            raise ParameterError(f"to = {options.to!r}: must be one of {', '.join(names)}")
+        settings = Options(options.pdk, options.utilization or chosen.utilization)
         folder = options.out / chosen.name
-        with Steps(names) as bar:
+        names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route"]
+        with Steps(names + [step.name for step in back(chosen, settings)]) as bar:
             runner = Runner(folder / "steps", files(chosen, options.pdk, folder), bar.note, options.out / "shared")
-            for step in steps:
-                record = runner.run(step)
-                print(f"{step.name:14} {record['wall_s']:7.1f} s {record['peak_mib']:6} MiB  {record['metrics']}")
-                if step.name == options.to:
-                    break
+            tried, closed = layout(chosen, settings, runner)
+        summary = summarize(chosen, settings, runner, tried, closed)
+        with staged(folder) as part:
+            for suffix, source in RESULTS.items():
+                if source in runner.paths:
+                    shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
+            (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     except (ParameterError, ToolError, StepError, OSError) as error:
         print(f"flow.layout: {error}", file=sys.stderr)
         return 2
-    return 0
+    for line in broken(summary):
+        print(f"flow.layout: {chosen.name}: {line}", file=sys.stderr)
+    print(f"{folder / 'summary.json'}")
+    return 1 if broken(summary) else 0
 
 
 if __name__ == "__main__":

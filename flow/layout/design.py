@@ -32,30 +32,38 @@ class Surroundings:
 
 @dataclass(frozen=True)
 class Design:
-    """top: module that rtl.export writes. folder: of the block in rtl/. netlist_names: as what its tests build the
-    block with the default parameters, for `pytest --netlist`; () where they build it with others."""
+    """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
+    block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
+    smallest area begins. A block whose tests have a size of their own is laid out in that size.
+    """
 
     name: str
     top: str
     folder: str
     netlist_names: tuple = ()
+    options: tuple = ()
+    utilization: float = 0.60
     clock: Clock = Clock()
     surroundings: Surroundings = Surroundings()
 
 
-DESIGNS = {design.name: design for design in (
+def _divider(name, top, variant):
+    return Design(name, top, "quad_divider", (f"QuadDivider_{variant}_8_10",))
+
+
+DESIGNS = {made.name: made for made in (
     Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",)),
-    Design("readout_seq", "ReadoutSeq", "readout_seq"),
+    Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_13_75_8",), ("--rows=13", "--cols=75")),
     Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
     Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
-    Design("quad_divider", "QuadDividerRadix4", "quad_divider"),
-    Design("quad_divider_radix2", "QuadDividerRadix2", "quad_divider"),
-    Design("quad_divider_pipelined", "QuadDividerPipelined", "quad_divider"),
-    Design("cordic", "Cordic", "quad_divider"),
-    Design("phase_path", "PhasePath", "phase_path"),
-    Design("run_length", "RunLength", "run_length"),
-    Design("reg_file", "RegFile", "reg_file"),
-    Design("asp_chip", "AspChip", "asp_chip"))}
+    _divider("quad_divider", "QuadDividerRadix4", "radix4"),
+    _divider("quad_divider_radix2", "QuadDividerRadix2", "radix2"),
+    _divider("quad_divider_pipelined", "QuadDividerPipelined", "pipelined"),
+    _divider("cordic", "Cordic", "cordic"),
+    Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
+    Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
+    Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.48))}
 
 
 def design(name):

@@ -11,6 +11,7 @@ from models.parameters import check_real
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
+from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
@@ -18,40 +19,69 @@ from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters
 
 ROOT = Path(__file__).parents[2]
+STEP, LEAST = 0.03, 0.20        # utilization: of one try less than of the one before; of the last
 
 
 @dataclass(frozen=True)
 class Options:
-    """pdk: process. utilization: cells' area by core area."""
+    """pdk: process. utilization: cells' area by core area at which the search begins."""
 
     pdk: str = "sky130"
-    utilization: float = 0.5
+    utilization: float = 0.6
 
     def __post_init__(self):
-        check_real("utilization", self.utilization, 0.05, 0.95)
+        check_real("utilization", self.utilization, LEAST, 0.95)
 
 
 def files(design, pdk, folder):
     """What the steps are given: the design's Verilog, made now, and the texts that describe the process."""
-    done = finish([sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder / "rtl"], cwd=ROOT)
+    done = finish([sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder / "rtl", *design.options],
+                  cwd=ROOT)
     if done.returncode:
         raise ToolError(done.stderr.strip().splitlines()[-1])
-    return {"rtl": folder / "rtl" / f"{design.top}.v",
+    return {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
             "platform": ROOT / "flow" / "platforms" / pdk.replace("-", "_") / "embedded.py",
             "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis"}
 
 
-def embedded(design, options):
-    """The steps, in order."""
+def front(design, options):
+    """The steps ahead of a floorplan."""
+    return [Library(LibraryParameters(options.pdk)),
+            Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+
+
+def tries(design, options):
+    """Pairs (floorplan, place and route), the smallest area first."""
     known, _ = process(options.pdk)
+    for k in range(int((options.utilization - LEAST) / STEP + 1e-9) + 1):
+        yield (Floorplan(FloorplanParameters(round(options.utilization - STEP * k, 4), row_um=known.row_um,
+                                             site_um=known.site_um)),
+               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port)))
+
+
+def back(design, options):
+    """The steps behind a closed routing: the files, then what judges them."""
     clock = design.clock
-    return [
-        Library(LibraryParameters(options.pdk)),
-        Synthesis(SynthesisParameters(design.top, clock.period_ns, 0)),
-        Floorplan(FloorplanParameters(options.utilization, row_um=known.row_um, site_um=known.site_um)),
-        PlaceRoute(PlaceRouteParameters(options.pdk, clock.port)),
-        StreamOut(StreamOutParameters(options.pdk, clock.port)),
-        Equivalence(EquivalenceParameters(design.top, clock.port)),
-        Drc(),
-        Lvs(),
-    ]
+    tests = [GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
+    return [StreamOut(StreamOutParameters(options.pdk, clock.port)),
+            Equivalence(EquivalenceParameters(design.top, clock.port)), *(tests if design.netlist_names else []),
+            Drc(), Lvs()]
+
+
+def layout(design, options, runner):
+    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that can be routed.
+
+    Returns (tries: list of [utilization, open segments], whether the last one closed).
+    """
+    for step in front(design, options):
+        runner.run(step)
+    tried = []
+    for floorplan, place_route in tries(design, options):
+        runner.run(floorplan)
+        found = runner.run(place_route)["metrics"]
+        tried.append([floorplan.parameters.utilization, found["open_segments"]])
+        if found["routed"] and not found["open_segments"]:
+            for step in back(design, options):
+                runner.run(step)
+            return tried, True
+    return tried, False

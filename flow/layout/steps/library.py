@@ -5,6 +5,7 @@ import json
 from dataclasses import dataclass, field
 
 from flow.platforms.embedded import process
+from flow.simulate.process import run
 from flow.steps import Step
 
 from .. import liberty
@@ -27,12 +28,12 @@ class Library(Step):
     name = "library"
     inputs = {"platform": "platform"}
     outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
-               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib"}
+               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v"}
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
     shared = True
-    tools = ("python pdkmaster", "python c4m-flexcell", "python klayout")
+    tools = ("yosys", "python pdkmaster", "python c4m-flexcell", "python klayout")
 
     def run(self, inputs, outputs):
         known, make = process(self.parameters.pdk)
@@ -46,6 +47,7 @@ class Library(Step):
         outputs["areas"].write_text(json.dumps(areas, indent=1))
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
         outputs["liberty"].write_text(liberty.liberty(ports, areas))
+        run(["yosys", "-q", "-p", f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
         return {"cells": len(cells)}
 
 

@@ -54,7 +54,7 @@ class PlaceRoute(Step):
     uses = (netlist_module,)
     outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json", "log": "coriolis.log"}
     Parameters = PlaceRouteParameters
-    metrics = {"routed": "", "open_segments": "", "wire_um": "um", "clock_buffers": "",
+    metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "clock_buffers": "",
                **{f"{name}_s": "s" for name in PHASES}}
     tools = ("python coriolis-eda",)
 
@@ -63,17 +63,21 @@ class PlaceRoute(Step):
         names = plain_names(netlist, self.parameters.clock)
         with tempfile.TemporaryDirectory(dir=outputs["log"].parent) as work:
             result = self.coriolis(Path(work), netlist.blif(MODEL, names), self.request(inputs, names), outputs)
+        if "stopped" in result:
+            for name in ("gds", "netlist", "placement"):
+                outputs[name].write_text("")
+            return dict.fromkeys(self.metrics) | {"routed": False, "stopped": result["stopped"]}
         final = routed_netlist(netlist, names, result["instances"])
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
         wires = sum(sum(by_layer.values()) for by_layer in result["wires"].values())
         cells = sum(bool(instance.pins) for instance in final.instances)
-        return {"routed": result["routed"], "open_segments": open_segments(outputs["log"].read_text()),
+        return {"routed": result["routed"], "stopped": None, "open_segments": open_segments(outputs["log"].read_text()),
                 "wire_um": round(wires, 1), "clock_buffers": cells - len(netlist.instances),
                 **{f"{name}_s": round(result["times"].get(name, 0), 2) for name in PHASES}}
 
     def coriolis(self, work, blif, request, outputs):
-        """Run it in the folder ``work``; returns its result (dict). Raises StepError with what it said."""
+        """Run it in the folder ``work``; returns its result (dict), {"stopped": its last words} if it gave up."""
         (work / f"{MODEL}.blif").write_text(blif)
         (work / "request.json").write_text(json.dumps(request))
         done = finish([sys.executable, "-m", "flow.layout.coriolis", "request.json"], cwd=work,
@@ -81,7 +85,7 @@ class PlaceRoute(Step):
         outputs["log"].write_text(done.stdout + done.stderr)
         if done.returncode or not (work / "result.json").exists():
             said = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
-            raise StepError(f"place_route: Coriolis stopped: {(said or ['without a word'])[-1].strip()}")
+            return {"stopped": (said or ["it ended without a word"])[-1].strip()}
         next(work.glob("*.gds")).replace(outputs["gds"])
         return json.loads((work / "result.json").read_text())
 

@@ -1,0 +1,55 @@
+"""What a layout came to: summary.json, and the limits of rules.json that it must keep."""
+
+import json
+from pathlib import Path
+
+RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
+
+
+def summarize(design, options, runner, tried, closed):
+    """The contract of summary.json, as a dict; what was not run is None."""
+    records = runner.records
+
+    def metric(step, name):
+        return records[step]["metrics"].get(name) if step in records else None
+
+    area = metric("floorplan", "core_area_um2")
+    tools = {}
+    for record in records.values():
+        tools |= record["tools"]
+    return {
+        "design": design.name, "top": design.top, "backend": "coriolis", "pdk": options.pdk,
+        "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
+        "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
+        "utilization": tried[-1][0] if tried else None, "tried": tried, "routed": closed,
+        "wire_um": metric("place_route", "wire_um"), "open_nets": metric("place_route", "open_segments"),
+        "clock_buffers": metric("place_route", "clock_buffers"),
+        "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
+        "equivalence": metric("equivalence", "equivalence"),
+        "registers": metric("equivalence", "registers"),
+        "gate_tests": records["gate_tests"]["metrics"] if "gate_tests" in records else None,
+        "wall_s": {name: record["wall_s"] for name, record in records.items()},
+        "peak_mib": {name: record["peak_mib"] for name, record in records.items()}, "tools": dict(sorted(tools.items()))}
+
+
+def broken(summary, rules=RULES):
+    """Rules that ``summary`` breaks: list of 'name = value: must be ...'.
+
+    rules: dict name -> {"is": value} or {"most": number} or {"least": number}, a dot in a name for a dict in the
+    summary; "where" lists the designs that a rule is for, all without it. What was not measured keeps no rule.
+    """
+    found = []
+    for name, rule in rules.items():
+        if summary["design"] not in rule.get("where", [summary["design"]]):
+            continue
+        value = summary
+        for part in name.split("."):
+            value = value.get(part) if isinstance(value, dict) else None
+        kept = value is not None and (("is" not in rule or value == rule["is"])
+                                      and ("most" not in rule or value <= rule["most"])
+                                      and ("least" not in rule or value >= rule["least"]))
+        if not kept:
+            wanted = " and ".join(f"{'at ' if word != 'is' else ''}{word} {rule[word]}".removeprefix("is ")
+                                  for word in ("is", "least", "most") if word in rule)
+            found.append(f"{name} = {value}: must be {wanted}")
+    return found
