@@ -36,11 +36,11 @@ def main(argv=None):
         chosen = design(options.design)
         settings = Options(options.pdk, options.utilization or chosen.utilization)
         folder = options.out / chosen.name
-        names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route"]
+        names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route", "stream_out", "drc"]
         with Steps(names + [step.name for step in back(chosen, settings)]) as bar:
             runner = Runner(folder / "steps", files(chosen, options.pdk, folder), bar.note, options.out / "shared")
-            tried, closed = layout(chosen, settings, runner)
-        summary = summarize(chosen, settings, runner, tried, closed)
+            tried = layout(chosen, settings, runner)
+        summary = summarize(chosen, settings, runner, tried)
         with staged(folder) as part:
             for suffix, source in RESULTS.items():
                 if source in runner.paths:

@@ -60,18 +60,17 @@ def tries(design, options):
 
 
 def back(design, options):
-    """The steps behind a closed routing: the files, then what judges them."""
+    """The steps behind a routing that keeps the design rules: what else judges it."""
     clock = design.clock
     tests = [GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
-    return [StreamOut(StreamOutParameters(options.pdk, clock.port)),
-            Equivalence(EquivalenceParameters(design.top, clock.port)), *(tests if design.netlist_names else []),
-            Drc(), Lvs()]
+    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *(tests if design.netlist_names else []), Lvs()]
 
 
 def layout(design, options, runner):
-    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that can be routed.
+    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
 
-    Returns (tries: list of [utilization, open segments], whether the last one closed).
+    A try closes when every net is routed and no design rule broken. Returns the tries: list of {utilization,
+    open_segments (None where the router gave up), drc_violations (None without a layout)}.
     """
     for step in front(design, options):
         runner.run(step)
@@ -79,9 +78,13 @@ def layout(design, options, runner):
     for floorplan, place_route in tries(design, options):
         runner.run(floorplan)
         found = runner.run(place_route)["metrics"]
-        tried.append([floorplan.parameters.utilization, found["open_segments"]])
+        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
+                      "drc_violations": None})
         if found["routed"] and not found["open_segments"]:
-            for step in back(design, options):
-                runner.run(step)
-            return tried, True
-    return tried, False
+            runner.run(StreamOut(StreamOutParameters(options.pdk, design.clock.port)))
+            tried[-1]["drc_violations"] = runner.run(Drc())["metrics"]["drc_violations"]
+            if not tried[-1]["drc_violations"]:
+                for step in back(design, options):
+                    runner.run(step)
+                return tried
+    return tried

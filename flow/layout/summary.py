@@ -6,7 +6,7 @@ from pathlib import Path
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
 
-def summarize(design, options, runner, tried, closed):
+def summarize(design, options, runner, tried):
     """The contract of summary.json, as a dict; what was not run is None."""
     records = runner.records
 
@@ -21,7 +21,7 @@ def summarize(design, options, runner, tried, closed):
         "design": design.name, "top": design.top, "backend": "coriolis", "pdk": options.pdk,
         "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
         "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
-        "utilization": tried[-1][0] if tried else None, "tried": tried, "routed": closed,
+        "utilization": tried[-1]["utilization"], "tried": tried,
         "wire_um": metric("place_route", "wire_um"), "open_nets": metric("place_route", "open_segments"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),

@@ -9,7 +9,7 @@ from models.parameters import check_real
 
 from ..netlist import Netlist
 
-SIDES = ("west", "north", "east", "south")
+SIDES = ("west", "east")          # the router gives up on some pins on the other two
 CLOCK_CELLS_SHARE = 0.06        # of the cells' area, for the clock tree's buffers to come
 
 
@@ -28,7 +28,7 @@ class FloorplanParameters:
 
 
 class Floorplan(Step):
-    """As square as ``aspect`` says; the pins in the order of the ports, a quarter on each side, buses together."""
+    """As square as ``aspect`` says; the pins in the order of the ports, on the west and the east, buses together."""
 
     name = "floorplan"
     inputs = {"netlist": "synthesis.netlist", "areas": "library.areas"}

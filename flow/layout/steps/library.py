@@ -28,7 +28,7 @@ class Library(Step):
     name = "library"
     inputs = {"platform": "platform"}
     outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
-               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v"}
+               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v", "rules": "rules.json"}
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
@@ -41,6 +41,8 @@ class Library(Step):
         description = importlib.import_module(f"{known.package}.pdkmaster")
         library = make()
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
+        outputs["rules"].write_text(json.dumps({"space_um": {
+            wire.name: float(description.tech.primitives[wire.name].min_space) for wire in known.wires}}) + "\n")
         _coriolis(outputs["coriolis"], description, library)
         _klayout(outputs, description, package, library)
         areas = {cell.name: _area(cell) for cell in cells}
