@@ -17,7 +17,8 @@ from .embedded import Options, back, files, front, layout
 from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
-RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report"}
+RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
+           "spef": "extraction.spef", "sdf": "sta.sdf", "sta.txt": "sta.report", "sdc": "sdc"}
 
 
 def arguments():
@@ -26,6 +27,7 @@ def arguments():
     parser.add_argument("--pdk", default="sky130", help="process (%(default)s)")
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area at which the search for the smallest begins; default: the design's")
+    parser.add_argument("--liberty", type=Path, help="characterized cells at a corner, for the timing; none: no timing")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
 
@@ -34,11 +36,11 @@ def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         chosen = design(options.design)
-        settings = Options(options.pdk, options.utilization or chosen.utilization)
+        settings = Options(options.pdk, options.utilization or chosen.utilization, options.liberty)
         folder = options.out / chosen.name
         names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route", "stream_out", "drc"]
         with Steps(names + [step.name for step in back(chosen, settings)]) as bar:
-            runner = Runner(folder / "steps", files(chosen, options.pdk, folder), bar.note, options.out / "shared")
+            runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)
         with staged(folder) as part:

@@ -6,15 +6,18 @@ from pathlib import Path
 
 from flow.platforms.embedded import process
 from flow.simulate.process import ToolError, finish
-from models.parameters import check_real
+from models.parameters import ParameterError, check_real
 
+from .constraints import sdc
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
+from .steps.extraction import Extraction, ExtractionParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
+from .steps.sta import Sta, StaParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters
 
@@ -24,24 +27,37 @@ STEP, LEAST = 0.03, 0.20        # utilization: of one try less than of the one b
 
 @dataclass(frozen=True)
 class Options:
-    """pdk: process. utilization: cells' area by core area at which the search begins."""
+    """pdk: process. utilization: cells' area by core area at which the search begins.
+
+    liberty: characterized cells at one corner, for the timing; None: no timing.
+    """
 
     pdk: str = "sky130"
     utilization: float = 0.6
+    liberty: Path | None = None
+
+    @property
+    def corner(self):
+        return self.liberty.stem if self.liberty else None
 
     def __post_init__(self):
+        if self.liberty and not self.liberty.is_file():
+            raise ParameterError(f"liberty = {self.liberty}: no such file; make cells LIB=flexcell writes one a corner")
         check_real("utilization", self.utilization, LEAST, 0.95)
 
 
-def files(design, pdk, folder):
+def files(design, options, folder):
     """What the steps are given: the design's Verilog, made now, and the texts that describe the process."""
     done = finish([sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder / "rtl", *design.options],
                   cwd=ROOT)
     if done.returncode:
         raise ToolError(done.stderr.strip().splitlines()[-1])
-    return {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
-            "platform": ROOT / "flow" / "platforms" / pdk.replace("-", "_") / "embedded.py",
-            "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis"}
+    constraints = folder / "rtl" / f"{design.top}.sdc"
+    constraints.write_text(sdc(design))
+    given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
+             "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
+             "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints}
+    return given | ({"timing": options.liberty} if options.liberty else {})
 
 
 def front(design, options):
@@ -63,7 +79,9 @@ def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
     clock = design.clock
     tests = [GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
-    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *(tests if design.netlist_names else []), Lvs()]
+    timing = [Sta(StaParameters(design.top, options.corner, clock.period_ns))] if options.liberty else []
+    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *(tests if design.netlist_names else []), Lvs(),
+            Extraction(ExtractionParameters(options.pdk)), *timing]
 
 
 def layout(design, options, runner):

@@ -26,10 +26,25 @@ def summarize(design, options, runner, tried):
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
         "equivalence": metric("equivalence", "equivalence"),
+        "timing_rests_on": timing(options), "wns_ns": _by_corner(options, metric("sta", "wns_ns")),
+        "whs_ns": _by_corner(options, metric("sta", "whs_ns")), "f_max_mhz": metric("sta", "f_max_mhz"),
+        "power_uw": metric("sta", "power_uw"), "wire_pf": metric("extraction", "wire_pf"),
         "registers": metric("equivalence", "registers"),
         "gate_tests": records["gate_tests"]["metrics"] if "gate_tests" in records else None,
         "wall_s": {name: record["wall_s"] for name, record in records.items()},
         "peak_mib": {name: record["peak_mib"] for name, record in records.items()}, "tools": dict(sorted(tools.items()))}
+
+
+def timing(options):
+    """What the timing figures rest on, in words."""
+    if not options.liberty:
+        return "no timing: no characterized Liberty was given"
+    return (f"cells: {options.liberty.name}; wires: area and edge capacitance to the substrate and resistance from the "
+            "router's wires, no coupling; power: OpenSTA's default activity, not a simulation's")
+
+
+def _by_corner(options, value):
+    return None if value is None else {options.corner: value}
 
 
 def broken(summary, rules=RULES):

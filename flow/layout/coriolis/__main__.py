@@ -17,7 +17,7 @@ def main(request):
     database = configure(request)
     cell = load(request["cell"])
     from .block import make_block
-    from .dump import components, instances
+    from .dump import instances, wires
     block = make_block(cell, request, database)
     times = {"load": time.perf_counter() - begin}
     routed = block.doPnR()
@@ -26,7 +26,7 @@ def main(request):
     block.save()
     Path("result.json").write_text(json.dumps({
         "routed": bool(routed), "straps": block.straps, "pins": block.pins, "instances": instances(cell),
-        "wires": components(cell), "times": times | {"save": time.perf_counter() - begin}}))
+        "wires": wires(cell), "times": times | {"save": time.perf_counter() - begin}}))
     return 0
 
 

@@ -1,6 +1,6 @@
 """What is in Hurricane's database after routing, as plain lists."""
 
-from coriolis.Hurricane import DbU, Segment
+from coriolis.Hurricane import Contact, DbU, Horizontal, Vertical
 
 
 def _um(value):
@@ -19,21 +19,22 @@ def instances(cell):
     return made
 
 
-def components(cell):
-    """Length (um) of every signal net by layer, and its cuts: dict net -> {layer: um}."""
+def wires(cell):
+    """What each signal net is made of: dict net -> [[layer, length_um, width_um], ...]; of a contact, whose layer is
+    named after the wires that it joins, both are 0."""
     nets = {}
     for net in cell.getNets():
-        if net.isSupply():
-            continue
-        by_layer = nets.setdefault(net.getName(), {})
-        for component in net.getComponents():
-            if isinstance(component, Segment):
-                name = component.getLayer().getName()
-                by_layer[name] = round(by_layer.get(name, 0) + _length(component), 4)
+        if not net.isSupply():
+            nets[net.getName()] = [made for made in map(_wire, net.getComponents()) if made]
     return nets
 
 
-def _length(segment):
-    """Between the ends of the axis, in um."""
-    return abs(_um(segment.getTargetX()) - _um(segment.getSourceX())) + \
-        abs(_um(segment.getTargetY()) - _um(segment.getSourceY()))
+def _wire(component):
+    layer = component.getLayer().getName() if component.getLayer() is not None else ".block"
+    if layer.endswith(".block"):            # the router's own
+        return None
+    if isinstance(component, (Horizontal, Vertical)):
+        length = abs(component.getTargetX() - component.getSourceX()) + abs(component.getTargetY()
+                                                                            - component.getSourceY())
+        return [layer, _um(length), _um(component.getWidth())]
+    return [layer, 0, 0] if isinstance(component, Contact) and "_" in layer else None

@@ -54,7 +54,7 @@ class PlaceRoute(Step):
     uses = (netlist_module,)
     outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json", "log": "coriolis.log"}
     Parameters = PlaceRouteParameters
-    metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "clock_buffers": "",
+    metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "vias": "", "clock_buffers": "",
                **{f"{name}_s": "s" for name in PHASES}}
     tools = ("python coriolis-eda",)
 
@@ -70,10 +70,11 @@ class PlaceRoute(Step):
         final = routed_netlist(netlist, names, result["instances"])
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
-        wires = sum(sum(by_layer.values()) for by_layer in result["wires"].values())
+        wires = [wire for net in result["wires"].values() for wire in net]
         cells = sum(bool(instance.pins) for instance in final.instances)
         return {"routed": result["routed"], "stopped": None, "open_segments": open_segments(outputs["log"].read_text()),
-                "wire_um": round(wires, 1), "clock_buffers": cells - len(netlist.instances),
+                "wire_um": round(sum(wire[1] for wire in wires), 1),
+                "vias": sum(not wire[1] for wire in wires), "clock_buffers": cells - len(netlist.instances),
                 **{f"{name}_s": round(result["times"].get(name, 0), 2) for name in PHASES}}
 
     def coriolis(self, work, blif, request, outputs):
