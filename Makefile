@@ -83,6 +83,12 @@ formats: $(READY)  ## stream formats and scan orders compared: build/formats/
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
 	@$(PY) -m flow.sizes --document README.md
 
+.PHONY: layout
+layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [PDK=sky130 UTILIZATION=0.6 LIBERTY=file]
+	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
+		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) \
+		$(if $(LIBERTY),--liberty $(call quoted,$(LIBERTY)))
+
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'

@@ -9,7 +9,7 @@ from pathlib import Path
 from flow.files import staged
 from flow.simulate.process import ToolError
 from flow.steps import Runner, StepError
-from models.parameters import ParameterError
+from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
 from .design import DESIGNS, design
@@ -25,6 +25,7 @@ def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.layout", description=__doc__.splitlines()[0])
     parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
     parser.add_argument("--pdk", default="sky130", help="process (%(default)s)")
+    parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area at which the search for the smallest begins; default: the design's")
     parser.add_argument("--liberty", type=Path, help="characterized cells at a corner, for the timing; none: no timing")
@@ -36,6 +37,7 @@ def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         chosen = design(options.design)
+        check_choice("backend", options.backend, ("coriolis",))
         settings = Options(options.pdk, options.utilization or chosen.utilization, options.liberty)
         folder = options.out / chosen.name
         names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route", "stream_out", "drc"]

@@ -13,6 +13,7 @@ from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
+from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs
@@ -56,7 +57,7 @@ def files(design, options, folder):
     constraints.write_text(sdc(design))
     given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
              "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
-             "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints}
+             "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
     return given | ({"timing": options.liberty} if options.liberty else {})
 
 
@@ -78,9 +79,10 @@ def tries(design, options):
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
     clock = design.clock
-    tests = [GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
+    tests = ([GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
+             if design.netlist_names else [GateFrames()])
     timing = [Sta(StaParameters(design.top, options.corner, clock.period_ns))] if options.liberty else []
-    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *(tests if design.netlist_names else []), Lvs(),
+    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
             Extraction(ExtractionParameters(options.pdk)), *timing]
 
 

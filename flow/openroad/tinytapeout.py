@@ -1,0 +1,110 @@
+"""Tiny Tapeout: a block behind a byte bus in a few tiles, as a project that its tools take: info.yaml, src/, docs/."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+from models.parameters import ParameterError
+
+TOPS = Path(__file__).parent / "tops"
+BUS = "tt_bytes.v"
+# Die in um of so many tiles (tile_sizes.yaml of tt-support-tools), its margins in sites and rows (its DEF templates)
+TILES = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76)}
+SITE_UM, ROW_UM, MARGIN_SITES, MARGIN_ROWS = 0.46, 2.72, 12, 2
+FULL = 0.60             # cells' area by core area that its default density is for
+
+# src/config.json of its template: what it asks projects not to change
+FIXED = {"PL_RESIZER_HOLD_SLACK_MARGIN": 0.1, "GRT_RESIZER_HOLD_SLACK_MARGIN": 0.05, "RUN_LINTER": 1,
+         "LINTER_INCLUDE_PDK_MODELS": 1, "RUN_KLAYOUT_XOR": 0, "RUN_KLAYOUT_DRC": 0,
+         "DESIGN_REPAIR_BUFFER_OUTPUT_PORTS": 0, "TOP_MARGIN_MULT": 1, "BOTTOM_MARGIN_MULT": 1, "LEFT_MARGIN_MULT": 6,
+         "RIGHT_MARGIN_MULT": 6, "FP_SIZING": "absolute", "GRT_ALLOW_CONGESTION": 1, "FP_IO_HLENGTH": 2,
+         "FP_IO_VLENGTH": 2, "FP_PDN_VPITCH": 38.87, "RUN_CTS": 1, "FP_PDN_MULTILAYER": 0, "RT_MAX_LAYER": "met4",
+         "MAGIC_DEF_LABELS": 0, "MAGIC_WRITE_LEF_PINONLY": 1}
+
+
+@dataclass(frozen=True)
+class Project:
+    """top: its module, file <top>.v in tops/. tiles: of TILES. ui, uo, uio: names of the pins 0..7, '' for unused."""
+
+    top: str
+    title: str
+    description: str
+    tiles: str
+    ui: tuple
+    uo: tuple
+    uio: tuple
+    test: str
+
+    def __post_init__(self):
+        if self.tiles not in TILES:
+            raise ParameterError(f"tiles = {self.tiles!r}: must be one of {', '.join(TILES)}")
+        if not self.top.startswith("tt_um_"):
+            raise ParameterError(f"top = {self.top!r}: must begin with tt_um_")
+        for name in ("ui", "uo", "uio"):
+            if len(getattr(self, name)) != 8:
+                raise ParameterError(f"{name} = {len(getattr(self, name))} pins: must be 8")
+
+    def core_um2(self):
+        """Area for cells in its tiles."""
+        width, height = TILES[self.tiles]
+        columns, rows = round(width / SITE_UM) - MARGIN_SITES, round(height / ROW_UM) - MARGIN_ROWS
+        return columns * SITE_UM * rows * ROW_UM
+
+
+_DATA = tuple(f"data {k}" for k in range(8))
+PROJECTS = {
+    "quad_divider": Project(
+        "tt_um_talbot_divider", "Quadrature divider",
+        "Octant, ratio, amplitude and 8-bit phase of a signed 9-bit vector, by a radix-4 division", "1x1", _DATA,
+        tuple(f"result {k}" for k in range(8)), ("strobe", "is address", "", "", "", "", "ready", "valid"),
+        "Write the address 0, then the bytes of x, y and their signs, then any byte to start. When valid is high, "
+        "address 0 shows the phase: x = 100, y = 100 gives 32, an eighth of a turn."),
+    "amp_ctrl": Project(
+        "tt_um_talbot_amp_ctrl", "Amplifier control of an angle-sensitive pixel",
+        "Phases of a differential pixel amplifier with common-mode reset and correlated double sampling", "1x2", _DATA,
+        ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy"),
+        ("strobe", "is address", "hold free", "", "tap 0", "tap 1", "cfg_err", "done"),
+        "Write the address 0, then the six durations, n_cm, and the byte that starts a row, with hold free high. The "
+        "outputs then show one row's phases: no two of pixel_reset, integrate, cm_reset and read are ever high together.")}
+
+
+def sources(project, design):
+    """Names of the Verilog files of a Project: its only list, from which all others are made."""
+    return [f"{project.top}.v", BUS, f"{design.top}.v"]
+
+
+def project_files(project, design, verilog):
+    """Files of the project: dict path -> text. verilog: of the Design."""
+    config = {"PL_TARGET_DENSITY_PCT": round(100 * FULL), "CLOCK_PERIOD": design.clock.period_ns,
+              "CLOCK_PORT": "clk", **FIXED}
+    texts = dict(zip(sources(project, design), ((TOPS / f"{project.top}.v").read_text(), (TOPS / BUS).read_text(),
+                                                verilog), strict=True))
+    return {"tinytapeout/info.yaml": info(project, design), "tinytapeout/docs/info.md": page(project, texts),
+            "tinytapeout/src/config.json": json.dumps(config, indent=2) + "\n",
+            **{f"tinytapeout/src/{name}": text for name, text in texts.items()}}
+
+
+def info(project, design):
+    """Text of info.yaml, version 6."""
+    def quoted(text):
+        return json.dumps(text)         # a JSON string is a YAML string
+
+    lines = ["project:", f"  title: {quoted(project.title)}", '  author: "Talbot"',
+             f"  description: {quoted(project.description)}", '  language: "SystemVerilog"',
+             f"  clock_hz: {round(1e9 / design.clock.period_ns)}", f"  tiles: {quoted(project.tiles)}",
+             f"  top_module: {quoted(project.top)}", "  source_files:",
+             *(f"    - {quoted(name)}" for name in sources(project, design)), "", "pinout:"]
+    for bank in ("ui", "uo", "uio"):
+        lines += [f"  {bank}[{k}]: {quoted(name)}" for k, name in enumerate(getattr(project, bank))]
+    return "\n".join([*lines, "", "yaml_version: 6", ""])
+
+
+def page(project, texts):
+    """docs/info.md: the page of the shuttle's datasheet; the protocol as the top's own comment says it."""
+    def comment(name):
+        lines = texts[name].splitlines()
+        end = next(k for k, line in enumerate(lines) if not line.startswith("//"))
+        return "\n".join(line.removeprefix("//").strip() for line in lines[:end])
+
+    return "\n".join(["## How it works", "", comment(f"{project.top}.v"), "", comment(BUS), "", "## How to test", "",
+                      project.test, "", "## External hardware", "", "None.", ""])
