@@ -6,8 +6,6 @@ ramp the reference's figures come out within 5 % (SkyWater's own, four cells, ma
 
 import numpy as np
 
-from cells.characterize.bench import QUICK
-
 LOAD = 10e-15          # F on every output
 
 
@@ -33,9 +31,8 @@ def _changes(bench, pin, level):
 def _one(bench, change):
     c = bench.conditions
     ramp = c.ramp(c.slews[len(c.slews) // 2])
-    pause = bench.settling + QUICK
-    points, start = bench.stimulus(bench.path(change.before), pause,
-                                   {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]})
+    edges = {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]}
+    loads = dict.fromkeys(bench.machine.outputs, LOAD)
+    wave, start = bench.run(change.before, edges, c.middle * ramp, ramp / 20, loads)
     stop = start + c.middle * ramp
-    wave = bench.simulator.transient(points, dict.fromkeys(bench.machine.outputs, LOAD), stop, ramp / 20)
     return abs(wave.charge(bench.machine.inputs[change.pin], start, stop)) / (c.middle * bench.volts)

@@ -5,6 +5,7 @@ import time
 from cells.characterize import delay
 from cells.characterize.bench import Bench
 from cells.characterize.capacitance import capacitance
+from cells.characterize.constraint import constraints
 from cells.characterize.leakage import leakage
 from cells.characterize.power import quiet_energy
 from cells.spice.engine import SimulationError
@@ -17,6 +18,7 @@ def characterize(cell, process, conditions):
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
         axes = {output: tried(f"{output}: largest load", _axis, bench, output) for output in cell.machine.outputs}
+        bench.pressed = {output: axis[-2] for output, axis in axes.items() if axis}
         out["largest_load"] = {output: axis[-1] for output, axis in axes.items() if axis}
         out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc, axes[arc.output])
                        for arc in cell.arcs if axes[arc.output]]
@@ -25,9 +27,12 @@ def characterize(cell, process, conditions):
                               for pin in cell.machine.inputs}
         out["quiet_energy"] = {pin: _lists(tried(f"{pin}: energy", quiet_energy, bench, pin))
                                for pin in cell.machine.inputs}
+        _without_clock(out, cell)
+        out["constraints"] = constraints(bench, tried) if cell.storage else []
+        runs, repeated = bench.simulator.runs, bench.simulator.repeated
+    with Bench(cell, process, conditions, leakage=True) as bench:
         out["leakage"] = tried("leakage", leakage, bench) or []
-        out["constraints"] = _constraints(bench, tried) if cell.storage else []
-        out["simulations"], out["repeated"] = bench.simulator.runs, bench.simulator.repeated
+    out["simulations"], out["repeated"] = runs + bench.simulator.runs, repeated + bench.simulator.repeated
     out["wall_s"] = round(time.monotonic() - started, 2)
     return out
 
@@ -66,5 +71,10 @@ def _arc(bench, arc, loads):
             "state": list(change.before.inputs), **_lists(table.values)}
 
 
-def _constraints(bench, tried):
-    return []
+
+def _without_clock(out, cell):
+    """Take what the clock's edge alone needs off the energy of the edges that it triggers: the pin has that."""
+    for arc in out["arcs"]:
+        alone = out["quiet_energy"].get(arc["pin"])
+        if arc["type"] in ("rising_edge", "falling_edge") and alone:
+            arc["energy"] = [[e - c for e in row] for row, c in zip(arc["energy"], alone[arc["pin_edge"]], strict=True)]

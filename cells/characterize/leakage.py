@@ -1,7 +1,5 @@
 """What a cell draws in every state while nothing moves."""
 
-from cells.characterize.bench import QUICK
-
 HOLD = 50e-6           # s, in which floating nodes between stacked transistors find their level
 
 
@@ -11,9 +9,7 @@ def leakage(bench):
     for state in sorted(machine.states, key=lambda s: len(s.path)):
         if (state.inputs, state.outputs) in found:
             continue
-        points, start = bench.stimulus(bench.path(state), bench.settling + QUICK, {})
-        loads = dict.fromkeys(machine.outputs, 0.0)
-        wave = bench.simulator.transient(points, loads, start + HOLD, HOLD / 50)
+        wave, _ = bench.run(state, {}, HOLD, HOLD / 50, dict.fromkeys(machine.outputs, 0.0))
         watts = sum(float(wave.current[rail][-1]) for rail in bench.supplies) * bench.volts
         watts += sum(float(wave.current[pin][-1]) * level * bench.volts
                      for pin, level in zip(machine.inputs, state.inputs, strict=True))

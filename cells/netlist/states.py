@@ -10,14 +10,16 @@ LIMIT = 20000          # states, more than any cell of a library has
 
 @dataclass(frozen=True)
 class State:
-    """inputs, outputs: levels in the order of the machine's pins ('Z' for high impedance); kept: the outputs' charge.
+    """inputs, outputs: levels in the order of the machine's pins ('Z' for high impedance); kept: the outputs' charge;
 
+    nodes: (node, level) of every node inside that is known.
     path: input vectors that lead here from an unknown state, this state's own last; one alone where the inputs say all.
     """
 
     inputs: tuple
     outputs: tuple
     kept: tuple
+    nodes: tuple
     path: tuple
 
 
@@ -66,7 +68,9 @@ class Machine:
                     blind.add(key)
                 else:
                     kept = tuple(nodes[self.switches.root[pin]] for pin in self.outputs)
-                    found[key] = State(vector, known, kept, path)
+                    inside = tuple((node, nodes[node]) for node in self.switches.inner
+                                   if node not in self.netlist.ports and nodes[node] is not None)
+                    found[key] = State(vector, known, kept, inside, path)
                 for pin in range(n):
                     after = tuple(v ^ (i == pin) for i, v in enumerate(vector))
                     settled = self.switches.settle(nodes, dict(zip(self.inputs, after, strict=True)))

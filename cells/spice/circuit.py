@@ -1,13 +1,13 @@
 """A netlist as ngspice's subcircuit, every transistor with its diffusion and stress."""
 
 
-def circuit(netlist, process, models, corner):
+def circuit(netlist, process, models, corner, leakage=False):
     """Lines: models of ``process`` (a module like flow.platforms.sky130.models) in the set ``models``, the subcircuit,
 
-    and one instance of it whose nodes have the ports' names.
+    and one instance of it whose nodes have the ports' names. leakage: with the process's models for leakage.
     """
     used = {(t.model, t.size["w"], t.size["l"]) for t in netlist.transistors}
-    lines = [*process.cards(models, corner.process, used), f".subckt {netlist.name} {' '.join(netlist.ports)}"]
+    lines = [*process.cards(models, corner.process, used, leakage), f".subckt {netlist.name} {' '.join(netlist.ports)}"]
     for t in netlist.transistors:
         size = " ".join(f"{key}={value:.6g}" for key, value in process.drawn(t.size).items())
         lines.append(f"X{t.name} {t.drain} {t.gate} {t.source} {t.bulk} {t.model} {size}")

@@ -13,6 +13,7 @@ import signal
 import subprocess
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -57,37 +58,47 @@ class Simulator:
         self._stop()
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def transient(self, stimulus, loads, stop, step, settings=None):
+    def transient(self, stimulus, loads, stop, step, nodes=(), settings=None, retry=True):
         """One run: Wave. stimulus: input -> [(s, V), ...]; loads: output -> F; stop: s; step: longest time step, s.
+
+        nodes: (node inside the cell, V) to start the search for the first operating point from; other nodes than in the
+        run before cost a new process. retry: whether Settings.retries are tried after a failure.
 
         Raises SimulationError.
         """
         wanted = settings or self.settings
+        attempts = (wanted, *wanted.retries) if retry else (wanted,)
         self.runs += 1
-        for k, attempt in enumerate((wanted, *wanted.retries)):
+        self._request = wanted, stimulus, loads, stop, step, nodes
+        for k, attempt in enumerate(attempts):
             self.repeated += k == 1
             try:
-                return self._run(attempt, stimulus, loads, stop, step)
+                return self._run(attempt, stimulus, loads, stop, step, nodes)
             except _Failed as error:
                 why = str(error)
                 self._stop()
-        raise SimulationError(f"ngspice: {why} (after {len(wanted.retries) + 1} attempts)",
-                              self.deck(wanted, stimulus, loads, stop, step))
+        raise SimulationError(f"ngspice: {why} (attempts: {len(attempts)})",
+                              self.last)
 
-    def deck(self, settings, stimulus, loads, stop, step):
-        """The same run as a netlist of its own, for `ngspice -b`."""
-        lines = self._lines(settings)
+    @property
+    def last(self):
+        """The run asked for last as a netlist of its own, for `ngspice -b`."""
+        return self._deck(*self._request)
+
+    def _deck(self, settings, stimulus, loads, stop, step, nodes):
+        lines = self._lines(settings, nodes)
         sources = [f"vin{i} {pin} 0 PWL({_pairs(stimulus[pin])})" for i, pin in enumerate(self.inputs)]
         capacitors = [f"cload{i} {pin} 0 {loads.get(pin, 0.0):.9g}" for i, pin in enumerate(self.outputs)]
         return "\n".join([*lines, *sources, *capacitors, f".tran {step:.6g} {stop:.9g} 0 {step:.6g}", ".end", ""])
 
-    def _lines(self, settings):
+    def _lines(self, settings, nodes):
         rails = [f"vrail{i} {node} 0 {volts:g}" for i, (node, volts) in enumerate(self.rails.items())]
-        return ["* made by cells", *settings.options, *self.circuit, f".temp {self.temperature:g}", *rails]
+        start = [f".nodeset v(xcell.{node})={volts:g}" for node, volts in nodes]
+        return ["* made by cells", *settings.options, *self.circuit, f".temp {self.temperature:g}", *rails, *start]
 
-    def _run(self, settings, stimulus, loads, stop, step):
+    def _run(self, settings, stimulus, loads, stop, step, nodes):
         deadline = time.monotonic() + settings.timeout
-        self._start(settings, stimulus)
+        self._start(settings, stimulus, tuple(nodes))
         for i, pin in enumerate(self.inputs):
             self._command(f"alter @vin{i}[pwl] = [ {_pairs(stimulus[pin])} ]", deadline)
         for i, pin in enumerate(self.outputs):
@@ -103,14 +114,15 @@ class Simulator:
             raise _Failed(_first_error(said))
         return wave
 
-    def _start(self, settings, stimulus):
-        if self._child is not None and self._current == settings:
+    def _start(self, settings, stimulus, nodes):
+        wanted = replace(settings, timeout=1.0), nodes
+        if self._child is not None and self._current == wanted:
             return
         self._stop()
         sources = [f"vin{i} {pin} 0 PWL({_pairs(stimulus[pin])})" for i, pin in enumerate(self.inputs)]
         capacitors = [f"cload{i} {pin} 0 1f" for i, pin in enumerate(self.outputs)]
         file = self._folder / "deck.sp"
-        file.write_text("\n".join([*self._lines(settings), *sources, *capacitors, ".end", ""]))
+        file.write_text("\n".join([*self._lines(settings, nodes), *sources, *capacitors, ".end", ""]))
         try:
             self._child = subprocess.Popen(["ngspice", "-p", file], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                            stderr=subprocess.STDOUT, start_new_session=True, cwd=self._folder,
@@ -118,10 +130,10 @@ class Simulator:
         except FileNotFoundError as error:
             raise ToolError("ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)"
                             ) from error
-        self._current = settings
-        nodes = [*(f"v({n.lower()})" for n in (*self.inputs, *self.outputs)),
+        self._current = wanted
+        saved = [*(f"v({n.lower()})" for n in (*self.inputs, *self.outputs)),
                  *(f"i(vin{i})" for i in range(len(self.inputs))), *(f"i(vrail{i})" for i in range(len(self.rails)))]
-        said = self._command("set filetype=binary\nsave " + " ".join(nodes), time.monotonic() + 60 + settings.timeout)
+        said = self._command("set filetype=binary\nsave " + " ".join(saved), time.monotonic() + 60 + settings.timeout)
         if wrong := _WRONG.search(said):
             raise _Failed(wrong[0].strip())
 
