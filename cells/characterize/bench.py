@@ -40,6 +40,7 @@ class Bench:
                                    conditions.corner.temperature, conditions.settings)
         self.tail = {}          # output -> [s, s a farad]: the slowest seen
         self.pressed = {}       # output -> F under which constraints are measured
+        self.edges = {}         # what `edge` has measured
         self.stubborn = set()   # states that the operating point does not find
 
     def __enter__(self):
@@ -98,7 +99,16 @@ class Bench:
         return points, start
 
     def edge(self, change, output, slew, load):
-        """Edge of ``output`` (a name) when ``change`` happens with the input slew ``slew`` s and ``load`` F on it."""
+        """Edge of ``output`` (a name) when ``change`` happens with the input slew ``slew`` s and ``load`` F on it.
+
+        Measured once, then known. Raises SimulationError when the output does not arrive.
+        """
+        key = change, output, slew, load
+        if key not in self.edges:
+            self.edges[key] = self._edge(*key)
+        return self.edges[key]
+
+    def _edge(self, change, output, slew, load):
         ramp = self.conditions.ramp(slew)
         pin, rising = self.machine.inputs[change.pin], bool(change.after.inputs[change.pin])
         k = self.machine.outputs.index(output)

@@ -2,7 +2,9 @@
 
 import time
 
-from cells.characterize import delay
+import numpy as np
+
+from cells.characterize import delay, grid
 from cells.characterize.bench import Bench
 from cells.characterize.capacitance import capacitance
 from cells.characterize.constraint import constraints
@@ -17,10 +19,12 @@ def characterize(cell, process, conditions):
     out = {"name": cell.name, "failed": [], "slews": conditions.slews}
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
-        axes = {output: tried(f"{output}: largest load", _axis, bench, output) for output in cell.machine.outputs}
-        bench.pressed = {output: axis[-2] for output, axis in axes.items() if axis}
-        out["largest_load"] = {output: axis[-1] for output, axis in axes.items() if axis}
-        out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc, axes[arc.output])
+        axes = {output: tried(f"{output}: axes", _axes, bench, output) for output in cell.machine.outputs}
+        bench.pressed = {output: axis[1][-2] for output, axis in axes.items() if axis}
+        out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
+        out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
+        out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,
+                             *axes[arc.output][:2])
                        for arc in cell.arcs if axes[arc.output]]
         out["arcs"] = [arc for arc in out["arcs"] if arc]
         out["capacitance"] = {pin: tried(f"{pin}: capacitance", capacitance, bench, pin)
@@ -55,17 +59,19 @@ def _lists(arrays):
     return arrays and {name: values.tolist() for name, values in arrays.items()}
 
 
-def _axis(bench, output):
-    """Loads of ``output``: to where the slower of its edges reaches the longest slew."""
+def _axes(bench, output):
+    """(slews, loads, interpolation error) of ``output``; the loads end where the slower edge reaches the longest slew."""
     changes = [arc.changes[0] for arc in bench.cell.arcs
                if arc.output == output and not arc.type.startswith("three_state")]
-    edges = {change.after.outputs[bench.machine.outputs.index(output)]: change for change in changes}
-    return delay.load_axis(bench.conditions, delay.largest_load(bench, edges.values(), output))
+    number = bench.machine.outputs.index(output)
+    edges = list({change.after.outputs[number]: change for change in changes}.values())
+    loads = delay.load_axis(bench.conditions, delay.largest_load(bench, edges, output))
+    return grid.refined(bench, edges, output, loads)
 
 
-def _arc(bench, arc, loads):
+def _arc(bench, arc, slews, loads):
     change = delay.slowest(bench, arc, loads[len(loads) // 2])
-    table = delay.table(bench, change, arc.output, loads)
+    table = delay.table(bench, change, arc.output, loads, slews)
     return {"pin": arc.pin, "pin_edge": arc.pin_edge, "output": arc.output, "edge": arc.edge, "type": arc.type,
             "sense": arc.sense, "slews": table.slews, "loads": table.loads,
             "state": list(change.before.inputs), **_lists(table.values)}
@@ -74,7 +80,9 @@ def _arc(bench, arc, loads):
 
 def _without_clock(out, cell):
     """Take what the clock's edge alone needs off the energy of the edges that it triggers: the pin has that."""
+    slews = out["slews"]
     for arc in out["arcs"]:
         alone = out["quiet_energy"].get(arc["pin"])
         if arc["type"] in ("rising_edge", "falling_edge") and alone:
-            arc["energy"] = [[e - c for e in row] for row, c in zip(arc["energy"], alone[arc["pin_edge"]], strict=True)]
+            clock = np.interp(arc["slews"], slews, alone[arc["pin_edge"]])
+            arc["energy"] = (np.array(arc["energy"]) - clock[:, None]).tolist()

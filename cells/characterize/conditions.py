@@ -14,7 +14,8 @@ class Conditions:
     lower, upper, middle: of slews and delays, SkyWater's 20 %, 80 %, 50 % without derating. slews: the input slews of a
     table, shortest first. loads: points of its load axis. least_load: its first. longest_slew: at the output, where
     the load axis ends. constraint_slews: of setup and hold tables. degrade: by how much the clock-to-output delay may
-    grow at the least setup or hold time.
+    grow at the least setup or hold time. states: in how many states at most something is measured to choose one. bend:
+    by how much a value between two points may be wrong before a point is added; extra: points added at most.
     """
 
     corner: Corner
@@ -29,6 +30,8 @@ class Conditions:
     constraint_slews: tuple = (0.01e-9, 0.5e-9, 1.5e-9)
     degrade: float = 0.1
     states: int = 4
+    bend: float = 0.015
+    extra: int = 2
     settings: Settings = field(default_factory=lambda: Settings(reltol=1e-4, method="gear", steps=50))
 
     def __post_init__(self):
@@ -40,6 +43,8 @@ class Conditions:
                 raise ParameterError(f"{name} = {values}: must be above 0 and rise")
         if self.loads < 2:
             raise ParameterError(f"loads = {self.loads}: must be 2 or more")
+        if self.extra < 0 or self.bend <= 0:
+            raise ParameterError(f"extra, bend = {self.extra}, {self.bend}: must be 0 or more, above 0")
         if not 0 < self.degrade < 1:
             raise ParameterError(f"degrade = {self.degrade}: must be between 0 and 1")
 
