@@ -93,6 +93,13 @@ layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_div
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
 
+CELLS_OPTIONS := LIB CORNER CELLS MODELS NETLIST REFERENCE WORKERS
+cells_arguments = $(foreach o,$(CELLS_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o)))))
+
+.PHONY: cells
+cells: $(LAYOUT_READY)  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib (needs ngspice: make tools)
+	@$(PY) -m cells $(cells_arguments)
+
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys and z3 from Debian's packages (needs root)
 	@bash flow/setup/tools.sh

@@ -1,0 +1,98 @@
+"""A library at a corner: jobs, files, summary."""
+
+import json
+import subprocess
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+from cells import sources
+from cells.characterize.cell import characterize
+from cells.liberty import build, compare, reference, write
+from cells.netlist.check import check
+from cells.netlist.function import understand
+from cells.netlist.spice import parse
+from flow import jobs
+from flow.files import staged
+from models.parameters import ParameterError
+
+CODE = Path(__file__).resolve().parent
+
+
+def run(library, conditions, wanted, netlist, out, against, workers, started):
+    """Characterize and write <out>/<library>/<corner>.lib, .lef, .v and summary.json: the summary.
+
+    wanted: names, or None for all. netlist: as in sources.NETLISTS. against: folder of SkyWater's tables, or None.
+    """
+    process, name = sources.process(library), conditions.corner.name
+    everything = sources.names(library)
+    if unknown := sorted(set(wanted or ()) - set(everything)):
+        raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
+    known = reference.folder(against) if against else None
+    found = [sources.source(library, cell, netlist) for cell in wanted or everything]
+    cells = [cell_of(source, process) for source in found]
+    folder = Path(out) / library
+    todo = [job(source, conditions, process) for source in found]
+    measured = jobs.run(todo, folder / "jobs", f"{library} {name}", workers)
+    tree = build.library(f"{library}__{name}", conditions,
+                         [(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)], process)
+    summary = _summary(cells, measured, tree, known, time.monotonic() - started)
+    with staged(folder) as part:
+        (part / f"{name}.lib").write_text(write.text(tree) + "\n")
+        (part / f"{library}.lef").write_text("\n".join(_macros(s.lef) for s in found) + "\nEND LIBRARY\n")
+        (part / f"{library}.v").write_text("\n".join(s.verilog for s in found))
+        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+    for measure in measured:
+        for k, failure in enumerate(measure["failed"]):
+            file = folder / "failed" / f"{measure['name']}.{k}.sp"
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(f"* {failure['what']}: {failure['why']}\n{failure['deck']}")
+    return summary
+
+
+def cell_of(source, process):
+    """Cell of a Source, checked. Raises ParameterError."""
+    netlist = parse(source.netlist, origin=source.name)
+    rails = [rail for rail in process.SUPPLIES if rail in netlist.ports]
+    check(netlist, process.POLARITY, rails)
+    return understand(netlist, process.POLARITY, process.SUPPLIES)
+
+
+def job(source, conditions, process):
+    """The job that characterizes ``source``; another netlist, corner, setting, model, ngspice or code is another."""
+    code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
+    name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
+    return jobs.Job(name, _measure, (source, conditions, process.__name__),
+                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), _ngspice(), *code))
+
+
+def _ngspice():
+    try:
+        return subprocess.run(["ngspice", "--version"], capture_output=True, text=True, check=False).stdout
+    except FileNotFoundError:
+        from flow.simulate.process import ToolError
+        raise ToolError("ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)") from None
+
+
+def _measure(source, conditions, process):
+    from importlib import import_module
+    module = import_module(process)
+    return characterize(cell_of(source, module), module, conditions)
+
+
+def _macros(lef):
+    """The MACROs of a LEF file alone."""
+    start, end = lef.find("MACRO"), lef.rfind("END LIBRARY")
+    return lef[start:end if end > 0 else None].rstrip()
+
+
+def _summary(cells, measured, tree, known, seconds):
+    failed = [f"{m['name']}: {f['what']}: {f['why']}" for m in measured for f in m["failed"]]
+    summary = {"cells": len(cells), "arcs": sum(len(m["arcs"]) for m in measured),
+               "constraints": sum(len(m["constraints"]) for m in measured),
+               "simulations": sum(m["simulations"] for m in measured),
+               "repeated": sum(m["repeated"] for m in measured), "failed": failed, "wall_s": round(seconds, 1),
+               "cell_s": {m["name"]: m["wall_s"] for m in measured}}
+    if known:
+        summary |= compare.summary(compare.library(tree, known))
+    return summary
