@@ -84,10 +84,18 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [PDK=sky130 UTILIZATION=0.6 LIBERTY=file]
+layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.6 LIBERTY=file]
+ifeq ($(BACKEND),openroad)
+	@$(PY) -m flow.openroad $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
+else
 	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
 		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) \
 		$(if $(LIBERTY),--liberty $(call quoted,$(LIBERTY)))
+endif
+
+.PHONY: handoff
+handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
+	@$(PY) -m flow.handoff $(or $(DESIGN),quad_divider)
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)

@@ -34,11 +34,11 @@ def main(argv=None):
         check_folder("out", folder)
         written = write(chosen, known, folder)
         if options.write_only:
-            print(f"{folder}: {', '.join(map(str, written))}")
+            print(f"{folder}: {', '.join(written)}")
             return 0
         if missing_tools():
             raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {folder}: "
-                            + ", ".join(map(str, written)))
+                            + ", ".join(written))
         root = pdk_root(known)
         with Steps([stage.log.removesuffix(".log") for stage in stages(chosen.top)]) as bar:
             found = run(folder, chosen.top, known, root, bar.note)

@@ -15,7 +15,7 @@ def librelane(design, known, verilog):
     """Files of the design: dict path -> text."""
     utilization = round(100 * design.utilization * known.utilization_share)
     values = {
-        "DESIGN_NAME": design.top, "VERILOG_FILES": f"dir::{design.top}.v", "CLOCK_PORT": design.clock.port,
+        "DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.v]", "CLOCK_PORT": design.clock.port,
         "CLOCK_PERIOD": design.clock.period_ns, "PNR_SDC_FILE": "dir::pnr.sdc", "SIGNOFF_SDC_FILE": "dir::signoff.sdc",
         "FP_SIZING": "relative", "FP_CORE_UTIL": utilization, "FP_ASPECT_RATIO": 1,
         "PL_TARGET_DENSITY_PCT": min(95, utilization + 15), "MAX_FANOUT_CONSTRAINT": 16}

@@ -4,27 +4,16 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from models.parameters import ParameterError
+from flow.platforms.sky130.tinytapeout import CONFIG, SIZES_UM
+from models.parameters import ParameterError, check_choice
 
 TOPS = Path(__file__).parent / "tops"
 BUS = "tt_bytes.v"
-# Die in um of so many tiles (tile_sizes.yaml of tt-support-tools), its margins in sites and rows (its DEF templates)
-TILES = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76)}
-SITE_UM, ROW_UM, MARGIN_SITES, MARGIN_ROWS = 0.46, 2.72, 12, 2
-FULL = 0.60             # cells' area by core area that its default density is for
-
-# src/config.json of its template: what it asks projects not to change
-FIXED = {"PL_RESIZER_HOLD_SLACK_MARGIN": 0.1, "GRT_RESIZER_HOLD_SLACK_MARGIN": 0.05, "RUN_LINTER": 1,
-         "LINTER_INCLUDE_PDK_MODELS": 1, "RUN_KLAYOUT_XOR": 0, "RUN_KLAYOUT_DRC": 0,
-         "DESIGN_REPAIR_BUFFER_OUTPUT_PORTS": 0, "TOP_MARGIN_MULT": 1, "BOTTOM_MARGIN_MULT": 1, "LEFT_MARGIN_MULT": 6,
-         "RIGHT_MARGIN_MULT": 6, "FP_SIZING": "absolute", "GRT_ALLOW_CONGESTION": 1, "FP_IO_HLENGTH": 2,
-         "FP_IO_VLENGTH": 2, "FP_PDN_VPITCH": 38.87, "RUN_CTS": 1, "FP_PDN_MULTILAYER": 0, "RT_MAX_LAYER": "met4",
-         "MAGIC_DEF_LABELS": 0, "MAGIC_WRITE_LEF_PINONLY": 1}
 
 
 @dataclass(frozen=True)
 class Project:
-    """top: its module, file <top>.v in tops/. tiles: of TILES. ui, uo, uio: names of the pins 0..7, '' for unused."""
+    """top: its module, file <top>.v in tops/. tiles: of SIZES_UM. ui, uo, uio: names of the pins 0..7, '' for unused."""
 
     top: str
     title: str
@@ -36,19 +25,12 @@ class Project:
     test: str
 
     def __post_init__(self):
-        if self.tiles not in TILES:
-            raise ParameterError(f"tiles = {self.tiles!r}: must be one of {', '.join(TILES)}")
+        check_choice("tiles", self.tiles, tuple(SIZES_UM))
         if not self.top.startswith("tt_um_"):
             raise ParameterError(f"top = {self.top!r}: must begin with tt_um_")
         for name in ("ui", "uo", "uio"):
             if len(getattr(self, name)) != 8:
                 raise ParameterError(f"{name} = {len(getattr(self, name))} pins: must be 8")
-
-    def core_um2(self):
-        """Area for cells in its tiles."""
-        width, height = TILES[self.tiles]
-        columns, rows = round(width / SITE_UM) - MARGIN_SITES, round(height / ROW_UM) - MARGIN_ROWS
-        return columns * SITE_UM * rows * ROW_UM
 
 
 _DATA = tuple(f"data {k}" for k in range(8))
@@ -75,8 +57,7 @@ def sources(project, design):
 
 def project_files(project, design, verilog):
     """Files of the project: dict path -> text. verilog: of the Design."""
-    config = {"PL_TARGET_DENSITY_PCT": round(100 * FULL), "CLOCK_PERIOD": design.clock.period_ns,
-              "CLOCK_PORT": "clk", **FIXED}
+    config = {"CLOCK_PERIOD": design.clock.period_ns, "CLOCK_PORT": "clk", **CONFIG}
     texts = dict(zip(sources(project, design), ((TOPS / f"{project.top}.v").read_text(), (TOPS / BUS).read_text(),
                                                 verilog), strict=True))
     return {"tinytapeout/info.yaml": info(project, design), "tinytapeout/docs/info.md": page(project, texts),

@@ -1,9 +1,9 @@
 """All that a design's run needs, in one folder: Verilog, SDC, Tcl, and projects for flow-scripts and LibreLane."""
 
-import shutil
 import sys
 from pathlib import Path
 
+from flow.files import staged
 from flow.layout.constraints import sdc
 from flow.simulate.process import ToolError, finish
 
@@ -25,17 +25,15 @@ def rtl(design, folder):
 
 
 def write(design, known, folder):
-    """Write the files of ``design`` for the process ``known`` (OpenRoad) into ``folder``; their paths, sorted."""
+    """Write the files of ``design`` for the process ``known`` (OpenRoad) into ``folder``; returns their names."""
     folder = Path(folder)
     verilog = rtl(design, folder)
     files = {f"{design.top}.sdc": sdc(design, propagated=False), "design.tcl": variables(design, known),
              **orfs(design, known, verilog), **librelane(design, known, verilog)}
     if design.name in PROJECTS:
         files |= project_files(PROJECTS[design.name], design, verilog)
+    files |= {script.name: script.read_text() for script in SCRIPTS.glob("*.tcl")}
     for name, text in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    for script in sorted(SCRIPTS.glob("*.tcl")):
-        shutil.copyfile(script, folder / script.name)
-    return sorted(path.relative_to(folder) for path in folder.rglob("*") if path.is_file())
+        with staged((folder / name).parent) as part:
+            (part / Path(name).name).write_text(text)
+    return [f"{design.top}.v", *sorted(files)]

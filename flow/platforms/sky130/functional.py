@@ -13,6 +13,8 @@ LIBRARY = "sky130_fd_sc_hd"
 NOT_LOGIC = ("decap", "diode", "fill", "lpflow", "macro", "probe", "tap", "conb", "df", "dl", "edf", "sdf", "sdl", "sedf",
              "einv", "ebuf", "clkdly")
 FLIP_FLOP, CONSTANT = "dfxtp_1", "conb_1"
+THRESHOLDS = {"input_threshold_pct": 50, "output_threshold_pct": 50, "slew_lower_threshold_pct": 20,
+              "slew_upper_threshold_pct": 80}
 GATES = {"and": "({})", "or": "({})", "xor": "({})", "nand": "!({})", "nor": "!({})", "xnor": "!({})", "buf": "({})",
          "not": "!({})"}
 SIGNS = {"and": "&", "nand": "&", "or": "|", "nor": "|", "xor": "^", "xnor": "^", "buf": "", "not": ""}
@@ -41,7 +43,8 @@ def area(cell):
 def functions(verilog):
     """dict output -> (Liberty function, inputs) of a combinational cell's functional Verilog; {} of any other."""
     outputs, inputs = (re.findall(rf"(?m)^\s*{word}\s+(\w+)\s*;", verilog) for word in ("output", "input"))
-    nets, left = {pin: pin for pin in inputs}, re.findall(r"(?m)^\s*(?!module)(\w+)\s+\w+\s*\(\s*(\w[\w\s,]*?)\s*\);", verilog)
+    nets = {pin: pin for pin in inputs}
+    left = re.findall(r"(?m)^\s*(?!module)(\w+)\s+\w+\s*\(\s*(\w[\w\s,]*?)\s*\);", verilog)
     while left:
         ready = [gate for gate in left if all(net in nets for net in re.split(r"\s*,\s*", gate[1])[1:])]
         if not ready:
@@ -62,7 +65,8 @@ def functions(verilog):
 def liberty():
     """Text of a Liberty file: combinational cells of one output, one flip-flop, the constants."""
     lines = [f"library({LIBRARY}_functional) {{", " delay_model : table_lookup;", ' time_unit : "1ns";',
-             " capacitive_load_unit(1, pf);"]
+             " capacitive_load_unit(1, pf);",
+             *(f" {name}_{edge} : {percent};" for edge in ("rise", "fall") for name, percent in THRESHOLDS.items())]
     for path in sorted((folder() / "cells").glob("*/*.functional.v")):
         cell = path.name.removeprefix(f"{LIBRARY}__").removesuffix(".functional.v")
         if cell.startswith(NOT_LOGIC) or not cell.rpartition("_")[2].isdigit():
