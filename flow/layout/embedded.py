@@ -9,6 +9,7 @@ from flow.simulate.process import ToolError, finish
 from models.parameters import ParameterError, check_real
 
 from .constraints import sdc
+from .steps.antenna import Antenna, AntennaParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
@@ -20,9 +21,10 @@ from .steps.lvs import Lvs
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.sta import Sta, StaParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
-from .steps.synthesis import Synthesis, SynthesisParameters
+from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
 
 ROOT = Path(__file__).parents[2]
+FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
 STEP, LEAST = 0.03, 0.20        # utilization: of one try less than of the one before; of the last
 
 
@@ -64,6 +66,7 @@ def files(design, options, folder):
 def front(design, options):
     """The steps ahead of a floorplan."""
     return [Library(LibraryParameters(options.pdk)),
+            TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT)) if options.liberty else
             Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
 
 
@@ -83,7 +86,7 @@ def back(design, options):
              if design.netlist_names else [GateFrames()])
     timing = [Sta(StaParameters(design.top, options.corner, clock.period_ns))] if options.liberty else []
     return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
-            Extraction(ExtractionParameters(options.pdk)), *timing]
+            Antenna(AntennaParameters(options.pdk)), Extraction(ExtractionParameters(options.pdk)), *timing]
 
 
 def layout(design, options, runner):

@@ -25,6 +25,7 @@ def summarize(design, options, runner, tried):
         "wire_um": metric("place_route", "wire_um"), "open_nets": metric("place_route", "open_segments"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
+        "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("antenna", "density"),
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing(options), "wns_ns": _by_corner(options, metric("sta", "wns_ns")),
         "whs_ns": _by_corner(options, metric("sta", "whs_ns")), "f_max_mhz": metric("sta", "f_max_mhz"),

@@ -11,7 +11,8 @@ PROCESSES = ("sky130", "ihp-sg13g2")
 @dataclass(frozen=True)
 class Wire:
     """A wiring layer: its name in PDKMaster, GDS layer and datatype, capacitance to the ground plane (aF/um2, aF/um
-    of edge), resistance (Ohm per square)."""
+    of edge), resistance (Ohm per square), thickness (um), and the most side wall by gate area (antenna_ratio), to
+    which every um2 of diffusion on the net adds as much again."""
 
     name: str
     layer: int
@@ -19,6 +20,8 @@ class Wire:
     area_af_um2: float
     edge_af_um: float
     ohm: float
+    thickness_um: float
+    antenna_ratio: float
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,8 @@ class Embedded:
     function for empty places. wires: from the cells' rails up; cuts[i] joins wires[i] and wires[i + 1]; straps run on
     the last wire, strap_um wide, and meet a rail over rail_overlap_um. pin_pitch_um: tracks of the pins' two layers,
     'horizontal' (west and east) and 'vertical'. label_datatype,
-    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop.
+    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop. poly,
+    active, contact: (GDS layer, datatype), the last between the first two and the lowest wire.
     """
 
     name: str
@@ -61,6 +65,9 @@ class Embedded:
     label_datatype: int
     pin_datatype: int
     blockage_layer: int
+    poly: tuple
+    active: tuple
+    contact: tuple
 
 
 def process(pdk):

@@ -2,7 +2,7 @@
 
 import importlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 
 from flow.platforms.embedded import process
 from flow.simulate.process import run
@@ -28,7 +28,8 @@ class Library(Step):
     name = "library"
     inputs = {"platform": "platform"}
     outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
-               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v", "rules": "rules.json"}
+               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v", "rules": "rules.json",
+               "geometry": "geometry.json"}
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
@@ -41,6 +42,7 @@ class Library(Step):
         description = importlib.import_module(f"{known.package}.pdkmaster")
         library = make()
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
+        outputs["geometry"].write_text(json.dumps(geometry(known), indent=1) + "\n")
         outputs["rules"].write_text(json.dumps({"space_um": {
             wire.name: float(description.tech.primitives[wire.name].min_space) for wire in known.wires}}) + "\n")
         _coriolis(outputs["coriolis"], description, library)
@@ -51,6 +53,15 @@ class Library(Step):
         outputs["liberty"].write_text(liberty.liberty(ports, areas))
         run(["yosys", "-q", "-p", f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
         return {"cells": len(cells)}
+
+
+def geometry(known):
+    """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
+    made = asdict(known)
+    for wire in made["wires"]:
+        for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio"):
+            del wire[name]
+    return made
 
 
 def _area(cell):

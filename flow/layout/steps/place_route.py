@@ -50,7 +50,7 @@ class PlaceRoute(Step):
 
     name = "place_route"
     inputs = {"netlist": "synthesis.netlist", "floorplan": "floorplan.floorplan", "coriolis": "library.coriolis",
-              "platform": "platform", "scripts": "coriolis_scripts"}
+              "geometry": "library.geometry", "scripts": "coriolis_scripts"}
     uses = (netlist_module,)
     outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json", "log": "coriolis.log"}
     Parameters = PlaceRouteParameters

@@ -24,7 +24,7 @@ class StreamOut(Step):
 
     name = "stream_out"
     inputs = {"gds": "place_route.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
-              "cells": "library.spice", "rules": "library.rules", "platform": "platform"}
+              "cells": "library.spice", "rules": "library.rules", "geometry": "library.geometry"}
     outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
     Parameters = StreamOutParameters
     metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": ""}

@@ -13,7 +13,7 @@ SCRIPT = """
 read_verilog -sv {rtl}
 synth -flatten -nofsm -top {top}
 dfflibmap -liberty {liberty}
-abc -D {period_ps:.0f} -liberty {liberty} -script {mapping}
+abc -D {period_ps:.0f} -liberty {timing} -script {mapping}
 setundef -zero
 hilomap -hicell one_x1 one -locell zero_x1 zero
 opt_clean -purge
@@ -49,11 +49,13 @@ class Synthesis(Step):
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["netlist"].parent
         files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "script")}
-        limit = [f"buffer -c -N {p.fan_out}", "topo"] if p.fan_out else []
+        limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {p.period_ns * 1000:.0f}",
+                 f"dnsize -D {p.period_ns * 1000:.0f}"] if p.fan_out else []
         files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
                                                *limit, "print_stats"]) + "\n")
         files["script"].write_text(SCRIPT.format(
-            rtl=inputs["rtl"], top=p.top, liberty=inputs["liberty"], period_ps=p.period_ns * 1000, **files))
+            rtl=inputs["rtl"], top=p.top, liberty=inputs["liberty"],
+            timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
         run(["yosys", "-q", "-s", files["script"]])
         netlist = Netlist.from_yosys(files["json"], p.top, ("buf_x1", "i", "q"))
         netlist.write(outputs["netlist"])
@@ -62,3 +64,9 @@ class Synthesis(Step):
         files["json"].unlink()
         return {"cells": len(netlist.instances), "cell_area_um2": float(area),
                 "flip_flops": sum(is_register(i.cell) for i in netlist.instances)}
+
+
+class TimedSynthesis(Synthesis):
+    """With a characterized Liberty: the mapper sizes and buffers by its tables."""
+
+    inputs = Synthesis.inputs | {"timing": "timing"}
