@@ -95,7 +95,7 @@ endif
 
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
-	@$(PY) -m flow.handoff $(or $(DESIGN),quad_divider)
+	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider)
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)

@@ -5,7 +5,7 @@ import re
 
 from models.parameters import ParameterError
 
-CELL = re.compile(r'^\s*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
+CELL = re.compile(r'^[ \t]*cell\s*\(\s*"?([\w.$]+)"?\s*\)\s*\{', re.M)
 
 
 def without(text, patterns):
@@ -24,5 +24,5 @@ def _end(text, match):
     for brace in re.compile(r'"(?:[^"\\]|\\.)*"|[{}]').finditer(text, match.end()):
         depth += {"{": 1, "}": -1}.get(brace[0], 0)
         if not depth:
-            return brace.end()
+            return brace.end() + text.startswith("\n", brace.end())
     raise ParameterError(f"liberty = cell {match[1]}: must end with a brace")

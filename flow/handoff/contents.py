@@ -1,0 +1,79 @@
+"""What the archive holds, and where each part comes from."""
+
+import json
+from importlib.metadata import version
+from pathlib import Path
+
+from flow.layout.netlist import SUPPLIES
+from flow.layout.summary import broken
+from models.parameters import ParameterError
+
+from .archive import sha256
+from .pages import datasheet, pinout
+from .power import powered
+
+WAIVERS = Path(__file__).parent / "waivers.json"
+# suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
+REQUIRED = {"gds": "layout", "lef": "layout", "lib": "timing", "v": "netlist", "sdc": "timing",
+            "drc.lyrdb": "reports", "lvsdb": "reports"}
+OPTIONAL = {"spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
+            "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
+            "sta.txt": ("reports", "no static timing was run")}
+
+
+class Broken(RuntimeError):
+    """The layout breaks rules that no waiver covers; one line each."""
+
+
+def waived(design, path=WAIVERS):
+    """Waivers of a design: list of {design, rule, reason}. Raises ParameterError for one without a reason."""
+    found = [waiver for waiver in json.loads(Path(path).read_text()) if waiver["design"] == design.name]
+    for waiver in found:
+        if not waiver.get("reason"):
+            raise ParameterError(f"waiver of {waiver['rule']} = no reason: must have one")
+    return found
+
+
+def contents(design, folder, waivers):
+    """dict name -> bytes, without the manifest; and dict of what is missing -> what stands in for it.
+
+    Raises ParameterError that names every required file that is not there, Broken for rules not waived.
+    """
+    folder = Path(folder)
+    sources = {"reports/summary.json": folder / "summary.json", "reports/report.html": folder / "report.html",
+               f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
+               **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}"
+                  for suffix, place in REQUIRED.items()}}
+    missing = sorted(path.name if path.parent == folder else f"rtl/{path.name}"
+                     for path in sources.values() if not path.is_file())
+    if missing:
+        raise ParameterError(f"{folder} = without {', '.join(missing)}: must be a finished layout "
+                             f"(make layout DESIGN={design.name})")
+    summary = json.loads(sources["reports/summary.json"].read_text())
+    rules = {waiver["rule"] for waiver in waivers}
+    lines = [line for line in broken(summary) if line.partition(" = ")[0] not in rules]
+    if lines:
+        raise Broken("\n".join(lines))
+    files, substitutes = {name: path.read_bytes() for name, path in sources.items()}, {}
+    for suffix, (place, substitute) in OPTIONAL.items():
+        path = folder / f"{design.name}.{suffix}"
+        if path.is_file():
+            files[f"{place}/{path.name}"] = path.read_bytes()
+        else:
+            substitutes[suffix] = substitute
+    lef = files[f"layout/{design.name}.lef"].decode()
+    netlist = files[f"netlist/{design.name}.v"].decode()
+    files |= {f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
+              "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
+              "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode()}
+    return files, substitutes
+
+
+def manifest(design, files, substitutes):
+    """manifest.json as bytes: every file's size and SHA-256, versions of the tools, what stands in for what."""
+    summary = json.loads(files["reports/summary.json"])
+    return (json.dumps({
+        "design": design.name, "top": design.top, "pdk": summary.get("pdk"), "backend": summary.get("backend"),
+        "versions": {"talbot": version("talbot"), **summary.get("tools", {})}, "substitutes": substitutes,
+        "files": {name: {"bytes": len(data), "sha256": sha256(data)} for name, data in sorted(files.items())}},
+        indent=1) + "\n").encode()
