@@ -38,7 +38,7 @@ PROJECTS = {
     "quad_divider": Project(
         "tt_um_talbot_divider", "Quadrature divider",
         "Octant, ratio, amplitude and 8-bit phase of a signed 9-bit vector, by a radix-4 division", "1x1", _DATA,
-        tuple(f"result {k}" for k in range(8)), ("strobe", "is address", "", "", "", "", "ready", "valid"),
+        tuple(f"result {k}" for k in range(8)), ("strobe", "is address", "", "", "", "", "busy", "valid"),
         "Write the address 0, then the bytes of x, y and their signs, then any byte to start. When valid is high, "
         "address 0 shows the phase: x = 100, y = 100 gives 32, an eighth of a turn."),
     "amp_ctrl": Project(

@@ -11,7 +11,7 @@ module tt_um_talbot_divider
   input  wire [7:0] ui_in,      // data
   output reg  [7:0] uo_out,
   input  wire [7:0] uio_in,     // 0 strobe, 1 is_address
-  output wire [7:0] uio_out,    // 7 valid, 6 ready for a start
+  output wire [7:0] uio_out,    // 7 valid, 6 busy
   output wire [7:0] uio_oe,
   input  wire       ena,
   input  wire       clk,
@@ -66,7 +66,7 @@ module tt_um_talbot_divider
     endcase
   end
 
-  assign uio_out = {valid & ~waiting, ready & ~waiting, 6'b0};
+  assign uio_out = {valid & ~waiting, waiting | ~(valid | ready), 6'b0};
   assign uio_oe = 8'b1100_0000;
 
   wire unused = &{ena, uio_in[7:2], 1'b0};
