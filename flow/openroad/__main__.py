@@ -2,19 +2,23 @@
 
 import argparse
 import json
+import shutil
 import sys
 from pathlib import Path
 
-from flow.files import check_folder
+from flow.files import check_folder, staged
 from flow.layout.design import DESIGNS, design
 from flow.platforms.openroad import process
 from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 from talbot.progress import Steps
 
+from .merge import merge
 from .stages import INSTALL, missing_tools, pdk_root, run, stages
 from .summary import broken, summarize
 from .write import ROOT, write
+
+RESULTS = ("lef", "v", "power.v", "spef", "sdc")       # of the names in the contract of flow.layout
 
 
 def arguments():
@@ -40,10 +44,16 @@ def main(argv=None):
             raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {folder}: "
                             + ", ".join(written))
         root = pdk_root(known)
-        with Steps([stage.log.removesuffix(".log") for stage in stages(chosen.top)]) as bar:
+        with Steps([stage.log.removesuffix(".log") for stage in stages(chosen.top)] + ["gds"]) as bar:
             found = run(folder, chosen.top, known, root, bar.note)
-        summary = summarize(chosen, known, found, folder)
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+            bar.note("gds")
+            with staged(folder) as part:
+                box = merge(folder / f"{chosen.top}.def", [root / known.tech_lef, root / known.cell_lef],
+                            root / known.cell_gds, known, part / f"{chosen.name}.gds")
+                for suffix in RESULTS:
+                    shutil.copyfile(folder / f"{chosen.top}.{suffix}", part / f"{chosen.name}.{suffix}")
+                summary = summarize(chosen, known, found, folder, box)
+                (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     except (ParameterError, ToolError, OSError) as error:
         print(f"flow.openroad: {error}", file=sys.stderr)
         return 2

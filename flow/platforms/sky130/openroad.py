@@ -27,4 +27,4 @@ PROCESS = OpenRoad(
     dont_use=("sky130_fd_sc_hd__probe*", "sky130_fd_sc_hd__lpflow*"),
     gds={"li1": (67, 20), "mcon": (67, 44), "met1": (68, 20), "via": (68, 44), "met2": (69, 20), "via2": (69, 44),
          "met3": (70, 20), "via3": (70, 44), "met4": (71, 20), "via4": (71, 44), "met5": (72, 20)},
-    pin_datatype=16, label_datatype=5)
+    outline=(235, 4), pin_datatype=16, label_datatype=5)
