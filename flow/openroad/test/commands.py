@@ -4,7 +4,7 @@ README: src/<module>/README.md of The-OpenROAD-Project/OpenROAD. Tcl: a command'
 OpenSTA manual. Flow: test/flow.tcl and test/sky130hd/sky130hd.pdn.tcl there, which its own regressions run.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
@@ -96,9 +96,9 @@ COMMANDS = {
     "check_antennas": Command("Tcl, ant; Flow", _words("-report_file -net"), _words("-report_violating_nets -verbose"),
                               says="0"),
     "define_process_corner": Command("Tcl, rcx; Flow", _words("-ext_model_index"), (), 1, 1),
-    "extract_parasitics": Command("rcx README", _words(
-        "-ext_model_file -corner_cnt -max_res -coupling_threshold -cc_model -context_depth"),
-        _words("-lef_res -no_merge_via_res")),
+    "set_extraction_rules_file": Command("flow-scripts, final_report.tcl", (), (), 1, 1),
+    "extract_parasitics": Command("rcx README", _words("-corner_cnt -max_res -coupling_threshold -cc_model -context_depth"),
+                                  _words("-lef_res -no_merge_via_res")),
     "write_spef": Command("rcx README", _words("-net_id"), (), 1, 1, "argument"),
     "read_spef": Command("STA", _words("-path -corner -reduce_to"), _words("-min -max -keep_capacitive_coupling"), 1, 1),
     "report_design_area": Command("rsz README"),
@@ -115,3 +115,9 @@ COMMANDS = {
     "set_propagated_clock": Command("STA", (), (), 1, 1),
     "all_clocks": Command("STA", says="clk"),
 }
+
+# What older releases have in place of these; None: not there
+OLDER = COMMANDS | {
+    "set_extraction_rules_file": None,
+    "extract_parasitics": replace(COMMANDS["extract_parasitics"],
+                                  keys=(*COMMANDS["extract_parasitics"].keys, "-ext_model_file"))}

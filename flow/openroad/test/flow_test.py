@@ -11,6 +11,7 @@ from flow.openroad import __main__ as command
 from flow.openroad.liberty import without
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
 from flow.openroad.test import stub
+from flow.openroad.test.commands import COMMANDS, OLDER
 from flow.openroad.variables import variables
 from flow.openroad.write import write
 from flow.platforms.openroad import CORNERS, process
@@ -102,6 +103,21 @@ def test_the_stand_in_refuses_what_openroad_does_not_have(line, said, openroad, 
     (tmp_path / "wrong.tcl").write_text(line + "\n")
     done = finish([tmp_path / "openroad", "-exit", "wrong.tcl"], cwd=tmp_path)
     assert done.returncode == 1 and said in done.stderr
+
+
+@needs_tclsh
+@needs_cells
+@pytest.mark.parametrize("commands, called, other", [
+    (COMMANDS, "set_extraction_rules_file", "-ext_model_file"), (OLDER, "-ext_model_file", "set_extraction_rules_file")])
+def test_older_releases_get_the_options_that_they_want(commands, called, other, pdk, openroad, tmp_path, monkeypatch):
+    stub.install(tmp_path, commands)
+    chosen = design("quad_divider")
+    write(chosen, KNOWN, tmp_path)
+    (tmp_path / "netlist.v").write_text("")
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["drc_violations"] == 0
+    calls = (tmp_path / "calls.txt").read_text()
+    assert called in calls and other not in calls
 
 
 @needs_tclsh
