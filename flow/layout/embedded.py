@@ -25,7 +25,7 @@ from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
 
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
-STEP, LEAST = 0.03, 0.20        # utilization: of one try less than of the one before; of the last
+STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Options:
     """
 
     pdk: str = "sky130"
-    utilization: float = 0.6
+    utilization: float = 0.8
     liberty: Path | None = None
 
     @property

@@ -1,29 +1,50 @@
-"""A Liberty file with areas and functions only, for a library that is not characterized: no figure of time in it."""
+"""A Liberty file with areas and functions only: no figure of time in it.
 
-FUNCTIONS = {"inv": "!i", "buf": "i", "mux2": "(cmd&i1)|((!cmd)&i0)", "xor2": "i0^i1", "nexor2": "!(i0^i1)",
-             "and21nor": "!((i0&i1)|i2)", "or21nand": "!((i0|i1)&i2)", "zero": "0", "one": "1",
-             **{f"{word}{n}": form.format(sign.join(f"i{k}" for k in range(n))) for n in (2, 3, 4) for word, form, sign
-                in (("nand", "!({})", "&"), ("nor", "!({})", "|"), ("and", "{}", "&"), ("or", "{}", "|"))}}
-FLIP_FLOPS = {"dff": "", "dffnr": 'clear : "!nrst"; '}
-OUTPUTS = ("q", "nq", "zero", "one")
+The functions are those of the transistors as laid out, not those that names promise: c4m-flexcell 0.4.7's nexor2_x0
+is an exclusive or.
+"""
+
+CONSTANTS = {"zero": "0", "one": "1"}
 
 
-def liberty(ports, areas):
-    """Text of the Liberty file. ports: dict cell -> its pins, supplies left out; areas: dict cell -> um2."""
-    lines = ["library(cells) {", " delay_model : table_lookup;"]
-    for cell, pins in ports.items():
-        kind = cell.partition("_")[0]
-        outputs = [pin for pin in pins if pin in OUTPUTS]
-        if kind not in FUNCTIONS and kind not in FLIP_FLOPS:
+def functions(gds, names, models, layers):
+    """What the cells ``names`` in ``gds`` do: dict cell -> (dict output -> expression, Storage or None).
+
+    models, layers: the process's modules with its devices and its layers. Cells without an output are left out.
+    """
+    from cells.extract import extract
+    from cells.netlist.function import understand
+    from cells.netlist.spice import parse
+    found = {}
+    for name in names:
+        netlist = parse(extract(gds, name, layers, strays=False), origin=name)
+        constant = {pin: CONSTANTS[pin] for pin in netlist.ports if pin in CONSTANTS}
+        if constant:
+            found[name] = constant, None
             continue
+        cell = understand(netlist, models.POLARITY, models.SUPPLIES)
+        if cell.functions:
+            found[name] = cell.functions, cell.storage
+    return found
+
+
+def liberty(cells, ports, areas):
+    """Text of the Liberty file. cells: as from `functions`; ports: dict cell -> its pins, supplies left out; areas:
+    dict cell -> um2."""
+    lines = ["library(cells) {", " delay_model : table_lookup;"]
+    for cell, (outputs, storage) in cells.items():
         lines.append(f" cell({cell}) {{ area : {areas[cell]};")
-        if kind in FLIP_FLOPS:
-            lines.append(f'  ff(IQ,IQN) {{ clocked_on : "clk"; next_state : "i"; {FLIP_FLOPS[kind]}}}')
-        for pin in pins:
-            if pin in outputs:
-                function = "IQ" if kind in FLIP_FLOPS else FUNCTIONS[kind]
-                lines.append(f'  pin({pin}) {{ direction : output; function : "{function}"; }}')
-            else:
-                lines.append(f"  pin({pin}) {{ direction : input; }}")
+        if storage:
+            lines.append(_flip_flop(storage))
+        lines += [f'  pin({pin}) {{ direction : output; function : "{outputs[pin]}"; }}' if pin in outputs else
+                  f"  pin({pin}) {{ direction : input; }}" for pin in ports[cell]]
         lines.append(" }")
     return "\n".join([*lines, "}", ""])
+
+
+def _flip_flop(storage):
+    """Its Liberty group. storage: cells.netlist.function.Storage of kind 'ff'."""
+    clock = storage.clock if storage.active else f"!{storage.clock}"
+    forced = "".join(f' {name} : "{pin if level else "!" + pin}";' for name, value in
+                     (("clear", storage.clear), ("preset", storage.preset)) if value for pin, level in [value])
+    return f'  ff(IQ,IQN) {{ clocked_on : "{clock}"; next_state : "{storage.data}";{forced} }}'

@@ -21,7 +21,6 @@ def make_block(cell, request, framework):
     cfg.etesian.bloat = "disabled"
     cfg.etesian.uniformDensity = True
     cfg.etesian.densityVariation = request["density_variation"]
-    cfg.etesian.spaceMargin = request["space_margin"]
     cfg.etesian.aspectRatio = 1.0
     # One of the diodes that Coriolis adds against antennas stays open; the antenna step checks the result
     cfg.etesian.antennaGateMaxWL = u(40000.0)

@@ -11,6 +11,7 @@ from flow.steps import Step
 from .. import liberty
 from ..netlist import SUPPLIES
 
+UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")      # by synthesis
 DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground", "q": "out", "nq": "out",
               "one": "out", "zero": "out", "co": "out", "s": "out"}
 
@@ -50,7 +51,11 @@ class Library(Step):
         areas = {cell.name: _area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
-        outputs["liberty"].write_text(liberty.liberty(ports, areas))
+        models, layers = (importlib.import_module(f"flow.platforms.{self.parameters.pdk.replace('-', '_')}.{name}")
+                          for name in ("models", "process"))
+        found = liberty.functions(outputs["gds"], [name for name in ports if not name.startswith(UNUSED)], models, layers)
+        outputs["liberty"].write_text(liberty.liberty({
+            name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas))
         run(["yosys", "-q", "-p", f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
         return {"cells": len(cells)}
 

@@ -25,21 +25,19 @@ PHASES = ("clock_tree", "placement", "power", "routing")
 class PlaceRouteParameters:
     """pdk: process. clock: name of the clock port, '' without one. effort: of the placer, 1..3.
 
-    space_margin: share of empty sites that the placer spreads. density_variation: how unevenly. strap_pitch_um: of a
-    pair of power straps. events: most moves of the router.
+    density_variation: how unevenly the placer may spread the empty sites; what is packed does not route.
+    strap_pitch_um: of a pair of power straps. events: most moves of the router.
     """
 
     pdk: str = "sky130"
     clock: str = "clk"
     effort: int = 2
-    space_margin: float = 0.3
-    density_variation: float = 0.3
+    density_variation: float = 0.05
     strap_pitch_um: float = field(default=45.0, metadata={"unit": "um"})
     events: int = 4_000_000
 
     def __post_init__(self):
         check_int("effort", self.effort, 1, 3)
-        check_real("space_margin", self.space_margin, 0.01, 0.9)
         check_real("density_variation", self.density_variation, 0.01, 0.9)
         check_real("strap_pitch_um", self.strap_pitch_um, 10, 1000)
         check_int("events", self.events, 1000, 100_000_000)
@@ -101,7 +99,7 @@ class PlaceRoute(Step):
                 "wires": [asdict(wire) for wire in known.wires], "cuts": [asdict(cut) for cut in known.cuts],
                 **{name: getattr(known, name) for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um",
                                                            "pin_pitch_um")},
-                **{name: getattr(p, name) for name in ("effort", "space_margin", "density_variation",
+                **{name: getattr(p, name) for name in ("effort", "density_variation",
                                                        "strap_pitch_um", "events")}}
 
 

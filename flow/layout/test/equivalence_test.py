@@ -1,10 +1,12 @@
 """Equal designs are proven equal, and every planted fault is found."""
 
+import re
 import shutil
 from dataclasses import replace
 
 import pytest
 
+from cells.netlist.function import Storage
 from flow.layout import liberty
 from flow.layout.netlist import Instance, Netlist
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
@@ -24,8 +26,13 @@ module Counter(input clk, input reset, input [1:0] step, output reg [3:0] count,
   end
 endmodule
 """
-PORTS = {"inv_x1": ("i", "nq"), "buf_x1": ("i", "q"), "nand2_x1": ("i0", "i1", "nq"), "nor2_x1": ("i0", "i1", "nq"),
-         "xor2_x1": ("i0", "i1", "q"), "zero_x1": ("zero",), "one_x1": ("one",), "dff_x1": ("clk", "i", "q")}
+CELLS = {"inv_x1": ("nq", "!i"), "buf_x1": ("q", "i"), "nand2_x1": ("nq", "!(i0&i1)"), "nor2_x1": ("nq", "!(i0|i1)"),
+         "xor2_x1": ("q", "i0^i1"), "zero_x1": ("zero", "0"), "one_x1": ("one", "1"), "dff_x1": ("q", "IQ")}
+FLIP_FLOP = Storage("ff", "clk", 1, "i", ("i",))
+PORTS = {name: (*sorted(set(re.findall(r"i\d?", function))), output) for name, (output, function) in CELLS.items()}
+LIBERTY = liberty.liberty({name: ({output: function}, FLIP_FLOP if name == "dff_x1" else None)
+                           for name, (output, function) in CELLS.items()},
+                          PORTS | {"dff_x1": ("clk", "i", "q")}, dict.fromkeys(CELLS, 10.0))
 
 
 @pytest.fixture(scope="module")
@@ -33,7 +40,7 @@ def made(tmp_path_factory):
     """Folder with rtl.v, cells.lib and the synthesized Counter."""
     folder = tmp_path_factory.mktemp("counter")
     (folder / "rtl.v").write_text(RTL)
-    (folder / "cells.lib").write_text(liberty.liberty(PORTS, dict.fromkeys(PORTS, 10.0)))
+    (folder / "cells.lib").write_text(LIBERTY)
     step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
     found = step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
                      {name: folder / file for name, file in step.outputs.items()})
