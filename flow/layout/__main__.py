@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from flow.files import staged
+from flow.platforms.embedded import process
 from flow.simulate.process import ToolError
 from flow.steps import Runner, StepError
 from models.parameters import ParameterError, check_choice
@@ -14,6 +15,8 @@ from talbot.progress import Steps
 
 from .design import DESIGNS, design
 from .embedded import Options, back, files, front, layout
+from .picture import render
+from .report import page
 from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
@@ -45,10 +48,15 @@ def main(argv=None):
             runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)
-        with staged(folder) as part:
+        made = [f"{chosen.name}.{suffix}" for suffix in (*RESULTS, "png")]
+        with staged(folder, made) as part:       # an earlier run's go where this one has none
             for suffix, source in RESULTS.items():
                 if source in runner.paths:
                     shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
+            if "stream_out.gds" in runner.paths:
+                render(runner.paths["stream_out.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
+            picture = f"{chosen.name}.png" if (part / f"{chosen.name}.png").exists() else None
+            (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture))
             (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     except (ParameterError, ToolError, StepError, OSError) as error:
         print(f"flow.layout: {error}", file=sys.stderr)
