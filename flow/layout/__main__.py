@@ -21,7 +21,7 @@ from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
 RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
-           "spef": "extraction.spef", "sdf": "sta.sdf", "sta.txt": "sta.report", "sdc": "sdc"}
+           "spef": "extraction.spef", "sdc": "sdc"}
 
 
 def arguments():
@@ -31,7 +31,8 @@ def arguments():
     parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area at which the search for the smallest begins; default: the design's")
-    parser.add_argument("--liberty", type=Path, help="characterized cells at a corner, for the timing; none: no timing")
+    parser.add_argument("--liberty", type=Path, action="append", default=[],
+                        help="characterized cells at a corner (again for further corners); none: no timing")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
 
@@ -41,16 +42,18 @@ def main(argv=None):
     try:
         chosen = design(options.design)
         check_choice("backend", options.backend, ("coriolis",))
-        settings = Options(options.pdk, options.utilization or chosen.utilization, options.liberty)
+        settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty))
         folder = options.out / chosen.name
         names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route", "stream_out", "drc"]
         with Steps(names + [step.name for step in back(chosen, settings)]) as bar:
             runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)
-        made = [f"{chosen.name}.{suffix}" for suffix in (*RESULTS, "png")]
+        results = RESULTS | {f"{corner}.{suffix}": f"sta_{corner}.{output}" for corner in settings.corners
+                             for suffix, output in (("sdf", "sdf"), ("sta.txt", "report"))}
+        made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png")]
         with staged(folder, made) as part:       # an earlier run's go where this one has none
-            for suffix, source in RESULTS.items():
+            for suffix, source in results.items():
                 if source in runner.paths:
                     shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
             if "stream_out.gds" in runner.paths:

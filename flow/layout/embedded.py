@@ -32,20 +32,24 @@ STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one b
 class Options:
     """pdk: process. utilization: cells' area by core area at which the search begins.
 
-    liberty: characterized cells at one corner, for the timing; None: no timing.
+    liberty: paths of characterized cells, one a corner; synthesis takes the first. () for no timing.
     """
 
     pdk: str = "sky130"
     utilization: float = 0.8
-    liberty: Path | None = None
+    liberty: tuple = ()
 
     @property
-    def corner(self):
-        return self.liberty.stem if self.liberty else None
+    def corners(self):
+        """dict corner -> its Liberty file, the corner of synthesis first."""
+        return {path.stem: path for path in self.liberty}
 
     def __post_init__(self):
-        if self.liberty and not self.liberty.is_file():
-            raise ParameterError(f"liberty = {self.liberty}: no such file; make cells LIB=flexcell writes one a corner")
+        for path in self.liberty:
+            if not path.is_file():
+                raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
+        if len(self.corners) != len(self.liberty):
+            raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST, 0.95)
 
 
@@ -60,7 +64,8 @@ def files(design, options, folder):
     given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
              "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
              "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
-    return given | ({"timing": options.liberty} if options.liberty else {})
+    first = {"timing": options.liberty[0]} if options.liberty else {}
+    return given | first | {f"timing.{corner}": path for corner, path in options.corners.items()}
 
 
 def front(design, options):
@@ -84,7 +89,7 @@ def back(design, options):
     clock = design.clock
     tests = ([GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
              if design.netlist_names else [GateFrames()])
-    timing = [Sta(StaParameters(design.top, options.corner, clock.period_ns))] if options.liberty else []
+    timing = [Sta(StaParameters(design.top, corner, clock.period_ns)) for corner in options.corners]
     return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
             Antenna(AntennaParameters(options.pdk)), Extraction(ExtractionParameters(options.pdk)), *timing]
 

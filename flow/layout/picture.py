@@ -22,7 +22,7 @@ def render(gds, png, known, side=2400):
         if color is not None:
             shown.fill_color = shown.frame_color = color
             shown.dither_pattern = 0
-            shown.transparent = True
+            shown.transparent = False
         view.set_layer_properties(layers, shown)
         layers.next()
     view.zoom_fit()

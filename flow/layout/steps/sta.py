@@ -33,14 +33,19 @@ class StaParameters:
 
 
 class Sta(Step):
-    """wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: of the clock at which the setup slack would be 0."""
+    """wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: of the clock at which the setup slack would be 0, the
+    delays outside staying what they are. power_uw: at OpenSTA's default activity."""
 
-    name = "sta"
-    inputs = {"liberty": "timing", "verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc"}
+    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
     Parameters = StaParameters
     metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz", "power_uw": "uW"}
     tools = ("sta",)
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.name = f"sta_{parameters.corner}"
+        self.inputs = self.inputs | {"liberty": f"timing.{parameters.corner}"}
 
     def run(self, inputs, outputs):
         p = self.parameters

@@ -4,7 +4,7 @@ import pytest
 
 from flow.layout.summary import broken
 
-GOOD = {"design": "a", "open_nets": 0, "lvs_match": True, "gate_tests": {"passed": 3}}
+GOOD = {"design": "a", "open_nets": 0, "lvs_match": True, "gate_tests": {"passed": 3}, "whs_ns": {"tt": 0.1, "ff": -0.2}}
 
 
 @pytest.mark.parametrize("rules, found", [
@@ -14,7 +14,8 @@ GOOD = {"design": "a", "open_nets": 0, "lvs_match": True, "gate_tests": {"passed
     ({"gate_tests.passed": {"most": 2}}, ["gate_tests.passed = 3: must be at most 2"]),
     ({"lvs_match": {"is": False}}, ["lvs_match = True: must be False"]),
     ({"wns_ns": {"least": 0}}, ["wns_ns = None: must be at least 0"]),
-    ({"wns_ns": {"least": 0, "where": ["b"]}}, []),
+    ({"wns_ns": {"least": 0, "if_measured": True}}, []),
+    ({"whs_ns": {"least": 0, "if_measured": True}}, ["whs_ns = {'tt': 0.1, 'ff': -0.2}: must be at least 0"]),
 ])
 def test_rules(rules, found):
     assert broken(GOOD, rules) == found
