@@ -14,7 +14,7 @@ from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
 from .design import DESIGNS, design
-from .embedded import Options, back, files, front, layout
+from .embedded import Options, back, files, front, judged, layout, tries
 from .picture import render
 from .report import page
 from .summary import broken, summarize
@@ -44,8 +44,9 @@ def main(argv=None):
         check_choice("backend", options.backend, ("coriolis",))
         settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty))
         folder = options.out / chosen.name
-        names = [step.name for step in front(chosen, settings)] + ["floorplan", "place_route", "stream_out", "drc"]
-        with Steps(names + [step.name for step in back(chosen, settings)]) as bar:
+        steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
+                 *back(chosen, settings))
+        with Steps(step.name for step in steps) as bar:
             runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)

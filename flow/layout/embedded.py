@@ -6,6 +6,7 @@ from pathlib import Path
 
 from flow.platforms.embedded import process
 from flow.simulate.process import ToolError, finish
+from flow.steps.versions import version
 from models.parameters import ParameterError, check_real
 
 from .constraints import sdc
@@ -84,6 +85,11 @@ def tries(design, options):
                PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port)))
 
 
+def judged(design, options):
+    """The steps behind a routing that say whether it keeps the design rules."""
+    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc()]
+
+
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
     clock = design.clock
@@ -100,6 +106,10 @@ def layout(design, options, runner):
     A try closes when every net is routed and no design rule broken. Returns the tries: list of {utilization,
     open_segments (None where the router gave up), drc_violations (None without a layout)}.
     """
+    pair = next(tries(design, options))
+    for step in (*front(design, options), *pair, *judged(design, options), *back(design, options)):
+        for tool in step.tools:
+            version(tool)               # a tool that is missing is told before anything runs
     for step in front(design, options):
         runner.run(step)
     tried = []
@@ -109,8 +119,9 @@ def layout(design, options, runner):
         tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
                       "drc_violations": None})
         if found["routed"] and not found["open_segments"]:
-            runner.run(StreamOut(StreamOutParameters(options.pdk, design.clock.port)))
-            tried[-1]["drc_violations"] = runner.run(Drc())["metrics"]["drc_violations"]
+            for step in judged(design, options):
+                record = runner.run(step)
+            tried[-1]["drc_violations"] = record["metrics"]["drc_violations"]
             if not tried[-1]["drc_violations"]:
                 for step in back(design, options):
                     runner.run(step)
