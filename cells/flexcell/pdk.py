@@ -31,12 +31,12 @@ class DrawnCell(pdk_cell.Cell):
                                              w=round(high - low, 3), l=canvas.length)
                 for port, net in (("sourcedrain1", switch.a), ("gate", switch.gate), ("sourcedrain2", switch.b),
                                   ("bulk", bulk)):
-                    pins.setdefault(net, []).append(getattr(device.ports, port))
+                    pins.setdefault(net, []).append(device.ports[port])
         if "diode" in self.drawing:
             width, height = self.drawing["diode"]
             device = circuit.instantiate(tech.primitives["ndiode"], name="d0", width=width, height=height)
-            pins.setdefault("i", []).append(device.ports.cathode)
-            pins.setdefault("vss", []).append(device.ports.anode)
+            pins.setdefault("i", []).append(device.ports["cathode"])
+            pins.setdefault("vss", []).append(device.ports["anode"])
         return pins
 
     def _connect(self, circuit, pins):
