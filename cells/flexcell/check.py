@@ -11,49 +11,66 @@ from flow.simulate.process import ToolError, finish
 def check(folder, names, workers=-1):
     """Check every cell in ``folder`` (as cells.flexcell.write makes it): {name: {"drc": {rule: count}, "lvs": bool}}.
 
-    Each cell's DRC and LVS alone, and once more the DRC of all side by side (name 'gallery'). Results are kept in
-    folder/checks. Raises ToolError when KLayout is missing or leaves no report.
+    DRC of all cells far apart and of all of them abutted in many orders (a rule broken between cells counts for
+    'gallery'), LVS of each. Results are kept in folder/checks. Raises ToolError when KLayout is missing or fails.
     """
     folder = Path(folder)
-    gallery(folder, names)
-    inputs = (folder / "decks/sky130.drc", folder / "decks/sky130.lvs", folder / "flexcell.spi")
-    digest = {name: _content(folder, name) for name in names}
-    jobs = [Job(name, check_cell, (str(folder), name), (*inputs, digest[name])) for name in names]
-    jobs.append(Job("gallery", check_gallery, (str(folder),), (inputs[0], folder / "gallery.gds")))
-    return dict(zip([*names, "gallery"], run(jobs, folder / "checks", "cells checked", workers), strict=True))
+    _arrange(folder, names)
+    drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
+    jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in ("apart", "gallery")]
+    jobs += [Job(name, matches, (str(folder), name), (lvs, folder / "flexcell.spi", _content(folder, name)))
+             for name in names]
+    apart, abutted, *lvs = run(jobs, folder / "checks", "cells checked", workers)
+    result = {name: {"drc": apart.get(name, {}), "lvs": ok} for name, ok in zip(names, lvs, strict=True)}
+    between = {rule: count for found in (abutted, {k: v for k, v in apart.items() if k not in names})
+               for rules_ in found.values() for rule, count in rules_.items()}
+    return result | {"gallery": {"drc": between, "lvs": True}}
 
 
-def gallery(folder, names):
-    """folder/gallery.gds: every cell beside every kind of neighbour: rows of all cells in several orders, mirrored."""
+def _arrange(folder, names):
+    """folder/apart.gds: every cell alone; folder/gallery.gds: rows of all cells, abutted, mirrored, in several orders."""
     import klayout.db as db
 
-    layout = db.Layout()
-    layout.read(str(Path(folder) / "flexcell.gds"))
-    boundary = layout.layer(235, 4)
-    top = layout.create_cell("gallery")
-    boxes = {name: layout.cell(name).bbox_per_layer(boundary) for name in names}
     half = len(names) // 2
     orders = [names, names[::-1], names[half:] + names[:half], names[::2] + names[1::2]]
-    for row, order in enumerate(orders):
-        x, height = 0, boxes[names[0]].height()
-        for name in order:
-            turn = db.Trans(db.Trans.M0, x, (row + 1) * height) if row % 2 else db.Trans(db.Trans.R0, x, row * height)
-            top.insert(db.CellInstArray(layout.cell(name).cell_index(), turn))
-            x += boxes[name].width()
-    for name in [cell.name for cell in layout.top_cells() if cell.name != "gallery"]:
-        layout.delete_cell_rec(layout.cell(name).cell_index())
-    options = db.SaveLayoutOptions()
-    options.gds2_write_timestamps = False
-    layout.write(str(Path(folder) / "gallery.gds"), options)
+    for top_name, rows, gap in (("apart", [names], 5000), ("gallery", orders, 0)):
+        layout = db.Layout()
+        layout.read(str(folder / "flexcell.gds"))
+        boundary = layout.layer(235, 4)
+        top = layout.create_cell(top_name)
+        for row, order in enumerate(rows):
+            x = 0
+            for name in order:
+                cell = layout.cell(name)
+                box = cell.bbox_per_layer(boundary)
+                turn = db.Trans(db.Trans.M0, x, (row + 1) * box.height()) if row % 2 else \
+                    db.Trans(db.Trans.R0, x, row * box.height())
+                top.insert(db.CellInstArray(cell.cell_index(), turn))
+                x += box.width() + gap
+        for cell in [cell for cell in layout.top_cells() if cell.name != top_name]:
+            layout.delete_cell_rec(cell.cell_index())
+        options = db.SaveLayoutOptions()
+        options.gds2_write_timestamps = False
+        layout.write(str(folder / f"{top_name}.gds"), options)
 
 
-def check_cell(folder, name):
-    """DRC and LVS of cell ``name``: dict."""
-    return {"drc": _drc(Path(folder), Path(folder) / "flexcell.gds", name), "lvs": _lvs(Path(folder), name)}
+def rules(folder, name):
+    """{cell: {rule: violations}} of folder/<name>.gds."""
+    folder = Path(folder)
+    report, _ = _deck(folder, "drc", name, {"SOURCE_FILE": str((folder / f"{name}.gds").absolute())})
+    found = {}
+    for item in ET.parse(report).getroot().find("items"):
+        cell = found.setdefault(item.findtext("cell"), collections.Counter())
+        cell[item.findtext("category").strip("'")] += 1
+    return found
 
 
-def check_gallery(folder):
-    return {"drc": _drc(Path(folder), Path(folder) / "gallery.gds", "gallery"), "lvs": True}
+def matches(folder, name):
+    """Does the layout of cell ``name`` have the transistors and nets of its netlist?"""
+    folder = Path(folder)
+    _, words = _deck(folder, "lvs", name, {"SOURCE_FILE": str((folder / "flexcell.gds").absolute()),
+                                           "SPICE_FILE": str((folder / "flexcell.spi").absolute())})
+    return "LVS OK" in words
 
 
 def _content(folder, name):
@@ -76,15 +93,3 @@ def _deck(folder, deck, name, environment):
     if done.returncode and deck == "drc" or not report.exists():
         raise ToolError(f"klayout: {deck} of {name} failed: {(done.stderr or done.stdout).strip()[-300:]}")
     return report, done.stdout + done.stderr
-
-
-def _drc(folder, gds, name):
-    report, _ = _deck(folder, "drc", name, {"SOURCE_FILE": str(gds.absolute())})
-    items = ET.parse(report).getroot().find("items")
-    return dict(collections.Counter(item.findtext("category").strip("'") for item in items))
-
-
-def _lvs(folder, name):
-    _, words = _deck(folder, "lvs", name, {"SOURCE_FILE": str((folder / "flexcell.gds").absolute()),
-                                           "SPICE_FILE": str((folder / "flexcell.spi").absolute())})
-    return "LVS OK" in words
