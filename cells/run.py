@@ -9,6 +9,7 @@ from pathlib import Path
 from cells import sources
 from cells.characterize.cell import characterize
 from cells.liberty import build, compare, reference, write
+from cells.liberty import check as check_library
 from cells.netlist.check import check
 from cells.netlist.function import understand
 from cells.netlist.spice import parse
@@ -35,12 +36,15 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     todo = [job(source, conditions, process) for source in found]
     measured = jobs.run(todo, folder / "jobs", f"{library} {name}", workers)
     tree = build.library(f"{library}__{name}", conditions,
-                         [(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)], process)
+                         [(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)], process,
+                         {} if wanted else sources.constants(library))
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
-        (part / f"{library}.lef").write_text("\n".join(_macros(s.lef) for s in found) + "\nEND LIBRARY\n")
-        (part / f"{library}.v").write_text("\n".join(s.verilog for s in found))
+        macros = (sources.abstract(c, s) for c, s in zip(cells, found, strict=True))
+        (part / f"{library}.lef").write_text("\n".join(["VERSION 5.8 ;", *macros, "END LIBRARY", ""]))
+        if verilog := [s.verilog for s in found if s.verilog]:
+            (part / f"{library}.v").write_text("\n".join(verilog))
         (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
@@ -80,18 +84,13 @@ def _measure(source, conditions, process):
     return characterize(cell_of(source, module), module, conditions)
 
 
-def _macros(lef):
-    """The MACROs of a LEF file alone."""
-    start, end = lef.find("MACRO"), lef.rfind("END LIBRARY")
-    return lef[start:end if end > 0 else None].rstrip()
-
-
 def _summary(cells, measured, tree, known, seconds):
     failed = [f"{m['name']}: {f['what']}: {f['why']}" for m in measured for f in m["failed"]]
     summary = {"cells": len(cells), "arcs": sum(len(m["arcs"]) for m in measured),
                "constraints": sum(len(m["constraints"]) for m in measured),
                "simulations": sum(m["simulations"] for m in measured),
-               "repeated": sum(m["repeated"] for m in measured), "failed": failed, "wall_s": round(seconds, 1),
+               "repeated": sum(m["repeated"] for m in measured), "failed": failed,
+               "problems": check_library.problems(tree), "wall_s": round(seconds, 1),
                "cell_s": {m["name"]: m["wall_s"] for m in measured}}
     if known:
         summary |= compare.summary(compare.library(tree, known))
