@@ -1,11 +1,11 @@
 """python -m cells.flexcell: draw the library, write its files and check every cell."""
 
 import argparse
-import shutil
+import json
 import sys
 from pathlib import Path
 
-from cells.flexcell.canvas import Canvas
+from cells.flexcell.library import written
 from cells.flexcell.make import NoLayout
 from flow.files import check_folder
 from flow.simulate.process import ToolError
@@ -30,23 +30,9 @@ def main(arguments=None):
 
 def _run(out, checked):
     from cells.flexcell.check import check
-    from cells.flexcell.library import library
-    from cells.flexcell.write import write
 
-    canvas = Canvas()
-    made = library(canvas, out / "drawn")
-    part = out / ".part"
-    shutil.rmtree(part, ignore_errors=True)
-    part.mkdir(parents=True)
-    try:
-        write(made, canvas, part)
-        for path in sorted(part.iterdir()):
-            target = out / path.name
-            shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
-            path.rename(target)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-    names = [cell.name for cell in made.cells]
+    gds = written(out)
+    names = list(json.loads(gds.with_name("areas.json").read_text()))
     print(f"{len(names)} cells in {out}")
     if not checked:
         return 0

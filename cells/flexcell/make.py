@@ -1,6 +1,12 @@
-"""A cell from its schematic: the narrowest placement that routes and breaks no rule."""
+"""A cell from its schematic: the narrowest placement that routes and breaks no rule.
 
-from dataclasses import asdict
+recipes.json holds what a longer search has found (python -m cells.flexcell.search): a seed of the placement, where
+extra gaps are, whether met1 is used. With it a cell is drawn at once; without it, it is searched for.
+"""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
 
 from cells.flexcell.assemble import assemble, task
 from cells.flexcell.draw import Drawing
@@ -8,7 +14,8 @@ from cells.flexcell.place import breaks, place
 from cells.flexcell.route import route
 from cells.flexcell.rules import broken
 
-SEEDS = 24          # placements tried for each number of extra gaps
+RECIPES = Path(__file__).with_name("recipes.json")
+SEEDS = 24          # placements tried when there is no recipe
 GAPS = 3            # extra gaps at most
 
 
@@ -16,31 +23,66 @@ class NoLayout(RuntimeError):
     """No placement of a cell could be routed."""
 
 
-def make(schematic, canvas):
-    """What was drawn, as JSON can hold it: dict with width (um), shapes (list of dicts), met1 (is it used?), seed.
+@dataclass(frozen=True, order=True)
+class Recipe:
+    """sites: width; met1: is it used?; seed: of `place`; spread: indices of columns with an extra gap behind them."""
 
-    Raises NoLayout.
+    sites: int
+    met1: bool
+    seed: int
+    spread: tuple
+
+
+def recipe(name):
+    """The Recipe kept for cell ``name``, or None."""
+    kept = json.loads(RECIPES.read_text()).get(name) if RECIPES.exists() else None
+    return Recipe(kept[0], kept[1], kept[2], tuple(kept[3])) if kept else None
+
+
+def make(schematic, canvas, known=None):
+    """What was drawn, as JSON can hold it: dict with width (um), shapes (list of dicts) and its recipe (list).
+
+    known: a Recipe to follow, should it still work. Raises NoLayout.
     """
+    drawing = known and _draw(schematic, place(schematic, known.seed), known.spread, canvas, known.met1)
+    if not drawing:
+        known = next(search(schematic, canvas, range(SEEDS)), None)
+        if known is None:
+            raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
+        drawing = _draw(schematic, place(schematic, known.seed), known.spread, canvas, known.met1)
+    return {"width": drawing.width, "recipe": [known.sites, known.met1, known.seed, known.spread],
+            "shapes": [asdict(shape) for shape in drawing.shapes]}
+
+
+def search(schematic, canvas, seeds, below=None):
+    """Recipes that work, the narrowest first and of these those on li alone. below: a Recipe that they have to beat."""
     placed = {}
-    for seed in range(SEEDS):
+    for seed in seeds:
         columns = place(schematic, seed)
-        placed.setdefault(len(breaks(columns)), {})[tuple(columns)] = (seed, columns)
-    tried = [(count + extra, extra, seed, columns) for extra in range(GAPS + 1)
-             for count, found in placed.items() for seed, columns in found.values()]
-    tried.sort(key=lambda t: t[:3])
-    for met1 in (False, True):
-        for _, extra, seed, columns in tried if met1 else [t for t in tried if t[0] == tried[0][0]]:
-            for spread in _spreads(columns, extra, seed):
-                made = assemble(columns, spread)
-                wiring = route(task(made, canvas, schematic.ports), met1)
-                if wiring is None:
-                    continue
-                drawing = Drawing(canvas, made, wiring)
-                if not broken(drawing):
-                    return {"width": drawing.width, "seed": seed, "gaps": extra,
-                            "met1": any(v[0] == "met1" for vs in wiring.vertices.values() for v in vs),
-                            "shapes": [asdict(shape) for shape in drawing.shapes]}
-    raise NoLayout(f"{schematic.name}: no placement of {SEEDS} with up to {GAPS} extra gaps could be routed")
+        placed.setdefault(tuple(columns), seed)
+    tried = []
+    for columns, seed in placed.items():
+        for extra in range(GAPS + 1):
+            sites = len(columns) + 1 + len(breaks(columns)) + extra
+            tried += [Recipe(sites, met1, seed, spread) for met1 in (False, True)
+                      for spread in _spreads(columns, extra, seed)]
+    by_seed = {seed: columns for columns, seed in placed.items()}
+    for trial in sorted(tried):
+        if below is not None and not trial < below:
+            return
+        drawing = _draw(schematic, list(by_seed[trial.seed]), trial.spread, canvas, trial.met1)
+        if drawing:
+            yield trial
+
+
+def _draw(schematic, columns, spread, canvas, met1):
+    """Drawing, or None where it cannot be routed or breaks a rule."""
+    made = assemble(columns, spread)
+    wiring = route(task(made, canvas, schematic.ports), met1)
+    if wiring is None:
+        return None
+    drawing = Drawing(canvas, made, wiring)
+    return None if broken(drawing) else drawing
 
 
 def _spreads(columns, extra, seed):
@@ -51,5 +93,6 @@ def _spreads(columns, extra, seed):
     if len(free) < extra:
         return []
     step = len(free) / extra
-    return [tuple(sorted({free[int(i * step + shift * step / 3 + seed) % len(free)] for i in range(extra)}))
-            for shift in range(3)]
+    choices = (tuple(sorted({free[int(i * step + shift * step / 3 + seed) % len(free)] for i in range(extra)}))
+               for shift in range(3))
+    return sorted({choice for choice in choices if len(choice) == extra})

@@ -3,14 +3,15 @@
 
 def verilog(cells):
     """Text for ``cells`` (cells.flexcell.pdk.DrawnCell): a module each, without supply pins."""
-    return "\n".join(["// Cells of the FlexCell library; written by python -m cells.flexcell", *map(_module, cells)])
+    return "\n".join(["// Cells of the FlexCell library; written by python -m cells.flexcell", *(module(cell.schematic) for cell in cells)])
 
 
-def _module(cell):
-    s = cell.schematic
+def module(schematic):
+    """The model of one cell."""
+    s = schematic
     ports = [*(f"input {pin}" for pin in s.inputs), *(f"output {pin}" for pin in s.outputs)]
     body = _storage(s) if s.storage else [f"  assign {pin} = {_constant(s.functions[pin])};" for pin in s.outputs]
-    return "\n".join([f"module {cell.name} ({', '.join(ports)});", *body, "endmodule", ""])
+    return "\n".join([f"module {s.name} ({', '.join(ports)});", *body, "endmodule", ""])
 
 
 def _constant(function):

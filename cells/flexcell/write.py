@@ -3,8 +3,10 @@
 import json
 
 from cells.flexcell.liberty import liberty
-from cells.flexcell.library import NAME
+from cells.flexcell.library import NAME, SITE, pins
 from cells.flexcell.verilog import verilog
+from cells.lef import abstract, header
+from flow.platforms.sky130.process import PROCESS
 
 OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 BOUNDARY = (235, 4)
@@ -14,13 +16,15 @@ NPC = (95, 20)              # nitride cut over the gates' contacts: a mask that 
 def write(library, canvas, folder):
     """Write every file of ``library`` (cells.flexcell.library) into ``folder``.
 
-    flexcell.gds, .spi, .v, .lib, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/ (package of techno and library).
+    flexcell.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/flexcell/
+    (Python package: techno.setup() and StdCellLib.setup()).
     """
     cells = list(library.cells)
     _gds(library, canvas, folder / "flexcell.gds")
     (folder / "flexcell.spi").write_text(_spice(cells))
     (folder / "flexcell.v").write_text(verilog(cells))
     (folder / "flexcell.lib").write_text(liberty(cells, canvas))
+    (folder / "flexcell.lef").write_text(_lef(cells, canvas, folder / "flexcell.gds"))
     areas = {cell.name: round(cell.drawing["width"] * canvas.height, 4) for cell in cells}
     (folder / "areas.json").write_text(json.dumps(areas, indent=1) + "\n")
     _decks(folder / "decks")
@@ -50,6 +54,11 @@ def _spice(cells):
 
     factory = SpiceNetlistFactory(params=prims_spiceparams)
     return "".join(factory.export_circuit(cell.circuit) for cell in cells)
+
+
+def _lef(cells, canvas, gds):
+    macros = (abstract(gds, cell.name, PROCESS, pins(cell.schematic), SITE) for cell in cells)
+    return header(SITE, canvas.site, canvas.height) + "\n".join(macros) + "\nEND LIBRARY\n"
 
 
 def _decks(folder):
