@@ -1,10 +1,12 @@
 """A library at a corner: jobs, files, summary."""
 
+import importlib
 import json
-import subprocess
 import time
 from dataclasses import asdict
 from pathlib import Path
+
+from tqdm import tqdm
 
 from cells import sources
 from cells.characterize.cell import characterize
@@ -15,6 +17,7 @@ from cells.netlist.function import understand
 from cells.netlist.spice import parse
 from flow import jobs
 from flow.files import staged
+from flow.simulate.process import finish
 from models.parameters import ParameterError
 
 CODE = Path(__file__).resolve().parent
@@ -30,13 +33,15 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     if unknown := sorted(set(wanted or ()) - set(everything)):
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
     known = reference.folder(against) if against else None
-    found = [sources.source(library, cell, netlist) for cell in wanted or everything]
-    cells = [cell_of(source, process) for source in found]
+    found = [sources.source(library, cell, netlist) for cell in tqdm(wanted or everything, "netlists", disable=None)]
+    found.sort(key=lambda source: -len(source.netlist))              # what takes longest goes first
+    cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
     folder = Path(out) / library
-    todo = [job(source, conditions, process) for source in found]
-    measured = jobs.run(todo, folder / "jobs", f"{library} {name}", workers)
-    tree = build.library(f"{library}__{name}", conditions,
-                         [(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)], process,
+    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{library} {name}",
+                        workers)
+    by_name = sorted(zip(cells, measured, found, strict=True), key=lambda entry: entry[2].name)
+    cells, measured, found = zip(*by_name, strict=True)
+    tree = build.library(f"{library}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
                          {} if wanted else sources.constants(library))
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
@@ -67,20 +72,11 @@ def job(source, conditions, process):
     code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
     name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
     return jobs.Job(name, _measure, (source, conditions, process.__name__),
-                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), _ngspice(), *code))
-
-
-def _ngspice():
-    try:
-        return subprocess.run(["ngspice", "--version"], capture_output=True, text=True, check=False).stdout
-    except FileNotFoundError:
-        from flow.simulate.process import ToolError
-        raise ToolError("ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)") from None
+                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), finish(["ngspice", "--version"]).stdout, *code))
 
 
 def _measure(source, conditions, process):
-    from importlib import import_module
-    module = import_module(process)
+    module = importlib.import_module(process)
     return characterize(cell_of(source, module), module, conditions)
 
 

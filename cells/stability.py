@@ -78,7 +78,8 @@ def metastable():
         def run_at(offset):
             nonlocal longest
             started = time.monotonic()
-            events = [(scenario.clock, 0.0, scenario.clock_to, 10e-12), (scenario.data, -offset, scenario.data_to, 10e-12)]
+            events = [(scenario.clock, 0.0, scenario.clock_to, 10e-12),
+                      (scenario.data, -offset, scenario.data_to, 10e-12)]
             found = outcome(bench, scenario.start, events, 1e-9, scenario.trigger, scenario.expected)
             longest = max(longest, time.monotonic() - started)
             return found

@@ -60,7 +60,7 @@ def _lists(arrays):
 
 
 def axes_of(bench, output):
-    """(slews, loads, interpolation error) of ``output``; the loads end where the slower edge reaches the longest slew."""
+    """(slews, loads, interpolation error) of ``output``; loads end where the slower edge reaches the longest slew."""
     changes = [arc.changes[0] for arc in bench.cell.arcs
                if arc.output == output and not arc.type.startswith("three_state")]
     number = bench.machine.outputs.index(output)

@@ -133,9 +133,9 @@ def outcome(bench, state, events, far, trigger, expected, edge=None):
 
 
 def bisect(run, far, moves, degrade, low=None, guess=None, resolution=RESOLUTION):
-    """Least x in [low, far] from which on ``run(x)`` is a delay within ``degrade`` of that at ``far``, to ``resolution``.
+    """Least x in [low, far] from which on ``run(x)`` is a delay within ``degrade`` of that at ``far``.
 
-    low: -far when not given. guess: where it may lie, which saves runs. Raises SimulationError when even ``far`` does
+    low: -far when not given. resolution: of x. guess: where it may lie, which saves runs. Raises SimulationError when even ``far`` does
     not do.
     """
     easy = run(far)

@@ -50,6 +50,7 @@ def error_against_time(rows, default):
         weight = "bold" if name == default else "normal"
         axis.annotate(name, (seconds, high), fontsize=6, rotation=30, weight=weight, xytext=(2, 3),
                       textcoords="offset points")
-    axis.set(xscale="log", yscale="log", xlabel="seconds, three cells", ylabel="error in per cent: median, 95th percentile")
+    axis.set(xscale="log", yscale="log", xlabel="seconds, three cells",
+             ylabel="error in per cent: median, 95th percentile")
     axis.grid(alpha=0.3, which="both")
     return embedded(figure)
