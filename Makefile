@@ -108,6 +108,14 @@ cells_arguments = $(foreach o,$(CELLS_OPTIONS),$(if $($(o)),--$(shell echo $(o) 
 cells: $(LAYOUT_READY)  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib (needs ngspice: make tools)
 	@$(PY) -m cells $(cells_arguments)
 
+.PHONY: cells-report
+cells-report: $(LAYOUT_READY)  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
+	@$(PY) -m cells.report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER))
+
+.PHONY: cells-stability
+cells-stability: $(LAYOUT_READY)  ## stiff and extreme cases of the characterizer: bound against measured
+	@$(PY) -m cells.stability
+
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys and z3 from Debian's packages (needs root)
 	@bash flow/setup/tools.sh

@@ -38,7 +38,7 @@ def main(argv=None):
         print(f"cells: {error}", file=sys.stderr)
         return 2
     print(json.dumps({k: v for k, v in summary.items() if k != "by_cell"}, indent=1))
-    return 1 if summary["failed"] else 0
+    return 1 if summary["failed"] or summary["problems"] else 0
 
 
 if __name__ == "__main__":

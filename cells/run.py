@@ -1,19 +1,23 @@
 """A library at a corner: jobs, files, summary."""
 
+import importlib
 import json
-import subprocess
 import time
 from dataclasses import asdict
 from pathlib import Path
 
+from tqdm import tqdm
+
 from cells import sources
 from cells.characterize.cell import characterize
 from cells.liberty import build, compare, reference, write
+from cells.liberty import check as check_library
 from cells.netlist.check import check
 from cells.netlist.function import understand
 from cells.netlist.spice import parse
 from flow import jobs
 from flow.files import staged
+from flow.simulate.process import finish
 from models.parameters import ParameterError
 
 CODE = Path(__file__).resolve().parent
@@ -29,18 +33,23 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     if unknown := sorted(set(wanted or ()) - set(everything)):
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
     known = reference.folder(against) if against else None
-    found = [sources.source(library, cell, netlist) for cell in wanted or everything]
-    cells = [cell_of(source, process) for source in found]
+    found = [sources.source(library, cell, netlist) for cell in tqdm(wanted or everything, "netlists", disable=None)]
+    found.sort(key=lambda source: -len(source.netlist))              # what takes longest goes first
+    cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
     folder = Path(out) / library
-    todo = [job(source, conditions, process) for source in found]
-    measured = jobs.run(todo, folder / "jobs", f"{library} {name}", workers)
-    tree = build.library(f"{library}__{name}", conditions,
-                         [(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)], process)
+    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{library} {name}",
+                        workers)
+    by_name = sorted(zip(cells, measured, found, strict=True), key=lambda entry: entry[2].name)
+    cells, measured, found = zip(*by_name, strict=True)
+    tree = build.library(f"{library}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
+                         {} if wanted else sources.constants(library))
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
-        (part / f"{library}.lef").write_text("\n".join(_macros(s.lef) for s in found) + "\nEND LIBRARY\n")
-        (part / f"{library}.v").write_text("\n".join(s.verilog for s in found))
+        macros = (sources.abstract(c, s) for c, s in zip(cells, found, strict=True))
+        (part / f"{library}.lef").write_text("\n".join(["VERSION 5.8 ;", *macros, "END LIBRARY", ""]))
+        if verilog := [s.verilog for s in found if s.verilog]:
+            (part / f"{library}.v").write_text("\n".join(verilog))
         (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
@@ -63,27 +72,12 @@ def job(source, conditions, process):
     code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
     name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
     return jobs.Job(name, _measure, (source, conditions, process.__name__),
-                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), _ngspice(), *code))
-
-
-def _ngspice():
-    try:
-        return subprocess.run(["ngspice", "--version"], capture_output=True, text=True, check=False).stdout
-    except FileNotFoundError:
-        from flow.simulate.process import ToolError
-        raise ToolError("ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)") from None
+                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), finish(["ngspice", "--version"]).stdout, *code))
 
 
 def _measure(source, conditions, process):
-    from importlib import import_module
-    module = import_module(process)
+    module = importlib.import_module(process)
     return characterize(cell_of(source, module), module, conditions)
-
-
-def _macros(lef):
-    """The MACROs of a LEF file alone."""
-    start, end = lef.find("MACRO"), lef.rfind("END LIBRARY")
-    return lef[start:end if end > 0 else None].rstrip()
 
 
 def _summary(cells, measured, tree, known, seconds):
@@ -91,7 +85,8 @@ def _summary(cells, measured, tree, known, seconds):
     summary = {"cells": len(cells), "arcs": sum(len(m["arcs"]) for m in measured),
                "constraints": sum(len(m["constraints"]) for m in measured),
                "simulations": sum(m["simulations"] for m in measured),
-               "repeated": sum(m["repeated"] for m in measured), "failed": failed, "wall_s": round(seconds, 1),
+               "repeated": sum(m["repeated"] for m in measured), "failed": failed,
+               "problems": check_library.problems(tree), "wall_s": round(seconds, 1),
                "cell_s": {m["name"]: m["wall_s"] for m in measured}}
     if known:
         summary |= compare.summary(compare.library(tree, known))

@@ -19,7 +19,7 @@ def characterize(cell, process, conditions):
     out = {"name": cell.name, "failed": [], "slews": conditions.slews}
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
-        axes = {output: tried(f"{output}: axes", _axes, bench, output) for output in cell.machine.outputs}
+        axes = {output: tried(f"{output}: axes", axes_of, bench, output) for output in cell.machine.outputs}
         bench.pressed = {output: axis[1][-2] for output, axis in axes.items() if axis}
         out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
         out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
@@ -59,8 +59,8 @@ def _lists(arrays):
     return arrays and {name: values.tolist() for name, values in arrays.items()}
 
 
-def _axes(bench, output):
-    """(slews, loads, interpolation error) of ``output``; the loads end where the slower edge reaches the longest slew."""
+def axes_of(bench, output):
+    """(slews, loads, interpolation error) of ``output``; loads end where the slower edge reaches the longest slew."""
     changes = [arc.changes[0] for arc in bench.cell.arcs
                if arc.output == output and not arc.type.startswith("three_state")]
     number = bench.machine.outputs.index(output)

@@ -132,10 +132,10 @@ def outcome(bench, state, events, far, trigger, expected, edge=None):
     return None if here is None or there is None else there - here
 
 
-def bisect(run, far, moves, degrade, low=None, guess=None):
-    """Least x in [low, far] from which on ``run(x)`` is a delay within ``degrade`` of that at ``far``, to RESOLUTION.
+def bisect(run, far, moves, degrade, low=None, guess=None, resolution=RESOLUTION):
+    """Least x in [low, far] from which on ``run(x)`` is a delay within ``degrade`` of that at ``far``.
 
-    low: -far when not given. guess: where it may lie, which saves runs. Raises SimulationError when even ``far`` does
+    low: -far when not given. resolution: of x. guess: where it may lie, which saves runs. Raises SimulationError when even ``far`` does
     not do.
     """
     easy = run(far)
@@ -151,7 +151,7 @@ def bisect(run, far, moves, degrade, low=None, guess=None):
     if low is not None and kept(low):
         return low
     low, high = _bracket(kept, least, far, guess)
-    while high - low > RESOLUTION:
+    while high - low > resolution:
         middle = (low + high) / 2
         low, high = (low, middle) if kept(middle) else (middle, high)
     return high

@@ -8,8 +8,11 @@ NS, PF, PJ, NW = 1e9, 1e12, 1e12, 1e9
 TABLES = {"delay": "cell_{}", "slew": "{}_transition"}
 
 
-def library(name, conditions, cells, process):
-    """Group 'library'. cells: [(Cell, measured dict, area in um2 or None)]; process: module with SUPPLIES."""
+def library(name, conditions, cells, process, constants=None):
+    """Group 'library'. cells: [(Cell, measured dict, area in um2 or None)]; process: module with SUPPLIES.
+
+    constants: cell -> ({pin: level}, um2), cells that hold a constant.
+    """
     corner = conditions.corner
     lib = Group("library", (name,), {
         "technology": ("cmos",), "delay_model": "table_lookup", "time_unit": "1ns", "voltage_unit": "1V",
@@ -33,6 +36,10 @@ def library(name, conditions, cells, process):
     _templates(lib, conditions)
     for cell, measured, area in cells:
         lib.groups.append(_cell(cell, measured, area, process))
+    for cell, (pins, area) in (constants or {}).items():
+        group = lib.add("cell", cell, area=area, cell_leakage_power=0.0)
+        for pin, level in pins.items():
+            group.add("pin", pin, direction="output", function=str(level))
     return lib
 
 

@@ -71,7 +71,8 @@ def _tables(name, pin, own, group):
             continue
         values = table.array("values")
         mine = next((t for g in same for t in g.groups if t.kind == table.kind), None)
-        what = f"{pin.name} {wanted.get('related_pin', '')} {table.kind}"
+        cause = wanted.get("timing_type") if kind in CONSTRAINTS.values() else wanted.get("related_pin", "")
+        what = f"{pin.name} {cause} {table.kind}"
         yield Difference(name, kind, what, np.full(values.shape, np.nan) if mine is None else _at(mine, table), values)
 
 

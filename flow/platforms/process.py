@@ -42,14 +42,14 @@ class Process:
     """wires: from the lowest. cuts: (GDS layer, lower conductors, upper wire). halo: um, reach of fringe fields.
 
     devices: layer name -> GDS layer of what makes transistors (active, taps, wells, implants, threshold marks).
-    boundary: GDS layer of a cell's outline. well_labels: GDS layers of the names of n well and p substrate.
+    outlines: GDS layers that may hold a cell's outline. well_labels: GDS layers of the names of n well and p substrate.
     """
 
     wires: tuple
     crossings: tuple
     cuts: tuple
     devices: dict
-    boundary: tuple
+    outlines: tuple
     well_labels: tuple
     halo: float
 

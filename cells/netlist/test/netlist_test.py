@@ -17,8 +17,8 @@ def cell(lines, ports):
     for line in lines:
         name, drain, gate, source = line.split()
         kind = name[0]
-        body.append(f"X{name} {drain} {gate} {source} {'VSS' if kind == 'n' else 'VDD'} {kind} w={2 if kind == 'p' else 1} "
-                    "l=0.15")
+        bulk, width = ("VSS", 1) if kind == "n" else ("VDD", 2)
+        body.append(f"X{name} {drain} {gate} {source} {bulk} {kind} w={width} l=0.15")
     return parse("\n".join([f".subckt cell {ports} VDD VSS", *body, ".ends"]))
 
 

@@ -29,7 +29,7 @@ PROCESS = Process(
     cuts=(((66, 44), (DIFFUSION, "poly"), "li1"), ((67, 44), ("li1",), "met1"), ((68, 44), ("met1",), "met2")),
     devices={"diff": (65, 20), "tap": (65, 44), "nwell": (64, 20), "nsdm": (93, 44), "psdm": (94, 20),
              "hvtp": (78, 44), "lvtn": (125, 44), "library": (81, 4)},
-    boundary=(235, 4), well_labels=((64, 5), (64, 59)), halo=8.0)
+    outlines=((235, 4), (236, 0)), well_labels=((64, 5), (64, 59)), halo=8.0)
 
 
 def model(kind, width, marks):
