@@ -110,11 +110,11 @@ def test_one_changed_byte_is_another_archive(layouts, tmp_path):
 
 
 def test_what_is_missing_is_named_and_nothing_written(layouts, tmp_path, capsys):
-    (layouts / NAME / f"{NAME}.lef").unlink()
+    (layouts / NAME / f"{NAME}.sdc").unlink()
     (layouts / NAME / "rtl" / f"{TOP}.v").unlink()
     assert run(layouts, tmp_path / "out") == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and f"without {NAME}.lef, rtl/{TOP}.v: must be a finished layout" in error
+    assert error.count("\n") == 1 and f"without {NAME}.sdc, rtl/{TOP}.v: must be a finished layout" in error
     assert not (tmp_path / "out").exists()
 
 
