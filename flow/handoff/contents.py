@@ -1,6 +1,7 @@
 """What the archive holds, and where each part comes from."""
 
 import json
+import re
 from importlib.metadata import version
 from pathlib import Path
 
@@ -21,6 +22,7 @@ OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, wi
             "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
             "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
             "sta.txt": ("reports", "no static timing was run")}
+SHOWN = re.compile(r'\bsrc="([^":/]+)"')         # files that the report's page shows
 
 
 class Broken(RuntimeError):
@@ -46,6 +48,8 @@ def contents(design, folder, waivers):
                f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
                **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}"
                   for suffix, place in REQUIRED.items()}}
+    if (page := sources["reports/report.html"]).is_file():
+        sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text())}
     missing = sorted(path.name if path.parent == folder else f"rtl/{path.name}"
                      for path in sources.values() if not path.is_file())
     if missing:
@@ -57,11 +61,12 @@ def contents(design, folder, waivers):
     if lines:
         raise Broken("\n".join(lines))
     files, substitutes = {name: path.read_bytes() for name, path in sources.items()}, {}
+    corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
     for suffix, (place, substitute) in OPTIONAL.items():
-        path = folder / f"{design.name}.{suffix}"
-        if path.is_file():
-            files[f"{place}/{path.name}"] = path.read_bytes()
-        else:
+        paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]
+        found = {f"{place}/{path.name}": path.read_bytes() for path in paths if path.is_file()}
+        files |= found
+        if not found:
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
     lef = _lef(folder / f"{design.name}.lef", summary["pdk"], netlist)

@@ -18,9 +18,10 @@ def datasheet(design, summary, lef, waivers):
     rows = [("top", design.top), ("process", summary.get("pdk")), ("size", f"{width:g} x {height:g} um"),
             ("cells", summary.get("cells")), ("flip-flops", summary.get("flip_flops")),
             ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),
-            ("highest clock, MHz", summary.get("f_max_mhz")), ("power, uW", summary.get("power_uw")),
+            *_figures(summary, "f_max_mhz", "highest clock, MHz"), *_figures(summary, "power_uw", "power, uW"),
             ("input delay, output delay", f"{around.input_delay:.0%}, {around.output_delay:.0%} of the period"),
-            ("load of an output", f"{around.load_pf:g} pF"), *_slacks(summary),
+            ("load of an output", f"{around.load_pf:g} pF"), *_figures(summary, "wns_ns", "setup slack, ns"),
+            *_figures(summary, "whs_ns", "hold slack, ns"), ("timing rests on", summary.get("timing_rests_on")),
             ("DRC violations", summary.get("drc_violations")), ("layout = netlist", summary.get("lvs_match")),
             ("netlist = RTL", summary.get("equivalence")), ("antenna violations", summary.get("antenna_violations")),
             ("open nets", summary.get("open_nets"))]
@@ -29,9 +30,8 @@ def datasheet(design, summary, lef, waivers):
     return "\n".join([f"# {design.name}", "", "| | |", "|---|---|", *table, "", "## Waivers", "", *waived, ""])
 
 
-def _slacks(summary):
-    """Rows of the slacks by corner, which summary.json holds as a dict or not at all."""
-    for name, words in (("wns_ns", "setup slack"), ("whs_ns", "hold slack")):
-        value = summary.get(name)
-        for corner, slack in (value.items() if isinstance(value, dict) else [("", value)]):
-            yield f"{words}, {corner + ', ' if corner else ''}ns", slack
+def _figures(summary, name, words):
+    """Rows of a figure that summary.json holds by corner, as one number, or not at all."""
+    value = summary.get(name)
+    for corner, figure in (value.items() if isinstance(value, dict) else [("", value)]):
+        yield f"{words}{f' ({corner})' if corner else ''}", figure

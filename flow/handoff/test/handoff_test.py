@@ -65,7 +65,8 @@ def layouts(tmp_path):
     folder = tmp_path / "layout" / NAME
     (folder / "rtl").mkdir(parents=True)
     (folder / "rtl" / f"{TOP}.v").write_text("// rtl\n")
-    (folder / "report.html").write_text("<html></html>\n")
+    (folder / "report.html").write_text('<html><img src="picture.png"><img src="data:x"></html>\n')
+    (folder / "picture.png").write_text("picture\n")
     (folder / "summary.json").write_text(json.dumps(passing()))
     texts = dict.fromkeys(contents.REQUIRED, "text\n") | {"lef": LEF, "v": NETLIST}
     for suffix, text in texts.items():
@@ -96,9 +97,24 @@ def test_the_manifest_has_every_file_with_its_hash(layouts, tmp_path):
         name: entry["sha256"] for name, entry in listed["files"].items()}
     assert listed["versions"]["yosys"] == "0.23" and set(listed["substitutes"]) == set(contents.OPTIONAL)
     assert {"layout/quad_divider.gds", "layout/quad_divider.lef", "rtl/QuadDividerRadix4.v", "netlist/quad_divider.v",
-            "netlist/quad_divider.power.v", "pinout.md", "datasheet.md", "waivers.json"} <= set(data)
+            "netlist/quad_divider.power.v", "pinout.md", "datasheet.md", "waivers.json", "reports/picture.png"} <= set(data)
     assert "| x[10] | input | signal | met2 | 1.2 | 0.4 |" in data["pinout.md"].decode()
     assert "120 x 98.6 um" in data["datasheet.md"].decode()
+
+
+def test_timing_of_every_corner_goes_along(layouts, tmp_path):
+    summary = passing() | {"wns_ns": {"tt": 1.0, "ss": 0.5}, "whs_ns": {"tt": 0.1, "ss": 0.2}}
+    (layouts / NAME / "summary.json").write_text(json.dumps(summary))
+    for corner in ("tt", "ss", "old"):
+        (layouts / NAME / f"{NAME}.{corner}.sdf").write_text(corner)
+    assert run(layouts, tmp_path) == 0
+    with tarfile.open(tmp_path / f"{NAME}.tar.gz") as tar:
+        names = {entry.name for entry in tar}
+        listed = json.load(tar.extractfile(f"{NAME}/manifest.json"))
+        assert "| setup slack, ns (ss) | 0.5 |" in tar.extractfile(f"{NAME}/datasheet.md").read().decode()
+    assert {name for name in names if name.endswith(".sdf")} == {
+        f"{NAME}/timing/{NAME}.{corner}.sdf" for corner in ("tt", "ss")}
+    assert "sdf" not in listed["substitutes"] and "spef" in listed["substitutes"]
 
 
 def test_one_changed_byte_is_another_archive(layouts, tmp_path):
