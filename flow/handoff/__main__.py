@@ -1,4 +1,4 @@
-"""`python -m flow.handoff --design D`: build/handoff/<design>.tar.gz from a finished layout in build/layout/<design>/."""
+"""`python -m flow.handoff --design D`: build/handoff/<design>.tar.gz from a finished layout, build/layout/<design>/."""
 
 import argparse
 import sys

@@ -1,4 +1,4 @@
-"""The abstract (LEF) of a block made from its GDS: size, pins on the edges and on the straps, obstructions elsewhere."""
+"""The abstract (LEF) of a block made from its GDS: size, pins on edges and straps, obstructions elsewhere."""
 
 import re
 

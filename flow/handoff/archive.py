@@ -10,7 +10,7 @@ TIME = 315532800        # 1980-01-01, the first day that every archiver knows
 
 def archive(path, top, files):
     """Write ``files`` (dict name -> bytes) to ``path``, sorted, in the folder ``top`` of the archive."""
-    with open(path, "wb") as raw, gzip.GzipFile(filename="", mode="wb", fileobj=raw, compresslevel=9, mtime=0) as zipped, \
+    with open(path, "wb") as raw, gzip.GzipFile("", "wb", 9, raw, mtime=0) as zipped, \
             tarfile.open(fileobj=zipped, mode="w", format=tarfile.USTAR_FORMAT) as tar:
         for name in sorted(files):
             entry = tarfile.TarInfo(f"{top}/{name}")

@@ -10,7 +10,9 @@ RULES = {"drc_violations": {"is": 0}, "antenna_violations": {"is": 0},
 
 
 def summarize(design, known, found, folder, box):
-    """dict; what is not measured is None. found: figures of the stages' logs. folder: of the run. box: (width, height), um."""
+    """dict; what is not measured is None. found: figures of the stages' logs. folder: of the run. box: (width, height)
+    in um.
+    """
     by_corner = {name: {corner: found.get(f"{name}.{corner}") for corner in CORNERS} for name in ("wns_ns", "whs_ns")}
     stat = (folder / "synth.stat").read_text()
     cells, area = re.search(r"Number of cells:\s+(\d+)", stat), re.search(r"Chip area[^:]*:\s+([\d.]+)", stat)
@@ -18,7 +20,8 @@ def summarize(design, known, found, folder, box):
     slack = by_corner["wns_ns"]["slow"]
     return {"design": design.name, "top": design.top, "backend": "openroad", "pdk": known.name,
             "cells": int(cells[1]) if cells else None, "cell_area_um2": float(area[1]) if area else None,
-            "area_um2": round(box[0] * box[1], 2), "utilization": round(design.utilization * known.utilization_share, 4),
+            "area_um2": round(box[0] * box[1], 2),
+            "utilization": round(design.utilization * known.utilization_share, 4),
             "drc_violations": found.get("drc_violations"), "antenna_violations": found.get("antenna_violations"),
             "lvs_match": None, "equivalence": None, "gate_tests": None, **by_corner,
             "f_max_mhz": round(1000 / (period - slack), 2) if slack is not None else None}

@@ -13,7 +13,7 @@ BUS = "tt_bytes.v"
 
 @dataclass(frozen=True)
 class Project:
-    """top: its module, file <top>.v in tops/. tiles: of SIZES_UM. ui, uo, uio: names of the pins 0..7, '' for unused."""
+    """top: its module, file <top>.v in tops/. tiles: of SIZES_UM. ui, uo, uio: pins 0..7, '' for unused."""
 
     top: str
     title: str
@@ -47,7 +47,7 @@ PROJECTS = {
         ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy"),
         ("strobe", "is address", "hold free", "", "tap 0", "tap 1", "cfg_err", "done"),
         "Write the address 0, then the six durations, n_cm, and the byte that starts a row, with hold free high. The "
-        "outputs then show one row's phases: no two of pixel_reset, integrate, cm_reset and read are ever high together.")}
+        "outputs then show one row's phases: no two of pixel_reset, integrate, cm_reset and read are high at once.")}
 
 
 def sources(project, design):

@@ -22,7 +22,8 @@ def variables(design, known):
         "straps": [f"{{{s.layer} {s.width_um} {s.pitch_um or 0} {s.offset_um}}}" for s in known.straps]}
     files = {"tech_lef": known.tech_lef, "cell_lef": known.cell_lef, "rcx_rules": known.rcx_rules,
              **{f"liberty({corner})": known.liberty[corner] for corner in CORNERS}}
-    return "\n".join([f"# {design.name} with {known.library}: written by flow.openroad", "set pdk_root $::env(PDK_ROOT)",
+    return "\n".join([f"# {design.name} with {known.library}: written by flow.openroad",
+                      "set pdk_root $::env(PDK_ROOT)",
                       *(f"set {name} {{{value}}}" for name, value in plain.items()),
                       *(f"set {name} {{{' '.join(values)}}}" for name, values in lists.items()),
                       *(f"set {name} $pdk_root/{path}" for name, path in files.items()), ""])

@@ -97,7 +97,8 @@ def test_the_manifest_has_every_file_with_its_hash(layouts, tmp_path):
         name: entry["sha256"] for name, entry in listed["files"].items()}
     assert listed["versions"]["yosys"] == "0.23" and set(listed["substitutes"]) == set(contents.OPTIONAL)
     assert {"layout/quad_divider.gds", "layout/quad_divider.lef", "rtl/QuadDividerRadix4.v", "netlist/quad_divider.v",
-            "netlist/quad_divider.power.v", "pinout.md", "datasheet.md", "waivers.json", "reports/picture.png"} <= set(data)
+            "netlist/quad_divider.power.v", "pinout.md", "datasheet.md", "waivers.json",
+            "reports/picture.png"} <= set(data)
     assert "| x[10] | input | signal | met2 | 1.2 | 0.4 |" in data["pinout.md"].decode()
     assert "120 x 98.6 um" in data["datasheet.md"].decode()
 

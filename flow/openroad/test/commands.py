@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 @dataclass(frozen=True)
 class Command:
-    """keys: take a value; flags: take none; least, most: further arguments; writes: the key or 'argument' that is a file
-    which it writes; says: what it returns."""
+    """keys: take a value; flags: take none; least, most: further arguments; writes: the key or 'argument' that names a
+    file which it writes; says: what it returns."""
 
     source: str
     keys: tuple = ()
@@ -97,10 +97,11 @@ COMMANDS = {
                               says="0"),
     "define_process_corner": Command("Tcl, rcx; Flow", _words("-ext_model_index"), (), 1, 1),
     "set_extraction_rules_file": Command("flow-scripts, final_report.tcl", (), (), 1, 1),
-    "extract_parasitics": Command("rcx README", _words("-corner_cnt -max_res -coupling_threshold -cc_model -context_depth"),
-                                  _words("-lef_res -no_merge_via_res")),
+    "extract_parasitics": Command("rcx README", _words(
+        "-corner_cnt -max_res -coupling_threshold -cc_model -context_depth"), _words("-lef_res -no_merge_via_res")),
     "write_spef": Command("rcx README", _words("-net_id"), (), 1, 1, "argument"),
-    "read_spef": Command("STA", _words("-path -corner -reduce_to"), _words("-min -max -keep_capacitive_coupling"), 1, 1),
+    "read_spef": Command("STA", _words("-path -corner -reduce_to"), _words("-min -max -keep_capacitive_coupling"),
+                         1, 1),
     "report_design_area": Command("rsz README"),
     "report_floating_nets": Command("rsz README", (), _words("-verbose")),
     "report_wire_length": Command("grt README", _words("-net -file"), _words("-global_route -detailed_route -verbose")),

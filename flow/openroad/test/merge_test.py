@@ -56,7 +56,7 @@ def merged(tmp_path):
 def test_cells_wires_pins_and_labels_lie_where_they_belong(merged):
     layout = merged("inv_1", "nand2_1")
     top = layout.top_cell()
-    placed = {inst.cell.name: (inst.trans.disp.x, inst.trans.disp.y, inst.trans.is_mirror()) for inst in top.each_inst()}
+    placed = {i.cell.name: (i.trans.disp.x, i.trans.disp.y, i.trans.is_mirror()) for i in top.each_inst()}
     assert placed == {"sky130_fd_sc_hd__inv_1": (0, 0, False), "sky130_fd_sc_hd__nand2_1": (2300, 5440, True)}
 
     def region(layer, datatype):

@@ -8,7 +8,7 @@
 module tt_um_talbot_amp_ctrl
 (
   input  wire [7:0] ui_in,      // data
-  output wire [7:0] uo_out,     // 0 pixel_reset, 1 shutter, 2 ref_ctl, 3 integrate, 4 cm_reset, 5 read, 6 sample, 7 busy
+  output wire [7:0] uo_out,     // pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample, busy, from bit 0
   input  wire [7:0] uio_in,     // 0 strobe, 1 is_address, 2 hold_free
   output wire [7:0] uio_out,    // 7 done, 6 cfg_err, 5:4 tap
   output wire [7:0] uio_oe,

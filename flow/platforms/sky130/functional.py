@@ -10,8 +10,8 @@ from pathlib import Path
 from flow.simulate.process import ToolError
 
 LIBRARY = "sky130_fd_sc_hd"
-NOT_LOGIC = ("decap", "diode", "fill", "lpflow", "macro", "probe", "tap", "conb", "df", "dl", "edf", "sdf", "sdl", "sedf",
-             "einv", "ebuf", "clkdly")
+NOT_LOGIC = ("decap", "diode", "fill", "lpflow", "macro", "probe", "tap", "conb", "df", "dl", "edf", "sdf", "sdl",
+             "sedf", "einv", "ebuf", "clkdly")
 FLIP_FLOP, CONSTANT = "dfxtp_1", "conb_1"
 THRESHOLDS = {"input_threshold_pct": 50, "output_threshold_pct": 50, "slew_lower_threshold_pct": 20,
               "slew_upper_threshold_pct": 80}
@@ -78,8 +78,9 @@ def liberty():
             pins.append(f'  pin({output}) {{ direction : output; function : "{function}"; }}')
             lines += [f' cell("{LIBRARY}__{cell}") {{ area : {area(cell)};', *pins, " }"]
     lines += [f' cell("{LIBRARY}__{FLIP_FLOP}") {{ area : {area(FLIP_FLOP)};',
-              '  ff(IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }', "  pin(CLK) { direction : input; clock : true; }",
-              '  pin(D) { direction : input; }', '  pin(Q) { direction : output; function : "IQ"; }', " }",
+              '  ff(IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }',
+              '  pin(CLK) { direction : input; clock : true; }', '  pin(D) { direction : input; }',
+              '  pin(Q) { direction : output; function : "IQ"; }', " }",
               f' cell("{LIBRARY}__{CONSTANT}") {{ area : {area(CONSTANT)};',
               '  pin(HI) { direction : output; function : "1"; }', '  pin(LO) { direction : output; function : "0"; }',
               " }", "}", ""]

@@ -1,6 +1,6 @@
 """Tiny Tapeout's tiles on SKY130: their sizes and what its configuration asks projects not to change.
 
-From tt-support-tools (tile_sizes.yaml; the rows of def/tt_block_1x1_pg.def) and src/config.json of the Verilog template.
+From tt-support-tools (tile_sizes.yaml; the rows of def/tt_block_1x1_pg.def) and src/config.json of its template.
 """
 
 SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76)}
