@@ -27,7 +27,7 @@ check -assert
 dfflibmap -liberty {liberty}
 abc -liberty {liberty}
 setundef -zero
-hilomap -singleton -hicell sky130_fd_sc_hd__conb_1 HI -locell sky130_fd_sc_hd__conb_1 LO
+hilomap -singleton -hicell {constant} HI -locell {constant} LO
 splitnets
 opt_clean -purge
 tee -q -o {stat} stat -liberty {liberty}
@@ -60,11 +60,12 @@ def fit(name, folder):
     (folder / "cells.lib").write_text(functional.liberty())
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
     script.write_text(SCRIPT.format(top=project.top, liberty=folder / "cells.lib", stat=stat, netlist=netlist,
+                                    constant=f"{functional.LIBRARY}__{functional.CONSTANT}",
                                     sources=" ".join(str(folder / file) for file in sources(project, chosen))))
     run(["yosys", "-q", "-s", script])
     said = stat.read_text()
     return Fit(name, project.tiles, int(re.search(r"Number of cells:\s+(\d+)", said)[1]),
-               int(re.search(r"dfxtp_1\s+(\d+)", said)[1]), float(re.search(r"Chip area.*:\s+([\d.]+)", said)[1]),
+               int(re.search(rf"{functional.FLIP_FLOP}\s+(\d+)", said)[1]), float(re.search(r"Chip area.*:\s+([\d.]+)", said)[1]),
                core_um2(project.tiles)), netlist
 
 

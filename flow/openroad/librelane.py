@@ -18,7 +18,7 @@ def librelane(design, known, verilog):
         "DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.v]", "CLOCK_PORT": design.clock.port,
         "CLOCK_PERIOD": design.clock.period_ns, "PNR_SDC_FILE": "dir::pnr.sdc", "SIGNOFF_SDC_FILE": "dir::signoff.sdc",
         "FP_SIZING": "relative", "FP_CORE_UTIL": utilization, "FP_ASPECT_RATIO": 1,
-        "PL_TARGET_DENSITY_PCT": min(95, utilization + 15), "MAX_FANOUT_CONSTRAINT": 16}
+        "PL_TARGET_DENSITY_PCT": min(95, utilization + 15)}
     config = "meta:\n  version: 2\n  flow: Classic\n" + "".join(f"{key}: {value}\n" for key, value in values.items())
     return {"librelane/config.yaml": config, "librelane/pnr.sdc": sdc(design, propagated=False) + PROPAGATE,
             "librelane/signoff.sdc": sdc(design), f"librelane/{design.top}.v": verilog}

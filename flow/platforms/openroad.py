@@ -67,7 +67,7 @@ class OpenRoad:
     outline: tuple
     pin_datatype: int
     label_datatype: int
-    utilization_share: float = 0.75
+    utilization_share: float = 0.6
 
 
 def process(pdk):

@@ -15,4 +15,3 @@ write_verilog -remove_cells $fill $top.v
 write_verilog -include_pwr_gnd $top.power.v
 report_design_area
 report_floating_nets -verbose
-report_wire_length -net * -file wires.csv -detailed_route

@@ -104,7 +104,6 @@ COMMANDS = {
                          1, 1),
     "report_design_area": Command("rsz README"),
     "report_floating_nets": Command("rsz README", (), _words("-verbose")),
-    "report_wire_length": Command("grt README", _words("-net -file"), _words("-global_route -detailed_route -verbose")),
     "report_checks": Command("STA", _words("-path_delay -fields -digits -format -corner -slack_max -group_count"),
                              _words("-unconstrained -no_line_splits")),
     "report_check_types": Command("STA", _words("-digits -corner"), _words(
