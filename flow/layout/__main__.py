@@ -30,7 +30,7 @@ def arguments():
     parser.add_argument("--pdk", default="sky130", help="process (%(default)s)")
     parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
     parser.add_argument("--utilization", type=float,
-                        help="cells' area by core area at which the search for the smallest begins; default: the design's")
+                        help="cells' area by core area where the search for the smallest begins; default: the design's")
     parser.add_argument("--liberty", type=Path, action="append", default=[],
                         help="characterized cells at a corner (again for further corners); none: no timing")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")

@@ -87,7 +87,8 @@ def tries(design, options):
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc()]
+    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc(),
+            Antenna(AntennaParameters(options.pdk))]
 
 
 def back(design, options):
@@ -97,14 +98,14 @@ def back(design, options):
              if design.netlist_names else [GateFrames()])
     timing = [Sta(StaParameters(design.top, corner, clock.period_ns)) for corner in options.corners]
     return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
-            Antenna(AntennaParameters(options.pdk)), Extraction(ExtractionParameters(options.pdk)), *timing]
+            Extraction(ExtractionParameters(options.pdk)), *timing]
 
 
 def layout(design, options, runner):
     """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
 
-    A try closes when every net is routed and no design rule broken. Returns the tries: list of {utilization,
-    open_segments (None where the router gave up), drc_violations (None without a layout)}.
+    A try closes when every net is routed and no rule of design or antennas broken. Returns the tries: list of
+    {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
     """
     pair = next(tries(design, options))
     for step in (*front(design, options), *pair, *judged(design, options), *back(design, options)):
@@ -117,12 +118,12 @@ def layout(design, options, runner):
         runner.run(floorplan)
         found = runner.run(place_route)["metrics"]
         tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
-                      "drc_violations": None})
+                      "rules_broken": None})
         if found["routed"] and not found["open_segments"]:
-            for step in judged(design, options):
-                record = runner.run(step)
-            tried[-1]["drc_violations"] = record["metrics"]["drc_violations"]
-            if not tried[-1]["drc_violations"]:
+            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0)
+                         for step in judged(design, options))
+            tried[-1]["rules_broken"] = broken
+            if not broken:
                 for step in back(design, options):
                     runner.run(step)
                 return tried

@@ -24,7 +24,8 @@ def _tiles(s, broken):
         return {"value": "-" if value is None else value, "label": label, "kind": kind}
 
     tests = s["gate_tests"] or {}
-    return [tile(f"{s['area_um2']:,.0f}", "um2"), tile(s["utilization"], "utilization"), tile(f"{s['cells']:,}", "cells"),
+    return [tile(f"{s['area_um2']:,.0f}", "um2"), tile(s["utilization"], "utilization"),
+            tile(f"{s['cells']:,}", "cells"),
             tile(s["open_nets"], "open nets", "open_nets"), tile(s["drc_violations"], "rules broken", "drc_violations"),
             tile({True: "match", False: "differ"}.get(s["lvs_match"]), "layout and netlist", "lvs_match"),
             tile(s["equivalence"], "netlist = Verilog", "equivalence"),

@@ -32,19 +32,22 @@ def summarize(design, options, runner, tried):
         "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("antenna", "density"),
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing(options), **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
-        "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()), "power_uw": by_corner("power_uw"), "wire_pf": metric("extraction", "wire_pf"),
+        "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()), "power_uw": by_corner("power_uw"),
+        "wire_pf": metric("extraction", "wire_pf"),
         "registers": metric("equivalence", "registers"),
-        "gate_tests": next((records[name]["metrics"] for name in ("gate_tests", "gate_frames") if name in records), None),
+        "gate_tests": next((records[name]["metrics"] for name in ("gate_tests", "gate_frames")
+                            if name in records), None),
         "wall_s": {name: record["wall_s"] for name, record in records.items()},
-        "peak_mib": {name: record["peak_mib"] for name, record in records.items()}, "tools": dict(sorted(tools.items()))}
+        "peak_mib": {name: record["peak_mib"] for name, record in records.items()},
+        "tools": dict(sorted(tools.items()))}
 
 
 def timing(options):
     """What the timing figures rest on, in words."""
     if not options.liberty:
         return "no timing: no characterized Liberty was given"
-    return (f"cells: {', '.join(path.name for path in options.liberty)}; wires: area and edge capacitance to the substrate and resistance from the "
-            "router's wires, no coupling; power: OpenSTA's default activity, not a simulation's")
+    return (f"cells: {', '.join(path.name for path in options.liberty)}; wires: area and edge capacitance "
+            "to the substrate and resistance from the router's wires, no coupling; power: OpenSTA's default activity, not a simulation's")
 
 
 def broken(summary, rules=RULES):

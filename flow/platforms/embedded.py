@@ -11,8 +11,8 @@ PROCESSES = ("sky130", "ihp-sg13g2")
 @dataclass(frozen=True)
 class Wire:
     """A wiring layer: its name in PDKMaster, GDS layer and datatype, capacitance to the ground plane (aF/um2, aF/um
-    of edge), resistance (Ohm per square), thickness (um), and the most side wall by gate area (antenna_ratio), to
-    which every um2 of diffusion on the net adds as much again."""
+    of edge), resistance (Ohm per square), thickness (um), and the most side wall by gate area: antenna_ratio on a net
+    without a diffusion, else antenna_diffusion[0] plus antenna_diffusion[1] an um2 of it."""
 
     name: str
     layer: int
@@ -22,6 +22,7 @@ class Wire:
     ohm: float
     thickness_um: float
     antenna_ratio: float
+    antenna_diffusion: tuple
 
 
 @dataclass(frozen=True)

@@ -75,6 +75,9 @@ def violations(layout, top, known, level):
             l2n.connect(metal, below)
     l2n.extract_netlist()
     wire = known.wires[level]
-    bad = l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, wire.antenna_ratio,
-                            [[diffusion, wire.antenna_ratio]])
+    safe = 1e9          # for what has a diffusion, in the check of what has none
+    base, more = wire.antenna_diffusion
+    bad = db.Region()
+    for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
+        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, ratio, [[diffusion, by_diffusion]])
     return sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})

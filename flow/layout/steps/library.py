@@ -29,8 +29,8 @@ class Library(Step):
     name = "library"
     inputs = {"platform": "platform"}
     outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
-               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v", "rules": "rules.json",
-               "geometry": "geometry.json"}
+               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v",
+               "rules": "rules.json",               "geometry": "geometry.json"}
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
@@ -64,7 +64,7 @@ def geometry(known):
     """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
     made = asdict(known)
     for wire in made["wires"]:
-        for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio"):
+        for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
             del wire[name]
     return made
 

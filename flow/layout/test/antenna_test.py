@@ -7,7 +7,8 @@ from flow.platforms.embedded import process
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
 
-@pytest.mark.parametrize("length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0)])
+@pytest.mark.parametrize("length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0),
+                                                        (500, True, 1)])
 def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
     from flow.layout.steps.antenna import violations
     known, _ = process("sky130")
