@@ -6,6 +6,7 @@ VENV := .venv
 PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
 TESTS_READY := $(VENV)/.tests-ready
+LAYOUT_READY := $(VENV)/.layout-ready
 
 # Arguments of `make sim`, each also an option of `python -m talbot sim`
 SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
@@ -24,6 +25,11 @@ $(READY): requirements.lock pyproject.toml flow/setup/venv.sh
 
 $(TESTS_READY): $(READY) requirements-test.lock
 	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-test.lock
+	@touch $@
+
+$(LAYOUT_READY): $(READY) requirements-layout.lock requirements-pdk.lock
+	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-layout.lock
+	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-pdk.lock
 	@touch $@
 
 .PHONY: setup
@@ -77,9 +83,38 @@ formats: $(READY)  ## stream formats and scan orders compared: build/formats/
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
 	@$(PY) -m flow.sizes --document README.md
 
+.PHONY: layout
+layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 LIBERTY='a.lib b.lib']
+ifeq ($(BACKEND),openroad)
+	@$(PY) -m flow.openroad $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
+else
+	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
+		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) \
+		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+endif
+
+.PHONY: handoff
+handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
+	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider)
+
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
+
+CELLS_OPTIONS := LIB CORNER CELLS MODELS NETLIST REFERENCE WORKERS
+cells_arguments = $(foreach o,$(CELLS_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o)))))
+
+.PHONY: cells
+cells: $(LAYOUT_READY)  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib (needs ngspice: make tools)
+	@$(PY) -m cells $(cells_arguments)
+
+.PHONY: cells-report
+cells-report: $(LAYOUT_READY)  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
+	@$(PY) -m cells.report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER))
+
+.PHONY: cells-stability
+cells-stability: $(LAYOUT_READY)  ## stiff and extreme cases of the characterizer: bound against measured
+	@$(PY) -m cells.stability
 
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys and z3 from Debian's packages (needs root)

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3.
+# Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
+# layouts ngspice, OpenSTA and KLayout.
 set -euo pipefail
-packages=(iverilog verilator yosys z3)
+packages=(iverilog verilator yosys z3 ngspice opensta klayout)
 
 if ! command -v apt-get >/dev/null; then
     echo "tools: apt-get = not found: install ${packages[*]} with this system's own package manager" >&2

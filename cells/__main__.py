@@ -1,0 +1,45 @@
+"""`python -m cells`: a cell library characterized at one corner, to build/cells/<library>/."""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from cells import run, sources
+from cells.characterize.conditions import Conditions
+from cells.corner import Corner
+from cells.spice.engine import SimulationError
+from flow.simulate.process import ToolError
+from models.parameters import ParameterError
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def main(argv=None):
+    parser = argparse.ArgumentParser(prog="python -m cells", description=__doc__.splitlines()[0])
+    parser.add_argument("--lib", default="sky130_hd", choices=sources.LIBRARIES, help="which library")
+    parser.add_argument("--corner", default="tt_025C_1v80", help="process, temperature, supply: ff_n40C_1v95")
+    parser.add_argument("--cells", help="names with commas between (inv_1,nand2_1); default: all for synthesis")
+    parser.add_argument("--models", default="fitted", choices=sources.process("sky130_hd").SETS,
+                        help="set of device models")
+    parser.add_argument("--netlist", default="extracted", choices=sources.NETLISTS,
+                        help="what is simulated: with stray capacitances, transistors as laid out, or as drawn")
+    parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json to compare with")
+    parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "cells", help="folder of the libraries")
+    options = parser.parse_args(argv)
+    try:
+        conditions = Conditions(Corner.parse(options.corner), options.models)
+        started = time.monotonic()
+        summary = run.run(options.lib, conditions, options.cells and options.cells.split(","), options.netlist,
+                          options.out, options.reference, options.workers, started)
+    except (ParameterError, ToolError, SimulationError, OSError) as error:
+        print(f"cells: {error}", file=sys.stderr)
+        return 2
+    print(json.dumps({k: v for k, v in summary.items() if k != "by_cell"}, indent=1))
+    return 1 if summary["failed"] or summary["problems"] else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,88 @@
+"""Everything about one cell at one corner, as plain data that JSON holds: what Liberty is written from."""
+
+import time
+
+import numpy as np
+
+from cells.characterize import delay, grid
+from cells.characterize.bench import Bench
+from cells.characterize.capacitance import capacitance
+from cells.characterize.constraint import constraints
+from cells.characterize.leakage import leakage
+from cells.characterize.power import quiet_energy
+from cells.spice.engine import SimulationError
+
+
+def characterize(cell, process, conditions):
+    """dict: what `cells.liberty.build` takes, with SI units, 'failed' (what, why, deck), counts and seconds."""
+    started = time.monotonic()
+    out = {"name": cell.name, "failed": [], "slews": conditions.slews}
+    with Bench(cell, process, conditions) as bench:
+        tried = _Tries(out["failed"])
+        axes = {output: tried(f"{output}: axes", axes_of, bench, output) for output in cell.machine.outputs}
+        bench.pressed = {output: axis[1][-2] for output, axis in axes.items() if axis}
+        out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
+        out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
+        out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,
+                             *axes[arc.output][:2])
+                       for arc in cell.arcs if axes[arc.output]]
+        out["arcs"] = [arc for arc in out["arcs"] if arc]
+        out["capacitance"] = {pin: tried(f"{pin}: capacitance", capacitance, bench, pin)
+                              for pin in cell.machine.inputs}
+        out["quiet_energy"] = {pin: _lists(tried(f"{pin}: energy", quiet_energy, bench, pin))
+                               for pin in cell.machine.inputs}
+        _without_clock(out, cell)
+        out["constraints"] = constraints(bench, tried) if cell.storage else []
+        runs, repeated = bench.simulator.runs, bench.simulator.repeated
+    with Bench(cell, process, conditions, leakage=True) as bench:
+        out["leakage"] = tried("leakage", leakage, bench) or []
+    out["simulations"], out["repeated"] = runs + bench.simulator.runs, repeated + bench.simulator.repeated
+    out["wall_s"] = round(time.monotonic() - started, 2)
+    return out
+
+
+class _Tries:
+    """Calls whose SimulationError is written down with its netlist instead of ending the cell."""
+
+    def __init__(self, failed):
+        self.failed = failed
+
+    def __call__(self, what, call, *arguments):
+        try:
+            return call(*arguments)
+        except SimulationError as error:
+            self.failed.append({"what": what, "why": str(error), "deck": error.deck})
+            return None
+
+
+def _lists(arrays):
+    return arrays and {name: values.tolist() for name, values in arrays.items()}
+
+
+def axes_of(bench, output):
+    """(slews, loads, interpolation error) of ``output``; loads end where the slower edge reaches the longest slew."""
+    changes = [arc.changes[0] for arc in bench.cell.arcs
+               if arc.output == output and not arc.type.startswith("three_state")]
+    number = bench.machine.outputs.index(output)
+    edges = list({change.after.outputs[number]: change for change in changes}.values())
+    loads = delay.load_axis(bench.conditions, delay.largest_load(bench, edges, output))
+    return grid.refined(bench, edges, output, loads)
+
+
+def _arc(bench, arc, slews, loads):
+    change = delay.slowest(bench, arc, loads[len(loads) // 2])
+    table = delay.table(bench, change, arc.output, loads, slews)
+    return {"pin": arc.pin, "pin_edge": arc.pin_edge, "output": arc.output, "edge": arc.edge, "type": arc.type,
+            "sense": arc.sense, "slews": table.slews, "loads": table.loads,
+            "state": list(change.before.inputs), **_lists(table.values)}
+
+
+
+def _without_clock(out, cell):
+    """Take what the clock's edge alone needs off the energy of the edges that it triggers: the pin has that."""
+    slews = out["slews"]
+    for arc in out["arcs"]:
+        alone = out["quiet_energy"].get(arc["pin"])
+        if arc["type"] in ("rising_edge", "falling_edge") and alone:
+            clock = np.interp(arc["slews"], slews, alone[arc["pin_edge"]])
+            arc["energy"] = (np.array(arc["energy"]) - clock[:, None]).tolist()

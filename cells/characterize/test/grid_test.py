@@ -1,0 +1,62 @@
+"""Axes and searches on functions whose answer is known."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from cells.characterize.conditions import Conditions
+from cells.characterize.constraint import bisect
+from cells.characterize.grid import _refine
+from cells.characterize.table import bilinear
+from cells.corner import Corner
+from cells.spice.engine import SimulationError
+from models.parameters import ParameterError
+
+
+def line(function):
+    return lambda x: SimpleNamespace(delay=function(x), slew=1.0)
+
+
+def test_bilinear_is_exact_for_what_is_bilinear():
+    rows, columns = np.array([1.0, 2.0, 5.0]), np.array([0.5, 3.0])
+    values = 2 + rows[:, None] * 3 - columns + rows[:, None] * columns
+    for row, column in ((1.5, 1.0), (4.0, 2.9), (0.5, 4.0)):
+        assert bilinear(rows, columns, values, row, column) == pytest.approx(2 + 3 * row - column + row * column)
+
+
+def test_a_point_goes_where_the_table_bends():
+    """A kink at 8 between straight lines: the first point is added in its interval."""
+    axis, _ = _refine((1.0, 2.0, 4.0, 16.0, 32.0), [line(lambda x: max(x, 8.0))], 0.01, 1)
+    assert axis == (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+
+
+def test_a_straight_line_needs_no_point():
+    axis, error = _refine((1.0, 2.0, 4.0), [line(lambda x: 3 * x + 1)], 0.01, 5)
+    assert axis == (1.0, 2.0, 4.0) and error < 1e-12
+
+
+@pytest.mark.parametrize("guess", [None, 30e-12, 60e-12, -900e-12, 990e-12])
+def test_bisection_finds_where_the_delay_has_grown_by_its_share(guess):
+    """Delay 100 ps (1 + exp(-(x - 20 ps) / 10 ps)), lost below 20 ps: 10 % more at 20 ps + 10 ps ln 10."""
+    runs = []
+
+    def run(x):
+        runs.append(x)
+        return None if x < 20e-12 else 100e-12 * (1 + np.exp(-(x - 20e-12) / 10e-12))
+
+    found = bisect(run, 1e-9, True, 0.1, guess=guess)
+    assert found == pytest.approx(20e-12 + 10e-12 * np.log(10), abs=1.1e-12)
+    assert len(runs) < 20
+
+
+def test_a_constraint_that_is_never_kept_is_an_error():
+    with pytest.raises(SimulationError, match="not kept even far"):
+        bisect(lambda x: None, 1e-9, True, 0.1)
+
+
+@pytest.mark.parametrize("field, value", [("slews", (2e-9, 1e-9)), ("loads", 1), ("degrade", 0), ("lower", 0.6),
+                                          ("extra", -1)])
+def test_conditions_are_checked(field, value):
+    with pytest.raises(ParameterError):
+        Conditions(Corner("tt", 25, 1.8), **{field: value})

@@ -1,0 +1,5 @@
+"""Cells as they are laid out: GDS in, a SPICE subcircuit with measured transistors and stray capacitances out."""
+
+from cells.extract.subcircuit import extract
+
+__all__ = ["extract"]

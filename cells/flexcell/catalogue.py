@@ -1,0 +1,113 @@
+"""The cells: names, functions and transistors. Ports are named as in c4m-flexcell (i0, cmd, q, nq, clk, nrst)."""
+
+from cells.flexcell.transistors import Schematic, Switch
+
+INPUTS = ("i0", "i1", "i2", "i3", "i4")
+
+
+def schematics():
+    """Every cell with transistors: name -> Schematic."""
+    made = [*_inverters(), *_simple(), *_complex(), *_exclusive(), *_arithmetic(), *_flip_flops(), *_clock_gates(),
+            *_constants()]
+    return {schematic.name: schematic for schematic in made}
+
+
+def _inverters():
+    for drive in (1, 2, 4, 8):
+        yield Schematic(f"inv_x{drive}", ("i",), ("nq",)).gate("nq", "i", drive)
+        first = {1: 1, 2: 1, 4: 2, 8: 3}[drive]
+        yield Schematic(f"buf_x{drive}", ("i",), ("q",)).gate("n", "i", first).gate("q", "n", drive)
+
+
+def _constants():
+    """Each transistor's gate hangs on the other's drain, never on a rail: no gate oxide sees the supply's edges."""
+    zero, one = Schematic("zero_x1", (), ("zero",), functions={"zero": "0"}), \
+        Schematic("one_x1", (), ("one",), functions={"one": "1"})
+    for cell, low, high in ((zero, "zero", "h"), (one, "l", "one")):
+        cell.n.append(Switch("n", high, low, "vss"))
+        cell.p.append(Switch("p", low, high, "vdd"))
+        yield cell
+
+
+def _simple():
+    for count in (2, 3, 4):
+        ports = INPUTS[:count]
+        for operator, name in (("and", "nand"), ("or", "nor")):
+            yield Schematic(f"{name}{count}_x1", ports, ("nq",)).gate("nq", (operator, *ports))
+            if count == 2:
+                yield Schematic(f"{name}2_x2", ports, ("nq",)).gate("nq", (operator, *ports), 2)
+        for operator, name in (("and", "and"), ("or", "or")):
+            for drive in (1, 2) if count == 2 else (1,):
+                yield Schematic(f"{name}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports)).gate("q", "n", drive)
+    # One input inverted inside: nand2b = not (not i0 and i1)
+    yield Schematic("nand2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("and", "n", "i1"))
+    yield Schematic("nor2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("or", "n", "i1"))
+
+
+def _complex():
+    a, b, c, d, e = INPUTS
+    functions = {"and21nor": ("or", ("and", a, b), c), "or21nand": ("and", ("or", a, b), c),
+                 "and22nor": ("or", ("and", a, b), ("and", c, d)), "or22nand": ("and", ("or", a, b), ("or", c, d)),
+                 "and211nor": ("or", ("and", a, b), c, d), "or211nand": ("and", ("or", a, b), c, d),
+                 "and31nor": ("or", ("and", a, b, c), d), "or31nand": ("and", ("or", a, b, c), d),
+                 "and221nor": ("or", ("and", a, b), ("and", c, d), e),
+                 "or221nand": ("and", ("or", a, b), ("or", c, d), e)}
+    for name, function in functions.items():
+        ports = INPUTS[:sum(int(c) for c in name if c.isdigit())]
+        yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", function)
+    for name, function in (("and21or", functions["and21nor"]), ("or21and", functions["or21nand"]),
+                           ("and22or", functions["and22nor"]), ("or22and", functions["or22nand"])):
+        ports = INPUTS[:3 if "21" in name else 4]
+        yield Schematic(f"{name}_x1", ports, ("q",)).gate("n", function).gate("q", "n")
+
+
+def _exclusive():
+    yield Schematic("xor2_x1", ("i0", "i1"), ("q",)).gate("n", ("or", "i0", "i1")).gate(
+        "q", ("or", ("and", "i0", "i1"), "n"))
+    yield Schematic("nexor2_x1", ("i0", "i1"), ("nq",)).gate("n", ("and", "i0", "i1")).gate(
+        "nq", ("and", ("or", "i0", "i1"), "n"))
+    for name, output in (("mux2_x1", "q"), ("nmux2_x1", "nq")):
+        mux = Schematic(name, ("cmd", "i0", "i1"), (output,)).gate("c", "cmd")
+        inner = "n" if output == "q" else output
+        mux.inverting_tristate(inner, "i1", "cmd", "c").inverting_tristate(inner, "i0", "c", "cmd")
+        mux.functions[inner] = "!((cmd & i1) | (!cmd & i0))"
+        yield mux.gate("q", "n") if output == "q" else mux
+
+
+def _arithmetic():
+    half = Schematic("ha_x1", ("i0", "i1"), ("sum", "carry")).gate("n", ("and", "i0", "i1")).gate("carry", "n")
+    yield half.gate("x", ("and", ("or", "i0", "i1"), "n")).gate("sum", "x")
+    majority = ("or", ("and", "i0", "i1"), ("and", "i2", ("or", "i0", "i1")))
+    full = Schematic("fa_x1", ("i0", "i1", "i2"), ("sum", "carry")).gate("n", majority).gate("carry", "n")
+    yield full.gate("x", ("or", ("and", "i0", "i1", "i2"), ("and", "n", ("or", "i0", "i1", "i2")))).gate("sum", "x")
+
+
+def _flip_flops():
+    """Master and slave of pass gates and clocked feedback, as SkyWater's dfxtp and dfrtp."""
+    for drive in (1, 2):
+        made = _stored(Schematic(f"dff_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
+        made.inverting_tristate("m", "a", "cb", "cn").pass_gate("a", "s", "cb", "cn")
+        made.gate("b", "s").inverting_tristate("s", "b", "cn", "cb").gate("q", "b", drive)
+        yield _sequential(made, "ff", next_state="i")
+        made = _stored(Schematic(f"dffnr_x{drive}", ("i", "clk", "nrst"), ("q",))).gate("a", "m")
+        made.inverting_tristate("m", "a", "cb", "cn", reset="nrst").pass_gate("a", "s", "cb", "cn")
+        made.gate("b", ("and", "s", "nrst")).inverting_tristate("s", "b", "cn", "cb").gate("q", "b", drive)
+        yield _sequential(made, "ff", next_state="i", clear="!nrst")
+
+
+def _clock_gates():
+    """q = clk while the enable, held from before the clock rises, is high."""
+    for drive in (1, 2):
+        made = _stored(Schematic(f"cg_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
+        made.inverting_tristate("m", "a", "cb", "cn").gate("n", ("and", "a", "clk")).gate("q", "n", drive)
+        yield _sequential(made, "gate")
+
+
+def _stored(made):
+    """Both phases of the clock, cn = not clk and cb = clk, and m = not i while the clock is low."""
+    return made.gate("cn", "clk").gate("cb", "cn").gate("d", "i").pass_gate("d", "m", "cn", "cb")
+
+
+def _sequential(made, storage, **functions):
+    made.storage, made.functions = storage, functions
+    return made

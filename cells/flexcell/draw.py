@@ -1,0 +1,203 @@
+"""The rectangles of a cell: what its transistors, taps, rails and wires are made of."""
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+CUT, WIRE = 0.17, 0.17          # um: licon and mcon; li
+PAD = (0.27, 0.33)              # um: poly around its contact
+PATCH = 0.33                    # um: li around a contact, along one direction
+SHIFT = 0.08                    # um: a 'tap' contact beside its gate (route)
+VIA_PAD = (0.29, 0.23)          # um: met1 around mcon
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A rectangle (um) on a layer of PDKMaster's technology. net: its net, '' for wells, implants and the like."""
+
+    layer: str
+    net: str
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+class Pen:
+    """Draws rectangles into ``shapes``, in um; the cell is ``sites`` wide."""
+
+    def __init__(self, canvas, sites):
+        self.canvas, self.width, self.shapes = canvas, sites * canvas.site, []
+
+    def box(self, layer, net, left, bottom, right, top):
+        left, bottom, right, top = (round(round(v / 0.005) * 0.005, 3) for v in (left, bottom, right, top))
+        self.shapes.append(Shape(layer, net, left, bottom, right, top))
+
+    def at(self, layer, net, x, y, width, height):
+        self.box(layer, net, x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+
+
+class Drawing(Pen):
+    """The shapes of an Assembly with its Wiring on a Canvas."""
+
+    def __init__(self, canvas, made, wiring):
+        super().__init__(canvas, (made.columns + 1) // 2)
+        self.made, self.wiring = made, wiring
+        frame(self)
+        self._transistors()
+        self._rail_stubs()
+        for net in wiring.vertices:
+            self._wires(net)
+        for net, pin in wiring.pins.items():
+            self._pin(net, pin)
+
+    def x(self, h):
+        return (h + 1) * self.canvas.site / 2
+
+    def _transistors(self):
+        c = self.canvas
+        for h, column in self.made.gates:
+            half = c.length / 2
+            for switch, low, high in ((column.n, c.n[0] - 0.13, c.rows[c.low] + half),
+                                      (column.p, c.rows[c.high] - half, c.p[1] + 0.13)):
+                self.box("poly", switch.gate, self.x(h) - half, low, self.x(h) + half, high)
+        for d in self.made.diffusions:
+            low, high = c.n if d.kind == "n" else c.p
+            start, end = min(d.columns), max(d.columns)
+            gates = {h for h, _ in self.made.gates}
+            left = self.x(start) - (0.26 if start - 1 in gates else 0.125)
+            right = self.x(end) + (0.26 if end + 1 in gates else 0.125)
+            self.box("difftap", d.net, left, low, right, high)
+
+    def _rail_stubs(self):
+        c = self.canvas
+        for net, edge in (("vss", 0.0), ("vdd", c.height)):
+            for _, h, r in self.wiring.vertices.get(net, ()):
+                y = c.rows[r]
+                self.box("li", net, self.x(h) - WIRE / 2, min(y, edge), self.x(h) + WIRE / 2, max(y, edge))
+
+    def _wires(self, net):
+        vertices, edges = self.wiring.vertices[net], self.wiring.edges.get(net, [])
+        contacts = {("poly", *v[1:]) for v in vertices if v[0] == "licon"}
+        for layer, h, r, *more in vertices:
+            x, y = self.x(h), self.canvas.rows[r] if layer not in ("tap", "tip") else 0.0
+            if layer == "tip":
+                self._tip(net, h, r, *more)
+            elif layer == "li":
+                self.at("li", net, x, y, WIRE, WIRE)
+            elif layer == "licon":
+                self._gate_contact(net, x, y)
+            elif layer == "mcon":
+                self.at("mcon", net, x, y, CUT, CUT)
+                self.at("m1", net, x, y, *VIA_PAD)
+        for a, b in edges:
+            if a[0] == b[0] and a[0] in ("li", "poly", "met1"):
+                self._segment(net, a, b, contacts)
+        self._diffusion_contacts(net)
+        self._fill(net, vertices)
+
+    def _segment(self, net, a, b, contacts):
+        layer = {"li": "li", "poly": "poly", "met1": "m1"}[a[0]]
+        half = {"li": WIRE, "poly": self.canvas.length, "m1": 0.14}[layer] / 2
+        # A pad beside a gate: no notch between the two
+        tall = PAD[1] / 2 if a[0] == "poly" and a[2] == b[2] and {a, b} & contacts else half
+        x = sorted((self.x(a[1]), self.x(b[1])))
+        y = sorted((self.canvas.rows[a[2]], self.canvas.rows[b[2]]))
+        self.box(layer, net, x[0] - half, y[0] - tall, x[1] + half, y[1] + tall)
+
+    def _gate_contact(self, net, x, y):
+        self.at("poly", net, x, y, *PAD)
+        self.at("licon", net, x, y, CUT, CUT)
+        self.at("li", net, x, y, PATCH, WIRE)
+
+    def _beside(self, net, h, side, row):
+        """A gate's contact and its poly pad, SHIFT beside the gate's middle. Returns its x."""
+        x, y = self.x(h) + side * SHIFT, self.canvas.rows[row]
+        self.at("poly", net, x, y, *PAD)
+        self.box("poly", net, min(x, self.x(h)), y - PAD[1] / 2, max(x, self.x(h)), y + PAD[1] / 2)
+        self.at("licon", net, x, y, CUT, CUT)
+        return x
+
+    def _tip(self, net, h, side, row):
+        c = self.canvas
+        x, y = self._beside(net, h, side, row), c.rows[row]
+        away = c.rows[row - 1 if row == c.low else row + 1]
+        back = PATCH / 2 if row == c.low else -PATCH / 2
+        forth = -WIRE / 2 if row == c.low else WIRE / 2
+        self.box("li", net, x - WIRE / 2, min(y + back, away + forth), x + WIRE / 2, max(y + back, away + forth))
+        ends = sorted((x, self.x(h + side)))
+        self.box("li", net, ends[0] - WIRE / 2, away - WIRE / 2, ends[1] + WIRE / 2, away + WIRE / 2)
+
+    def _diffusion_contacts(self, net):
+        last = len(self.canvas.rows) - 1
+        for d in self.made.diffusions:
+            row = 0 if d.kind == "n" else last
+            for h in d.columns if d.net == net else ():
+                if ("li", h, row) in self.wiring.vertices[net]:
+                    x, y = self.x(h), self.canvas.rows[row]
+                    self.at("licon", net, x, y, CUT, CUT)
+                    self.at("li", net, x, y, PATCH, WIRE)
+
+    def _fill(self, net, vertices):
+        """No gap between wires of one net that stand side by side."""
+        rows = self.canvas.rows
+        upright = {(e[0][1], min(e[0][2], e[1][2])) for e in self.wiring.edges.get(net, ())
+                   if e[0][0] == e[1][0] == "li" and e[0][1] == e[1][1]}
+        for layer, h, r in (v for v in vertices if v[0] in ("li", "poly", "met1")):
+            if (layer, h + 1, r) not in vertices:
+                continue
+            name = {"met1": "m1"}.get(layer, layer)
+            height = {"li": WIRE, "poly": PAD[1], "m1": 0.14}[name]
+            self.box(name, net, self.x(h), rows[r] - height / 2, self.x(h + 1), rows[r] + height / 2)
+            if layer == "met1":
+                self.box("m1.block", net, self.x(h) - 0.07, rows[r] - 0.07, self.x(h + 1) + 0.07, rows[r] + 0.07)
+            if layer == "li" and {(h, r), (h + 1, r)} <= upright:
+                self.box("li", net, self.x(h), rows[r], self.x(h + 1), rows[r + 1])
+
+    def _pin(self, net, pin):
+        c = self.canvas
+        kind, h, r, *row = pin
+        if kind == "tap":
+            x, low, high = self._beside(net, h, r, *row), c.rows[c.low], c.rows[c.high]
+            ends = (PATCH, WIRE) if row == [c.low] else (WIRE, PATCH)
+            bottom, top = low - ends[0] / 2, high + ends[1] / 2
+        else:
+            x = self.x(h)
+            own = {v[2] for v in self.wiring.vertices[net] if v[:2] == ("li", h)}
+            low = high = r
+            joined = {frozenset(e) for e in self.wiring.edges[net]}
+            while high + 1 in own and frozenset((("li", h, high), ("li", h, high + 1))) in joined:
+                high += 1
+            while low - 1 in own and frozenset((("li", h, low), ("li", h, low - 1))) in joined:
+                low -= 1
+            bottom, top = c.rows[low] - WIRE / 2, c.rows[high] + WIRE / 2
+        self.box("li", net, x - WIRE / 2, bottom, x + WIRE / 2, top)
+        self.box("li.pin", net, x - WIRE / 2, bottom, x + WIRE / 2, top)
+
+
+def frame(drawing):
+    """What every cell has: rails with taps under them, well and implants. drawing: Pen."""
+    c, width = drawing.canvas, drawing.width
+    for net, y in (("vss", 0.0), ("vdd", c.height)):
+        drawing.box("difftap", net, 0, y - c.tap, width, y + c.tap)
+        drawing.box("li", net, 0, y - c.li_rail, width, y + c.li_rail)
+        drawing.box("m1", net, 0, y - c.rail, width, y + c.rail)
+        inside = (y, y + c.rail) if net == "vss" else (y - c.rail, y)
+        drawing.box("m1.pin", net, 0, inside[0], width, inside[1])
+        for k in range(round(width / c.site)):
+            x = (k + 0.5) * c.site
+            drawing.at("licon", net, x, y, CUT, CUT)
+            drawing.at("mcon", net, x, y, CUT, CUT)
+    over = 0.13
+    drawing.box("psdm", "", -over, -c.implant, width + over, c.implant)
+    drawing.box("nsdm", "", -over, c.n[0] - 0.125, width + over, c.n[1] + 0.125)
+    drawing.box("psdm", "", -over, c.p[0] - 0.125, width + over, c.p[1] + 0.125)
+    drawing.box("nsdm", "", -over, c.height - c.implant, width + over, c.height + c.implant)
+    drawing.box("nwm", "vdd", -0.18, c.well, width + 0.18, c.height + 0.31)
+
+
+def regions(shapes, database):
+    """layer -> klayout region (nm) of ``shapes``. database: the module klayout.db."""
+    found = defaultdict(database.Region)
+    for s in shapes:
+        found[s.layer].insert(database.Box(*(round(v * 1000) for v in (s.left, s.bottom, s.right, s.top))))
+    return found

@@ -1,0 +1,116 @@
+"""Where wires of a cell may run: vertices on half-site columns by the canvas's rows, and which exclude each other.
+
+A vertex is (layer, column, row). Layers: poly between the diffusions (rows low and high), li everywhere, met1 where li
+does not suffice, and the cuts licon and mcon between them. On every layer neighbouring columns of one row are too near
+to each other for different nets. Besides:
+
+- ('pin', h, r): a pin on li from row r to r + 1; it holds these two vertices.
+- ('tap', h, side, r): a gate's contact in row r, low or high, with its pin to the other of these rows, both 0.08 um
+  beside the gate's middle (side -1 or 1), so that a wire fits on the other side of it.
+- ('tip', h, side, r): such a contact in row r, low or high, with li from it away from the other row, which joins
+  column h + side there.
+"""
+
+import numpy as np
+
+PRICE = {"li": 1.0, "poly": 2.0, "met1": 2.5, "licon": 2.0, "mcon": 4.0, "pin": 0.0, "tap": 3.0, "tip": 3.5}
+
+
+class Grid:
+    """Of ``columns`` half sites on ``canvas``; met1: is it there?
+
+    vertices: list; number: its inverse; next, excludes, needs, crowds: vertex -> set of vertices: neighbours; what no
+    other net may hold beside it; what it stands for; what the same net may not hold beside it.
+    """
+
+    def __init__(self, columns, canvas, met1):
+        self.columns, self.canvas = columns, canvas
+        self.next, self.excludes, self.needs, self.crowds = {}, {}, {}, {}
+        for h in range(columns):
+            self._column(h, met1)
+        self.vertices = list(self.next)
+        self.number = {v: i for i, v in enumerate(self.vertices)}
+        for table in (self.excludes, self.crowds):
+            for v in self.vertices:
+                table[v] = {u for u in table.get(v, ()) if u in self.number}
+            for v in self.vertices:
+                for u in table[v]:
+                    table[u].add(v)
+        for v in self.vertices:
+            self.excludes[v].add(v)
+            self.crowds[v].discard(v)
+            self.needs.setdefault(v, {v})
+
+    def arrays(self):
+        """(price, leaf, next, excludes, needs, crowds) for the router; the last four as (start, member) arrays."""
+        price = np.array([PRICE[v[0]] for v in self.vertices])
+        leaf = np.array([v[0] in ("pin", "tap") for v in self.vertices])
+        return price, leaf, *(self._packed(table) for table in (self.next, self.excludes, self.needs, self.crowds))
+
+    def _packed(self, table):
+        members = [sorted(self.number[u] for u in table[v]) for v in self.vertices]
+        start = np.cumsum([0, *(len(m) for m in members)])
+        return start, np.array([u for m in members for u in m], dtype=np.int64)
+
+    def _join(self, a, b):
+        self.next.setdefault(a, set()).add(b)
+        self.next.setdefault(b, set()).add(a)
+
+    def _column(self, h, met1):
+        low, high, rows = self.canvas.low, self.canvas.high, len(self.canvas.rows)
+        right = h + 1 < self.columns
+        for r in range(rows):
+            li = ("li", h, r)
+            if r + 1 < rows:
+                self._join(li, ("li", h, r + 1))
+            if right:
+                self._join(li, ("li", h + 1, r))
+            if r in (low, high):
+                self._join(("poly", h, r), ("licon", h, r))
+                self._join(("licon", h, r), li)
+                if right:
+                    self._join(("poly", h, r), ("poly", h + 1, r))
+                self.excludes[("poly", h, r)] = {("poly", h + 1, r)}
+                self.crowds[("licon", h, r)] = {("licon", h + 1, r)}
+            self.excludes[li] = {("li", h + 1, r)}
+            if met1:
+                self._join(li, ("mcon", h, r))
+                self._join(("mcon", h, r), ("met1", h, r))
+                if right:
+                    self._join(("met1", h, r), ("met1", h + 1, r))
+                self.excludes[("met1", h, r)] = {("met1", h + 1, r)}
+                near = {("mcon", k, s) for k in (h - 1, h, h + 1) for s in (r - 1, r, r + 1)}
+                self.excludes[("mcon", h, r)], self.crowds[("mcon", h, r)] = near, near
+        self._join(("poly", h, low), ("poly", h, high))
+        for r in self.canvas.pins:
+            pin = ("pin", h, r)
+            self.next.setdefault(pin, set())
+            self.needs[pin] = {("li", h, r), ("li", h, r + 1)}
+            for end in (r, r + 1):
+                self.next.setdefault(("li", h, end), set()).add(pin)
+        if h % 2:
+            for side in (-1, 1):
+                self._beside(h, side)
+
+    def _beside(self, h, side):
+        """The contacts of gate column ``h`` that stand ``side`` of its middle."""
+        low, high = self.canvas.low, self.canvas.high
+        here, other = (h, h + side), (h - 1, h, h + 1)
+        for row, away in ((low, low - 1), (high, high + 1)):
+            tap = ("tap", h, side, row)
+            self.next.setdefault(tap, set())
+            self.next.setdefault(("poly", h, row), set()).add(tap)
+            stripe = {("li", k, r) for k in here for r in (away, low, high)}
+            pads = {("licon", h + 2 * side, row), ("tap", h + 2 * side, -side, row), ("tip", h + 2 * side, -side, row)}
+            self.excludes[tap] = stripe | pads
+            self.crowds[tap] = stripe | {("licon", k, r) for k in other for r in (low, high)} | {
+                (kind, h, s, r) for kind in ("tap", "tip") for s in (-1, 1) for r in (low, high)}
+        for row, away in ((low, low - 1), (high, high + 1)):
+            tip = ("tip", h, side, row)
+            self._join(("poly", h, row), tip)
+            self._join(tip, ("li", h + side, away))
+            self.excludes[tip] = {("li", k, r) for k in here for r in (row, away)} | {
+                ("licon", h + 2 * side, row), ("tip", h + 2 * side, -side, row)}
+            self.crowds[tip] = {("licon", k, row) for k in other} | {("tip", h, s, r) for s in (-1, 1)
+                                                                     for r in (low, high)} | {
+                ("li", k, row) for k in here} | {("li", h, away)}

@@ -1,0 +1,107 @@
+"""The library: every cell of the catalogue made once and kept, and as PDKMaster's objects for its exporters."""
+
+import re
+import shutil
+from pathlib import Path
+
+from cells.flexcell.canvas import Canvas
+from cells.flexcell.catalogue import schematics
+from cells.flexcell.make import make, recipe
+from cells.flexcell.ties import diode, ties
+from flow.files import staged
+from flow.jobs import Job, run
+from flow.simulate.cache import digest
+from models.parameters import ParameterError
+
+NAME = "StdCellLib"
+FOLDER = Path("build/cells/flexcell")
+SITE = "flexcell"
+SOURCES = [Path(__file__).with_name(f"{part}.py") for part in
+           ("transistors", "place", "grid", "route", "assemble", "draw", "rules", "make")]
+
+
+def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
+    """name -> (Schematic, drawing: dict with width in um and shapes) of every cell, or of ``names``.
+
+    Made by `flow.jobs` and kept in ``store``: a second call reads them.
+    """
+    canvas = canvas or Canvas()
+    wanted = {name: s for name, s in schematics().items() if names is None or name in names}
+    order = sorted(wanted, key=lambda name: -len(wanted[name].n))            # the widest take longest
+    jobs = [Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known, *SOURCES))
+            for name in order]
+    made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
+    return {name: (wanted[name], made[name]) for name in wanted} | {
+        name: entry for name, entry in (ties(canvas) | diode(canvas)).items() if names is None or name in names}
+
+
+def library(canvas=None, store=FOLDER / "drawn"):
+    """pdkmaster.design.library.RoutingGaugeLibrary of all cells, for the exporters to Coriolis, KLayout and SPICE."""
+    from cells.flexcell.pdk import to_pdkmaster
+
+    canvas = canvas or Canvas()
+    return to_pdkmaster(NAME, canvas, drawn(canvas, store))
+
+
+def names():
+    """Cells that synthesis may use, sorted: all with an output, but the constants."""
+    return sorted(name for name, s in schematics().items() if s.inputs and s.outputs)
+
+
+def source(name, netlist="extracted", folder=FOLDER):
+    """cells.sources.Source of cell ``name``. netlist: 'extracted', 'devices' or 'schematic' (see there).
+
+    folder: of the library's files, made when it is not there. Raises ParameterError for a cell that is not there.
+    """
+    from cells.extract import extract
+    from cells.flexcell.verilog import module
+    from cells.lef import abstract
+    from cells.sources import Source
+    from flow.platforms.sky130 import process
+
+    schematic = schematics().get(name)
+    if schematic is None:
+        raise ParameterError(f"cell = {name!r}: must be one of {', '.join(schematics())}")
+    gds, canvas = written(folder), Canvas()
+    text = (_schematic_spice(schematic, canvas) if netlist == "schematic" else
+            extract(gds, name, process, schematic.ports, strays=netlist == "extracted"))
+    lef = abstract(gds, name, process.PROCESS, pins(schematic), SITE)
+    width, height = map(float, re.search(r"SIZE (\S+) BY (\S+)", lef).groups())
+    return Source(name, text, lef, module(schematic), width * height)
+
+
+def pins(schematic):
+    """Port -> cells.lef.Pin."""
+    from cells.lef import Pin
+
+    found = {pin: Pin("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
+    found |= {pin: Pin("OUTPUT") for pin in schematic.outputs}
+    return found | {"vdd": Pin("INOUT", "POWER"), "vss": Pin("INOUT", "GROUND")}
+
+
+def written(folder=FOLDER, canvas=None):
+    """The library's GDS; written into ``folder`` with all other files unless they are there and of this content."""
+    from cells.flexcell.write import write
+
+    canvas = canvas or Canvas()
+    folder = Path(folder)
+    stamp = digest(canvas, *(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))))
+    mark = folder / "content"
+    if not (mark.exists() and mark.read_text() == stamp):
+        made = library(canvas, folder / "drawn")
+        with staged(folder) as part:
+            write(made, canvas, part)
+            for path in part.iterdir():
+                if path.is_dir():
+                    shutil.rmtree(folder / path.name, ignore_errors=True)
+        mark.write_text(stamp)
+    return folder / "flexcell.gds"
+
+
+def _schematic_spice(schematic, canvas):
+    """The transistors alone, in um, as SkyWater's models want them."""
+    lines = [f".subckt {schematic.name} {' '.join(schematic.ports)}"]
+    for kind, switches, (low, high), bulk in (("n", schematic.n, canvas.n, "vss"), ("p", schematic.p, canvas.p, "vdd")):
+        lines += [f"X{kind}{k} {s.a} {s.gate} {s.b} {bulk} sky130_fd_pr__{kind}fet_01v8 w={high - low:.4g} "
+                  f"l={canvas.length:.4g}" for k, s in enumerate(switches)]
+    return "\n".join([*lines, ".ends", ""])

@@ -1,0 +1,57 @@
+"""The drawn cells as a library of PDKMaster (c4m-pdk-sky130), from which its exporters write what tools load."""
+
+from c4m.pdk.sky130.pdkmaster import cktfab, layoutfab, tech
+from pdkmaster.design import cell as pdk_cell
+from pdkmaster.design.library import RoutingGaugeLibrary
+from pdkmaster.design.routinggauge import RoutingGauge
+from pdkmaster.technology import geometry
+
+
+class DrawnCell(pdk_cell.Cell):
+    """A cell with its circuit and layout. schematic: Schematic; drawing: as `cells.flexcell.make.make` returns it."""
+
+    def __init__(self, canvas, schematic, drawing):
+        super().__init__(name=schematic.name, tech=tech, cktfab=cktfab, layoutfab=layoutfab)
+        self.schematic, self.drawing = schematic, drawing
+        circuit = self.new_circuit()
+        self._connect(circuit, self._devices(circuit, canvas))
+        layout = self.new_circuitlayouter().layout
+        for shape in drawing["shapes"]:
+            layout.add_shape(layer=tech.primitives[shape["layer"]], net=circuit.nets[shape["net"]] if shape["net"] else None,
+                             shape=geometry.Rect(**{side: shape[side] for side in ("left", "bottom", "right", "top")}))
+        layout.boundary = geometry.Rect(left=0.0, bottom=0.0, right=drawing["width"], top=canvas.height)
+
+    def _devices(self, circuit, canvas):
+        """Instances; returns net -> what is connected to it."""
+        pins = {}
+        for kind, switches, (low, high), bulk in (("n", self.schematic.n, canvas.n, "vss"),
+                                                  ("p", self.schematic.p, canvas.p, "vdd")):
+            for k, switch in enumerate(switches):
+                device = circuit.instantiate(tech.primitives[f"{kind}fet_01v8"], name=f"{kind}{k}",
+                                             w=round(high - low, 3), l=canvas.length)
+                for port, net in (("sourcedrain1", switch.a), ("gate", switch.gate), ("sourcedrain2", switch.b),
+                                  ("bulk", bulk)):
+                    pins.setdefault(net, []).append(device.ports[port])
+        if "diode" in self.drawing:
+            width, height = self.drawing["diode"]
+            device = circuit.instantiate(tech.primitives["ndiode"], name="d0", width=width, height=height)
+            pins.setdefault("i", []).append(device.ports["cathode"])
+            pins.setdefault("vss", []).append(device.ports["anode"])
+        return pins
+
+    def _connect(self, circuit, pins):
+        ports = self.schematic.ports
+        for net in (*ports, *sorted(pins.keys() - set(ports))):
+            circuit.new_net(name=net, external=net in ports, childports=tuple(pins.get(net, ())))
+
+
+def to_pdkmaster(name, canvas, drawn):
+    """RoutingGaugeLibrary ``name`` of ``drawn`` (name -> (Schematic, drawing))."""
+    metals = {metal: tech.primitives[metal] for metal in ("m1", "m2", "m5")}
+    gauge = RoutingGauge(tech=tech, bottom=metals["m1"], bottom_direction="horizontal", top=metals["m5"],
+                         pingrid_pitch=canvas.site, row_height=canvas.height,
+                         pitches={metals["m1"]: canvas.site, metals["m2"]: canvas.site})
+    library = RoutingGaugeLibrary(name=name, tech=tech, routinggauge=gauge)
+    for schematic, drawing in drawn.values():
+        library.cells += DrawnCell(canvas, schematic, drawing)
+    return library

@@ -1,0 +1,192 @@
+"""Wires inside a cell: negotiated routing (PathFinder) on cells.flexcell.grid.
+
+Every net is routed as if it were alone, at a price; where two meet the price rises until one of them goes round.
+"""
+
+import heapq
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numba import njit
+
+from cells.flexcell.grid import Grid
+
+ROUNDS = 80
+
+
+@dataclass
+class Task:
+    """columns: half-site columns of the cell. terminals: net -> list of sets of vertices, one of each set to be met.
+
+    ports: nets that need a pin. blocked: net -> vertices that are its own from the start (stubs of the rails).
+    """
+
+    columns: int
+    canvas: object
+    terminals: dict
+    ports: tuple
+    blocked: dict = field(default_factory=dict)
+
+
+@dataclass
+class Wiring:
+    """vertices: net -> those that it holds; edges: net -> pairs of them; pins: net -> ('pin', ...) or ('tap', ...)."""
+
+    vertices: dict
+    edges: dict
+    pins: dict
+
+
+def route(task, met1=True):
+    """Wiring of ``task`` without a conflict, or None. met1: may the cell use it?"""
+    grid, arrays = _grid(task.columns, task.canvas, met1)
+    nets = sorted(task.terminals, key=lambda net: (len(task.terminals[net]), net))
+    pins = {v for v in grid.vertices if v[0] in ("pin", "tap")}
+    sets = [[*task.terminals[net], *([pins] if net in task.ports else [])] for net in nets]
+    net_start = np.cumsum([0, *(len(s) for s in sets)])
+    flat = [sorted(grid.number[v] for v in one) for s in sets for one in s]
+    set_start = np.cumsum([0, *(len(one) for one in flat)])
+    members = np.array([v for one in flat for v in one], dtype=np.int64)
+    used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
+    for k, own in enumerate(task.blocked.values()):
+        used[len(nets) + k, [grid.number[v] for v in own]] = True
+    ok, edges = _negotiate(*arrays, net_start, set_start, members, used, len(nets), ROUNDS)
+    if not ok:
+        return None
+    return _wiring(grid, [*nets, *task.blocked], used, edges)
+
+
+@lru_cache(maxsize=32)
+def _grid(columns, canvas, met1):
+    grid = Grid(columns, canvas, met1)
+    return grid, grid.arrays()
+
+
+def _wiring(grid, names, used, edges):
+    held = {net: {grid.vertices[i] for i in np.flatnonzero(used[k])} for k, net in enumerate(names)}
+    pairs = {net: [] for net in names}
+    for k, a, b in edges:
+        pairs[names[k]].append((grid.vertices[a], grid.vertices[b]))
+    pins = {net: v for net, vertices in held.items() for v in vertices if v[0] in ("pin", "tap")}
+    for net, (kind, h, r, *_) in pins.items():
+        if kind == "pin":
+            pairs[net].append((("li", h, r), ("li", h, r + 1)))
+    return Wiring({net: {v for v in vertices if v[0] != "pin"} for net, vertices in held.items()},
+                  {net: [e for e in found if "pin" not in (e[0][0], e[1][0])] for net, found in pairs.items()}, pins)
+
+
+@njit(cache=True)
+def _negotiate(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, used, count, rounds):
+    """Fill ``used`` (net, vertex); returns (no conflict left?, edges as (net, vertex, vertex))."""
+    past = np.zeros(len(price))
+    held = np.zeros(len(price), np.int64)
+    for net in range(count, used.shape[0]):
+        held += used[net]
+    edges = [(0, 0, 0)]
+    for round_ in range(rounds):
+        present = min(0.6 * 1.3 ** round_, 1e6)
+        edges = [(0, 0, 0)]
+        for net in range(count):
+            held -= used[net]
+            used[net] = False
+            tree, ok = _tree(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, held, past,
+                             present, net, edges)
+            if not ok:
+                return False, edges
+            used[net] = tree
+            held += tree
+        clashes = 0
+        for v in range(len(price)):
+            if held[v] == 0:
+                continue
+            clash = False
+            for net in range(used.shape[0]):
+                if not used[net, v]:
+                    continue
+                for e in range(excludes[0][v], excludes[0][v + 1]):
+                    x = excludes[1][e]
+                    if held[x] > used[net, x]:
+                        clash = True
+            if clash:
+                clashes += 1
+                past[v] += 1.0
+        if clashes == 0:
+            return True, edges[1:]
+    return False, edges
+
+
+@njit(cache=True)
+def _tree(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, held, past, present, net, edges):
+    """Vertices of a tree that meets every terminal of ``net``, and whether there is one; its edges are appended."""
+    size = len(price)
+    cost = np.zeros(size)
+    for v in range(size):
+        for k in range(needs[0][v], needs[0][v + 1]):
+            u = needs[1][k]
+            others = 0
+            for e in range(excludes[0][u], excludes[0][u + 1]):
+                others += held[excludes[1][e]]
+            cost[v] += (price[u] + past[u]) * (1.0 + present * others)
+    tree = np.zeros(size, np.bool_)
+    first, last = net_start[net], net_start[net + 1]
+    met = np.zeros(last - first, np.bool_)
+    if first == last:
+        return tree, True
+    start = members[set_start[first]]
+    for k in range(set_start[first], set_start[first + 1]):
+        if cost[members[k]] < cost[start]:
+            start = members[k]
+    tree[start] = True
+    goal = np.zeros(size, np.bool_)
+    best, came = np.empty(size), np.empty(size, np.int64)
+    while True:
+        goal[:] = False
+        waiting = False
+        for s in range(first, last):
+            if not met[s - first]:
+                for k in range(set_start[s], set_start[s + 1]):
+                    met[s - first] |= tree[members[k]]
+            if not met[s - first]:
+                waiting = True
+                for k in range(set_start[s], set_start[s + 1]):
+                    goal[members[k]] = True
+        if not waiting:
+            return tree, True
+        best[:] = 1e18
+        came[:] = -1
+        heap = [(0.0, 0)]
+        heap.pop()
+        for v in range(size):
+            if tree[v] and not leaf[v]:
+                best[v] = 0.0
+                heapq.heappush(heap, (0.0, v))
+        end = -1
+        while len(heap):
+            d, v = heapq.heappop(heap)
+            if d > best[v]:
+                continue
+            if goal[v]:
+                end = v
+                break
+            for k in range(nexts[0][v], nexts[0][v + 1]):
+                u = nexts[1][k]
+                if d + cost[u] >= best[u] or (leaf[u] and not goal[u]):
+                    continue
+                crowded = False
+                for c in range(crowds[0][u], crowds[0][u + 1]):
+                    if tree[crowds[1][c]] and crowds[1][c] != v:
+                        crowded = True
+                if crowded:
+                    continue
+                best[u], came[u] = d + cost[u], v
+                heapq.heappush(heap, (best[u], u))
+        if end < 0:
+            return tree, False
+        while end >= 0:
+            for k in range(needs[0][end], needs[0][end + 1]):
+                tree[needs[1][k]] = True
+            tree[end] = True
+            if came[end] >= 0:
+                edges.append((net, came[end], end))
+            end = came[end]

@@ -1,0 +1,31 @@
+"""The rules that routing can break, checked at once while a cell is made; the decks check all of them at the end."""
+
+import klayout.db as db
+
+from cells.flexcell.draw import regions
+
+SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}     # nm
+WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}
+AREAS = {"li": 56_100, "m1": 83_000}                                                        # nm2
+
+
+def broken(drawing):
+    """Names of the rules that a Drawing breaks: list."""
+    found = regions(drawing.shapes, db)
+    whole = {layer: region.merged() for layer, region in found.items()}
+    out = [f"{layer} space" for layer, space in SPACES.items() if not whole[layer].space_check(space).is_empty()]
+    out += [f"{layer} width" for layer, width in WIDTHS.items() if not whole[layer].width_check(width).is_empty()]
+    out += [f"{layer} area" for layer, area in AREAS.items() if not whole[layer].with_area(0, area, False).is_empty()]
+    nets = {}
+    for s in drawing.shapes:
+        if s.net:
+            nets.setdefault((s.layer, s.net), db.Region()).insert(
+                db.Box(*(round(v * 1000) for v in (s.left, s.bottom, s.right, s.top))))
+    pads = whole["licon"] & whole["poly"]
+    for layer in ("li", "poly", "m1"):
+        own = [(net, region.merged()) for (name, net), region in nets.items() if name == layer]
+        for i, (a, first) in enumerate(own):
+            out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1:] if not (first & second).is_empty()]
+    if not (pads.sized(190) & whole["difftap"]).is_empty():
+        out.append("licon on poly to difftap")
+    return out

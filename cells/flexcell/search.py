@@ -1,0 +1,62 @@
+"""Narrower cells by a longer search: python -m cells.flexcell.search --seeds 24:200 --cells dff_x1,dff_x2
+
+What beats the kept recipe goes into recipes.json, which is part of the sources.
+"""
+
+import argparse
+import json
+import re
+import sys
+
+from cells.flexcell.canvas import Canvas
+from cells.flexcell.catalogue import schematics
+from cells.flexcell.make import RECIPES, recipe, search
+from flow.files import staged
+from flow.jobs import Job, run
+from models.parameters import ParameterError
+
+
+def best(name, first, last):
+    """The best Recipe of cell ``name`` from placements of seeds ``first`` to ``last``, as a list, or None."""
+    below = recipe(name)
+    found = next(search(schematics()[name], Canvas(), range(first, last), below), None)
+    return found and [found.sites, found.met1, found.seed, found.spread]
+
+
+def main(arguments=None):
+    parser = argparse.ArgumentParser(prog="python -m cells.flexcell.search", description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", default="0:24", help="first:last")
+    parser.add_argument("--cells", help="names with commas between; default: all")
+    parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
+    options = parser.parse_args(arguments)
+    try:
+        return _run(options)
+    except ParameterError as error:
+        print(f"search: {error}", file=sys.stderr)
+        return 2
+
+
+def _run(options):
+    seeds = re.fullmatch(r"(\d+):(\d+)", options.seeds)
+    if not seeds:
+        raise ParameterError(f"seeds = {options.seeds!r}: must be first:last, as 0:24")
+    names = options.cells.split(",") if options.cells else list(schematics())
+    if unknown := sorted(set(names) - schematics().keys()):
+        raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
+    span = int(seeds[1]), int(seeds[2])
+    jobs = [Job(f"{name}.{span[0]}-{span[1]}", best, (name, *span), (recipe(name), Canvas(), *RECIPES.parent.glob("*.py")))
+            for name in names]
+    found = run(jobs, "build/cells/flexcell/search", "cells searched", options.workers)
+    kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
+    better = {name: made for name, made in zip(names, found, strict=True) if made}
+    for name, (sites, met1, seed, _) in better.items():
+        print(f"{name}: {sites} sites{' with met1' if met1 else ''} (seed {seed}); it was {kept.get(name, ['none'])[0]}")
+    kept |= better
+    with staged(RECIPES.parent) as part:
+        lines = (f'"{name}": {json.dumps(kept[name])}' for name in sorted(kept))
+        (part / RECIPES.name).write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

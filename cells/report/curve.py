@@ -1,0 +1,87 @@
+"""Error against run time: tolerances, time steps and grids, each against a dense transient of the same netlist."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+
+from cells import run, sources
+from cells.characterize import delay
+from cells.characterize.bench import Bench
+from cells.characterize.cell import axes_of
+from cells.spice.settings import Settings
+from flow import jobs
+
+CELLS = ("inv_1", "nand2_1", "buf_2")
+OFF_GRID = 16              # random points of a table, the same for every setting
+DENSE = Settings(reltol=1e-6, trtol=1.0, steps=1000, method="gear")
+
+
+def settings(conditions):
+    """name -> Conditions: what is compared. The default is among them."""
+    base, found = conditions, {}
+    for reltol in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
+        for steps in (20, 50, 200):
+            found[f"reltol {reltol:g}, {steps} steps"] = replace(base, settings=replace(base.settings, reltol=reltol,
+                                                                                       steps=steps))
+    found["trapezoidal, reltol 0.0001, 50 steps"] = replace(base, settings=replace(base.settings, method="trap"))
+    for count in (4, 5, 7, 9, 13):
+        slews = tuple(float(s) for s in np.geomspace(base.slews[0], base.slews[-1], count))
+        found[f"grid {count} x {count}, not refined"] = replace(base, slews=slews, loads=count, extra=0)
+    for extra in (1, 2, 4):
+        found[f"grid 7 x 7, up to {extra} more"] = replace(base, extra=extra)
+    return found
+
+
+def measure(library, conditions, store):
+    """[{name, cell, seconds, delay and slew: errors in per cent}], one worker, so that the times are comparable."""
+    process, todo = sources.process(library), []
+    for name in CELLS:
+        source = sources.source(library, name)
+        for label, at in settings(conditions).items():
+            todo.append(jobs.Job(f"{name}.{label.replace(' ', '_')}", one, (library, name, label, at, conditions),
+                                 run.job(source, at, process).inputs))
+    return jobs.run(todo, store, "error against run time", workers=1)
+
+
+def one(library, name, label, conditions, base):
+    """One cell with one setting: dict."""
+    process = sources.process(library)
+    cell = run.cell_of(sources.source(library, name), process)
+    truth = _truth(cell, process, base)
+    found = {"name": label, "cell": name, "error": []}
+    started = time.process_time(), time.monotonic()
+    with Bench(cell, process, conditions) as bench:
+        grid = {output: axes_of(bench, output) for output in cell.machine.outputs}
+        tables = [delay.table(bench, arc.changes[0], arc.output, grid[arc.output][1], grid[arc.output][0])
+                  for arc in cell.arcs]
+    found["seconds"] = time.monotonic() - started[1]
+    for table, points in zip(tables, truth, strict=True):
+        for slew, load, exact in points:
+            found["error"] += [100 * (table.at(field, slew, load) / exact[field] - 1) for field in ("delay", "slew")]
+    return found
+
+
+def _truth(cell, process, base):
+    """For every arc [(slew, load, {delay, slew})]: dense transients at random points."""
+    rng, found = np.random.default_rng(1), []
+    with Bench(cell, process, replace(base, settings=DENSE)) as bench:
+        largest = {output: delay.largest_load(bench, [a.changes[0] for a in cell.arcs if a.output == output], output)
+                   for output in cell.machine.outputs}
+        for arc in cell.arcs:
+            slews = np.exp(rng.uniform(*np.log([base.slews[0], base.slews[-1]]), OFF_GRID))
+            loads = np.exp(rng.uniform(*np.log([base.least_load, largest[arc.output]]), OFF_GRID))
+            found.append([(slew, load, vars(bench.edge(arc.changes[0], arc.output, slew, load)))
+                          for slew, load in zip(slews.tolist(), loads.tolist(), strict=True)])
+    return found
+
+
+def table(found):
+    """[(setting, seconds of all cells, median, 95th percentile)] of absolute errors in per cent."""
+    rows = []
+    for name in dict.fromkeys(f["name"] for f in found):
+        same = [f for f in found if f["name"] == name]
+        values = np.abs(np.concatenate([f["error"] for f in same]))
+        rows.append((name, sum(f["seconds"] for f in same), float(np.median(values)),
+                     float(np.percentile(values, 95))))
+    return rows

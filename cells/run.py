@@ -1,0 +1,93 @@
+"""A library at a corner: jobs, files, summary."""
+
+import importlib
+import json
+import time
+from dataclasses import asdict
+from pathlib import Path
+
+from tqdm import tqdm
+
+from cells import sources
+from cells.characterize.cell import characterize
+from cells.liberty import build, compare, reference, write
+from cells.liberty import check as check_library
+from cells.netlist.check import check
+from cells.netlist.function import understand
+from cells.netlist.spice import parse
+from flow import jobs
+from flow.files import staged
+from flow.simulate.process import finish
+from models.parameters import ParameterError
+
+CODE = Path(__file__).resolve().parent
+
+
+def run(library, conditions, wanted, netlist, out, against, workers, started):
+    """Characterize and write <out>/<library>/<corner>.lib, .lef, .v and summary.json: the summary.
+
+    wanted: names, or None for all. netlist: as in sources.NETLISTS. against: folder of SkyWater's tables, or None.
+    """
+    process, name = sources.process(library), conditions.corner.name
+    everything = sources.names(library)
+    if unknown := sorted(set(wanted or ()) - set(everything)):
+        raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
+    known = reference.folder(against) if against else None
+    found = [sources.source(library, cell, netlist) for cell in tqdm(wanted or everything, "netlists", disable=None)]
+    found.sort(key=lambda source: -len(source.netlist))              # what takes longest goes first
+    cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
+    folder = Path(out) / library
+    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{library} {name}",
+                        workers)
+    by_name = sorted(zip(cells, measured, found, strict=True), key=lambda entry: entry[2].name)
+    cells, measured, found = zip(*by_name, strict=True)
+    tree = build.library(f"{library}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
+                         {} if wanted else sources.constants(library))
+    summary = _summary(cells, measured, tree, known, time.monotonic() - started)
+    with staged(folder) as part:
+        (part / f"{name}.lib").write_text(write.text(tree) + "\n")
+        macros = (sources.abstract(c, s) for c, s in zip(cells, found, strict=True))
+        (part / f"{library}.lef").write_text("\n".join(["VERSION 5.8 ;", *macros, "END LIBRARY", ""]))
+        if verilog := [s.verilog for s in found if s.verilog]:
+            (part / f"{library}.v").write_text("\n".join(verilog))
+        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+    for measure in measured:
+        for k, failure in enumerate(measure["failed"]):
+            file = folder / "failed" / f"{measure['name']}.{k}.sp"
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(f"* {failure['what']}: {failure['why']}\n{failure['deck']}")
+    return summary
+
+
+def cell_of(source, process):
+    """Cell of a Source, checked. Raises ParameterError."""
+    netlist = parse(source.netlist, origin=source.name)
+    rails = [rail for rail in process.SUPPLIES if rail in netlist.ports]
+    check(netlist, process.POLARITY, rails)
+    return understand(netlist, process.POLARITY, process.SUPPLIES)
+
+
+def job(source, conditions, process):
+    """The job that characterizes ``source``; another netlist, corner, setting, model, ngspice or code is another."""
+    code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
+    name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
+    return jobs.Job(name, _measure, (source, conditions, process.__name__),
+                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), finish(["ngspice", "--version"]).stdout, *code))
+
+
+def _measure(source, conditions, process):
+    module = importlib.import_module(process)
+    return characterize(cell_of(source, module), module, conditions)
+
+
+def _summary(cells, measured, tree, known, seconds):
+    failed = [f"{m['name']}: {f['what']}: {f['why']}" for m in measured for f in m["failed"]]
+    summary = {"cells": len(cells), "arcs": sum(len(m["arcs"]) for m in measured),
+               "constraints": sum(len(m["constraints"]) for m in measured),
+               "simulations": sum(m["simulations"] for m in measured),
+               "repeated": sum(m["repeated"] for m in measured), "failed": failed,
+               "problems": check_library.problems(tree), "wall_s": round(seconds, 1),
+               "cell_s": {m["name"]: m["wall_s"] for m in measured}}
+    if known:
+        summary |= compare.summary(compare.library(tree, known))
+    return summary

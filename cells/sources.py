@@ -1,0 +1,107 @@
+"""Where the cells of a library come from: netlist, abstract, Verilog and area of each."""
+
+import json
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from cells.extract import extract
+from flow.platforms.sky130 import cells as sky130_hd
+from flow.platforms.sky130 import models as sky130
+from flow.platforms.sky130 import process as sky130_layout
+from flow.simulate import process as child
+from models.parameters import ParameterError
+
+LIBRARIES = ("sky130_hd", "flexcell")
+NETLISTS = ("extracted", "devices", "schematic")
+FLEXCELL = Path("build/cells/flexcell")
+# cells without an input that hold a constant: cell -> pin: level
+CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}},
+             "flexcell": {"zero_x1": {"zero": 0}, "one_x1": {"one": 1}}}
+_NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
+
+
+@dataclass(frozen=True)
+class Source:
+    """name: short ('nand2_1'). netlist: SPICE text; gds: its file; lef: text or None; verilog: text or None;
+
+    area: um2.
+    """
+
+    name: str
+    netlist: str
+    gds: Path
+    lef: str | None
+    verilog: str | None
+    area: float
+
+
+def names(library):
+    """Cells of ``library`` that synthesis may use, sorted. FlexCell is drawn first if it is not there."""
+    if library == "sky130_hd":
+        return sky130_hd.names()
+    if library == "flexcell":
+        return sorted(name for name in _flexcell_areas() if not name.startswith(_NOT_LOGIC))
+    raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
+
+
+def source(library, name, netlist="extracted"):
+    """Source of one cell. netlist: 'extracted' with stray capacitances, 'devices' with the transistors as laid out
+
+    alone, 'schematic' as the library's own netlist has it. Raises ParameterError for a cell that is not there.
+    """
+    if netlist not in NETLISTS:
+        raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
+    strays = netlist == "extracted"
+    if library == "flexcell":
+        if netlist == "schematic":
+            raise ParameterError("netlist = 'schematic': must be extracted or devices for flexcell")
+        gds = FLEXCELL / "flexcell.gds"
+        return Source(name, extract(gds, name, sky130_layout, strays=strays), gds, None, None, _flexcell_areas()[name])
+    files = {kind: sky130_hd.file(name, kind) for kind in ("gds", "spice", "lef", "functional.v")}
+    text = (files["spice"].read_text() if netlist == "schematic" else
+            extract(files["gds"], files["gds"].stem, sky130_layout, strays=strays))
+    lef = files["lef"].read_text()
+    return Source(name, text, files["gds"], lef, files["functional.v"].read_text(), area(lef))
+
+
+def constants(library):
+    """{cell's whole name: (pin: level, area in um2)} of the cells that hold a constant."""
+    if library == "flexcell":
+        return {name: (pins, _flexcell_areas()[name]) for name, pins in CONSTANTS[library].items()}
+    return {f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
+            for name, pins in CONSTANTS[library].items()}
+
+
+def area(lef):
+    """um2 of a LEF macro's SIZE."""
+    width, height = map(float, re.search(r"SIZE\s+([0-9.]+)\s+BY\s+([0-9.]+)", lef).groups())
+    return width * height
+
+
+def process(library):
+    """Module with the models of the process that ``library`` is made in."""
+    if library not in LIBRARIES:
+        raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
+    return sky130
+
+
+def abstract(cell, source):
+    """LEF macro of ``cell`` (Cell): the vendor's, or made from its GDS."""
+    if source.lef is not None:
+        return source.lef[source.lef.find("MACRO"):source.lef.rfind("END LIBRARY")].rstrip()
+    from cells import lef
+    machine, clock = cell.machine, cell.storage and cell.storage.clock
+    pins = {pin: lef.Pin("INPUT", "CLOCK" if pin == clock else "SIGNAL") for pin in machine.inputs}
+    pins |= {pin: lef.Pin("OUTPUT") for pin in machine.outputs}
+    pins |= {rail: lef.Pin("INOUT", "POWER" if level else "GROUND") for rail, level in sky130.SUPPLIES.items()
+             if rail in machine.netlist.ports}
+    return lef.abstract(source.gds, cell.name, sky130_layout.PROCESS, pins, "flexcell").rstrip()
+
+
+def _flexcell_areas():
+    """um2 of every cell of FlexCell, drawn now if it is not there."""
+    if not (FLEXCELL / "areas.json").exists():
+        child.run([sys.executable, "-m", "cells.flexcell", "--no-check", "--out", FLEXCELL])
+    return json.loads((FLEXCELL / "areas.json").read_text())

@@ -1,0 +1,16 @@
+"""A netlist as ngspice's subcircuit, every transistor with its diffusion and stress."""
+
+
+def circuit(netlist, process, models, corner, leakage=False):
+    """Lines: models of ``process`` (a module like flow.platforms.sky130.models) in the set ``models``, the subcircuit,
+
+    and one instance of it whose nodes have the ports' names. leakage: with the process's models for leakage.
+    """
+    used = {(t.model, t.size["w"], t.size["l"]) for t in netlist.transistors}
+    lines = [*process.cards(models, corner.process, used, leakage), f".subckt {netlist.name} {' '.join(netlist.ports)}"]
+    for t in netlist.transistors:
+        size = " ".join(f"{key}={value:.6g}" for key, value in process.drawn(t.size).items())
+        lines.append(f"X{t.name} {t.drain} {t.gate} {t.source} {t.bulk} {t.model} {size}")
+    lines += [f"C{c.name} {c.a} {c.b} {c.value:.6g}" for c in netlist.capacitors]
+    lines += [f"R{r.name} {r.a} {r.b} {r.value:.6g}" for r in netlist.resistors]
+    return [*lines, ".ends", f"Xcell {' '.join(netlist.ports)} {netlist.name}"]

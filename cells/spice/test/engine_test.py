@@ -1,0 +1,59 @@
+"""The engine on circuits whose answer is known."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from cells.spice.engine import SimulationError, Simulator
+from cells.spice.settings import Settings
+from cells.spice.wave import Wave
+from models.parameters import ParameterError
+
+RC = [".subckt rc A Y", "R1 A Y 1k", ".ends", "Xcell A Y rc"]
+ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")
+
+
+@ngspice
+def test_a_resistor_and_a_capacitor_take_the_time_they_should():
+    """Step through 1 kohm into 1 and 2 pF: 50 % after RC ln 2, and a charge of CV."""
+    with Simulator(RC, ["A"], ["Y"], {}, 25, Settings(reltol=1e-5)) as simulator:
+        for load in (1e-12, 2e-12):
+            wave = simulator.transient({"A": [(0, 0), (1e-9, 0), (1.001e-9, 1)]}, {"Y": load}, 20e-9, 0.1e-9)
+            assert wave.cross("Y", 0.5, True) - 1.0005e-9 == pytest.approx(1e3 * load * np.log(2), rel=5e-3)
+            assert wave.charge("A", 0, 20e-9) == pytest.approx(load, rel=2e-3)
+        assert (simulator.runs, simulator.repeated) == (2, 0)
+
+
+@ngspice
+def test_a_failure_names_its_reason_and_gives_a_deck(tmp_path):
+    broken = [".subckt rc A Y", "X1 A Y nowhere", ".ends", "Xcell A Y rc"]
+    with Simulator(broken, ["A"], ["Y"], {}, 25, Settings(timeout=5)) as simulator:
+        with pytest.raises(SimulationError, match="unknown subckt") as caught:
+            simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 2e-9, 1e-10)
+    assert "X1 A Y nowhere" in caught.value.deck and ".tran" in caught.value.deck and simulator.repeated == 1
+
+
+@ngspice
+def test_a_run_beyond_its_time_is_ended():
+    with Simulator(RC, ["A"], ["Y"], {}, 25) as simulator:
+        simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 2e-9, 1e-10)
+        slow = Settings(timeout=0.2)
+        with pytest.raises(SimulationError, match="time-out"):
+            simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 1e-3, 1e-12, settings=slow, retry=False)
+
+
+def test_crossings_are_between_the_points_and_the_last_counts():
+    wave = Wave(np.array([0.0, 1.0, 2.0, 3.0, 4.0]), {"y": np.array([0.0, 1.0, 0.0, 1.0, 1.0])},
+                {"s": np.array([0.0, 2.0, 2.0, 0.0, 0.0])})
+    assert wave.cross("y", 0.25, True) == pytest.approx(2.25)
+    assert wave.cross("y", 0.25, False) == pytest.approx(1.75)
+    assert wave.cross("y", 0.25, True, after=3.5) is None
+    assert wave.charge("s", 0.5, 2.5) == pytest.approx(0.75 + 2 + 0.75)
+
+
+@pytest.mark.parametrize("field, value", [("reltol", 0), ("trtol", 0), ("steps", 0), ("timeout", 0),
+                                          ("method", "euler")])
+def test_settings_are_checked(field, value):
+    with pytest.raises(ParameterError, match=field):
+        Settings(**{field: value})

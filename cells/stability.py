@@ -1,0 +1,128 @@
+"""`python -m cells.stability`: stiff and extreme cases of the characterizer, bound against measured."""
+
+import sys
+import time
+from dataclasses import replace
+
+import numpy as np
+from tqdm import tqdm
+
+from cells import run, sources
+from cells.characterize import delay
+from cells.characterize.bench import Bench
+from cells.characterize.conditions import Conditions
+from cells.characterize.constraint import PATIENCE, bisect, outcome
+from cells.characterize.scenario import Scenarios
+from cells.corner import PROCESSES, Corner
+from flow.simulate.process import ToolError
+from flow.stability import table
+from models.parameters import ParameterError
+from models.stability import Case
+
+TYPICAL = Conditions(Corner("tt", 25, 1.8))
+
+
+def cases():
+    """All cases: list of Case; shows a progress bar."""
+    todo = [(loads_and_slews, ()), (hundred_times_the_load, ()), (metastable, ())]
+    todo += [(corner_case, (Corner(process, temperature, supply),)) for process in PROCESSES
+             for temperature, supply in ((-40, 1.2), (150, 1.2), (-40, 1.95), (150, 1.95))]
+    found = []
+    for call, arguments in tqdm(todo, desc="cases", file=sys.stderr, disable=None):
+        found += call(*arguments)
+    return found
+
+
+def cell(name):
+    """Cell of sky130_hd as laid out."""
+    return run.cell_of(sources.source("sky130_hd", name), sources.process("sky130_hd"))
+
+
+def loads_and_slews():
+    """No load at all, slews of 1 ps and 10 ns: what the table's neighbours make one expect."""
+    out = []
+    inverter = cell("inv_1")
+    with Bench(inverter, sources.process("sky130_hd"), TYPICAL) as bench:
+        for arc in inverter.arcs:
+            change, normal = arc.changes[0], bench.edge(arc.changes[0], "Y", 10e-12, 0.5e-15)
+            bare = bench.edge(change, "Y", 1e-12, 0.0)
+            out.append(_case(f"inverter {arc.edge}, no load, slew 1 ps", "0 < delay < that at 10 ps and 0.5 fF",
+                             bare.delay, 0 < bare.delay < normal.delay))
+            slow = bench.edge(change, "Y", 10e-9, 0.5e-15)
+            out.append(_case(f"inverter {arc.edge}, slew 10 ns", "0 < output slew < 3 ns, |delay| < 3 ns", slow.slew,
+                             0 < slow.slew < 3e-9 and abs(slow.delay) < 3e-9))
+            worst = bench.edge(change, "Y", 10e-9, 0.0)
+            out.append(_case(f"inverter {arc.edge}, slew 10 ns, no load", "within 20 % of that with 0.5 fF",
+                             worst.slew, abs(worst.slew / slow.slew - 1) < 0.2))
+    return out
+
+
+def hundred_times_the_load():
+    """A hundred times the largest load: a hundred times the slew, within 2 %."""
+    out, inverter = [], cell("inv_1")
+    with Bench(inverter, sources.process("sky130_hd"), TYPICAL) as bench:
+        for arc in inverter.arcs:
+            change = arc.changes[0]
+            largest = delay.largest_load(bench, [change], "Y")
+            one, hundred = (bench.edge(change, "Y", 10e-12, factor * largest).slew for factor in (1, 100))
+            out.append(_case(f"inverter {arc.edge}, 100 times the largest load", "100 times the slew, within 2 %",
+                             hundred, abs(hundred / one / 100 - 1) < 0.02))
+    return out
+
+
+def metastable():
+    """A flip-flop ever closer to the edge between keeping and losing a bit, down to 1 fs: no run takes too long."""
+    flip_flop = cell("dfxtp_1")
+    scenario, longest = Scenarios(flip_flop).setup("D", 1), 0.0
+    with Bench(flip_flop, sources.process("sky130_hd"), TYPICAL) as bench:
+        def run_at(offset):
+            nonlocal longest
+            started = time.monotonic()
+            events = [(scenario.clock, 0.0, scenario.clock_to, 10e-12),
+                      (scenario.data, -offset, scenario.data_to, 10e-12)]
+            found = outcome(bench, scenario.start, events, 1e-9, scenario.trigger, scenario.expected)
+            longest = max(longest, time.monotonic() - started)
+            return found
+
+        at = bisect(run_at, 1e-9, True, 1e3, resolution=1e-15)
+        lost = run_at(at - 2e-15)
+    return [Case("flip-flop, 1 fs from its metastable edge", f"lost 2 fs later, each run under {PATIENCE + 1:.0f} s",
+                 f"edge at {at * 1e12:.3f} ps, longest run {longest:.2f} s",
+                 lost is None and longest < PATIENCE + 1)]
+
+
+def corner_case(corner):
+    """A NAND gate at a corner: a small table that rises with the load, and a flip-flop that stores."""
+    conditions = replace(TYPICAL, corner=corner)
+    nand = cell("nand2_1")
+    rises, longest = True, 0.0
+    with Bench(nand, sources.process("sky130_hd"), conditions) as bench:
+        for arc in nand.arcs:
+            found = delay.table(bench, arc.changes[0], "Y", (0.5e-15, 10e-15, 100e-15), (10e-12, 0.3e-9, 1.5e-9))
+            for values in (found.values["delay"], found.values["slew"]):
+                rises &= bool((np.diff(values, axis=1) > 0).all())
+            longest = max(longest, float(found.values["delay"].max()))
+    flip_flop = cell("dfxtp_1")
+    with Bench(flip_flop, sources.process("sky130_hd"), conditions) as bench:
+        stored = [bench.edge(arc.changes[0], "Q", 0.1e-9, 10e-15).delay for arc in flip_flop.arcs]
+    return [Case(f"NAND and flip-flop at {corner.name}", "delays and slews rise with the load; 0 < clock to Q < 100 ns",
+                 f"longest {longest * 1e9:.2f} ns, clock to Q {max(stored) * 1e9:.2f} ns",
+                 rises and 0 < min(stored) and max(stored) < 100e-9)]
+
+
+def _case(name, bound, seconds, ok):
+    return Case(name, bound, f"{seconds * 1e12:.1f} ps", bool(ok))
+
+
+def main():
+    try:
+        found = cases()
+    except (ParameterError, ToolError) as error:
+        print(f"cells.stability: {error}", file=sys.stderr)
+        return 2
+    print(table(found))
+    return 0 if all(case.ok for case in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

