@@ -143,7 +143,7 @@ def _input(group, cell, measured, name):
     _rails(pin, cell)
     energy = measured["quiet_energy"].get(name)
     if energy:
-        power = pin.add("internal_power")
+        power = pin.add("internal_power", related_pg_pin=pin.attributes["related_power_pin"])
         for edge in ("rise", "fall"):
             power.add(f"{edge}_power", "quiet", index_1=NS * np.array(measured["slews"]),
                       values=PJ * np.array(energy[edge]))
@@ -196,7 +196,7 @@ def _output(group, cell, measured, name):
 
 def _power(pin, related, arcs):
     """Energy by output edge: of the arcs that cause it, the mean."""
-    power = pin.add("internal_power", related_pin=related)
+    power = pin.add("internal_power", related_pin=related, related_pg_pin=pin.attributes["related_power_pin"])
     for edge in ("fall", "rise"):
         same = [a for a in arcs if a["edge"] == edge and not a["type"].startswith("three_state")]
         if same:
