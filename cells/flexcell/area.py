@@ -8,8 +8,10 @@ import json
 import re
 import sys
 import tempfile
+from collections import Counter
 from pathlib import Path
 
+from flow.files import insert
 from flow.jobs import Job, run
 from flow.simulate.process import ToolError
 from flow.simulate.process import run as run_tool
@@ -21,7 +23,7 @@ STORE = Path("build/cells/flexcell/area")
 
 
 def mapped(verilog, top, liberty):
-    """{"um2": area, "cells": {type: number}} of module ``top`` of the file ``verilog`` mapped to ``liberty``'s cells."""
+    """{"um2": area, "cells": {type: number}} of module ``top`` of the file ``verilog``, mapped to ``liberty``."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
         script = (f"read_verilog -sv {verilog}; synth -flatten -top {top}; dfflibmap -liberty {liberty}; "
@@ -35,7 +37,7 @@ def mapped(verilog, top, liberty):
 
 
 def compare(verilog, blocks, ours, theirs, store=STORE):
-    """{block: (ours, theirs)}, each as `mapped` returns it. verilog: folder with <block>.v; ours, theirs: Liberty files."""
+    """{block: (ours, theirs)}, each as `mapped` returns it. verilog: folder of <block>.v."""
     files = {block: Path(verilog) / f"{block}.v" for block in blocks}
     for block, file in files.items():
         if not file.exists():
@@ -51,6 +53,7 @@ def main(arguments=None):
     parser.add_argument("--verilog", default="build/verilog", help="folder of the blocks' Verilog (make verilog)")
     parser.add_argument("--liberty", default="build/cells/flexcell/flexcell.lib", help="of this library")
     parser.add_argument("--blocks", default=",".join(BLOCKS), help="names, with commas between them")
+    parser.add_argument("--document", help="Markdown file whose part 'area' is written anew")
     options = parser.parse_args(arguments)
     try:
         return _report(options)
@@ -69,28 +72,33 @@ def _report(options):
     theirs = STORE / "sky130_fd_sc_hd.lib"
     theirs.write_text(liberty())
     found = compare(options.verilog, options.blocks.split(","), ours, theirs)
-    print(f"{'block':24}{'FlexCell um2':>14}{'hd um2':>12}{'ratio':>8}")
-    for block, (a, b) in found.items():
-        print(f"{block:24}{a['um2']:14.0f}{b['um2']:12.0f}{a['um2'] / b['um2']:8.2f}")
     total = [sum(pair[k]["um2"] for pair in found.values()) for k in (0, 1)]
-    ratio = total[0] / total[1]
-    print(f"{'all':24}{total[0]:14.0f}{total[1]:12.0f}{ratio:8.2f}   (limit {LIMIT})")
-    _where(found, ours, theirs)
-    return 0 if ratio <= LIMIT else 1
+    text = f"{_blocks(found, total)}\n\n{_cells(found, 0, ours)}\n\n{_cells(found, 1, theirs)}"
+    print(text)
+    if options.document:
+        insert(options.document, "area", text)
+    print(f"\nratio {total[0] / total[1]:.2f}, limit {LIMIT}")
+    return 0 if total[0] / total[1] <= LIMIT else 1
 
 
-def _where(found, ours, theirs):
-    """Which cells the area goes to, of both libraries."""
-    for k, (name, liberty) in enumerate((("FlexCell", ours), ("hd", theirs))):
-        area, count = _areas(liberty), {}
-        for pair in found.values():
-            for cell, number in pair[k]["cells"].items():
-                count[cell] = count.get(cell, 0) + number
-        total = sum(count[cell] * area.get(cell, 0.0) for cell in count)
-        print(f"\n{name}: cell, number, um2 each, share of the area")
-        for cell in sorted(count, key=lambda c: -count[c] * area.get(c, 0.0))[:12]:
-            share = count[cell] * area.get(cell, 0.0) / total
-            print(f"  {cell.removeprefix('sky130_fd_sc_hd__'):16}{count[cell]:7}{area.get(cell, 0.0):9.2f}{share:8.1%}")
+def _blocks(found, total):
+    lines = ["| block | FlexCell um2 | sky130_fd_sc_hd um2 | ratio |", "|---|---:|---:|---:|"]
+    for block, (a, b) in (*((block, [side["um2"] for side in pair]) for block, pair in found.items()), ("all", total)):
+        lines.append(f"| {block} | {a:,.0f} | {b:,.0f} | {a / b:.2f} |")
+    return "\n".join(lines)
+
+
+def _cells(found, k, liberty, most=10):
+    """The cells that the area of all blocks goes to, in library ``k`` of 0 and 1."""
+    area, count = _areas(liberty), Counter()
+    for pair in found.values():
+        count.update(pair[k]["cells"])
+    total = sum(count[cell] * area[cell] for cell in count)
+    lines = [f"| {liberty.stem}: cell | number | um2 each | share of the area |", "|---|---:|---:|---:|"]
+    for cell in sorted(count, key=lambda c: -count[c] * area[c])[:most]:
+        lines.append(f"| {cell.removeprefix('sky130_fd_sc_hd__')} | {count[cell]} | {area[cell]:.2f} | "
+                     f"{count[cell] * area[cell] / total:.1%} |")
+    return "\n".join(lines)
 
 
 def _areas(liberty):

@@ -35,15 +35,15 @@ class Canvas:
 
     def __post_init__(self):
         if abs(self.height / self.site - round(self.height / self.site)) > 1e-9:
-            raise ParameterError(f"height = {self.height}: must be a multiple of site = {self.site} (Coriolis rounds the "
-                                 "pitch of rows up to one)")
+            raise ParameterError(f"height = {self.height}: must be a multiple of site = {self.site} "
+                                 "(Coriolis rounds the pitch of rows up to one)")
         if self.site < 2 * (0.135 + 0.04 + 0.085) - 1e-9:
             raise ParameterError(f"site = {self.site}: must be at least 0.52 um: two diffusions end side by side in it")
         gaps = [b - a for a, b in zip(self.rows, self.rows[1:])]
         if min(gaps) < 0.34 - 1e-9:
             raise ParameterError(f"rows = {self.rows}: must be 0.34 um apart: width and space of li")
         if self.rows[self.high] - self.rows[self.low] < 0.54 - 1e-9:
-            raise ParameterError(f"rows = {self.rows}: rows low and high must be 0.54 um apart: gate pads and their space")
+            raise ParameterError(f"rows = {self.rows}: low and high must be 0.54 um apart: gate pads and their space")
 
     @property
     def pins(self):

@@ -38,7 +38,8 @@ def _simple():
                 yield Schematic(f"{name}2_x2", ports, ("nq",)).gate("nq", (operator, *ports), 2)
         for operator, name in (("and", "and"), ("or", "or")):
             for drive in (1, 2) if count == 2 else (1,):
-                yield Schematic(f"{name}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports)).gate("q", "n", drive)
+                made = Schematic(f"{name}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports))
+                yield made.gate("q", "n", drive)
     # One input inverted inside: nand2b = not (not i0 and i1)
     yield Schematic("nand2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("and", "n", "i1"))
     yield Schematic("nor2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("or", "n", "i1"))

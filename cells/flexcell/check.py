@@ -28,7 +28,7 @@ def check(folder, names, workers=-1):
 
 
 def _arrange(folder, names):
-    """folder/apart.gds: every cell alone; folder/gallery.gds: rows of all cells, abutted, mirrored, in several orders."""
+    """folder/apart.gds: every cell alone; folder/gallery.gds: rows of all, abutted, mirrored, in several orders."""
     import klayout.db as db
 
     half = len(names) // 2

@@ -35,12 +35,16 @@ def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
         name: entry for name, entry in (ties(canvas) | diode(canvas)).items() if names is None or name in names}
 
 
-def library(canvas=None, store=FOLDER / "drawn"):
-    """pdkmaster.design.library.RoutingGaugeLibrary of all cells, for the exporters to Coriolis, KLayout and SPICE."""
+def library(canvas=None, store=FOLDER / "drawn", workers=-1):
+    """pdkmaster.design.library.RoutingGaugeLibrary of all cells, for the exporters to Coriolis, KLayout and SPICE.
+
+    workers: processes that draw what is not in ``store``; 1 within a process that should end by itself (joblib's
+    workers keep it waiting for five minutes).
+    """
     from cells.flexcell.pdk import to_pdkmaster
 
     canvas = canvas or Canvas()
-    return to_pdkmaster(NAME, canvas, drawn(canvas, store))
+    return to_pdkmaster(NAME, canvas, drawn(canvas, store, workers))
 
 
 def names():

@@ -17,6 +17,7 @@ from cells.flexcell.rules import broken
 RECIPES = Path(__file__).with_name("recipes.json")
 SEEDS = 24          # placements tried when there is no recipe
 GAPS = 3            # extra gaps at most
+WIDE = 8            # gate columns from which li alone is not tried
 
 
 class NoLayout(RuntimeError):
@@ -64,7 +65,7 @@ def search(schematic, canvas, seeds, below=None):
     for columns, seed in placed.items():
         for extra in range(GAPS + 1):
             sites = len(columns) + 1 + len(breaks(columns)) + extra
-            tried += [Recipe(sites, met1, seed, spread) for met1 in (False, True)
+            tried += [Recipe(sites, met1, seed, spread) for met1 in ((False, True) if len(columns) < WIDE else (True,))
                       for spread in _spreads(columns, extra, seed)]
     by_seed = {seed: columns for columns, seed in placed.items()}
     for trial in sorted(tried):

@@ -17,8 +17,9 @@ class DrawnCell(pdk_cell.Cell):
         self._connect(circuit, self._devices(circuit, canvas))
         layout = self.new_circuitlayouter().layout
         for shape in drawing["shapes"]:
-            layout.add_shape(layer=tech.primitives[shape["layer"]], net=circuit.nets[shape["net"]] if shape["net"] else None,
-                             shape=geometry.Rect(**{side: shape[side] for side in ("left", "bottom", "right", "top")}))
+            sides = {side: shape[side] for side in ("left", "bottom", "right", "top")}
+            net = circuit.nets[shape["net"]] if shape["net"] else None
+            layout.add_shape(layer=tech.primitives[shape["layer"]], net=net, shape=geometry.Rect(**sides))
         layout.boundary = geometry.Rect(left=0.0, bottom=0.0, right=drawing["width"], top=canvas.height)
 
     def _devices(self, circuit, canvas):

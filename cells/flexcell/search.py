@@ -44,13 +44,15 @@ def _run(options):
     if unknown := sorted(set(names) - schematics().keys()):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     span = int(seeds[1]), int(seeds[2])
-    jobs = [Job(f"{name}.{span[0]}-{span[1]}", best, (name, *span), (recipe(name), Canvas(), *RECIPES.parent.glob("*.py")))
+    sources = sorted(RECIPES.parent.glob("*.py"))
+    jobs = [Job(f"{name}.{span[0]}-{span[1]}", best, (name, *span), (recipe(name), Canvas(), *sources))
             for name in names]
     found = run(jobs, "build/cells/flexcell/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
     better = {name: made for name, made in zip(names, found, strict=True) if made}
     for name, (sites, met1, seed, _) in better.items():
-        print(f"{name}: {sites} sites{' with met1' if met1 else ''} (seed {seed}); it was {kept.get(name, ['none'])[0]}")
+        was = kept.get(name, ["none"])[0]
+        print(f"{name}: {sites} sites{' with met1' if met1 else ''} (seed {seed}); it was {was}")
     kept |= better
     with staged(RECIPES.parent) as part:
         lines = (f'"{name}": {json.dumps(kept[name])}' for name in sorted(kept))

@@ -3,7 +3,8 @@
 
 def verilog(cells):
     """Text for ``cells`` (cells.flexcell.pdk.DrawnCell): a module each, without supply pins."""
-    return "\n".join(["// Cells of the FlexCell library; written by python -m cells.flexcell", *(module(cell.schematic) for cell in cells)])
+    return "\n".join(["// Cells of the FlexCell library; written by python -m cells.flexcell",
+                      *(module(cell.schematic) for cell in cells)])
 
 
 def module(schematic):

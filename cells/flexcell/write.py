@@ -38,7 +38,8 @@ def _gds(library, canvas, path):
 
     layout = export2db(library, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
     npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
-    low, high = (round((canvas.rows[row] + shift) * 1000) for row, shift in ((canvas.low, -0.185), (canvas.high, 0.185)))
+    low, high = (round((canvas.rows[row] + beyond) * 1000)
+                 for row, beyond in ((canvas.low, -0.185), (canvas.high, 0.185)))
     for cell in library.cells:
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, low, width, high))

@@ -33,7 +33,7 @@ def library(name, conditions, cells, process, constants=None):
             lib.attributes.setdefault("voltage_map", []).append((rail, level * corner.supply))
     lib.add("operating_conditions", corner.name, process=1.0, temperature=corner.temperature,
             voltage=corner.supply, tree_type="balanced_tree")
-    _templates(lib, conditions)
+    _templates(lib, conditions, {_size(arc) for _, measured, _ in cells for arc in measured["arcs"]})
     for cell, measured, area in cells:
         lib.groups.append(_cell(cell, measured, area, process))
     for cell, (pins, area) in (constants or {}).items():
@@ -43,12 +43,21 @@ def library(name, conditions, cells, process, constants=None):
     return lib
 
 
-def _templates(lib, c):
+def _size(arc):
+    """'9_7': slews and loads of an arc's tables. ABC wants a template of just that size for every table."""
+    return f"{len(arc['slews'])}_{len(arc['loads'])}"
+
+
+def _templates(lib, c, sizes):
     slews, constraint = NS * np.array(c.slews), NS * np.array(c.constraint_slews)
-    loads = PF * np.geomspace(c.least_load, 100 * c.least_load, c.loads)
-    for kind, name in (("lu_table_template", "delay"), ("power_lut_template", "power")):
-        lib.add(kind, name, variable_1="input_net_transition" if kind[0] == "l" else "input_transition_time",
-                variable_2="total_output_net_capacitance", index_1=slews, index_2=loads)
+    for size in sorted(sizes):
+        rows, columns = map(int, size.split("_"))
+        axes = {"index_1": NS * np.geomspace(c.slews[0], c.slews[-1], rows),
+                "index_2": PF * np.geomspace(c.least_load, 100 * c.least_load, columns)}
+        lib.add("lu_table_template", f"delay_{size}", variable_1="input_net_transition",
+                variable_2="total_output_net_capacitance", **axes)
+        lib.add("power_lut_template", f"power_{size}", variable_1="input_transition_time",
+                variable_2="total_output_net_capacitance", **axes)
     lib.add("power_lut_template", "quiet", variable_1="input_transition_time", index_1=slews)
     lib.add("lu_table_template", "constraint", variable_1="related_pin_transition",
             variable_2="constrained_pin_transition", index_1=constraint, index_2=constraint)
@@ -104,7 +113,7 @@ def _storage(group, cell):
         inside = {"enable": clock, "data_in": s.data}
     else:
         group.attributes["clock_gating_integrated_cell"] = _gating(s)
-        return
+        inside = {"enable": f"!{s.clock}" if s.active else s.clock, "data_in": s.data}
     for name, hit in (("clear", s.clear), ("preset", s.preset)):
         if hit:
             inside[name] = hit[0] if hit[1] else f"!{hit[0]}"
@@ -134,7 +143,7 @@ def _input(group, cell, measured, name):
     _rails(pin, cell)
     energy = measured["quiet_energy"].get(name)
     if energy:
-        power = pin.add("internal_power")
+        power = pin.add("internal_power", related_pg_pin=pin.attributes["related_power_pin"])
         for edge in ("rise", "fall"):
             power.add(f"{edge}_power", "quiet", index_1=NS * np.array(measured["slews"]),
                       values=PJ * np.array(energy[edge]))
@@ -167,7 +176,6 @@ def _output(group, cell, measured, name):
     if cell.three_state[name]:
         pin.attributes["three_state"] = cell.three_state[name]
     if cell.storage and cell.storage.kind == "gate":
-        del pin.attributes["function"]
         pin.attributes["clock_gate_out_pin"] = True
     if name in measured["largest_load"]:
         pin.attributes["max_capacitance"] = PF * measured["largest_load"][name]
@@ -188,7 +196,7 @@ def _output(group, cell, measured, name):
 
 def _power(pin, related, arcs):
     """Energy by output edge: of the arcs that cause it, the mean."""
-    power = pin.add("internal_power", related_pin=related)
+    power = pin.add("internal_power", related_pin=related, related_pg_pin=pin.attributes["related_power_pin"])
     for edge in ("fall", "rise"):
         same = [a for a in arcs if a["edge"] == edge and not a["type"].startswith("three_state")]
         if same:
@@ -196,4 +204,4 @@ def _power(pin, related, arcs):
 
 
 def _table(group, kind, template, arc, values):
-    group.add(kind, template, index_1=NS * np.array(arc["slews"]), index_2=PF * np.array(arc["loads"]), values=values)
+    group.add(kind, f"{template}_{_size(arc)}", index_1=NS * np.array(arc["slews"]), index_2=PF * np.array(arc["loads"]), values=values)

@@ -43,7 +43,8 @@ def levels(schematic, inputs):
 
 
 def value(expression, inputs):
-    return int(bool(eval(expression.replace("!", " not ").replace("&", " and ").replace("|", " or "), {}, dict(inputs))))
+    python = expression.replace("!", " not ").replace("&", " and ").replace("|", " or ")
+    return int(bool(eval(python, {}, dict(inputs))))
 
 
 @pytest.mark.parametrize("name", [name for name, s in CELLS.items() if s.inputs and not s.storage])

