@@ -35,6 +35,9 @@ $(LAYOUT_READY): $(READY) requirements-layout.lock requirements-pdk.lock
 .PHONY: setup
 setup: $(TESTS_READY)  ## the Python environment in .venv with all that tests use, from the lock files
 
+.PHONY: setup-layout
+setup-layout: $(LAYOUT_READY)  ## what cells and layouts add to it: PDKs, KLayout, Coriolis
+
 .PHONY: sim
 sim: $(READY)  ## a scene through the golden models and the chip's Verilog: build/sim/<scene>/report.html
 	@$(PY) -m talbot sim $(sim_arguments)
