@@ -7,6 +7,7 @@ CUT, WIRE = 0.17, 0.17          # um: licon and mcon; li
 PAD = (0.27, 0.33)              # um: poly around its contact
 PATCH = 0.33                    # um: li around a contact, along one direction
 SHIFT = 0.08                    # um: a 'tap' contact beside its gate (route)
+EPSILON = 1e-6
 VIA_PAD = (0.29, 0.23)          # um: met1 around mcon
 
 
@@ -37,9 +38,9 @@ class Pen:
 
 
 class Drawing(Pen):
-    """The shapes of an Assembly with its Wiring on a Canvas."""
+    """The shapes of an Assembly with its Wiring on a Canvas. reach: with pins as long as their neighbours let them."""
 
-    def __init__(self, canvas, made, wiring):
+    def __init__(self, canvas, made, wiring, reach=True):
         super().__init__(canvas, (made.columns + 1) // 2)
         self.made, self.wiring = made, wiring
         frame(self)
@@ -47,8 +48,12 @@ class Drawing(Pen):
         self._rail_stubs()
         for net in wiring.vertices:
             self._wires(net)
-        for net, pin in wiring.pins.items():
-            self._pin(net, pin)
+        pins = {net: self._pin(net, pin) for net, pin in wiring.pins.items()}
+        for net, (x, bottom, top) in pins.items():
+            if reach:
+                bottom, top = self._reach(net, x, bottom, top)
+            for layer in ("li", "li.pin"):
+                self.box(layer, net, x - WIRE / 2, bottom, x + WIRE / 2, top)
 
     def x(self, h):
         return (h + 1) * self.canvas.site / 2
@@ -154,6 +159,7 @@ class Drawing(Pen):
                 self.box("li", net, self.x(h), rows[r], self.x(h + 1), rows[r + 1])
 
     def _pin(self, net, pin):
+        """(x, bottom, top) of a pin as it was routed."""
         c = self.canvas
         kind, h, r, *row = pin
         if kind == "tap":
@@ -170,8 +176,20 @@ class Drawing(Pen):
             while low - 1 in own and frozenset((("li", h, low), ("li", h, low - 1))) in joined:
                 low -= 1
             bottom, top = c.rows[low] - WIRE / 2, c.rows[high] + WIRE / 2
-        self.box("li", net, x - WIRE / 2, bottom, x + WIRE / 2, top)
-        self.box("li.pin", net, x - WIRE / 2, bottom, x + WIRE / 2, top)
+        return x, bottom, top
+
+    def _reach(self, net, x, bottom, top):
+        """(bottom, top) of a pin drawn out to where li of another net, or of its own beside it, begins."""
+        low, high = self.canvas.li_rail + WIRE, self.canvas.height - self.canvas.li_rail - WIRE
+        for s in self.shapes:
+            own = s.net == net and s.left < x + WIRE / 2 - EPSILON and s.right > x - WIRE / 2 + EPSILON
+            if s.layer != "li" or own or s.left > x + 1.5 * WIRE - EPSILON or s.right < x - 1.5 * WIRE + EPSILON:
+                continue
+            if s.bottom > top - EPSILON:
+                high = min(high, s.bottom - WIRE)
+            if s.top < bottom + EPSILON:
+                low = max(low, s.top + WIRE)
+        return min(bottom, low), max(top, high)
 
 
 def frame(drawing):

@@ -17,6 +17,7 @@ from cells.flexcell.rules import broken
 RECIPES = Path(__file__).with_name("recipes.json")
 SEEDS = 24          # placements tried when there is no recipe
 GAPS = 3            # extra gaps at most
+CHOICES = 8         # recipes of one width that are compared
 WIDE = 8            # gate columns from which li alone is not tried
 
 
@@ -47,7 +48,7 @@ def make(schematic, canvas, known=None):
     """
     drawing = known and _draw(schematic, place(schematic, known.seed), known.spread, canvas, known.met1)
     if not drawing:
-        known = next(search(schematic, canvas, range(SEEDS)), None)
+        known = choose(schematic, canvas, range(SEEDS))
         if known is None:
             raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
         drawing = _draw(schematic, place(schematic, known.seed), known.spread, canvas, known.met1)
@@ -55,8 +56,30 @@ def make(schematic, canvas, known=None):
             "shapes": [asdict(shape) for shape in drawing.shapes]}
 
 
+def choose(schematic, canvas, seeds, below=None):
+    """Of the narrowest Recipes from ``seeds`` the one that is best to route to, or None; see `search`, `merit`."""
+    found = []
+    for one, drawing in search(schematic, canvas, seeds, below):
+        if found and (one.sites > found[0][1].sites or len(found) == CHOICES):
+            break
+        found.append((merit(drawing), one))
+    return max(found, key=lambda pair: pair[0])[1] if found else None
+
+
+def merit(drawing):
+    """(tracks of met1 that the least accessible pin meets, at most 3; less met1 inside), the more the better."""
+    c = drawing.canvas
+    tracks = [k * c.site for k in range(1, round(c.height / c.site))]
+    pins = [sum(s.bottom <= t - 0.16 + 1e-9 and t + 0.16 <= s.top + 1e-9 for t in tracks)
+            for s in drawing.shapes if s.layer == "li.pin"]
+    return min(3, *pins, 3), -sum(s.layer == "m1" for s in drawing.shapes)
+
+
 def search(schematic, canvas, seeds, below=None):
-    """Recipes that work, the narrowest first and of these those on li alone. below: a Recipe that they have to beat."""
+    """(Recipe, Drawing) of what works, the narrowest first and of these those on li alone. below: a Recipe to beat in
+
+    width.
+    """
     placed = {}
     for seed in seeds:
         columns = place(schematic, seed)
@@ -69,11 +92,11 @@ def search(schematic, canvas, seeds, below=None):
                       for spread in _spreads(columns, extra, seed)]
     by_seed = {seed: columns for columns, seed in placed.items()}
     for trial in sorted(tried):
-        if below is not None and not trial < below:
+        if below is not None and trial.sites >= below.sites:
             return
         drawing = _draw(schematic, list(by_seed[trial.seed]), trial.spread, canvas, trial.met1)
         if drawing:
-            yield trial
+            yield trial, drawing
 
 
 def _draw(schematic, columns, spread, canvas, met1):
@@ -82,8 +105,8 @@ def _draw(schematic, columns, spread, canvas, met1):
     wiring = route(task(made, canvas, schematic.ports), met1)
     if wiring is None:
         return None
-    drawing = Drawing(canvas, made, wiring)
-    return None if broken(drawing) else drawing
+    drawings = (Drawing(canvas, made, wiring, reach) for reach in (True, False))
+    return next((drawing for drawing in drawings if not broken(drawing)), None)
 
 
 def _spreads(columns, extra, seed):

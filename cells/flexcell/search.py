@@ -10,22 +10,25 @@ import sys
 
 from cells.flexcell.canvas import Canvas
 from cells.flexcell.catalogue import schematics
-from cells.flexcell.make import RECIPES, recipe, search
+from cells.flexcell.make import RECIPES, choose, recipe
 from flow.files import staged
 from flow.jobs import Job, run
 from models.parameters import ParameterError
 
 
-def best(name, first, last):
-    """The best Recipe of cell ``name`` from placements of seeds ``first`` to ``last``, as a list, or None."""
-    below = recipe(name)
-    found = next(search(schematics()[name], Canvas(), range(first, last), below), None)
+def best(name, first, last, narrower):
+    """The best Recipe of cell ``name`` from placements of seeds ``first`` to ``last``, as a list, or None.
+
+    narrower: only one that is narrower than the kept one.
+    """
+    found = choose(schematics()[name], Canvas(), range(first, last), recipe(name) if narrower else None)
     return found and [found.sites, found.met1, found.seed, found.spread]
 
 
 def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python -m cells.flexcell.search", description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", default="0:24", help="first:last")
+    parser.add_argument("--anew", action="store_true", help="do not compare with the recipes that are kept")
     parser.add_argument("--cells", help="names with commas between; default: all")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
     options = parser.parse_args(arguments)
@@ -45,7 +48,7 @@ def _run(options):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     span = int(seeds[1]), int(seeds[2])
     sources = sorted(RECIPES.parent.glob("*.py"))
-    jobs = [Job(f"{name}.{span[0]}-{span[1]}", best, (name, *span), (recipe(name), Canvas(), *sources))
+    jobs = [Job(f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}", best, (name, *span, not options.anew), (recipe(name), Canvas(), *sources))
             for name in names]
     found = run(jobs, "build/cells/flexcell/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
