@@ -15,7 +15,7 @@ sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr
 
 .PHONY: help
 help:  ## this list
-	@echo "Talbot: from the optics of an angle-sensitive pixel to its byte stream. Targets:"
+	@echo "Talbot: from the optics of an angle-sensitive pixel to a layout. Targets:"
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
 	@echo "Arguments of sim: $(SIM_OPTIONS) PHASE=1   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
 
@@ -63,7 +63,7 @@ mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must fi
 	@$(PY) -m verif.mutation
 
 .PHONY: verify
-verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was (under 45 minutes on 2 cores)
+verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was
 	@$(PY) -m verif.report
 
 .PHONY: verilog
@@ -120,7 +120,7 @@ cells-stability: $(LAYOUT_READY)  ## stiff and extreme cases of the characterize
 	@$(PY) -m cells.stability
 
 .PHONY: tools
-tools:  ## Icarus, a native Verilator, Yosys and z3 from Debian's packages (needs root)
+tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)
 	@bash flow/setup/tools.sh
 
 .PHONY: clean

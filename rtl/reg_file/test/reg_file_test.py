@@ -77,6 +77,14 @@ class TestFL:
         assert bench.value("trims") == 0
         assert bench.read(0, 4) == bytes((CHIP["id"].reset, CHIP["version"].reset, 0, 0))
 
+    def test_every_address_after_reset(self):
+        """What exists has its reset value, the rest reads 0, each asked for alone and all in one transfer."""
+        bench, image = self.bench(), CHIP.image(CHIP.configuration, {"row1": LAST_ROW, "col1": LAST_COL})
+        expected = [image.get(address, 0) for address in range(128)]
+        expected[CHIP["id"].byte], expected[CHIP["version"].byte] = CHIP["id"].reset, CHIP["version"].reset
+        assert list(bench.read(0, 128)) == expected
+        assert [bench.read(address)[0] for address in range(128)] == expected
+
     def test_a_frame_is_written_and_read_back(self):
         bench = self.bench()
         frame = FrameParameters(Window(1, 200, 3, 250), "tof", 0x8001FE, 127, 3, True, 255, False, True, 0xBEEF,
