@@ -35,12 +35,13 @@ def try_tests(path, folder, mutant):
     program = compile_program(verilog, head.cls, head.ports, mutant=True)
     number = str(mutant.number)
     cycle = program.run(Path(path).with_suffix(".trace"), "--mutants", number, number)[mutant.number]
-    tries = [(own_tests(mutant), 2 * head.cycles)]
+    own = own_tests(mutant)
+    tries = [(own, 2 * head.cycles)] if own else []
     if cycle >= 0:
         test = head.test_at(cycle)
         tries += [(test, 2 * head.cycles_of(test)), (tests_of(head.cls)[1], 2 * head.cycles)]
     for tests, cycles in tries:
-        if tests and (failed := attempt(head, verilog, mutant, [tests], cycles + SPARE).failed):
+        if failed := attempt(head, verilog, mutant, [tests], cycles + SPARE, alone=tests is own).failed:
             return {"result": KILLED, "by": failed}
     return {"result": SURVIVED}
 

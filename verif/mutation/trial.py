@@ -44,11 +44,11 @@ class Trial(OneLevel):
     it that is mutated.
 
     head: Trace without its lines. verilog: text with all mutants. mutant: Mutant, or None for the original. cycles:
-    that a simulator may run.
+    that a simulator may run. alone: the tests are the module's own, at RTL.
     """
 
-    def __init__(self, head, verilog, mutant, cycles):
-        super().__init__(whole_level(head.cls) == "Verilog")
+    def __init__(self, head, verilog, mutant, cycles, alone=False):
+        super().__init__(not alone and whole_level(head.cls) == "Verilog")
         self.head, self.verilog_text, self.mutant, self.cycles = head, verilog, mutant, cycles
         self.failed, self.took_place = "", False
 
@@ -84,9 +84,9 @@ def same_module(head, cls, arguments):
     return bool(within) and alone[0] == within[0]
 
 
-def attempt(head, verilog, mutant, tests, cycles):
+def attempt(head, verilog, mutant, tests, cycles, alone=False):
     """Run ``tests`` (node ids, files or folders) on a mutant: Trial. Arguments: see there."""
-    trial = Trial(head, verilog, mutant, cycles)
+    trial = Trial(head, verilog, mutant, cycles, alone)
     for name in [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]:
         del sys.modules[name]               # tests keep their simulators
     settings.register_profile("trial", phases=(Phase.explicit, Phase.generate), database=None)

@@ -150,6 +150,19 @@ class FrameTests(ChipTests):
         bench.sync.clear()
         self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
 
+    def test_status_within_a_frame(self):
+        """Busy and not done while the frame's bytes leave."""
+        bench, frame = self.bench(stall=0.9), FRAMES["every sample"]
+        bench.write(frame_writes(frame))
+        bench.spi.transfer(command("start"))
+        while not bench.sim.frame_sync:
+            bench.tick()
+        flags = bench.spi.transfer(read_transfer(CHIP["busy"].byte, 1))[1]
+        assert bench.sim.frame_sync and flags >> CHIP["busy"].shift & 1 and not flags >> CHIP["done"].shift & 1
+        while bench.sim.busy:
+            bench.tick()
+        assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream and bench.status()["done"]
+
     def test_impossible_frames_do_not_start(self):
         """Every time anew, and a good one starts after them."""
         bench = self.bench()
