@@ -87,8 +87,8 @@ def same_module(head, cls, arguments):
 def attempt(head, verilog, mutant, tests, cycles, alone=False):
     """Run ``tests`` (node ids, files or folders) on a mutant: Trial. Arguments: see there."""
     trial = Trial(head, verilog, mutant, cycles, alone)
-    for name in [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]:
-        del sys.modules[name]               # tests keep their simulators
+    tests_loaded = [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]
+    before_trial = {name: sys.modules.pop(name) for name in tests_loaded}       # tests keep their simulators
     settings.register_profile("trial", phases=(Phase.explicit, Phase.generate), database=None)
     before = settings.get_current_profile_name()
     settings.load_profile("trial")          # a failure is all that is asked for, not the smallest one
@@ -97,6 +97,7 @@ def attempt(head, verilog, mutant, tests, cycles, alone=False):
             status = pytest.main([*OPTIONS, *map(str, tests)], [trial])
     finally:
         settings.load_profile(before)
+        sys.modules.update(before_trial)
     if status not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
         raise RuntimeError(f"pytest ended with status {status}: {said.getvalue()[-1500:]}")
     return trial
