@@ -24,9 +24,9 @@ from .mutants import generate, with_mutants
 from .score import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
 
 SEED = 1
-NUMBERS = {"AmpCtrl": 70, "ReadoutSeq": 100, "EdgeAdc": 50, "AdcBank": 50, "QuadDividerRadix2": 40,
-           "QuadDividerRadix4": 40, "QuadDividerPipelined": 40, "Cordic": 50, "PhasePath": 60, "RunLength": 120,
-           "RegFile": 70, "AspChip": 50}
+NUMBERS = {"AmpCtrl": 55, "ReadoutSeq": 70, "EdgeAdc": 40, "AdcBank": 40, "QuadDividerRadix2": 32,
+           "QuadDividerRadix4": 32, "QuadDividerPipelined": 32, "Cordic": 40, "PhasePath": 48, "RunLength": 90,
+           "RegFile": 55, "AspChip": 40}
 FOLDERS = sorted({folder_of(block) for block in TOPS})
 TESTS = "models", "rtl", "pixels", "verif/coverage", "verif/replay", "verif/mutation"
 JUDGES = "verif/mutation", "verif/divider", "verif/formal", *(f"rtl/{folder}/formal" for folder in FOLDERS)
