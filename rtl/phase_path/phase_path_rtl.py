@@ -11,30 +11,36 @@ IN_FLIGHT_MAX = 63          # more than any divider holds
 
 
 class TapEntry(Component):
-    """A register of the store, and its link in the chain that reads the one whose turn it is."""
+    """The registers of a sample in the store, and their link in the chain that reads those whose turn it is."""
 
     def construct(s):
         s.turn = InPort()
-        s.write = InPort()
-        s.next = InPort(Bits17)
+        s.write_x = InPort()
+        s.write_y = InPort()
+        s.x = InPort(Bits9)
+        s.y = InPort(Bits8)
         s.chain_in = InPort(Bits17)
         s.chain_out = OutPort(Bits17)
 
-        s.value = Wire(Bits17)
+        s.value_x = Wire(Bits9)     # i0 or i0 - i180, signed
+        s.value_y = Wire(Bits8)     # i90
 
         @update
         def up_chain():
             s.chain_out @= s.chain_in
             if s.turn:
-                s.chain_out @= s.value
+                s.chain_out @= concat(s.value_x, s.value_y)
 
         @update_ff
         def up_value():
             if s.reset:
-                s.value <<= 0
+                s.value_x <<= 0
+                s.value_y <<= 0
             elif s.turn:
-                if s.write:
-                    s.value <<= s.next
+                if s.write_x:
+                    s.value_x <<= s.x
+                if s.write_y:
+                    s.value_y <<= s.y
 
 
 class TapStore(Component):
@@ -56,8 +62,10 @@ class TapStore(Component):
         for i in range(lanes):
             setattr(s, f"entry{i}", TapEntry())
         s.none = Wire(Bits17)
-        s.entry = Wire(Bits17)      # i0 or i0 - i180 (9, signed), i90 (8)
-        s.next = Wire(Bits17)
+        s.entry = Wire(Bits17)
+        s.write_x = Wire()
+        s.write_y = Wire()
+        s.next_x = Wire(Bits9)
         s.wide = Wire(Bits9)
 
         # Connections
@@ -65,8 +73,10 @@ class TapStore(Component):
         for i in range(lanes):
             entry = getattr(s, f"entry{i}")
             entry.turn //= s.turn[i]
-            entry.write //= s.write
-            entry.next //= s.next
+            entry.write_x //= s.write_x
+            entry.write_y //= s.write_y
+            entry.x //= s.next_x
+            entry.y //= s.sample
             entry.chain_in //= chain
             chain = entry.chain_out
         s.none //= Bits17(0)
@@ -78,11 +88,9 @@ class TapStore(Component):
             s.wide @= zext(s.sample, 9)
             s.x @= s.entry[8:17]
             s.y @= s.wide - zext(s.entry[0:8], 9)
-            s.next @= concat(s.wide, s.entry[0:8])
-            if s.tap == 1:
-                s.next @= concat(s.x, s.sample)
-            elif s.tap == 2:
-                s.next @= concat(s.x - s.wide, s.entry[0:8])
+            s.write_x @= s.write & (s.tap != 1)
+            s.write_y @= s.write & (s.tap == 1)
+            s.next_x @= s.x - s.wide if s.tap[1] else s.wide
 
     def line_trace(s):
         return f"{s.tap}:{s.turn} {s.x},{s.y}"

@@ -1,6 +1,6 @@
 """PayloadPacker at RTL: a row's samples in, the bytes of its payload out."""
 
-from pymtl3 import Bits5, Bits7, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
+from pymtl3 import Bits5, Bits7, Bits8, Bits31, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
 
 from .token_rtl import TokenCoder
 
@@ -20,7 +20,9 @@ def add_packer_ports(s):
 
 
 class PayloadPacker(Component):
-    """Tokens are gathered, from the top, in a register of 32 bits; eight or more of them are a byte that is due."""
+    """Tokens are gathered, from the top, in a register of 31 bits (7 that are no byte yet, a token of 24);
+
+    eight or more of them are a byte that is due."""
 
     def new_coder(s):
         return TokenCoder()
@@ -31,7 +33,7 @@ class PayloadPacker(Component):
 
         # Components
         s.coder = s.new_coder()
-        s.gathered = Wire(Bits32)
+        s.gathered = Wire(Bits31)
         s.count = Wire(Bits5)
 
         s.take = Wire()
@@ -43,7 +45,7 @@ class PayloadPacker(Component):
         s.coder.coded //= s.coded
         s.coder.threshold //= s.threshold
         s.coder.code //= s.code
-        s.octet //= s.gathered[24:32]
+        s.octet //= s.gathered[23:31]
 
         # Logic
         @update
@@ -63,10 +65,10 @@ class PayloadPacker(Component):
                     s.count <<= s.count - 8
                 if s.push:
                     s.count <<= s.behind
-                    s.gathered <<= (concat(s.gathered[0:24], Bits8(0)) if s.take else s.gathered) \
-                        | (zext(s.coder.bits, 32) << zext(Bits5(0) - s.behind, 32))
+                    s.gathered <<= (concat(s.gathered[0:23], Bits8(0)) if s.take else s.gathered) \
+                        | (zext(s.coder.bits, 31) << zext(Bits5(31) - s.behind, 31))
                 elif s.take:
-                    s.gathered <<= concat(s.gathered[0:24], Bits8(0))
+                    s.gathered <<= concat(s.gathered[0:23], Bits8(0))
                 if s.flush:
                     s.count <<= Bits5(8) if (s.count[0:3] != 0) | s.coder.open else Bits5(0)
 

@@ -6,16 +6,12 @@ from pathlib import Path
 
 from rtl.ports import Port, split, validity
 from verif.coverage.program import ToolTimeout, tool
+from verif.results import ROOT
 
 from .mutants import BITS, yosys
 
 # Engines in turn, each with its limit in seconds: a proof that is easy, a search for a difference, a proof that is not
 ENGINES = (("scorr; dc2; scorr; pdr -T 4", 15), ("bmc3 -F 200 -T 10", 20), ("scorr; dc2; scorr; pdr -T 40", 60))
-
-# What a block's neighbours promise (docs/chip.md): inputs that stand while an output of it is high; RegFile's proof of
-# p_write shows it. And outputs that mean something only while another one is high.
-STANDS = {"ReadoutSeq": ("busy", ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap"))}
-MEANS = {"ReadoutSeq": {"amp_row": "busy"}}
 
 EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
@@ -31,7 +27,7 @@ def miter(top, ports, number):
     A message counts while it is valid, and all of it while the neighbours keep their promises.
     """
     inputs, outputs = split(ports)
-    valid = validity(ports)
+    contract = promises(top)
     lines = ["module Miter(input clk, input reset_in" + "".join(
         f", input [{p.width - 1}:0] {p.name}" for p in inputs if p.name != "reset") + ", output bad);",
         "  reg started = 0;", "  wire reset = reset_in | ~started;"]
@@ -41,22 +37,24 @@ def miter(top, ports, number):
         pins = [".clk(clk)", f".mutant({BITS}'d{which})", *(f".{p.name}({p.name})" for p in inputs),
                 *(f".{p.name}({prefix}{p.name})" for p in outputs)]
         lines.append(f"  {top} {name}({', '.join(pins)});")
-    valid = {p.name: v.name for p, v in valid.items()} | MEANS.get(top, {})
-    differ = [f"({valid.get(p.name, 1)} & ({p.name} != other_{p.name}))" for p in outputs]
+    looked_at = {name: f"{name}_counts" for name in re.findall(r"output (\w+)_counts", contract)}
+    counts = {p.name: v.name for p, v in validity(ports).items()} | looked_at
+    lines += ["  wire promised;", *(f"  wire {wire};" for wire in looked_at.values())]
+    lines.append(f"  {top}Promises promises(.*);" if contract else "  assign promised = 1;")
+    differ = [f"({counts.get(p.name, 1)} & ({p.name} != other_{p.name}))" for p in outputs]
     return "\n".join([
-        *lines, *promises(top), "  always @(posedge clk) started <= 1;",
-        f"  assign bad = started & promised & ({' | '.join(differ)});", "endmodule", ""])
+        *lines, "  always @(posedge clk) started <= 1;",
+        f"  assign bad = started & promised & ({' | '.join(differ)});", "endmodule", contract])
 
 
 def promises(top):
-    """Verilog of `promised`: all that the neighbours of ``top`` promise has been kept so far."""
-    if top not in STANDS:
-        return ["  wire promised = 1;"]
-    while_high, names = STANDS[top]
-    now = "{" + ", ".join(names) + "}"
-    return ["  reg kept = 1;", f"  reg [$bits({now}) - 1:0] before;",
-            f"  wire promised = kept & (~{while_high} | reset | {now} == before);",
-            f"  always @(posedge clk) begin kept <= promised; before <= {now}; end"]
+    """Verilog of module <top>Promises, '' where ``top`` has none: rtl/<block>/formal/promises.sv.
+
+    `promised`: all that its neighbours promise has been kept so far. <port>_counts: they look at that output now.
+    """
+    found = [text for text in map(Path.read_text, sorted(ROOT.glob("rtl/*/formal/promises.sv")))
+             if re.search(rf"^module {top}Promises\b", text, re.MULTILINE)]
+    return found[0] if found else ""
 
 
 def module_ports(verilog, module):

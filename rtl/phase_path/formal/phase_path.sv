@@ -19,8 +19,10 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
   (* hierconn *) wire [1:0] \dut.turn ;
   (* hierconn *) wire [5:0] \dut.in_flight ;
   (* hierconn *) wire \dut.second ;
-  (* hierconn *) wire [16:0] \dut.store.entry0.value ;
-  (* hierconn *) wire [16:0] \dut.store.entry1.value ;
+  (* hierconn *) wire [8:0] \dut.store.entry0.value_x ;
+  (* hierconn *) wire [7:0] \dut.store.entry0.value_y ;
+  (* hierconn *) wire [8:0] \dut.store.entry1.value_x ;
+  (* hierconn *) wire [7:0] \dut.store.entry1.value_y ;
   (* hierconn *) wire [17:0] \dut.divider.recv__msg ;
   (* hierconn *) wire \dut.divider.recv__val ;
   (* hierconn *) wire \dut.divider.recv__rdy ;
@@ -84,7 +86,8 @@ module PhasePathProof (input clk, input reset, input [11:0] recv__msg, input rec
   wire [11:0] answer = {2'd2, 2'b0, told_phase ? (amp_valid ? amp : 8'd0) : phase};
   wire [11:0] passed = msg[11:10] == SAMPLE ? {msg[11:10], 2'b0, msg[7:0]} : msg;
   wire [8:0] x = {1'b0, i0} - {1'b0, i180}, y = {1'b0, msg[7:0]} - {1'b0, i90};
-  wire [16:0] entry = lane ? \dut.store.entry1.value : \dut.store.entry0.value ;
+  wire [16:0] entry = lane ? {\dut.store.entry1.value_x , \dut.store.entry1.value_y }
+                           : {\dut.store.entry0.value_x , \dut.store.entry0.value_y };
   wire [1:0] at_tap = here && tapped ? msg_tap : tap, at_index = here && tapped ? msg_index : index;
   wire [2:0] stored = at_tap + (at_index > lane);     // taps of the followed lane
   wire [3:0] digits_left = asked ? (\dut.divider.ctrl.done ? 0 : 4 - \dut.divider.dpath.count ) : 0;

@@ -13,7 +13,7 @@ module PayloadProof (
   wire [7:0] octet;
   PayloadPacker dut (.*);
   (* hierconn *) wire [4:0] \dut.count ;
-  (* hierconn *) wire [31:0] \dut.gathered ;
+  (* hierconn *) wire [30:0] \dut.gathered ;
   (* hierconn *) wire [23:0] \dut.coder.bits ;
   (* hierconn *) wire [4:0] \dut.coder.length ;
   (* hierconn *) wire [2:0] \dut.coder.k ;
@@ -22,7 +22,7 @@ module PayloadProof (
   (* hierconn *) wire [7:0] \dut.coder.credit ;
   wire [23:0] token = \dut.coder.bits ;
   wire [4:0] length = \dut.coder.length ;
-  wire [31:0] gathered = \dut.gathered ;
+  wire [30:0] gathered = \dut.gathered ;
 
   // The decoder
   reg [2:0] k;
@@ -51,6 +51,7 @@ module PayloadProof (
   reg following = 0, followed, ended, fresh;  // the row has ended; has begun without a sample so far
   wire take = val && rdy;
   wire open = run != 0;
+  wire [30:0] padding = gathered << inside;
   wire [5:0] left = inside - (take ? 8 : 0);
   reg first = 1, was_reset, was_coded, was_val, was_rdy, was_row;
   reg [6:0] was_threshold;
@@ -95,7 +96,7 @@ module PayloadProof (
       p_plain: assert (!(push && !coded) || length == 8 && token[7:0] == code);
       p_bit: assert (!(take && following && before < 8) || octet[7 - before] == followed);
       p_bytes: assert (val == (inside >= 8));
-      p_padding: assert (inside >= 32 || gathered << inside == 0);
+      p_padding: assert (padding == 0);
       p_stable: assert (!was_val || was_rdy || val && octet == was_octet);
     end
     if (!first) begin
@@ -105,7 +106,7 @@ module PayloadProof (
       inv_plain: assert (coded || run == 0 || ended);
       inv_fresh: assert (!fresh || run == 0);
       inv_inside: assert (\dut.count == inside && inside < 32);
-      inv_bit: assert (!following || before < inside && gathered[31 - before] == followed);
+      inv_bit: assert (!following || before < inside && gathered[30 - before] == followed);
     end
   end
 

@@ -167,7 +167,8 @@ class TestRunLengthFL:
         messages = messages_of(header, samples)
         stray = [ScanMsg(SAMPLE, 3), ScanMsg(ROW, 1), ScanMsg(SAMPLE, 3), ScanMsg(END, 0)]
         bench = self.bench(header)
-        got = bench.run(stray + messages[:1] + [ScanMsg(SAMPLE, 9)] + messages[1:20] + messages[:1] + messages[20:])
+        got = bench.run(stray + messages[:1] + [ScanMsg(SAMPLE, 9), ScanMsg(FRAME, 0), ScanMsg(SAMPLE, 9)] + messages[1:20]
+                        + messages[:1] + messages[20:])
         assert got == encode_frame(header, samples, 0, 0)
 
     def test_a_frame_without_rows(self):
