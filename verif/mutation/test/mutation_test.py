@@ -5,11 +5,16 @@ import subprocess
 
 import pytest
 
+from models.parameters import SensorParameters
 from rtl.asp_chip.balance_rtl import Balance
+from rtl.export import translate_component
+from rtl.ports import Port, ports_of
+from rtl.tops import build_top
 from verif.coverage.program import compile_program
+from verif.coverage.testplan import folder_of
 from verif.coverage.test.coverage_test import recorded, recorded_cycles
 from verif.mutation.__main__ import main, summary
-from verif.mutation.equivalence import DIFFERENT, EQUIVALENT, compare
+from verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, promises
 from verif.mutation.mutants import Mutant, generate, shares, with_mutants
 from verif.mutation.score import SURVIVED, judge, mutated, one_mutant, own_tests
 from verif.mutation.trial import attempt
@@ -36,7 +41,6 @@ endmodule
 
 @pytest.fixture(scope="module")
 def small():
-    from rtl.ports import Port
     ports = (Port("reset", 1, False), Port("up", 1, False), Port("count", 2, True))
     mutants = generate(SMALL, "Small", "small", 12, 3)
     return ports, mutants, with_mutants(SMALL, "Small", mutants)
@@ -95,7 +99,11 @@ def planted(trace, folder, of, number):
 
 
 BLIND = """
+from models.parameters import SensorParameters
 from rtl.asp_chip.balance_rtl import Balance
+from rtl.export import translate_component
+from rtl.ports import Port, ports_of
+from rtl.tops import build_top
 from rtl.testbench import build
 
 def test_looks_at_nothing():
@@ -152,6 +160,17 @@ def test_one_mutant_alone(small, tmp_path):
     assert "mutant" not in one.split(";")[0] and one_mutant(text, "Small", 0) != one
     (tmp_path / "one.v").write_text(one)
     subprocess.run(["yosys", "-q", "-p", f"read_verilog {tmp_path}/one.v; hierarchy -check -top Small"], check=True)
+
+
+@pytest.mark.parametrize("block", ["PhasePath", "ReadoutSeq", "RunLength"])
+def test_promises_leave_the_block_its_work(block):
+    """A promise that nobody could keep would make every mutant equivalent."""
+    top = build_top(block, SensorParameters())
+    text = translate_component(top, block)
+    mutants = generate(text, block, folder_of(block), 8, 1)
+    assert promises(block)
+    planted = with_mutants(text, block, mutants)
+    assert any(compare(planted, block, ports_of(top), m.number, ENGINES[1:2])[0] == DIFFERENT for m in mutants)
 
 
 def test_arguments(capsys, tmp_path):
