@@ -8,13 +8,13 @@ import sys
 from pathlib import Path
 
 from flow.jobs import Job, run
+from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 
 from .measure import measure
-from .program import ProgramError
 from .testplan import folder_of, load_plan, plan_file
 from .traces import recorded
 from .verdict import judge
@@ -62,7 +62,7 @@ def main(argv=None):
             if block not in plan.blocks:
                 raise ParameterError(f"{files[block].name}: blocks = {plan.blocks}: must have {block}")
         verdicts = measured(plans, options.out / "coverage")
-    except (ParameterError, ProgramError, RecordError, OSError) as error:
+    except (ParameterError, ToolError, RecordError, OSError) as error:
         print(f"verif.coverage: {error}", file=sys.stderr)
         return 2
     write_step("coverage", {block: {"coverage": v.coverage, "excluded": v.excluded, "open_points": v.errors + v.missing}

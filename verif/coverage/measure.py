@@ -6,10 +6,11 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from flow.simulate.process import ToolError
 from verif.replay import load
 
 from .ports import Recorded
-from .program import ProgramError, compile_program
+from .program import compile_program
 
 KINDS = {"v_line": "line", "v_branch": "branch", "v_toggle": "toggle"}
 
@@ -93,7 +94,7 @@ def measure(path, folder, registers, points):
 
     folder: of the block, whose own modules count. registers: names of `program.header`. points: names of the
     functions of verif.coverage.points.<folder> to evaluate.
-    Raises ProgramError where the Verilog does not do what the tests saw.
+    Raises ToolError where the Verilog does not do what the tests saw.
     """
     trace = load(path)
     verilog = trace.verilog()
@@ -102,7 +103,7 @@ def measure(path, folder, registers, points):
         counts, states = Path(temporary) / "counts", Path(temporary) / "states"
         differs = program.run(Path(path).with_suffix(".trace"), "--points", counts, "--states", states)[0]
         if differs >= 0:
-            raise ProgramError(f"{trace.name}: the Verilog differs from {trace.test_at(differs)} in cycle {differs}")
+            raise ToolError(f"{trace.name}: the Verilog differs from {trace.test_at(differs)} in cycle {differs}")
         found = read_points(counts, verilog)
         steps = [tuple(map(int, line.split())) for line in states.read_text().splitlines()]
     own = f"rtl/{folder}/"

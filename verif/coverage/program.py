@@ -1,13 +1,11 @@
 """Verilog and the ports of a trace as a compiled program that replays the trace: verilated, cached by content."""
 
-import hashlib
-import os
 import shutil
-import subprocess
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from flow.simulate.cache import cached, digest
+from flow.simulate.process import run
 from rtl.ports import places, split, total_width, validity
 from rtl.testbench import verilator_folder
 from verif.results import ROOT
@@ -22,28 +20,9 @@ RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
 SECONDS = 900           # a tool that takes longer hangs
 
 
-class ProgramError(RuntimeError):
-    """A tool is missing or failed; the message says which."""
-
-
-class ToolTimeout(ProgramError):
-    """A tool was stopped at its time limit."""
-
-
-def tool(command, seconds=SECONDS, **options):
-    """Output of a command. Raises ProgramError, ToolTimeout."""
-    env = dict(os.environ, VERILATOR_ROOT=str(verilator_folder()))
-    try:
-        result = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=env, timeout=seconds,
-                                **options)
-    except FileNotFoundError:
-        raise ProgramError(f"{command[0]}: not found; install it with: make tools") from None
-    except subprocess.TimeoutExpired:
-        raise ToolTimeout(f"{Path(command[0]).name}: no end after {seconds} s") from None
-    if result.returncode:
-        said = (result.stderr or result.stdout).strip()[-1500:]
-        raise ProgramError(f"{Path(command[0]).name} ended with status {result.returncode}: {said}")
-    return result.stdout
+def tool(command, seconds=SECONDS, cwd=None):
+    """Output of a command that knows where Verilator is. Raises ToolError, ToolTimeout."""
+    return run(command, {"VERILATOR_ROOT": str(verilator_folder())}, cwd, seconds)
 
 
 def _cxx_name(verilog):
@@ -111,13 +90,13 @@ class Program:
     folder: Path
 
     def run(self, trace, *options):
-        """Replay the file ``trace``: dict run number -> first cycle that differs, -1 for none. Raises ProgramError."""
+        """Replay the file ``trace``: dict run number -> first cycle that differs, -1 for none. Raises ToolError."""
         out = tool([self.folder / "replay", trace, *options])
         return {int(number): int(cycle) for number, cycle in (line.split() for line in out.splitlines())}
 
 
 def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=False):
-    """The Program of module ``top`` of ``verilog`` (text), compiled once for the same content. Raises ProgramError."""
+    """The Program of module ``top`` of ``verilog`` (text), compiled once for the same content. Raises ToolError."""
     verilator = verilator_folder() / "bin" / "verilator_bin"
     flags = (*VERILATE, *(COVERAGE if coverage else ("-O3",)))
     lines = header(top, ports, registers, mutant)
@@ -140,30 +119,8 @@ def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=Fa
         shutil.rmtree(model)
         unit.unlink()
 
-    digest = _digest(version, CXX, flags, "words", MAIN.read_text(), lines, top, verilog)
-    return Program(_cached(f"{top}-{digest}", make))
-
-
-def _digest(*parts):
-    return hashlib.sha256("\0".join(map(str, parts)).encode()).hexdigest()[:16]
-
-
-def _cached(name, make):
-    """The folder ``name`` of the cache, whole: there, or made now by ``make(folder)``."""
-    folder = CACHE / name
-    if not folder.exists():
-        CACHE.mkdir(parents=True, exist_ok=True)
-        part = Path(tempfile.mkdtemp(prefix=".part-", dir=CACHE))
-        try:
-            make(part)
-            try:
-                part.rename(folder)
-            except OSError:             # another process was faster
-                if not folder.exists():
-                    raise
-        finally:
-            shutil.rmtree(part, ignore_errors=True)
-    return folder
+    content = digest(version, CXX, flags, "words", MAIN.read_text(), lines, top, verilog)
+    return Program(cached(CACHE / f"{top}-{content}", make))
 
 
 def _runtime(version):
@@ -179,4 +136,4 @@ def _runtime(version):
             tool([*CXX, "-O1", "-DVM_COVERAGE=1", "-I", folder, "-I", include, "-c", include / f"{name}.cpp", "-o",
                   folder / f"{name}.o"])
 
-    return _cached(f"runtime-{_digest(version, CXX, 'words')}", make)
+    return cached(CACHE / f"runtime-{digest(version, CXX, 'words')}", make)

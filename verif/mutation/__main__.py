@@ -14,7 +14,7 @@ from flow.jobs import Job, run
 from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 from rtl.tops import TOPS
-from verif.coverage.program import ProgramError, compile_program
+from verif.coverage.program import compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
 from verif.replay import RecordError, load
@@ -94,7 +94,7 @@ def main(argv=None):
         if not 0 < options.factor <= 100:
             raise ParameterError(f"factor = {options.factor}: must be in 0..100")
         scores = score(options.only or list(TOPS), options.out / "mutation", options.factor, options.seed)
-    except (ParameterError, ProgramError, ToolError, RecordError, OSError) as error:
+    except (ParameterError, ToolError, RecordError, OSError) as error:
         print(f"verif.mutation: {error}", file=sys.stderr)
         return 2
     found = {block: summary(*both) for block, both in scores.items()}

@@ -4,8 +4,9 @@ import re
 import tempfile
 from pathlib import Path
 
+from flow.simulate.process import ToolTimeout
 from rtl.ports import Port, split, validity
-from verif.coverage.program import ToolTimeout, tool
+from verif.coverage.program import tool
 from verif.results import ROOT
 
 from .mutants import BITS, yosys

@@ -1,9 +1,9 @@
 """The tests of a block, run once with their ports recorded."""
 
-import subprocess
 import sys
 from pathlib import Path
 
+from flow.simulate.process import finish
 from models.parameters import SensorParameters
 from rtl.tops import build_top
 
@@ -39,8 +39,7 @@ def record(block, folder, level=None):
                "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))")
     # PyMTL is a pytest plugin: that it is imported ahead of pytest is meant. A seed: the same traces every time.
     options = ["-p", "no:cacheprovider", "-W", "ignore::pytest.PytestAssertRewriteWarning", "--hypothesis-seed=1"]
-    result = subprocess.run([sys.executable, "-c", program, cls, folder, level, *options, tests], cwd=ROOT,
-                            capture_output=True, text=True)
+    result = finish([sys.executable, "-c", program, cls, folder, level, *options, tests], cwd=ROOT)
     if result.returncode:
         raise RecordError(f"{block}: its tests fail:\n{(result.stdout + result.stderr).strip()[-2000:]}")
     files = sorted(folder.glob(f"{cls}.trace")) + sorted(folder.glob(f"{cls}.????????.trace"))

@@ -1,13 +1,12 @@
 """The tests of one folder in a process of their own: what passed, failed and was left out, and how long it took."""
 
-import os
 import re
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
+from flow.simulate.process import ToolTimeout, finish
 from verif.results import ROOT
 
 TESTED = "models", "rtl", "pixels", "flow", "verif", "talbot"
@@ -37,11 +36,10 @@ def run_folder(folder, root=ROOT, options=("--all",)):
         # Compiled models lie in a folder a worker (rtl/testbench.py): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:
-            done = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=SECONDS,
-                                  env=dict(os.environ, PYTEST_XDIST_WORKER=worker))
+            done = finish(command, {"PYTEST_XDIST_WORKER": worker}, root, SECONDS)
             status, said = done.returncode, (done.stdout + done.stderr).strip()[-1500:]
-        except subprocess.TimeoutExpired:
-            status, said = -1, f"no end within {SECONDS} s"
+        except ToolTimeout as error:
+            status, said = -1, str(error)
         cases = list(read_report(report)) if report.exists() else []
     if status not in (0, 1, NO_TESTS) or not cases or status == 1 and all(c["outcome"] != "failed" for c in cases):
         cases.append({"test": folder, "outcome": "failed", "seconds": 0.0,

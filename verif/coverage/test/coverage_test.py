@@ -6,13 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 from rtl import testbench
 from rtl.edge_adc import EdgeAdc
 from rtl.tops import TOPS
 from verif.coverage.measure import Point, measure, sources_of
 from verif.coverage.ports import Recorded
-from verif.coverage.program import ProgramError, compile_program
+from verif.coverage.program import compile_program
 from verif.coverage.spi import transfers
 from verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
 from verif.coverage.verdict import judge, matches, ranges
@@ -117,7 +118,7 @@ def test_verilog_that_does_something_else_is_not_measured(trace, tmp_path):
     lines = list(trace.lines)
     lines[10] = f"{fresh} {inputs} {int(outputs, 16) ^ 1:x}"
     changed = type(trace)(trace.cls, trace.module, trace.arguments, trace.ports, lines, trace.tests)
-    with pytest.raises(ProgramError, match="cycle 10"):
+    with pytest.raises(ToolError, match="cycle 10"):
         measure(changed.save(tmp_path), "edge_adc", [], [])
 
 
