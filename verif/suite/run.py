@@ -10,14 +10,17 @@ from flow.simulate.process import ToolTimeout, finish
 from verif.results import ROOT
 
 TESTED = "models", "rtl", "pixels", "flow", "verif", "talbot"
+# Layouts have an environment of their own, in which `make test` runs these, too
+LAYOUTS = "flow/handoff", "flow/layout", "flow/openroad", "flow/platforms", "flow/steps"
 SECONDS = 1500          # a folder's tests that take longer hang
 NO_TESTS = 5            # pytest's exit status
 
 
 def folders():
-    """Folders that hold tests, relative to the repository: list of text, ascending."""
-    return sorted({str(path.parent.relative_to(ROOT)) for top in TESTED for path in (ROOT / top).rglob("*_test.py")
-                   if not path.name.endswith("_bench_test.py")})
+    """Folders that hold tests, but those of layouts, relative to the repository: list of text, ascending."""
+    found = {str(path.parent.relative_to(ROOT)) for top in TESTED for path in (ROOT / top).rglob("*_test.py")
+             if not path.name.endswith("_bench_test.py")}
+    return sorted(folder for folder in found if not folder.startswith(LAYOUTS))
 
 
 def run_folder(folder, root=ROOT, options=("--all",)):
