@@ -55,3 +55,22 @@ def test_no_scheduler_there(tmp_path, monkeypatch):
     monkeypatch.setenv("SCHEDULER", "nonsense://nowhere")
     with pytest.raises(ParameterError, match="SCHEDULER = 'nonsense://nowhere'"):
         run([Job("a", square, (1, "x"))], tmp_path, "one")
+
+
+def worker_of(number):
+    """Raises ValueError where no Dask worker does it."""
+    from distributed import get_worker
+    return {"number": number, "worker": get_worker().address}
+
+
+def test_on_a_cluster(tmp_path, monkeypatch):
+    """A Dask worker, met over TCP, does the jobs; their results lie where they always do."""
+    distributed = pytest.importorskip("distributed")
+    jobs = [Job(f"n{n}", worker_of, (n,)) for n in range(4)]
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, protocol="tcp",
+                                  dashboard_address=None) as cluster:
+        monkeypatch.setenv("SCHEDULER", cluster.scheduler_address)
+        results = run(jobs, tmp_path / "store", "on a cluster")
+    assert [r["number"] for r in results] == [0, 1, 2, 3] and all(r["worker"].startswith("tcp://") for r in results)
+    monkeypatch.delenv("SCHEDULER")
+    assert run(jobs, tmp_path / "store", "kept", workers=1) == results
