@@ -64,10 +64,10 @@ def worker_of(number):
 
 
 def test_on_a_cluster(tmp_path, monkeypatch):
-    """A Dask worker, met over TCP, does the jobs; their results lie where they always do."""
+    """Dask workers, met over TCP, do the jobs (joblib does them itself where there is one); results lie as always."""
     distributed = pytest.importorskip("distributed")
     jobs = [Job(f"n{n}", worker_of, (n,)) for n in range(4)]
-    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, protocol="tcp",
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, protocol="tcp",
                                   dashboard_address=None) as cluster:
         monkeypatch.setenv("SCHEDULER", cluster.scheduler_address)
         results = run(jobs, tmp_path / "store", "on a cluster")
