@@ -1,33 +1,18 @@
 """AdcBank at cycle level: the RTL's cycles and stalls, data by models.digital.sar.decisions."""
 
-from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, Component, InPort, OutPort, mk_bits, update, update_ff
-from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+from pymtl3 import Component, update, update_ff
 
 from rtl.edge_adc.edge_adc_cl import LaneCycles
-from rtl.messages import FRAME, SAMPLE, ScanMsg, step_msg
+from rtl.messages import FRAME, SAMPLE, ScanMsg
+
+from .ports import add_ports
 
 
 class AdcBankCL(Component):
     """Same ports as AdcBank, and the same values on them in every cycle."""
 
     def construct(s, lanes=8):
-        Lanes = mk_bits(lanes)
-        s.step = RecvIfcRTL(step_msg(lanes))
-        s.mode = InPort(Bits2)
-        s.threshold = InPort(Bits7)
-        s.comparator = InPort(Lanes)
-        s.dac = OutPort(mk_bits(8 * lanes))
-        s.hold = OutPort()
-        s.row = OutPort(Bits10)
-        s.group = OutPort(Bits8)
-        s.k = OutPort(Bits3)
-        s.sub = OutPort(Bits2)
-        s.en = OutPort(Lanes)
-        s.unsigned_ = OutPort()
-        s.idle = OutPort()
-        s.made = OutPort(Bits32)
-        s.left_out = OutPort(Bits32)
-        s.scan = SendIfcRTL(ScanMsg)
+        add_ports(s, lanes)
 
         s.lanes = [LaneCycles() for _ in range(lanes)]
         s.at_pins = None        # (kind, row, en) of what is sampled and converts, or of a mark behind what leaves

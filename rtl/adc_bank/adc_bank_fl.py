@@ -2,34 +2,19 @@
 
 from collections import deque
 
-from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, Component, InPort, OutPort, mk_bits, update_ff
-from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+from pymtl3 import Component, update_ff
 
 from models.digital.sar import decisions
-from rtl.messages import FRAME, SAMPLE, ScanMsg, step_msg
+from rtl.messages import FRAME, SAMPLE, ScanMsg
+
+from .ports import add_ports
 
 
 class AdcBankFL(Component):
     """Same ports and same messages as AdcBank. Messages queue up without bound."""
 
     def construct(s, lanes=8):
-        Lanes = mk_bits(lanes)
-        s.step = RecvIfcRTL(step_msg(lanes))
-        s.mode = InPort(Bits2)
-        s.threshold = InPort(Bits7)
-        s.comparator = InPort(Lanes)
-        s.dac = OutPort(mk_bits(8 * lanes))
-        s.hold = OutPort()
-        s.row = OutPort(Bits10)
-        s.group = OutPort(Bits8)
-        s.k = OutPort(Bits3)
-        s.sub = OutPort(Bits2)
-        s.en = OutPort(Lanes)
-        s.unsigned_ = OutPort()
-        s.idle = OutPort()
-        s.made = OutPort(Bits32)
-        s.left_out = OutPort(Bits32)
-        s.scan = SendIfcRTL(ScanMsg)
+        add_ports(s, lanes)
 
         s.runs = {}             # lane -> its decisions under way
         s.done = {}             # lane -> (code, converted) of the step under way

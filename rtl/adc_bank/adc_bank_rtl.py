@@ -4,12 +4,12 @@ A step is at the pins (and is sampled), then its lanes convert, then its results
 step leave, the next one converts.
 """
 
-from pymtl3 import (Bits1, Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, Component, InPort, OutPort, Wire, concat, mk_bits,
-                    update, update_ff)
-from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
+from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire, concat, mk_bits, update, update_ff
 
 from rtl.edge_adc import EdgeAdc
-from rtl.messages import FRAME, SAMPLE, ScanMsg, step_msg
+from rtl.messages import FRAME, SAMPLE
+
+from .ports import add_ports
 
 
 class LaneResult(Component):
@@ -37,22 +37,7 @@ class AdcBank(Component):
         Lanes = mk_bits(lanes)
 
         # Interface
-        s.step = RecvIfcRTL(step_msg(lanes))
-        s.mode = InPort(Bits2)
-        s.threshold = InPort(Bits7)
-        s.comparator = InPort(Lanes)
-        s.dac = OutPort(mk_bits(8 * lanes))
-        s.hold = OutPort()
-        s.row = OutPort(Bits10)
-        s.group = OutPort(Bits8)
-        s.k = OutPort(Bits3)
-        s.sub = OutPort(Bits2)
-        s.en = OutPort(Lanes)
-        s.unsigned_ = OutPort()
-        s.idle = OutPort()
-        s.made = OutPort(Bits32)
-        s.left_out = OutPort(Bits32)
-        s.scan = SendIfcRTL(ScanMsg)
+        add_ports(s, lanes)
 
         # Components
         for i in range(lanes):          # not a list: PyMTL would join the ports in arrays, which Yosys calls memories

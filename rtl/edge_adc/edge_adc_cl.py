@@ -1,9 +1,10 @@
 """EdgeAdc at cycle level: the RTL's cycles and stalls, data by models.digital.sar.decisions."""
 
-from pymtl3 import Bits7, Bits8, Component, InPort, OutPort, update_ff
-from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+from pymtl3 import Component, update_ff
 
 from models.digital.sar import BITS, decisions
+
+from .ports import add_ports
 
 
 class LaneCycles:
@@ -51,15 +52,7 @@ class EdgeAdcCL(Component):
     """Same ports as EdgeAdc, and the same values on them in every cycle."""
 
     def construct(s):
-        s.go = InPort()
-        s.unsigned_ = InPort()
-        s.threshold = InPort(Bits7)
-        s.comparator = InPort()
-        s.dac = OutPort(Bits8)
-        s.free = OutPort()
-        s.busy = OutPort()
-        s.out = SendIfcRTL(Bits8)
-        s.converted = OutPort()
+        add_ports(s)
 
         s.lane = LaneCycles()
 

@@ -2,25 +2,18 @@
 
 from collections import deque
 
-from pymtl3 import Bits7, Bits8, Component, InPort, OutPort, update_ff
-from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+from pymtl3 import Component, update_ff
 
 from models.digital.sar import decisions
+
+from .ports import add_ports
 
 
 class EdgeAdcFL(Component):
     """Same ports and same results as EdgeAdc. Results queue up without bound; one conversion at a time."""
 
     def construct(s):
-        s.go = InPort()
-        s.unsigned_ = InPort()
-        s.threshold = InPort(Bits7)
-        s.comparator = InPort()
-        s.dac = OutPort(Bits8)
-        s.free = OutPort()
-        s.busy = OutPort()
-        s.out = SendIfcRTL(Bits8)
-        s.converted = OutPort()
+        add_ports(s)
 
         s.run, s.results = None, deque()
 

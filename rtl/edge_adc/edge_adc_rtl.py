@@ -4,8 +4,9 @@ The trial itself says which bit is on trial: its lowest one, for all below it ar
 Conditions are nested where one alone would do, so that a simulator skips what a lane at rest does not need.
 """
 
-from pymtl3 import Bits3, Bits7, Bits8, Component, InPort, OutPort, Wire, update, update_ff, zext
-from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+from pymtl3 import Bits3, Bits8, Component, Wire, update, update_ff, zext
+
+from .ports import add_ports
 
 # ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, when the first has said "above".
 # WAIT, WAIT_ZERO: a result whose predecessor was not taken yet; the code of WAIT is in `trial`.
@@ -17,15 +18,7 @@ class EdgeAdc(Component):
 
     def construct(s):
         # Interface
-        s.go = InPort()
-        s.unsigned_ = InPort()
-        s.threshold = InPort(Bits7)
-        s.comparator = InPort()
-        s.dac = OutPort(Bits8)
-        s.free = OutPort()
-        s.busy = OutPort()
-        s.out = SendIfcRTL(Bits8)
-        s.converted = OutPort()
+        add_ports(s)
 
         # Components
         s.state = Wire(Bits3)

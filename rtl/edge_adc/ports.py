@@ -1,0 +1,17 @@
+"""The ports that every level of EdgeAdc has (README.md)."""
+
+from pymtl3 import Bits7, Bits8, InPort, OutPort
+from pymtl3.stdlib.stream.ifcs import SendIfcRTL
+
+
+def add_ports(s):
+    """The interface of EdgeAdc."""
+    s.go = InPort()
+    s.unsigned_ = InPort()
+    s.threshold = InPort(Bits7)
+    s.comparator = InPort()
+    s.dac = OutPort(Bits8)
+    s.free = OutPort()
+    s.busy = OutPort()
+    s.out = SendIfcRTL(Bits8)
+    s.converted = OutPort()
