@@ -280,6 +280,18 @@ class TestFL:
             bench.write([(FIRST + 2, half)])
             assert bench.read(FIRST + 2)[0] == half
 
+    def test_a_clock_that_stands(self):
+        """An odd number of cycles between two bytes, too: what is held for long must not move."""
+        image = CHIP.image(CHIP.configuration, {"row1": LAST_ROW, "col1": LAST_COL})
+        expected = [image.get(address, 0) for address in range(FIRST, max(CHIP.writable()) + 1)]
+        for pauses in ((0,) * 7 + (1,), (1, 0, 0), (0, 0, 0, 0, 17)):
+            bench = self.bench()
+            bench.spi.pauses = pauses
+            assert list(bench.read(FIRST, len(expected))) == expected
+            for address in sorted(CHIP.writable())[::5]:
+                bench.write([(address, 0xFF)])
+                assert bench.read(address)[0] == CHIP.writable()[address]
+
     def test_any_transfers(self):
         """Any bytes at any address, whole or cut, with and without busy: as the golden bank says."""
         a_transfer = st.tuples(st.binary(min_size=1, max_size=6), st.integers(0, 7), st.booleans())

@@ -1,14 +1,17 @@
 """An SPI host in Python: plays transfers on the pins of a simulated component, mode 0."""
 
+from itertools import cycle
+
 
 class SpiHost:
     """Drives sclk, csn and mosi of ``dut`` and samples miso.
 
-    half: system-clock cycles of half an SPI clock, at least 4. tick: called for every cycle.
+    half: system-clock cycles of half an SPI clock, at least 4. tick: called for every cycle. pauses: cycles that the
+    clock stands before each bit of a transfer, cyclic.
     """
 
     def __init__(self, dut, tick, half=4):
-        self.dut, self.tick, self.half = dut, tick, half
+        self.dut, self.tick, self.half, self.pauses = dut, tick, half, (0,)
         dut.csn @= 1
         dut.sclk @= 0
         dut.mosi @= 0
@@ -27,9 +30,9 @@ class SpiHost:
         bits = [byte >> i & 1 for byte in data for i in range(7, -1, -1)][:cut]
         dut.csn @= 0
         self.wait(self.half)
-        for bit in bits:
+        for bit, pause in zip(bits, cycle(self.pauses)):
             dut.mosi @= bit
-            self.wait(self.half)
+            self.wait(self.half + pause)
             received.append(int(dut.miso))
             dut.sclk @= 1
             self.wait(self.half)
