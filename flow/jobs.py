@@ -7,6 +7,7 @@ import contextlib
 import hashlib
 import json
 import os
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -54,8 +55,10 @@ def run(jobs, store, title, workers=-1):
     todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not file.exists()]
     with tqdm(total=len(jobs), initial=len(jobs) - len(todo), desc=title, disable=None) as bar, _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
-        for _ in joblib.Parallel(return_as="generator_unordered", batch_size=1)(calls):
-            bar.update()
+        with warnings.catch_warnings():         # joblib renews a process that has grown, and says so
+            warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
+            for _ in joblib.Parallel(return_as="generator_unordered", batch_size=1)(calls):
+                bar.update()
     return [json.loads(file.read_text()) for file in files]
 
 
