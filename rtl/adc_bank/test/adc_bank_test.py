@@ -68,7 +68,7 @@ def simulator(cls, verilog, lanes=LANES, rough=True):
 class Run:
     """What a bank did with a list of StepMsg: messages with their cycles, hold and idle cycle by cycle, counters."""
 
-    def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=20_000):
+    def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=None):
         sim.mode @= MODES.index(mode)
         sim.threshold @= threshold
         sim.step.val @= 0
@@ -78,6 +78,7 @@ class Run:
         sim.reset @= 0
         self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
         self.held = []          # row, group, k, sub, en at each hold
+        limit = limit or (len(steps) + 4) * (20 + 2 * sim.dut.en.nbits * len(pattern))      # far beyond what it takes
         steps, cycle, ends = list(steps), 0, sum(int(m.kind) == END for m in steps)
         while ends > len(self.counts) or steps or self.idle[-1:] != [True]:
             offer, ready = pattern[cycle % len(pattern)]

@@ -56,7 +56,7 @@ def simulator(cls, verilog, chip):
 class Run:
     """What came out, message by message, and in which cycles messages went in and out."""
 
-    def __init__(self, sim, sent, on, noise_floor=0, pattern=ALWAYS, limit=20_000):
+    def __init__(self, sim, sent, on, noise_floor=0, pattern=ALWAYS, limit=None):
         sim.on @= on
         sim.noise_floor @= noise_floor
         sim.recv.val @= 0
@@ -66,6 +66,7 @@ class Run:
         sim.reset @= 0
         self.messages, self.in_at, self.out_at = [], [], []
         sent, cycle = list(sent), 0
+        limit = limit or (len(sent) + 4) * (20 + 2 * len(pattern))      # far beyond what it takes
         while not self.messages or self.messages[-1][0] != END:
             offer, ready = pattern[cycle % len(pattern)]
             sim.recv.val @= bool(sent) and offer
