@@ -1,12 +1,18 @@
 """Tests that are slow run with --all. The Icarus level of the blocks' tests runs on netlists on demand; where Icarus
 
-is missing it is skipped with the reason.
+is missing it is skipped with the reason. A property fails with the first input that breaks it, at once;
+--hypothesis-profile=smallest looks for the smallest one, which takes minutes where a simulator has to run.
 """
 
 import importlib.util
 import re
 
 import pytest
+from hypothesis import Phase, settings
+
+settings.register_profile("first", phases=[Phase.explicit, Phase.reuse, Phase.generate])
+settings.register_profile("smallest", phases=list(Phase))
+settings.load_profile("first")
 
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
 LAYOUTS = "cells/extract", "cells/flexcell", "cells/lef", "cells/test"
