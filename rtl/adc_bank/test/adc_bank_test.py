@@ -16,6 +16,7 @@ from models.parameters import MODES, ConverterParameters, FrameParameters, Windo
 from pixels.afe_fl import AfeFL
 from rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
+from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
 ROWS, COLS, LANES = 3, 104, 8       # three groups, the last one partial
@@ -257,6 +258,10 @@ class TestAdcBankCL(TestAdcBankFL):
 
 class TestAdcBankRTL(TestAdcBankCL):
     cls = AdcBank
+
+    def test_what_a_reset_leaves(self):
+        golden = shown_behind_reset(build(AdcBankFL(LANES)), before=0)
+        assert shown_behind_reset(build(self.cls(LANES), self.verilog, f"AdcBank{LANES}")) == golden
 
 
 class TestAdcBankVerilog(TestAdcBankRTL):

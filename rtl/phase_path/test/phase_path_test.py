@@ -12,6 +12,7 @@ from models.digital.phase import phase_samples
 from models.parameters import ChipParameters
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.phase_path import PhasePath, PhasePathCL, PhasePathFL
+from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
 LANES = 8
@@ -162,6 +163,10 @@ class TestPhasePathCL(TestPhasePathFL):
 
 class TestPhasePathRTL(TestPhasePathCL):
     cls = PhasePath
+
+    def test_what_a_reset_leaves(self):
+        golden = shown_behind_reset(simulator(PhasePathCL, False, self.chip), before=0)
+        assert shown_behind_reset(simulator(self.cls, self.verilog, self.chip)) == golden
 
 
 class TestPhasePathVerilog(TestPhasePathRTL):

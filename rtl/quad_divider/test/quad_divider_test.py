@@ -12,6 +12,7 @@ from models.parameters import DIVIDERS, ParameterError
 from rtl.messages import DivReq
 from rtl.quad_divider import QuadDividerCL, QuadDividerFL, quad_divider, timing
 from rtl.quad_divider.variants import response
+from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
 SETTINGS = settings(max_examples=20, deadline=None,
@@ -180,6 +181,11 @@ class TestCL(TestFL):
 
 class TestRTL(TestCL):
     component = staticmethod(quad_divider)
+
+    def test_what_a_reset_leaves(self):
+        for config in self.configs:
+            golden = shown_behind_reset(simulator(QuadDividerFL, False, config), before=0)
+            assert shown_behind_reset(simulator(type(self).component, self.verilog, config)) == golden, config
 
 
 class TestVerilog(TestRTL):

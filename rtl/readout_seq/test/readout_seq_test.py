@@ -10,6 +10,7 @@ from models.digital.amp_ctrl import row_cycles
 from models.parameters import AmpTiming, ParameterError
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
+from rtl.reset import shown_behind_reset
 
 from .bench import SMALL_TILE, Bench, Record, Size, amp_ctrl, amplifiers, bank, messages, simulator
 
@@ -252,6 +253,11 @@ class TestReadoutSeqCL(TestReadoutSeqFL):
 
 class TestReadoutSeqRTL(TestReadoutSeqCL):
     cls = ReadoutSeq
+
+    def test_what_a_reset_leaves(self):
+        for size in self.sizes:
+            golden = shown_behind_reset(simulator(ReadoutSeqFL, size, False), before=0)
+            assert shown_behind_reset(simulator(self.cls, size, self.verilog)) == golden, size
 
 
 class TestReadoutSeqVerilog(TestReadoutSeqRTL):

@@ -10,6 +10,7 @@ from models.parameters import MODES, AmpTiming, FrameParameters, Window
 from models.parameters.registers import (command, decode_status, frame_writes, read_transfer, register_map,
                                          status_transfers, write_transfers)
 from rtl.reg_file import RegFile, RegFileFL, chip_config
+from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
 from .spi_host import SpiHost
@@ -332,6 +333,10 @@ class TestFL:
 
 class TestRTL(TestFL):
     component = RegFile
+
+    def test_what_a_reset_leaves(self):
+        golden = shown_behind_reset(build(RegFileFL(LAST_ROW, LAST_COL)), before=0)
+        assert shown_behind_reset(self.bench().sim) == golden
 
 
 class TestVerilog(TestRTL):

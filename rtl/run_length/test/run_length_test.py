@@ -12,6 +12,7 @@ from models.digital.stream.test.frames import samples_of
 from models.parameters import MODES, FrameParameters, Window
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
 from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
+from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
 ROWS, COLS, LANES = 12, 36, 4
@@ -248,6 +249,10 @@ class TestRunLengthCL(TestRunLengthFL):
 
 class TestRunLength(TestRunLengthCL):
     cls = RunLength
+
+    def test_what_a_reset_leaves(self):
+        golden = shown_behind_reset(simulator(RunLengthFL, False), before=0)
+        assert shown_behind_reset(simulator(self.cls, self.verilog)) == golden
 
     def test_all_bits_of_the_header(self):
         """The ports of a header, whatever they say; the other levels look at what is a frame only."""
