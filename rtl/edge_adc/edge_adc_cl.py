@@ -60,6 +60,7 @@ class EdgeAdcCL(Component):
         def behave():
             if s.reset:
                 s.lane = LaneCycles()
+                s.converted <<= 0
             else:
                 s.lane.tick(bool(s.go), bool(s.unsigned_), int(s.threshold), bool(s.comparator),
                             bool(s.out.val & s.out.rdy))

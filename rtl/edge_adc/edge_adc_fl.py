@@ -19,12 +19,14 @@ class EdgeAdcFL(Component):
 
         @update_ff
         def behave():
+            if s.out.val & s.out.rdy:
+                s.results.popleft()
             if s.reset:
                 s.run = None
                 s.results.clear()
-            if s.out.val & s.out.rdy:
-                s.results.popleft()
-            if s.run is not None:
+                s.dac <<= 0
+                s.converted <<= 0
+            elif s.run is not None:
                 try:
                     s.dac <<= s.run.send(bool(s.comparator))
                 except StopIteration as end:
