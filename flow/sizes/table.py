@@ -22,7 +22,7 @@ def readme_table(sizes):
         lines.append(f"| [{top}](rtl/{folder}/README.md) | {does} | {latency} | {throughput} | {levels} "
                      f"| {s.cells:,} | {s.flip_flops:,} | {s.gates:,.0f} |")
     lines += ["", "Yosys, `cells/gates.lib` (an abstract library; a gate is a NAND2 equivalent); a block includes all below"
-              " it. Written by `make sizes`."]
+              " it.", "Verilog runs in Verilator and in Icarus (4-state). Written by `make sizes`."]
     return "\n".join(lines)
 
 

@@ -125,7 +125,7 @@ class AspChip(Component):
         @update
         def up_status():
             # until `done` is set, so that no start comes between the frame's end and its `done`
-            s.busy @= s.seq.busy | s.amp.busy | s.encoder.frame_sync | s.was_sync
+            s.busy @= s.seq.busy | s.encoder.frame_sync | s.was_sync
             s.regs.status.busy @= s.busy
             s.regs.status.done @= s.was_sync & ~s.encoder.frame_sync
             s.regs.status.cfg_err @= s.seq.cfg_err & ~s.cfg_told

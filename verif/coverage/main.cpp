@@ -6,6 +6,7 @@
 // every value FIRST..LAST of the input `mutant`, a fresh model each, to its first difference.
 // --points: Verilator's coverage; FILE.first has it behind the first cycle, in which constants take their values.
 // --states: 'register reset from to times' a line, of registers in consecutive cycles.
+// `program --drive MUTANT`: takes lines from stdin and answers with the outputs, as a driven bench of rtl/icarus.py.
 
 #include <cstdint>
 #include <cstdio>
@@ -47,7 +48,16 @@ static bool same_wide(const Wide& of, const Words& want, int low, int width) {
   return true;
 }
 
-#include "ports.h"  // drive, fits, mutate, STATES, state
+template <class Wide>
+static void put_wide(std::string& to, const Wide& from, int low, int width) {
+  for (int i = 0; i < width; ++i) to[to.size() - 1 - low - i] = '0' + (from[i / 32] >> i % 32 & 1);
+}
+
+static void put(std::string& to, std::uint64_t from, int low, int width) {
+  for (int i = 0; i < width; ++i) to[to.size() - 1 - low - i] = '0' + (from >> i & 1);
+}
+
+#include "ports.h"  // drive, fits, show, mutate, STATES, state
 
 struct Cycle {
   bool fresh;
@@ -124,7 +134,37 @@ static long run(const std::vector<Cycle>& cycles, std::uint64_t mutant, bool all
   return first;
 }
 
+static int converse(std::uint64_t mutant) {
+  VerilatedContext context;
+  context.randReset(2);
+  context.randSeed(1);
+  const auto top = std::make_unique<VDut>(&context);
+  mutate(*top, mutant);
+  top->clk = 0;
+  char* line = nullptr;
+  std::size_t room = 0;
+  std::string answer(OUT_BITS, '0');      // ahead of the first edge: what a register holds is not to be looked at
+  bool known = false;
+  while (getline(&line, &room, stdin) > 0) {
+    if (line[0] == '1') {
+      known = true;
+      top->clk = 1;
+      top->eval();
+      top->clk = 0;
+    }
+    drive(*top, number(line + 2, std::strcspn(line + 2, "\n"), IN_BITS));
+    top->eval();
+    if (known) show(*top, answer);
+    std::puts(answer.c_str());
+    std::fflush(stdout);
+  }
+  std::free(line);
+  top->final();
+  return 0;
+}
+
 int main(int argc, char** argv) {
+  if (argc == 3 && !std::strcmp(argv[1], "--drive")) return converse(std::atol(argv[2]));
   const char *points = nullptr, *states = nullptr;
   long first = 0, last = 0;
   bool all = true;

@@ -65,6 +65,10 @@ def _same(port, low):
     return f"top.{name} == bits(want, {low}, {port.width})"
 
 
+def _put(port, low):
+    return f"put{'_wide' if port.width > 64 else ''}(to, top.{_cxx_name(port.name)}, {low}, {port.width});"
+
+
 def _joined(top, machine):
     """The registers of one state machine as one number: a C++ expression."""
     value = "std::uint64_t{0}"
@@ -93,6 +97,8 @@ def header(top, ports, registers=(), mutant=False):
         "static void drive(VDut& top, const Words& from) {",
         *(f"  {_assign(port, low)}" for port, low in places(inputs).items()), "}",
         "static bool fits(const VDut& top, const Words& want) {", *checks, "  return true;", "}",
+        "static void show(const VDut& top, std::string& to) {",
+        *(f"  {_put(port, low)}" for port, low in where.items()), "}",
         f"static void mutate(VDut& top, std::uint64_t number) {{ {'top.mutant = number;' if mutant else ''} }}",
         "static std::uint64_t state(const VDut& top, int i) {", "  switch (i) {", *states,
         "    default: return 0;", "  }", "}", ""])

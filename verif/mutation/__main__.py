@@ -1,8 +1,8 @@
 """`python -m verif.mutation`: mutants of the RTL, and what the tests make of them: build/verify/mutation.json.
 
-A seeded sample by Yosys, spread over the modules of each block, is given the cycles that the block's tests were
-recorded with. A mutant that they do not notice is compared with the original by induction. What is left has survived:
-a bug of the tests. Exit status 1 if there is one.
+A seeded sample by Yosys, spread over the modules of each block, takes the block's place in its tests. A mutant with
+which they all pass is compared with the original by induction. What is left has survived: a bug of the tests. Exit
+status 1 if there is one.
 """
 
 import argparse
@@ -21,13 +21,14 @@ from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 
 from .mutants import generate, with_mutants
-from .score import EQUIVALENT, KILLED, SURVIVED, judge, try_tests
+from .score import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
 
 SEED = 1
 NUMBERS = {"AmpCtrl": 70, "ReadoutSeq": 100, "EdgeAdc": 50, "AdcBank": 50, "QuadDividerRadix2": 40,
            "QuadDividerRadix4": 40, "QuadDividerPipelined": 40, "Cordic": 50, "PhasePath": 60, "RunLength": 120,
            "RegFile": 70, "AspChip": 50}
 FOLDERS = sorted({folder_of(block) for block in TOPS})
+TESTS = "models", "rtl", "pixels", "verif/coverage", "verif/replay", "verif/mutation"
 JUDGES = "verif/mutation", "verif/divider", "verif/formal", *(f"rtl/{folder}/formal" for folder in FOLDERS)
 
 
@@ -47,16 +48,19 @@ def plant(block, path, store, number, seed):
 def score(blocks, store, factor=1.0, seed=SEED):
     """By block: (list of Mutant, list of what `try_tests` or `judge` says of each)."""
     traces = recorded(blocks, store.parent / "traces")
-    tests, judges, made = [], [], {}
-    replayed, judged = digest_of("verif/coverage"), digest_of(*JUDGES)
+    tests, judges, whole, made = [], [], [], {}
+    tried, judged = digest_of(*TESTS), digest_of(*JUDGES)
     for block in blocks:
         path = traces[block][0]
         folder, made[block] = plant(block, path, store, max(4, round(factor * NUMBERS[block])), seed)
+        text = folder / "mutants.v"
+        decides = path.with_suffix(".trace"), text, tried
+        whole.append(Job(block, try_original, (str(path), str(folder)), decides))
         for mutant in made[block]:
-            name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant.number)
-            text = folder / "mutants.v"
-            tests.append(Job(name, try_tests, arguments, (path.with_suffix(".trace"), text, replayed)))
+            name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant)
+            tests.append(Job(name, try_tests, arguments, decides))
             judges.append(Job(name, judge, arguments, (text, judged)))      # whatever the tests are
+    run(whole, store / "tests", "tests without a mutant")
     results = run(tests, store / "tests", "mutants against the tests")
     left = [i for i, result in enumerate(results) if result["result"] == SURVIVED]
     for i, result in zip(left, run([judges[i] for i in left], store / "judged", "what is left"), strict=True):

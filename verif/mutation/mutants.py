@@ -4,7 +4,7 @@
 import math
 import re
 import tempfile
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 from verif.coverage.measure import sources_of
@@ -89,7 +89,3 @@ def with_mutants(verilog, top, mutants):
     commands = [f"mutate -ctrl mutant {BITS} {mutant.number} {mutant.options}" for mutant in mutants]
     script = "; ".join([PREPARE.format(top=top), *commands, "write_verilog -noattr mutants.v"])
     return yosys(script, {"dut.v": verilog})["mutants.v"].decode()
-
-
-def as_dict(mutant):
-    return asdict(mutant)

@@ -1,7 +1,8 @@
 """What a block's tests did at its ports, recorded once and replayed into any Verilog of it."""
 
-from .record import RecordError, record
+from .record import RecordError, record, tests_of, whole_level
 from .replay import Mismatch, replay, replay_files
 from .trace import Trace, load
 
-__all__ = ["Mismatch", "RecordError", "Trace", "load", "record", "replay", "replay_files"]
+__all__ = ["Mismatch", "RecordError", "Trace", "load", "record", "replay", "replay_files", "tests_of",
+           "whole_level"]

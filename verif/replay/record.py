@@ -21,15 +21,20 @@ def tests_of(block):
     return cls.__name__, Path(sys.modules[cls.__module__].__file__).parent / "test"
 
 
+def whole_level(block):
+    """The level that runs all tests of a block: 'RTL' or 'Verilog'."""
+    return "Verilog" if block == WHOLE else "RTL"
+
+
 def record(block, folder, level=None):
     """Run the block's tests and save a trace a parameter set in ``folder``: their .json paths, the longest first.
 
-    level: 'RTL' or 'Verilog', by default whichever runs all of them. Raises ParameterError, RecordError.
+    level: 'RTL' or 'Verilog', by default `whole_level`. Raises ParameterError, RecordError.
     """
     cls, tests = tests_of(block)
     folder = Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
-    level = level or ("Verilog" if block == WHOLE else "RTL")
+    level = level or whole_level(block)
     program = ("import sys, pytest; from verif.replay.recorder import Plugin; "
                "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))")
     # PyMTL is a pytest plugin: that it is imported ahead of pytest is meant. A seed: the same traces every time.

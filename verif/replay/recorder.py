@@ -51,14 +51,14 @@ class Recorder:
         return sorted(out.values(), key=lambda trace: -len(trace.lines))
 
 
-class Plugin:
-    """Runs the tests of one level only and saves their traces.
+class OneLevel:
+    """A pytest plugin that runs the tests of one level only.
 
-    folder: of the files. level: 'RTL', or 'Verilog' for the translated Verilog in Verilator.
+    verilog: of the translated Verilog in Verilator, else of the RTL in PyMTL.
     """
 
-    def __init__(self, cls, folder, level="RTL"):
-        self.recorder, self.folder = Recorder(cls, level == "Verilog"), Path(folder)
+    def __init__(self, verilog=False):
+        self.verilog = verilog
 
     def pytest_collection_modifyitems(self, config, items):
         kept = [item for item in items if self._at_level(item)]
@@ -66,13 +66,21 @@ class Plugin:
         items[:] = kept
 
     def _at_level(self, item):
-        """Is a test of the recorded level, or without a level."""
+        """Is a test of the level, or without one."""
         if item.cls is None:
             return True
         parts = [getattr(item.cls, name) for name in LEVELS if hasattr(item.cls, name)]
         if any(getattr(part, "__module__", "").endswith(("_fl", "_cl")) for part in parts):
             return False
-        return getattr(item.cls, "verilog", False) is self.recorder.verilog
+        return getattr(item.cls, "verilog", False) is self.verilog
+
+
+class Plugin(OneLevel):
+    """Saves the traces of what runs. folder: of the files. level: 'RTL' or 'Verilog'."""
+
+    def __init__(self, cls, folder, level="RTL"):
+        super().__init__(level == "Verilog")
+        self.recorder, self.folder = Recorder(cls, self.verilog), Path(folder)
 
     def pytest_sessionstart(self):
         testbench.observers.append(self.recorder.observe)

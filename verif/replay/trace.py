@@ -48,6 +48,11 @@ class Trace:
         """Name of the test that a cycle belongs to."""
         return next((name for first, name in reversed(self.tests) if first <= cycle), "")
 
+    def cycles_of(self, test):
+        """Cycles that a test took, all its simulators together."""
+        ends = [first for first, _ in self.tests[1:]] + [self.cycles or len(self.lines)]
+        return sum(end - first for (first, name), end in zip(self.tests, ends, strict=True) if name == test)
+
     def values(self, cycle):
         """(inputs, outputs) of a cycle: dicts of a port's name in the Verilog -> int."""
         _, *packed = self.lines[cycle].split()

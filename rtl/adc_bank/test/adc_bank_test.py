@@ -193,6 +193,24 @@ class TestAdcBankFL:
         assert got.messages == [(FRAME, 0), *((ROW, value) for value in values), (END, 0)]
         assert got.held == [(value, value & 0xFF, value & 7, value & 3, 0) for value in values]
 
+    @pytest.mark.parametrize("row", (0, 1))
+    def test_one_lane_alone(self, row):
+        """The result of the only lane leaves when it is there, and not before; until then `idle` is low."""
+        Step = step_msg(LANES)
+        steps = [Step(SAMPLE, row, 0, 2, 0, 1 << lane) for lane in range(LANES)]
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
+        got = self.run(steps, "edge", 10)
+        assert (got.messages, got.counts) == expected(steps, LANES, "edge", 10)
+        assert not any(any(got.idle[at:at + 3]) for at in np.flatnonzero(got.hold))
+
+    def test_pins_after_reset(self):
+        self.test_all_bits_of_the_address()
+        sim = simulator(self.cls, self.verilog)
+        sim.sim_reset()
+        assert not any(int(getattr(sim.dut, name)) for name in ("row", "group", "k", "sub", "en", "hold", "made",
+                                                                "left_out"))
+        assert sim.idle and not sim.scan.val
+
     def test_reset_at_any_moment(self):
         """Nothing is left of the steps, conversions and results under way."""
         Step = step_msg(LANES)

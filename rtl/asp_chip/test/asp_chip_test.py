@@ -9,7 +9,7 @@ from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
 from models.parameters import (MODES, AmpTiming, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
                                SensorParameters, Window)
-from models.parameters.registers import frame_writes, read_transfer, register_map
+from models.parameters.registers import command, frame_writes, read_transfer, register_map
 from rtl.asp_chip import AspChip, AspChipFL
 from rtl.testbench import build
 
@@ -132,6 +132,36 @@ class FrameTests(ChipTests):
             frame = FRAMES[name]
             bench.stream.clear()
             self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
+
+    def test_one_cycle_of_reset_within_a_frame(self):
+        """No `done` of the frame that it ended, and the next one is whole."""
+        bench, frame = self.bench(), FRAMES["raw, a window"]
+        bench.write(frame_writes(frame))
+        bench.spi.transfer(command("start"))
+        while not bench.sim.frame_sync:
+            bench.tick()
+        bench.sim.reset @= 1
+        bench.sim.sim_tick()
+        bench.sim.reset @= 0
+        status = bench.status()
+        assert not status["busy"] and not status["done"]
+        bench.registers = CHIP.image(CHIP.configuration)
+        bench.stream.clear()
+        bench.sync.clear()
+        self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
+
+    def test_status_within_a_frame(self):
+        """Busy and not done while the frame's bytes leave."""
+        bench, frame = self.bench(stall=0.9), FRAMES["every sample"]
+        bench.write(frame_writes(frame))
+        bench.spi.transfer(command("start"))
+        while not bench.sim.frame_sync:
+            bench.tick()
+        flags = bench.spi.transfer(read_transfer(CHIP["busy"].byte, 1))[1]
+        assert bench.sim.frame_sync and flags >> CHIP["busy"].shift & 1 and not flags >> CHIP["done"].shift & 1
+        while bench.sim.busy:
+            bench.tick()
+        assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream and bench.status()["done"]
 
     def test_impossible_frames_do_not_start(self):
         """Every time anew, and a good one starts after them."""

@@ -29,7 +29,11 @@ class TestRTL:
         rng = np.random.default_rng(self.lanes)
         sim.on @= on
         held = np.zeros(self.lanes, int)
-        for _ in range(300):
+        for cycle in range(300):
+            if cycle % 100 == 50:
+                sim.hold @= 0
+                sim.sim_reset()
+                held[:] = 0
             row, group, k, sub, hold = (int(rng.integers(n)) for n in (256, 256 // self.lanes, 6, 4, 2))
             dac, analog = rng.integers(0, 256, self.lanes), rng.integers(0, 2, self.lanes)
             sim.row @= row

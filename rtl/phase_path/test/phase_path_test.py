@@ -100,6 +100,12 @@ class TestPhasePathFL:
         got = self.run(messages(frame), True, noise_floor, pattern)
         assert got.messages == expected(frame, self.chip, noise_floor)
 
+    def test_every_sample_of_full_steps(self):
+        """All lanes of a step hold their taps, whatever they are."""
+        rng = np.random.default_rng(2)
+        frame = [(1, rng.integers(0, 256, (20, 4, LANES)).tolist())]
+        assert self.run(messages(frame), True).messages == expected(frame, self.chip, 0)
+
     @SETTINGS
     @given(rows, patterns)
     def test_passes_samples_without_the_last_flag_when_off(self, frame, pattern):

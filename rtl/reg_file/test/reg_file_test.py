@@ -77,6 +77,44 @@ class TestFL:
         assert bench.value("trims") == 0
         assert bench.read(0, 4) == bytes((CHIP["id"].reset, CHIP["version"].reset, 0, 0))
 
+    def test_every_address_after_reset(self):
+        """What exists has its reset value, the rest reads 0, each asked for alone and all in one transfer."""
+        bench, image = self.bench(), CHIP.image(CHIP.configuration, {"row1": LAST_ROW, "col1": LAST_COL})
+        expected = [image.get(address, 0) for address in range(128)]
+        expected[CHIP["id"].byte], expected[CHIP["version"].byte] = CHIP["id"].reset, CHIP["version"].reset
+        assert list(bench.read(0, 128)) == expected
+        assert [bench.read(address)[0] for address in range(128)] == expected
+
+    def test_a_byte_alone(self):
+        """Each byte written alone, over all ones and over zeros: nothing else moves, ever, in any cycle."""
+        bench, writable = self.bench(), CHIP.writable()
+        cfg = [int(bench.sim.cfg.to_bits())]
+
+        def tick():
+            Bench.tick(bench)
+            now = int(bench.sim.cfg.to_bits())
+            if now != cfg[-1]:
+                cfg.append(now)
+
+        bench.spi.tick = tick
+        for value, bits in ((0xFF, sum(mask.bit_count() for mask in writable.values())), (0, 0)):
+            for address in writable:
+                bench.write([(address, value)])
+            assert cfg[-1].bit_count() == bits
+        steps = [before ^ after for before, after in zip(cfg, cfg[1:])]
+        assert len(steps) <= 2 * len(writable) and all(step.bit_count() <= 8 for step in steps)
+        for address, mask in writable.items():      # each its own place
+            bench.write([(address, 0xFF)])
+            assert cfg[-1].bit_count() == mask.bit_count()
+            bench.write([(address, 0)])
+            assert cfg[-1] == 0
+
+    def test_every_trim_has_its_place(self):
+        bench = self.bench()
+        for number, trim in enumerate(CHIP.trims):
+            bench.write([(trim.byte, number + 1)])
+        assert bench.value("trims") == sum(number + 1 << 16 * number for number in range(len(CHIP.trims)))
+
     def test_a_frame_is_written_and_read_back(self):
         bench = self.bench()
         frame = FrameParameters(Window(1, 200, 3, 250), "tof", 0x8001FE, 127, 3, True, 255, False, True, 0xBEEF,

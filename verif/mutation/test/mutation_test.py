@@ -11,7 +11,9 @@ from verif.coverage.test.coverage_test import recorded, recorded_cycles
 from verif.mutation.__main__ import main, summary
 from verif.mutation.equivalence import DIFFERENT, EQUIVALENT, compare
 from verif.mutation.mutants import Mutant, generate, shares, with_mutants
-from verif.mutation.score import KILLED, SURVIVED, judge, one_mutant, try_tests
+from verif.mutation.score import SURVIVED, judge, mutated, one_mutant, own_tests
+from verif.mutation.trial import attempt
+from verif.results import ROOT
 
 pytestmark = pytest.mark.skipif(not (shutil.which("yosys") and shutil.which("yosys-abc")),
                                 reason="needs Yosys: make tools")
@@ -53,7 +55,7 @@ def test_equivalence(small):
     """Against simulation of all short inputs: a mutant that differs there is never called equivalent."""
     ports, mutants, text = small
     program = compile_program(text, "Small", ports, mutant=True)
-    said = {m.number: compare(text, "Small", ports, m.number) for m in [Mutant(0, "", "", 0, "", ""), *mutants]}
+    said = {m.number: compare(text, "Small", ports, m.number) for m in [ORIGINAL, *mutants]}
     assert said[0] == (EQUIVALENT, 0)
     differs = simulated(program, len(mutants))
     for mutant in mutants:
@@ -77,6 +79,13 @@ def simulated(program, number, pattern=(0, 1, 1, 1, 0, 1, 1, 0, 1, 1)):
     return found
 
 
+ORIGINAL = Mutant(0, "", "Balance", 0, "", "")
+
+
+def one_cycle():
+    return recorded("Balance", Balance((1, 0, 3, 2), 2, 2, 2, 4), [{"row": 1, "k": 1, "trims": 0x2110}])
+
+
 def planted(trace, folder, of, number):
     """(path of the trace, folder of the mutants, list of Mutant)."""
     path, verilog = trace.save(folder), trace.verilog()
@@ -85,16 +94,40 @@ def planted(trace, folder, of, number):
     return str(path), str(folder), mutants
 
 
-def test_what_tests_do_not_notice_survives(tmp_path):
-    """A block without proofs, and one recorded cycle."""
-    trace = recorded("Balance", Balance((1, 0, 3, 2), 2, 2, 2, 4), [{"row": 1, "k": 1, "trims": 0x2110}])
-    path, folder, mutants = planted(trace, tmp_path, "asp_chip", 8)
-    results = [try_tests(path, folder, m.number) for m in mutants]
-    assert {KILLED, SURVIVED} <= {r["result"] for r in results}
-    results = [judge(path, folder, m.number) if r["result"] == SURVIVED else r for m, r in zip(mutants, results)]
-    assert {KILLED, SURVIVED} <= {r["result"] for r in results}
+BLIND = """
+from rtl.asp_chip.balance_rtl import Balance
+from rtl.testbench import build
+
+def test_looks_at_nothing():
+    sim = build(Balance((1, 0, 3, 2), 2, 2, 2, 4))
+    sim.row @= 1
+    sim.trims @= 0x2110
+    sim.sim_tick()
+"""
+
+
+def test_what_no_test_checks_survives(tmp_path):
+    """A mutant that moves a pin in a test that does not look at it is not killed; the module's own tests kill."""
+    path, folder, mutants = planted(one_cycle(), tmp_path, "asp_chip", 8)
+    blind = tmp_path / "blind_test.py"
+    blind.write_text(BLIND)
+    head, verilog = mutated(path, folder)
+    for mutant in mutants:
+        trial = attempt(head, verilog, mutant, [blind], 1000)
+        assert trial.took_place and not trial.failed
+    seeing = tmp_path / "seeing_test.py"
+    seeing.write_text(BLIND.replace("nothing", "the_trim") + "    assert sim.balance == 2\n")
+    assert not attempt(head, verilog, None, [seeing], 1000).failed
+    failed = [m for m in mutants if attempt(head, verilog, m, [seeing], 1000).failed]
+    assert 0 < len(failed) and all(compare(verilog, "Balance", head.ports, m.number)[0] == DIFFERENT for m in failed)
+
+
+def test_judged(tmp_path):
+    path, folder, mutants = planted(one_cycle(), tmp_path, "asp_chip", 8)
+    results = [judge(path, folder, mutant) for mutant in mutants]
+    assert {SURVIVED} <= {r["result"] for r in results} <= {SURVIVED, EQUIVALENT}
     assert all(r["difference"] > 0 for r in results if r["result"] == SURVIVED)
-    assert judge(path, folder, 0)["result"] == EQUIVALENT
+    assert judge(path, folder, ORIGINAL)["result"] == EQUIVALENT
     entry = summary(mutants, results)
     count = entry["mutants"]
     assert count["killed"] + count["equivalent"] + count["survived"] == count["made"] == len(mutants)
@@ -102,10 +135,15 @@ def test_what_tests_do_not_notice_survives(tmp_path):
     assert all("rtl/asp_chip/balance_rtl.py" in text for text in entry["open_points"])
 
 
+def test_a_module_has_tests_of_its_own(tmp_path):
+    balance = Mutant(1, "", "Balance", 0, "rtl/asp_chip/balance_rtl.py:31", "")
+    assert own_tests(balance) == ROOT / "rtl" / "asp_chip" / "test" / "balance_test.py"
+    assert own_tests(Mutant(1, "", "AmpCtrl", 0, "rtl/amp_ctrl/amp_ctrl_rtl.py", "")) is None
+
+
 def test_what_a_proof_notices_is_killed(tmp_path):
     path, folder, mutants = planted(recorded_cycles(), tmp_path, "edge_adc", 4)
-    left = [m for m in mutants if try_tests(path, folder, m.number)["result"] == SURVIVED]
-    assert any(judge(path, folder, m.number).get("by", "").startswith("proof ") for m in left[:2])
+    assert any(judge(path, folder, m).get("by", "").startswith("proof ") for m in mutants[:2])
 
 
 def test_one_mutant_alone(small, tmp_path):

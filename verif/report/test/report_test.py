@@ -72,7 +72,7 @@ def change(path, value):
     (("EdgeAdc", "tests", "failed"), 1, "EdgeAdc.tests.failed = 1: limit at most 0"),
     (("Flow", "tests", "failed"), 2, "Flow.tests.failed = 2: limit at most 0"),
     (("RunLength", "coverage", "toggle"), 99.96, "RunLength.coverage.toggle = 99.96: limit at least 100"),
-    (("RegFile", "coverage", "fsm"), None, "RegFile.coverage.fsm = not measured: limit at least 100"),
+    (("RegFile", "coverage", "line"), None, "RegFile.coverage.line = not measured: limit at least 100"),
     (("AmpCtrl", "proofs"), [PROOF | {"result": "unknown"}], "AmpCtrl.proofs.unproven = 1: limit at most 0"),
     (("AmpCtrl", "proofs"), [PROOF | {"twin_fails": False}], "AmpCtrl.proofs.twins_not_caught = 1: limit at most 0"),
     (("Cordic", "mutants", "survived"), 1, "Cordic.mutants.survived = 1: limit at most 0"),

@@ -1,0 +1,48 @@
+"""`python -m flow.handoff --design D`: build/handoff/<design>.tar.gz from a finished layout, build/layout/<design>/."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from flow.files import check_folder, staged
+from flow.layout.design import DESIGNS, design
+from models.parameters import ParameterError
+
+from .archive import archive, sha256
+from .contents import Broken, contents, manifest, waived
+
+ROOT = Path(__file__).parents[2]
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="python -m flow.handoff", description=__doc__.splitlines()[0])
+    parser.add_argument("--design", default="quad_divider", help=f"one of {', '.join(DESIGNS)} (%(default)s)")
+    parser.add_argument("--layouts", type=Path, default=ROOT / "build" / "layout",
+                        help="folder of the layouts (%(default)s)")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "handoff", help="folder (%(default)s)")
+    return parser
+
+
+def main(argv=None):
+    options = arguments().parse_args(argv)
+    try:
+        chosen = design(options.design)
+        check_folder("out", options.out)
+        files, substitutes = contents(chosen, options.layouts / chosen.name, waived(chosen))
+        files["manifest.json"] = manifest(chosen, files, substitutes)
+        with staged(options.out) as part:
+            archive(part / f"{chosen.name}.tar.gz", chosen.name, files)
+    except Broken as error:
+        for line in str(error).splitlines():
+            print(f"flow.handoff: {chosen.name}: {line}", file=sys.stderr)
+        return 1
+    except (ParameterError, OSError, ValueError) as error:
+        print(f"flow.handoff: {error}", file=sys.stderr)
+        return 2
+    path = options.out / f"{chosen.name}.tar.gz"
+    print(f"{path}: {len(files)} files, sha256 {sha256(path.read_bytes())}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,95 @@
+"""What the archive holds, and where each part comes from."""
+
+import json
+import re
+from importlib.metadata import version
+from pathlib import Path
+
+from flow.layout.netlist import SUPPLIES
+from flow.layout.summary import broken
+from flow.platforms import embedded, openroad
+from models.parameters import ParameterError
+
+from .abstract import abstract, ports
+from .archive import sha256
+from .pages import datasheet, pinout
+from .power import powered
+
+WAIVERS = Path(__file__).parent / "waivers.json"
+# suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
+REQUIRED = {"gds": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports", "lvsdb": "reports"}
+OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, with the SPEF and the cells' Liberty"),
+            "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
+            "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
+            "sta.txt": ("reports", "no static timing was run")}
+SHOWN = re.compile(r'\bsrc="([^":/]+)"')         # files that the report's page shows
+
+
+class Broken(RuntimeError):
+    """The layout breaks rules that no waiver covers; one line each."""
+
+
+def waived(design, path=WAIVERS):
+    """Waivers of a design: list of {design, rule, reason}. Raises ParameterError for one without a reason."""
+    found = [waiver for waiver in json.loads(Path(path).read_text()) if waiver["design"] == design.name]
+    for waiver in found:
+        if not waiver.get("reason"):
+            raise ParameterError(f"waiver of {waiver['rule']} = no reason: must have one")
+    return found
+
+
+def contents(design, folder, waivers):
+    """dict name -> bytes, without the manifest; and dict of what is missing -> what stands in for it.
+
+    Raises ParameterError that names every required file that is not there, Broken for rules not waived.
+    """
+    folder = Path(folder)
+    sources = {"reports/summary.json": folder / "summary.json", "reports/report.html": folder / "report.html",
+               f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
+               **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}"
+                  for suffix, place in REQUIRED.items()}}
+    if (page := sources["reports/report.html"]).is_file():
+        sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text())}
+    missing = sorted(path.name if path.parent == folder else f"rtl/{path.name}"
+                     for path in sources.values() if not path.is_file())
+    if missing:
+        raise ParameterError(f"{folder} = without {', '.join(missing)}: must be a finished layout "
+                             f"(make layout DESIGN={design.name})")
+    summary = json.loads(sources["reports/summary.json"].read_text())
+    rules = {waiver["rule"] for waiver in waivers}
+    lines = [line for line in broken(summary) if line.partition(" = ")[0] not in rules]
+    if lines:
+        raise Broken("\n".join(lines))
+    files, substitutes = {name: path.read_bytes() for name, path in sources.items()}, {}
+    corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
+    for suffix, (place, substitute) in OPTIONAL.items():
+        paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]
+        found = {f"{place}/{path.name}": path.read_bytes() for path in paths if path.is_file()}
+        files |= found
+        if not found:
+            substitutes[suffix] = substitute
+    netlist = files[f"netlist/{design.name}.v"].decode()
+    lef = _lef(folder / f"{design.name}.lef", summary["pdk"], netlist)
+    files |= {f"layout/{design.name}.lef": lef.encode(),
+              f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
+              "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
+              "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode()}
+    return files, substitutes
+
+
+def _lef(path, pdk, netlist):
+    """Text of the layout's LEF, made from its GDS where it has none."""
+    if path.is_file():
+        return path.read_text()
+    names = {numbers: name for name, numbers in openroad.process(pdk).gds.items()} if pdk in openroad.PROCESSES else {}
+    return abstract(path.with_suffix(".gds"), ports(netlist), embedded.process(pdk)[0], names)
+
+
+def manifest(design, files, substitutes):
+    """manifest.json as bytes: every file's size and SHA-256, versions of the tools, what stands in for what."""
+    summary = json.loads(files["reports/summary.json"])
+    return (json.dumps({
+        "design": design.name, "top": design.top, "pdk": summary.get("pdk"), "backend": summary.get("backend"),
+        "versions": {"talbot": version("talbot"), **summary.get("tools", {})}, "substitutes": substitutes,
+        "files": {name: {"bytes": len(data), "sha256": sha256(data)} for name, data in sorted(files.items())}},
+        indent=1) + "\n").encode()

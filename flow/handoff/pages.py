@@ -1,0 +1,37 @@
+"""The pages for people: pinout and datasheet, in Markdown."""
+
+from .lef import pins, size
+
+
+def pinout(lef):
+    """Markdown table of the pins of a LEF."""
+    rows = [f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |"
+            for p in pins(lef)]
+    return "\n".join(["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|",
+                      *rows, ""])
+
+
+def datasheet(design, summary, lef, waivers):
+    """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
+    width, height = size(lef)
+    around, clock = design.surroundings, design.clock
+    rows = [("top", design.top), ("process", summary.get("pdk")), ("size", f"{width:g} x {height:g} um"),
+            ("cells", summary.get("cells")), ("flip-flops", summary.get("flip_flops")),
+            ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),
+            *_figures(summary, "f_max_mhz", "highest clock, MHz"), *_figures(summary, "power_uw", "power, uW"),
+            ("input delay, output delay", f"{around.input_delay:.0%}, {around.output_delay:.0%} of the period"),
+            ("load of an output", f"{around.load_pf:g} pF"), *_figures(summary, "wns_ns", "setup slack, ns"),
+            *_figures(summary, "whs_ns", "hold slack, ns"), ("timing rests on", summary.get("timing_rests_on")),
+            ("DRC violations", summary.get("drc_violations")), ("layout = netlist", summary.get("lvs_match")),
+            ("netlist = RTL", summary.get("equivalence")), ("antenna violations", summary.get("antenna_violations")),
+            ("open nets", summary.get("open_nets"))]
+    table = [f"| {name} | {'-' if value is None else value} |" for name, value in rows]
+    waived = [f"- {w['rule']}: {w['reason']}" for w in waivers] or ["None."]
+    return "\n".join([f"# {design.name}", "", "| | |", "|---|---|", *table, "", "## Waivers", "", *waived, ""])
+
+
+def _figures(summary, name, words):
+    """Rows of a figure that summary.json holds by corner, as one number, or not at all."""
+    value = summary.get(name)
+    for corner, figure in (value.items() if isinstance(value, dict) else [("", value)]):
+        yield f"{words}{f' ({corner})' if corner else ''}", figure

@@ -1,0 +1,86 @@
+"""A block of Coriolis with power straps: pins, then the clock's trunk, then straps beside both, then the cells."""
+
+import time
+
+from coriolis.helpers import u
+from coriolis.plugins.block.block import Block
+from coriolis.plugins.block.configuration import BlockConf, IoPin
+
+from .session import CLOCK
+from .straps import PIN_CLEARANCE_UM, Straps
+
+SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
+SPARE_ROWS = 8          # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
+
+
+def make_block(cell, request, framework):
+    """The TalbotBlock of ``cell``, configured by ``request``."""
+    conf = BlockConf(cell, ioPins=[])
+    conf.coreSize = u(request["width_um"]), u(request["height_um"])
+    cfg = conf.cfg
+    cfg.etesian.bloat = "disabled"
+    cfg.etesian.uniformDensity = True
+    cfg.etesian.densityVariation = request["density_variation"]
+    cfg.etesian.aspectRatio = 1.0
+    # One of the diodes that Coriolis adds against antennas stays open; the antenna step checks the result
+    cfg.etesian.antennaGateMaxWL = u(40000.0)
+    cfg.etesian.antennaDiodeMaxWL = u(80000.0)
+    cfg.anabatic.searchHalo = 2
+    cfg.anabatic.globalIterations = 20
+    cfg.anabatic.topRoutingLayer = request["wires"][-1]["name"]
+    cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = 6, 3
+    cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = 3, 1
+    cfg.katana.eventsLimit = request["events"]
+    cfg.block.spareSide = u(request["row_um"] * SPARE_ROWS)
+    conf.useSpares = conf.useClockTree = request["clock_tree"]
+    conf.useHFNS = False
+    conf.bColumns = conf.bRows = 2
+    if request["clock_tree"]:
+        conf.useHTree(CLOCK)
+    return TalbotBlock(conf, request)
+
+
+class TalbotBlock(Block):
+    """times: seconds of the phases. straps, pins: where they came to lie."""
+
+    def __init__(self, conf, request):
+        super().__init__(conf)
+        self.request, self.times, self.straps, self.pins = request, {}, [], []
+        self.power = Straps(conf.cell, request)
+        self.setUnexpandPins(IoPin.WEST | IoPin.EAST | IoPin.SOUTH | IoPin.NORTH)      # else some come off their wires
+
+    def _timed(self, phase, call):
+        begin = time.perf_counter()
+        result = call()
+        self.times[phase] = time.perf_counter() - begin
+        return result
+
+    def placeIoPins(self):
+        for side, nets in self.request["pins"].items():
+            self.pins += spread(side, nets, self.request, self.power.even())
+        self.conf.ioPins = [IoPin(SIDES[side], net, u(at), 0, 1) for side, net, at in self.pins]
+        super().placeIoPins()
+
+    def addHTrees(self):
+        self._timed("clock_tree", super().addHTrees)
+        self.straps = self.power.positions([at for side, _, at in self.pins if side in ("north", "south")])
+
+    def place(self):
+        self._timed("placement", super().place)
+
+    def route(self):
+        self._timed("power", self.power.create)
+        return self._timed("routing", super().route)
+
+
+def spread(side, nets, request, straps):
+    """[side, net, offset_um] of the pins on one side, evenly on tracks and clear of the straps at x in ``straps``."""
+    across = side in ("west", "east")
+    length = request["height_um" if across else "width_um"]
+    pitch = request["pin_pitch_um"]["horizontal" if across else "vertical"]
+    tracks = [k for k in range(6, int(length / pitch) - 6)
+              if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)][::2]
+    if len(nets) > len(tracks):
+        raise SystemExit(f"coriolis: {len(nets)} pins do not fit on the {side} side of {length:.1f} um")
+    step = len(tracks) / max(1, len(nets))
+    return [[side, net, round(pitch * tracks[int((i + 0.5) * step)], 3)] for i, net in enumerate(nets)]

@@ -1,0 +1,73 @@
+"""The designs: a block's top, its clock, what surrounds it, and the tests that its netlist must pass."""
+
+from dataclasses import dataclass, field
+
+from models.parameters import ParameterError, check_real
+
+
+@dataclass(frozen=True)
+class Clock:
+    """port: of the clock. period_ns; uncertainty_ns: of an edge, setup; hold_uncertainty_ns: hold."""
+
+    port: str = "clk"
+    period_ns: float = field(default=20.0, metadata={"unit": "ns"})
+    uncertainty_ns: float = field(default=0.25, metadata={"unit": "ns"})
+    hold_uncertainty_ns: float = field(default=0.05, metadata={"unit": "ns"})
+
+    def __post_init__(self):
+        check_real("period_ns", self.period_ns, 0.5, 1e4)
+        check_real("uncertainty_ns", self.uncertainty_ns, 0, self.period_ns / 2)
+        check_real("hold_uncertainty_ns", self.hold_uncertainty_ns, 0, self.period_ns / 2)
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Delays outside as a share of the period; the slew at inputs (ns); the load of an output (pF)."""
+
+    input_delay: float = 0.2
+    output_delay: float = 0.2
+    input_slew_ns: float = field(default=0.15, metadata={"unit": "ns"})
+    load_pf: float = field(default=0.02, metadata={"unit": "pF"})
+
+
+@dataclass(frozen=True)
+class Design:
+    """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
+    block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
+    smallest area begins. A block whose tests have a size of their own is laid out in that size.
+    """
+
+    name: str
+    top: str
+    folder: str
+    netlist_names: tuple = ()
+    options: tuple = ()
+    utilization: float = 0.88
+    clock: Clock = Clock()
+    surroundings: Surroundings = Surroundings()
+
+
+def _divider(name, top, variant):
+    return Design(name, top, "quad_divider", (f"QuadDivider_{variant}_8_10",))
+
+
+DESIGNS = {made.name: made for made in (
+    Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",)),
+    Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_13_75_8",), ("--rows=13", "--cols=75")),
+    Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
+    Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
+    _divider("quad_divider", "QuadDividerRadix4", "radix4"),
+    _divider("quad_divider_radix2", "QuadDividerRadix2", "radix2"),
+    _divider("quad_divider_pipelined", "QuadDividerPipelined", "pipelined"),
+    _divider("cordic", "Cordic", "cordic"),
+    Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
+    Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
+    Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.76))}
+
+
+def design(name):
+    """The Design of that name. Raises ParameterError."""
+    if name not in DESIGNS:
+        raise ParameterError(f"DESIGN = {name!r}: must be one of {', '.join(DESIGNS)}")
+    return DESIGNS[name]

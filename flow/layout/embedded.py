@@ -1,0 +1,130 @@
+"""The embedded backend: its steps in order, for a design and a process."""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from flow.platforms.embedded import process
+from flow.simulate.process import ToolError, finish
+from flow.steps.versions import version
+from models.parameters import ParameterError, check_real
+
+from .constraints import sdc
+from .steps.antenna import Antenna, AntennaParameters
+from .steps.drc import Drc
+from .steps.equivalence import Equivalence, EquivalenceParameters
+from .steps.extraction import Extraction, ExtractionParameters
+from .steps.floorplan import Floorplan, FloorplanParameters
+from .steps.gate_frames import FRAME, GateFrames
+from .steps.gate_tests import GateTests, GateTestsParameters
+from .steps.library import Library, LibraryParameters
+from .steps.lvs import Lvs
+from .steps.place_route import PlaceRoute, PlaceRouteParameters
+from .steps.sta import Sta, StaParameters
+from .steps.stream_out import StreamOut, StreamOutParameters
+from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
+
+ROOT = Path(__file__).parents[2]
+FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
+STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
+
+
+@dataclass(frozen=True)
+class Options:
+    """pdk: process. utilization: cells' area by core area at which the search begins.
+
+    liberty: paths of characterized cells, one a corner; synthesis takes the first. () for no timing.
+    """
+
+    pdk: str = "sky130"
+    utilization: float = 0.8
+    liberty: tuple = ()
+
+    @property
+    def corners(self):
+        """dict corner -> its Liberty file, the corner of synthesis first."""
+        return {path.stem: path for path in self.liberty}
+
+    def __post_init__(self):
+        for path in self.liberty:
+            if not path.is_file():
+                raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
+        if len(self.corners) != len(self.liberty):
+            raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
+        check_real("utilization", self.utilization, LEAST, 0.95)
+
+
+def files(design, options, folder):
+    """What the steps are given: the design's Verilog, made now, and the texts that describe the process."""
+    done = finish([sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder / "rtl", *design.options],
+                  cwd=ROOT)
+    if done.returncode:
+        raise ToolError(done.stderr.strip().splitlines()[-1])
+    constraints = folder / "rtl" / f"{design.top}.sdc"
+    constraints.write_text(sdc(design))
+    given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
+             "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
+             "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
+    first = {"timing": options.liberty[0]} if options.liberty else {}
+    return given | first | {f"timing.{corner}": path for corner, path in options.corners.items()}
+
+
+def front(design, options):
+    """The steps ahead of a floorplan."""
+    return [Library(LibraryParameters(options.pdk)),
+            TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT)) if options.liberty else
+            Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+
+
+def tries(design, options):
+    """Pairs (floorplan, place and route), the smallest area first."""
+    known, _ = process(options.pdk)
+    for k in range(int((options.utilization - LEAST) / STEP + 1e-9) + 1):
+        yield (Floorplan(FloorplanParameters(round(options.utilization - STEP * k, 4), row_um=known.row_um,
+                                             site_um=known.site_um)),
+               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port)))
+
+
+def judged(design, options):
+    """The steps behind a routing that say whether it keeps the design rules."""
+    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc(),
+            Antenna(AntennaParameters(options.pdk))]
+
+
+def back(design, options):
+    """The steps behind a routing that keeps the design rules: what else judges it."""
+    clock = design.clock
+    tests = ([GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
+             if design.netlist_names else [GateFrames()])
+    timing = [Sta(StaParameters(design.top, corner, clock.period_ns)) for corner in options.corners]
+    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
+            Extraction(ExtractionParameters(options.pdk)), *timing]
+
+
+def layout(design, options, runner):
+    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
+
+    A try closes when every net is routed and no rule of design or antennas broken. Returns the tries: list of
+    {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
+    """
+    pair = next(tries(design, options))
+    for step in (*front(design, options), *pair, *judged(design, options), *back(design, options)):
+        for tool in step.tools:
+            version(tool)               # a tool that is missing is told before anything runs
+    for step in front(design, options):
+        runner.run(step)
+    tried = []
+    for floorplan, place_route in tries(design, options):
+        runner.run(floorplan)
+        found = runner.run(place_route)["metrics"]
+        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
+                      "rules_broken": None})
+        if found["routed"] and not found["open_segments"]:
+            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0)
+                         for step in judged(design, options))
+            tried[-1]["rules_broken"] = broken
+            if not broken:
+                for step in back(design, options):
+                    runner.run(step)
+                return tried
+    return tried

@@ -1,0 +1,133 @@
+"""A flat netlist of library cells: from Yosys or from Coriolis's database, as Verilog, BLIF, SPICE or JSON."""
+
+import json
+import re
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from flow.steps import StepError
+
+SUPPLIES = ("vdd", "vss")
+REGISTER = "_reg"           # behind a register's name: its flip-flop
+
+
+@dataclass(frozen=True)
+class Port:
+    """direction: 'input' or 'output'. width: bits; one of a bus of one bit is named as the port itself."""
+
+    name: str
+    direction: str
+    width: int
+
+    def bits(self):
+        """Nets of its bits, lowest first."""
+        return [self.name] if self.width == 1 else [f"{self.name}[{i}]" for i in range(self.width)]
+
+
+@dataclass(frozen=True)
+class Instance:
+    """pins: dict pin -> net, supplies left out."""
+
+    name: str
+    cell: str
+    pins: dict
+
+
+@dataclass(frozen=True)
+class Netlist:
+    """name: module. ports: tuple of Port. instances: tuple of Instance. A net is what has its name."""
+
+    name: str
+    ports: tuple
+    instances: tuple
+
+    @classmethod
+    def read(cls, path):
+        data = json.loads(Path(path).read_text())
+        return cls(data["name"], tuple(Port(**p) for p in data["ports"]),
+                   tuple(Instance(**i) for i in data["instances"]))
+
+    def write(self, path):
+        Path(path).write_text(json.dumps(asdict(self), indent=0) + "\n")
+
+    @classmethod
+    def from_yosys(cls, path, top, buffer):
+        """The module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
+
+        buffer: (cell, input, output) put in where two ports are one signal. A flip-flop is named after its register,
+        any other cell u<number>.
+        """
+        module = json.loads(Path(path).read_text())["modules"][top]
+        names, ports, extra = {}, [], []
+        for name, port in module["ports"].items():
+            made = Port(name, port["direction"], len(port["bits"]))
+            ports.append(made)
+            for net, bit in zip(made.bits(), port["bits"], strict=True):
+                if bit in names:
+                    extra.append(Instance(f"port{len(extra)}", buffer[0], {buffer[1]: names[bit], buffer[2]: net}))
+                else:
+                    names[bit] = net
+        registers = {}
+        for name, wire in sorted(module["netnames"].items(), key=lambda item: (item[1]["hide_name"], item[0])):
+            for index, bit in enumerate(wire["bits"]):
+                full = name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
+                registers.setdefault(bit, full)
+        instances = []
+        for number, cell in enumerate(module["cells"].values()):
+            pins = {}
+            for pin, (bit,) in cell["connections"].items():
+                if not isinstance(bit, int):
+                    raise StepError(f"netlist of {top}: pin {pin} of a {cell['type']} is constant {bit}")
+                pins[pin] = names.setdefault(bit, f"n{bit}")
+            name = registers[cell["connections"]["q"][0]] + REGISTER if is_register(cell["type"]) else f"u{number}"
+            instances.append(Instance(name, cell["type"], pins))
+        return cls(top, tuple(ports), (*instances, *extra))
+
+    def verilog(self):
+        """Structural Verilog with the ports of the RTL."""
+        declared = {net for port in self.ports for net in port.bits()}
+        nets = sorted({net for i in self.instances for net in i.pins.values()} - declared)
+        lines = [f"module {self.name} ({', '.join(port.name for port in self.ports)});"]
+        for port in self.ports:
+            bus = f"[{port.width - 1}:0] " if port.width > 1 else ""
+            lines.append(f"  {port.direction} {bus}{port.name};")
+        lines += [f"  wire {_escaped(net)};" for net in nets]
+        for i in filter(lambda instance: instance.pins, self.instances):      # what only fills gaps has none
+            pins = ", ".join(f".{pin}({net if net in declared else _escaped(net)})"
+                             for pin, net in sorted(i.pins.items()))
+            lines.append(f"  {i.cell} {_escaped(i.name)} ({pins});")
+        return "\n".join([*lines, "endmodule", ""])
+
+    def spice(self, cells):
+        """The subcircuit, its supplies ports too, followed by ``cells``, the text of the cells' subcircuits."""
+        orders = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", cells)}
+        ports = [net for port in self.ports for net in port.bits()] + list(SUPPLIES)
+        lines = [f".subckt {self.name} " + " ".join(ports)]
+        for number, i in enumerate(self.instances):
+            pins = i.pins | {name: name for name in SUPPLIES}
+            lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
+        return "\n".join([*lines, ".ends", cells])
+
+    def blif(self, model, net_names):
+        """For Coriolis: model ``model``, nets by ``net_names`` (dict net -> name), instances in their order."""
+        lines = [f".model {model}"]
+        for word, direction in ((".inputs", "input"), (".outputs", "output")):
+            nets = [net_names[net] for port in self.ports if port.direction == direction for net in port.bits()]
+            lines.append(f"{word} {' '.join(nets)}")
+        for i in self.instances:
+            lines.append(f".gate {i.cell} " + " ".join(f"{pin}={net_names[net]}" for pin, net in i.pins.items()))
+        return "\n".join([*lines, ".end", ""])
+
+
+def is_register(cell):
+    """Whether the library's cell of that name holds a bit."""
+    return cell.startswith("dff")
+
+
+def _escaped(name):
+    return name if re.fullmatch(r"[A-Za-z_]\w*", name) else f"\\{name} "
+
+
+def _plain(name):
+    """For SPICE, where a name holds no blank."""
+    return re.sub(r"\s", "_", name)

@@ -1,0 +1,173 @@
+"""A flat design of simple gates with its registers cut: its outputs and next states as functions of inputs and states.
+
+Two designs whose cut forms are equal, and that agree in what their registers hold at one time, agree for ever.
+"""
+
+import json
+import random
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from flow.steps import StepError
+
+# Yosys's simple gates: their pins, rows of BLIF's .names, and what they compute with all lanes of a number at once
+GATES = {
+    "$_BUF_": ("A", ["1 1"], lambda a: a), "$_NOT_": ("A", ["0 1"], lambda a: ~a),
+    "$_AND_": ("AB", ["11 1"], lambda a, b: a & b), "$_NAND_": ("AB", ["11 0"], lambda a, b: ~(a & b)),
+    "$_OR_": ("AB", ["00 0"], lambda a, b: a | b), "$_NOR_": ("AB", ["00 1"], lambda a, b: ~(a | b)),
+    "$_XOR_": ("AB", ["10 1", "01 1"], lambda a, b: a ^ b), "$_XNOR_": ("AB", ["11 1", "00 1"], lambda a, b: ~(a ^ b)),
+    "$_ANDNOT_": ("AB", ["10 1"], lambda a, b: a & ~b), "$_ORNOT_": ("AB", ["01 0"], lambda a, b: a | ~b),
+    "$_MUX_": ("ABS", ["1-0 1", "-11 1"], lambda a, b, s: (a & ~s) | (b & s)),
+}
+REGISTER = "$_DFF_P_"
+LANES, RESET_CYCLES, CYCLES = 256, 4, 24     # of the simulation that looks for constant registers
+
+
+@dataclass(frozen=True)
+class Cut:
+    """module: of Yosys's JSON. clock: name of the clock port."""
+
+    module: dict
+    clock: str
+
+    @classmethod
+    def read(cls, path, top, clock):
+        """Raises StepError on anything but simple gates and flip-flops at the rising edge of the clock."""
+        made = cls(json.loads(Path(path).read_text())["modules"][top], clock)
+        wrong = {cell["type"] for cell in made.module["cells"].values()} - {REGISTER, *GATES}
+        if wrong:
+            raise StepError(f"equivalence: {top} has cells of {', '.join(sorted(wrong))}")
+        return made
+
+    @cached_property
+    def names(self):
+        """All names of a bit: dict bit -> list."""
+        names = {}
+        for name, wire in self.module["netnames"].items():
+            for index, bit in enumerate(wire["bits"]):
+                full = name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
+                names.setdefault(bit, []).append(full)
+        return names
+
+    @cached_property
+    def gates(self):
+        """dict output bit -> (type, input bits)."""
+        return {cell["connections"]["Y"][0]: (cell["type"], [cell["connections"][pin][0]
+                                                             for pin in GATES[cell["type"]][0]])
+                for cell in self.module["cells"].values() if cell["type"] != REGISTER}
+
+    @cached_property
+    def registers(self):
+        """dict Q bit -> D bit of every flip-flop. Raises StepError for one that is not on the clock."""
+        clock, made = self.module["ports"][self.clock]["bits"][0], {}
+        for name, cell in self.module["cells"].items():
+            if cell["type"] == REGISTER:
+                pins = {pin: bits[0] for pin, bits in cell["connections"].items()}
+                if self._behind(pins["C"]) != (clock, False):
+                    raise StepError(f"equivalence: flip-flop {name} is not on the rising edge of {self.clock}")
+                made[pins["Q"]] = pins["D"]
+        return made
+
+    def _behind(self, bit, inverted=False):
+        """(bit, whether inverted) that ``bit`` is a copy of, through buffers and inverters."""
+        while bit in self.gates and self.gates[bit][0] in ("$_BUF_", "$_NOT_"):
+            kind, (bit,) = self.gates[bit]
+            inverted ^= kind == "$_NOT_"
+        return bit, inverted
+
+    @cached_property
+    def inputs(self):
+        """dict bit -> name of every input but the clock."""
+        return {bit: _bit(name, index, port) for name, port in self.module["ports"].items()
+                if port["direction"] == "input" and name != self.clock for index, bit in enumerate(port["bits"])}
+
+    @cached_property
+    def outputs(self):
+        """dict name -> bit of every output."""
+        return {_bit(name, index, port): bit for name, port in self.module["ports"].items()
+                if port["direction"] == "output" for index, bit in enumerate(port["bits"])}
+
+    @cached_property
+    def order(self):
+        """Output bits of the gates, every one behind its inputs. Raises StepError on a loop."""
+        order, state = [], {}
+        for root in self.gates:
+            stack = [root]
+            while stack:
+                bit = stack[-1]
+                below = [b for b in self.gates[bit][1] if b in self.gates and state.get(b) != 2]
+                if state.get(bit) == 2:
+                    stack.pop()
+                elif not below:
+                    state[bit] = 2
+                    order.append(bit)
+                    stack.pop()
+                elif state.get(bit) == 1 and any(state.get(b) == 1 for b in below):
+                    raise StepError(f"equivalence: a loop of gates at {self.names.get(bit, [bit])[0]}")
+                else:
+                    state[bit] = 1
+                    stack += below
+        return order
+
+    def live(self):
+        """Q bits of the registers that can reach an output: set."""
+        seen, stack = set(), list(self.outputs.values())
+        while stack:
+            bit = stack.pop()
+            if bit not in seen:
+                seen.add(bit)
+                stack += self.gates[bit][1] if bit in self.gates else [self.registers[bit]] \
+                    if bit in self.registers else []
+        return seen & set(self.registers)
+
+    def constants(self, bits, reset):
+        """What registers ``bits`` (Q) always held in a random simulation behind a reset: dict bit -> '0' or '1'."""
+        rng, full = random.Random(1), (1 << LANES) - 1
+        values = {bit: rng.getrandbits(LANES) for bit in self.registers} | {"0": 0, "1": full}
+        was = dict.fromkeys(bits, None)
+        for cycle in range(RESET_CYCLES + CYCLES):
+            for bit, name in self.inputs.items():
+                values[bit] = rng.getrandbits(LANES) if name != reset else full * (cycle < RESET_CYCLES)
+            for bit in self.order:
+                kind, pins = self.gates[bit]
+                values[bit] = GATES[kind][2](*(values.get(pin, 0) for pin in pins)) & full
+            values |= {q: values.get(d, 0) for q, d in self.registers.items()}
+            if cycle >= RESET_CYCLES:
+                for bit in was:
+                    was[bit] = values[bit] if was[bit] in (None, values[bit]) else -1
+        return {bit: "1" if value else "0" for bit, value in was.items() if value in (0, full)}
+
+    def blif(self, states, given, checked, fixed=None, unknown=0):
+        """The cut design as BLIF: its inputs are those of the design, ``states`` and ``unknown`` further ones.
+
+        states: dict Q bit -> name. given: dict Q bit -> '0' or '1', what a register is taken to hold. checked: dict
+        name -> bit or constant, the outputs. fixed: dict input name -> '0' or '1'. An x stands for a new input each
+        time, 'any<number>': what is equal for all of their values does not depend on them.
+        """
+        wire, anything = self.inputs | states, iter(range(10**9))
+        wire |= {bit: f"const{(fixed or {})[name]}" for bit, name in self.inputs.items() if name in (fixed or {})}
+        used = 0
+
+        def net(bit):
+            nonlocal used
+            bit = given.get(bit, bit)
+            if bit in ("0", "1"):
+                return f"const{bit}"
+            if not isinstance(bit, int):
+                used += 1
+                return f"any{next(anything)}"
+            return wire.get(bit, f"b{bit}")
+
+        lines = [".names const0", ".names const1", "1"]
+        for bit, (kind, pins) in self.gates.items():
+            lines += [f".names {' '.join(map(net, pins))} {net(bit)}", *GATES[kind][1]]
+        for name, bit in checked.items():
+            lines += [f".names {net(bit)} {name}", "1 1"]
+        inputs = [*self.inputs.values(), *states.values(), *(f"any{k}" for k in range(max(used, unknown)))]
+        return used, "\n".join([".model cut", ".inputs " + " ".join(inputs), ".outputs " + " ".join(checked), *lines,
+                                ".end", ""])
+
+
+def _bit(name, index, port):
+    return name if len(port["bits"]) == 1 else f"{name}[{index}]"

@@ -1,0 +1,83 @@
+"""Antennas: the charge that a wire gathers while it is etched, and the gates that would have to bear it.
+
+When a wire's layer is etched, only what lies below joins it to a gate or to a diffusion. The side walls of that layer
+on a net, by the area of the net's gates, must stay under the process's ratio; a diffusion on the net raises it.
+"""
+
+import json
+from dataclasses import dataclass
+
+from flow.platforms.embedded import process
+from flow.steps import Step
+
+
+@dataclass(frozen=True)
+class AntennaParameters:
+    """pdk: process."""
+
+    pdk: str = "sky130"
+
+
+class Antenna(Step):
+    """Every layer in turn, on the connections that exist by then. density: covered share of the core, by layer."""
+
+    name = "antenna"
+    inputs = {"gds": "stream_out.gds", "platform": "platform"}
+    outputs = {"summary": "antenna.json"}
+    Parameters = AntennaParameters
+    metrics = {"antenna_violations": "", "density": ""}
+    tools = ("python klayout",)
+
+    def run(self, inputs, outputs):
+        import klayout.db as db
+        known, _ = process(self.parameters.pdk)
+        layout = db.Layout()
+        layout.read(str(inputs["gds"]))
+        top, area = layout.top_cell(), layout.top_cell().bbox().area()
+        found = {wire.name: violations(layout, top, known, level) for level, wire in enumerate(known.wires)}
+        density = {wire.name: round(db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype)))
+                                    .merged().area() / area, 4) for wire in known.wires}
+        outputs["summary"].write_text(json.dumps({"violations": found, "density": density}, indent=1) + "\n")
+        return {"antenna_violations": sum(map(len, found.values())), "density": density}
+
+
+def violations(layout, top, known, level):
+    """Boxes (um, as text) of the nets whose wire known.wires[level] is too large for their gates: list."""
+    import klayout.db as db
+
+    def region(pair):
+        return db.Region(top.begin_shapes_rec(layout.layer(*pair)))
+
+    l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
+    poly, active = region(known.poly), region(known.active)
+    layers = {"poly": l2n.make_polygon_layer(layout.layer(*known.poly), "poly"),
+              "contact": l2n.make_polygon_layer(layout.layer(*known.contact), "contact")}
+    gate, diffusion = poly & active, active - poly
+    for name, made in (("gate", gate), ("diffusion", diffusion)):
+        l2n.register(made, name)
+    l2n.connect(layers["poly"])
+    l2n.connect(layers["contact"])
+    l2n.connect(gate)
+    l2n.connect(diffusion)
+    l2n.connect(layers["poly"], gate)
+    l2n.connect(layers["poly"], layers["contact"])
+    l2n.connect(diffusion, layers["contact"])
+    below, wires = layers["contact"], []
+    for k, wire in enumerate(known.wires[:level + 1]):
+        metal = l2n.make_polygon_layer(layout.layer(wire.layer, wire.datatype), wire.name)
+        wires.append(metal)
+        l2n.connect(metal)
+        l2n.connect(below, metal)
+        if k < level:
+            cut = known.cuts[k]
+            below = l2n.make_polygon_layer(layout.layer(cut.layer, cut.datatype), cut.name)
+            l2n.connect(below)
+            l2n.connect(metal, below)
+    l2n.extract_netlist()
+    wire = known.wires[level]
+    safe = 1e9          # for what has a diffusion, in the check of what has none
+    base, more = wire.antenna_diffusion
+    bad = db.Region()
+    for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
+        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, ratio, [[diffusion, by_diffusion]])
+    return sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})

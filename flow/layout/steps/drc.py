@@ -1,0 +1,29 @@
+"""Design rules: the deck that PDKMaster exports for the process, in KLayout."""
+
+import json
+
+from flow.steps import Step, StepError
+
+from . import klayout_decks
+from .klayout_decks import run_deck, violations
+
+
+class Drc(Step):
+    """Every rule of the deck over the whole layout; the report opens in KLayout."""
+
+    name = "drc"
+    inputs = {"gds": "stream_out.gds", "deck": "library.drc"}
+    outputs = {"report": "drc.lyrdb", "summary": "drc.json"}
+    metrics = {"drc_violations": ""}
+    uses = (klayout_decks,)
+    tools = ("klayout",)
+
+    def run(self, inputs, outputs):
+        log = outputs["report"].with_suffix(".log")
+        status = run_deck(inputs["deck"], {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "",
+                                           "REPORT_FILE": outputs["report"].resolve()}, log)
+        if status:
+            raise StepError(f"drc: KLayout failed with status {status}: {log.read_text().strip().splitlines()[-1:]}")
+        found = violations(outputs["report"])
+        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        return {"drc_violations": sum(found.values())}

@@ -1,0 +1,121 @@
+"""RTL = netlist: proven for every input and every state, register by register, by ABC."""
+
+import json
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from flow.simulate.process import run
+from flow.steps import Step, StepError
+
+from .. import netlist as netlist_module
+from .. import registers
+from ..netlist import REGISTER, Netlist, is_register
+from ..registers import Cut
+
+GOLD = ("read_verilog -sv {rtl}; hierarchy -top {top}; proc; flatten; memory; techmap; simplemap; dffunmap; opt_clean; "
+        "write_json {out}")
+GATE = "read_liberty {liberty}; read_verilog {netlist}; hierarchy -top {top}; proc; flatten; techmap; simplemap; " \
+       "opt_clean; write_json {out}"
+PROOF = "cec -T {seconds} -C 100000000 {gold} {gate}"
+
+
+@dataclass(frozen=True)
+class EquivalenceParameters:
+    """top: module. clock, reset: its ports. seconds: after which a proof is given up, which is a failure."""
+
+    top: str = ""
+    clock: str = "clk"
+    reset: str = "reset"
+    seconds: int = 600
+
+
+class Equivalence(Step):
+    """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
+
+    A register of the RTL that the netlist lacks and that reaches an output must be a constant: it is shown to be so
+    behind a reset, and to stay so (induction); that is then used in the proof.
+    """
+
+    name = "equivalence"
+    inputs = {"rtl": "rtl", "netlist": "place_route.netlist", "verilog": "stream_out.verilog",
+              "liberty": "library.liberty"}
+    outputs = {"summary": "equivalence.json"}
+    Parameters = EquivalenceParameters
+    metrics = {"equivalence": "", "registers": "", "constant_registers": ""}
+    uses = (registers, netlist_module)
+    tools = ("yosys",)
+
+    def run(self, inputs, outputs):
+        with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+            return self.prove(inputs, outputs, Path(folder))
+
+    def prove(self, inputs, outputs, folder):
+        p = self.parameters
+        gold = self.cut(GOLD, folder / "gold.json", rtl=inputs["rtl"])
+        gate = self.cut(GATE, folder / "gate.json", netlist=inputs["verilog"], liberty=inputs["liberty"])
+        states, gate_states, missing = match(gold, gate, Netlist.read(inputs["netlist"]))
+        constants = gold.constants(missing, p.reset)
+        verdicts = {}
+        if set(missing) == set(constants):
+            nexts = {f"next({name})": bit for bit, name in states.items()}
+            kept = {f"kept({k})": (gold.registers[bit], value) for k, (bit, value) in enumerate(constants.items())}
+            verdicts["same"] = self.proof(
+                folder, gold.outputs | {name: gold.registers[bit] for name, bit in nexts.items()}
+                | {name: bit for name, (bit, _) in kept.items()},
+                gate.outputs | {f"next({name})": gate.registers[bit] for bit, name in gate_states.items()}
+                | {name: value for name, (_, value) in kept.items()}, gold, gate, states, gate_states, constants)
+            verdicts["reset"] = not kept or self.proof(
+                folder, {name: bit for name, (bit, _) in kept.items()},
+                {name: value for name, (_, value) in kept.items()}, gold, gate,
+                states | {bit: f"c{k}" for k, bit in enumerate(constants)},
+                gate_states | {f"c{k}": f"c{k}" for k in range(len(constants))}, {}, {p.reset: "1"})
+        outputs["summary"].write_text(json.dumps({
+            "proofs": verdicts, "missing": [gold.names[bit][0] for bit in missing],
+            "not_constant": [gold.names[bit][0] for bit in missing if bit not in constants]}, indent=1) + "\n")
+        proven = bool(verdicts) and all(verdicts.values())
+        return {"equivalence": "proven" if proven else "failed", "registers": len(states),
+                "constant_registers": len(constants)}
+
+    def cut(self, script, path, **names):
+        """The design as a Cut, made by the Yosys commands ``script``."""
+        run(["yosys", "-q", "-p", script.format(top=self.parameters.top, out=path, **names)])
+        return Cut.read(path, self.parameters.top, self.parameters.clock)
+
+    def proof(self, folder, checked, expected, gold, gate, states, gate_states, given, fixed=None):
+        """Whether the outputs ``checked`` of ``gold`` are ``expected`` of ``gate``. Raises StepError without a verdict.
+        """
+        unknown, text = gold.blif(states, given, {_net(name): bit for name, bit in checked.items()}, fixed)
+        _, other = gate.blif(gate_states, {}, {_net(name): bit for name, bit in expected.items()}, fixed, unknown)
+        files = folder / "gold.blif", folder / "gate.blif"
+        for path, blif in zip(files, (text, other), strict=True):
+            path.write_text(blif)
+        said = run(["yosys-abc", "-s", "-c", PROOF.format(seconds=self.parameters.seconds, gold=files[0],
+                                                          gate=files[1])])
+        if ("are equivalent" in said) == ("NOT EQUIVALENT" in said):
+            raise StepError(f"equivalence: ABC gave no verdict: {' '.join(said.split())[-200:]}")
+        return "are equivalent" in said
+
+
+def _net(name):
+    """Name of an output, apart from that of any input."""
+    return f"out({name})"
+
+
+def match(gold, gate, netlist):
+    """(states of gold, states of gate: dict Q bit -> name; Q bits of gold that gate lacks and that are live).
+
+    Raises StepError when a flip-flop of the netlist is no register of the RTL.
+    """
+    by_name = {name: bit for bit in gold.registers for name in gold.names[bit]}
+    nets = {name: bit for bit, names in gate.names.items() for name in names}
+    states, gate_states = {}, {}
+    for instance in netlist.instances:
+        if is_register(instance.cell):
+            register, net = instance.name.removesuffix(REGISTER), nets.get(instance.pins["q"])
+            if register not in by_name or net not in gate.registers:
+                raise StepError(f"equivalence: the RTL has no register {register}")
+            states[by_name[register]] = gate_states[net] = f"state{len(states)}"
+    if len(gate_states) != len(gate.registers):
+        raise StepError("equivalence: flip-flops of the netlist share a register")
+    return states, gate_states, sorted(gold.live() - set(states))

@@ -1,0 +1,99 @@
+"""The cells of a process as the other steps want them: for Coriolis, KLayout, Yosys and simulators."""
+
+import importlib
+import json
+from dataclasses import asdict, dataclass, field
+
+from flow.platforms.embedded import process
+from flow.simulate.process import run
+from flow.steps import Step
+
+from .. import liberty
+from ..netlist import SUPPLIES
+
+UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")      # by synthesis
+DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground", "q": "out", "nq": "out",
+              "one": "out", "zero": "out", "co": "out", "s": "out"}
+
+
+@dataclass(frozen=True)
+class LibraryParameters:
+    """pdk: the process."""
+
+    pdk: str = field(default="sky130")
+
+
+class Library(Step):
+    """PDKMaster's cells -> files. platform: the process's own description, whose text belongs to the result."""
+
+    name = "library"
+    inputs = {"platform": "platform"}
+    outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
+               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v",
+               "rules": "rules.json",               "geometry": "geometry.json"}
+    Parameters = LibraryParameters
+    metrics = {"cells": ""}
+    uses = (liberty,)
+    shared = True
+    tools = ("yosys", "python pdkmaster", "python c4m-flexcell", "python klayout")
+
+    def run(self, inputs, outputs):
+        known, make = process(self.parameters.pdk)
+        package = importlib.import_module(known.package)
+        description = importlib.import_module(f"{known.package}.pdkmaster")
+        library = make()
+        cells = [cell for cell in library.cells if cell.name != "Gallery"]
+        outputs["geometry"].write_text(json.dumps(geometry(known), indent=1) + "\n")
+        outputs["rules"].write_text(json.dumps({"space_um": {
+            wire.name: float(description.tech.primitives[wire.name].min_space) for wire in known.wires}}) + "\n")
+        _coriolis(outputs["coriolis"], description, library)
+        _klayout(outputs, description, package, library)
+        areas = {cell.name: _area(cell) for cell in cells}
+        outputs["areas"].write_text(json.dumps(areas, indent=1))
+        ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
+        models, layers = (importlib.import_module(f"flow.platforms.{self.parameters.pdk.replace('-', '_')}.{name}")
+                          for name in ("models", "process"))
+        found = liberty.functions(outputs["gds"], [name for name in ports if not name.startswith(UNUSED)], models, layers)
+        outputs["liberty"].write_text(liberty.liberty({
+            name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas))
+        run(["yosys", "-q", "-p", f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
+        return {"cells": len(cells)}
+
+
+def geometry(known):
+    """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
+    made = asdict(known)
+    for wire in made["wires"]:
+        for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
+            del wire[name]
+    return made
+
+
+def _area(cell):
+    box = cell.layout.boundary
+    return round((box.right - box.left) * (box.top - box.bottom), 4)
+
+
+def _coriolis(folder, description, library):
+    from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
+    spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
+    export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
+    package = folder / "exported"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "techno.py").write_text(export())
+    (package / "StdCellLib.py").write_text(export(library))
+
+
+def _klayout(outputs, description, package, library):
+    from pdkmaster.io.klayout import FileExporter, export2db
+    from pdkmaster.io.spice import SpiceNetlistFactory
+    devices = package.prims_spiceparams
+    decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
+    outputs["drc"].write_text(decks["drc"])
+    outputs["lvs"].write_text(decks["lvs"])
+    export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
+              add_pin_label=True).write(str(outputs["gds"]))
+    netlists = SpiceNetlistFactory(params=devices)
+    outputs["spice"].write_text("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
+                                        if cell.name != "Gallery"))

@@ -1,0 +1,62 @@
+"""Static timing at one corner, with the extracted wires: OpenSTA."""
+
+import re
+from dataclasses import dataclass
+
+from flow.simulate.process import run
+from flow.steps import Step, StepError
+
+SCRIPT = """
+read_liberty {liberty}
+read_verilog {verilog}
+link_design {top}
+source {sdc}
+read_spef {spef}
+puts "WORST setup [worst_slack -max]"
+puts "WORST hold [worst_slack -min]"
+report_checks -path_delay max -fields {{slew capacitance net}} -digits 4
+report_checks -path_delay min -fields {{slew capacitance net}} -digits 4
+report_check_types -all_violators
+report_power -digits 6
+write_sdf -no_timestamp {sdf}
+exit
+"""
+
+
+@dataclass(frozen=True)
+class StaParameters:
+    """top: module. corner: its name in the reports. period_ns: of the clock."""
+
+    top: str = ""
+    corner: str = ""
+    period_ns: float = 0.0
+
+
+class Sta(Step):
+    """wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: of the clock at which the setup slack would be 0, the
+    delays outside staying what they are. power_uw: at OpenSTA's default activity."""
+
+    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc"}
+    outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
+    Parameters = StaParameters
+    metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz", "power_uw": "uW"}
+    tools = ("sta",)
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.name = f"sta_{parameters.corner}"
+        self.inputs = self.inputs | {"liberty": f"timing.{parameters.corner}"}
+
+    def run(self, inputs, outputs):
+        p = self.parameters
+        script = outputs["report"].with_name("sta.log")
+        script.write_text(SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
+        said = run(["sta", "-no_splash", "-no_init", "-exit", script])
+        outputs["report"].write_text(said)
+        if "Error" in said or "WORST setup" not in said:
+            raise StepError(f"sta: OpenSTA: {next((s for s in said.splitlines() if 'Error' in s), 'no slack')}")
+        worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
+        power = re.search(r"^Total\s+\S+\s+\S+\s+\S+\s+(\S+)", said, re.M)
+        return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4),
+                "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2),
+                "power_uw": round(float(power[1]) * 1e6, 3) if power else None}

@@ -1,0 +1,80 @@
+"""The routed layout as GDS with the design's own names, and the final netlist as Verilog and SPICE."""
+
+import json
+from dataclasses import dataclass
+
+from flow.platforms.embedded import process
+from flow.steps import Step, StepError
+
+from .. import netlist as netlist_module, trim
+from ..netlist import SUPPLIES, Netlist
+from .place_route import plain_names
+
+
+@dataclass(frozen=True)
+class StreamOutParameters:
+    """pdk: process. clock: name of the clock port."""
+
+    pdk: str = "sky130"
+    clock: str = "clk"
+
+
+class StreamOut(Step):
+    """Labels get the names of the ports, on the layers that the process's decks read."""
+
+    name = "stream_out"
+    inputs = {"gds": "place_route.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
+              "cells": "library.spice", "rules": "library.rules", "geometry": "library.geometry"}
+    outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
+    Parameters = StreamOutParameters
+    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": ""}
+    uses = (netlist_module, trim)
+    tools = ("python klayout",)
+
+    def run(self, inputs, outputs):
+        p = self.parameters
+        known, _ = process(p.pdk)
+        netlist = Netlist.read(inputs["netlist"])
+        names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
+        ports = {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES)
+        rules = json.loads(inputs["rules"].read_text())
+        box, trimmed = relabel(inputs["gds"], outputs["gds"], netlist.name, names, ports, known, rules["space_um"])
+        outputs["verilog"].write_text(netlist.verilog())
+        outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
+        return {"width_um": round(box.width(), 3), "height_um": round(box.height(), 3),
+                "area_um2": round(box.width() * box.height(), 2), "instances": len(netlist.instances),
+                "trimmed": trimmed}
+
+
+def relabel(source, target, top_name, names, ports, known, spaces):
+    """Write ``source`` as ``target``; returns (the top cell's box in um, wires' ends trimmed).
+
+    spaces: dict wire -> least space (um). names: dict Coriolis's name -> net. Labels of ports stay (one a port and layer), with their names; Coriolis's
+    blockages go. Raises StepError when a port has no label.
+    """
+    import klayout.db as db
+    layout = db.Layout()
+    layout.read(str(source))
+    top, = layout.top_cells()
+    top.name = top_name
+    seen = set()
+    for wire in known.wires:
+        label = layout.layer(wire.layer, known.label_datatype)
+        pin = layout.layer(wire.layer, known.pin_datatype)
+        texts = top.shapes(layout.layer(wire.layer, 0))
+        for shape in list(texts.each(db.Shapes.STexts)):
+            net = names.get(shape.text.string, shape.text.string)
+            if net in ports:
+                for layer in (label, pin):
+                    top.shapes(layer).insert(db.Text(net, shape.text.trans))
+                seen.add(net)
+        texts.clear()
+    if ports - seen:
+        raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - seen)[:5])}")
+    for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
+        layout.clear_layer(layout.layer(info))
+    trimmed = trim.trim(layout, top, known.wires, spaces)
+    options = db.SaveLayoutOptions()
+    options.gds2_write_timestamps = False       # the same layout is the same file
+    layout.write(str(target), options)
+    return top.dbbox(), trimmed

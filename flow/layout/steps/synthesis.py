@@ -1,0 +1,72 @@
+"""Verilog -> a netlist of the library's cells, registers with the names that they have in the Verilog."""
+
+from dataclasses import dataclass, field
+
+from flow.simulate.process import run
+from flow.steps import Step
+from models.parameters import check_int, check_real
+
+from .. import netlist as netlist_module
+from ..netlist import Netlist, is_register
+
+SCRIPT = """
+read_verilog -sv {rtl}
+synth -flatten -nofsm -top {top}
+dfflibmap -liberty {liberty}
+abc -D {period_ps:.0f} -liberty {timing} -script {mapping}
+setundef -zero
+hilomap -hicell one_x1 one -locell zero_x1 zero
+opt_clean -purge
+tee -q -o {area} stat -liberty {liberty}
+write_json {json}
+"""
+
+
+@dataclass(frozen=True)
+class SynthesisParameters:
+    """top: module. period_ns: what the mapper aims at. fan_out: most cells behind one signal, 0 for no limit."""
+
+    top: str = ""
+    period_ns: float = field(default=10.0, metadata={"unit": "ns"})
+    fan_out: int = 16
+
+    def __post_init__(self):
+        check_real("period_ns", self.period_ns, 0.1, 10_000)
+        check_int("fan_out", self.fan_out, 0, 1000)
+
+
+class Synthesis(Step):
+    """Yosys. FSMs keep their codes and registers their names, so that every one can be compared with the Verilog."""
+
+    name = "synthesis"
+    inputs = {"rtl": "rtl", "liberty": "library.liberty"}
+    outputs = {"netlist": "netlist.json", "verilog": "netlist.v"}
+    Parameters = SynthesisParameters
+    metrics = {"cells": "", "flip_flops": "", "cell_area_um2": "um2"}
+    uses = (netlist_module,)
+    tools = ("yosys",)
+
+    def run(self, inputs, outputs):
+        p, folder = self.parameters, outputs["netlist"].parent
+        files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "script")}
+        limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {p.period_ns * 1000:.0f}",
+                 f"dnsize -D {p.period_ns * 1000:.0f}"] if p.fan_out else []
+        files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
+                                               *limit, "print_stats"]) + "\n")
+        files["script"].write_text(SCRIPT.format(
+            rtl=inputs["rtl"], top=p.top, liberty=inputs["liberty"],
+            timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
+        run(["yosys", "-q", "-s", files["script"]])
+        netlist = Netlist.from_yosys(files["json"], p.top, ("buf_x1", "i", "q"))
+        netlist.write(outputs["netlist"])
+        outputs["verilog"].write_text(netlist.verilog())
+        area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
+        files["json"].unlink()
+        return {"cells": len(netlist.instances), "cell_area_um2": float(area),
+                "flip_flops": sum(is_register(i.cell) for i in netlist.instances)}
+
+
+class TimedSynthesis(Synthesis):
+    """With a characterized Liberty: the mapper sizes and buffers by its tables."""
+
+    inputs = Synthesis.inputs | {"timing": "timing"}

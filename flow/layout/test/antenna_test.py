@@ -1,0 +1,33 @@
+"""A wire too large for its gate is found, unless a diffusion or a short wire is all that there is."""
+
+import pytest
+
+from flow.platforms.embedded import process
+
+db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+
+
+@pytest.mark.parametrize("length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0),
+                                                        (500, True, 1)])
+def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
+    from flow.layout.steps.antenna import violations
+    known, _ = process("sky130")
+    layout = db.Layout()
+    top = layout.create_cell("top")
+
+    def draw(layer, *box):
+        top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
+
+    li, m1, mcon = known.wires[0], known.wires[1], known.cuts[0]
+    draw(known.active, 0, 0, 1, 0.5)
+    draw(known.poly, 0.4, -1, 0.55, 1)                                  # a gate of 0.075 um2
+    draw(known.contact, 0.4, -0.9, 0.55, -0.8)
+    draw((li.layer, li.datatype), 0.3, -1, 0.7, -0.5)
+    draw((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6)
+    draw((m1.layer, m1.datatype), 0.3, -0.8, 0.3 + length_um, -0.5)     # side walls: 0.7 um2 a um by two
+    if diffusion:
+        draw(known.active, 0, -3, 1, -2)
+        draw(known.contact, 0.4, -2.5, 0.5, -2.4)
+        draw((li.layer, li.datatype), 0.3, -2.6, 0.7, -0.5)
+    assert len(violations(layout, top, known, 1)) == bad
+    assert not violations(layout, top, known, 0)

@@ -1,0 +1,94 @@
+"""Equal designs are proven equal, and every planted fault is found."""
+
+import re
+import shutil
+from dataclasses import replace
+
+import pytest
+
+from cells.netlist.function import Storage
+from flow.layout import liberty
+from flow.layout.netlist import Instance, Netlist
+from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from flow.layout.steps.synthesis import Synthesis, SynthesisParameters
+from flow.steps import StepError
+
+pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys: not found; install it with: make tools")
+
+RTL = """
+module Counter(input clk, input reset, input [1:0] step, output reg [3:0] count, output high);
+  reg never, odd;
+  assign high = (count > 4'd9) | never;
+  always @(posedge clk) begin
+    count <= reset ? 4'd0 : count + {2'b00, step} + {3'b000, odd};
+    never <= reset ? 1'b0 : step[0] & 1'b0;
+    odd <= count[0];
+  end
+endmodule
+"""
+CELLS = {"inv_x1": ("nq", "!i"), "buf_x1": ("q", "i"), "nand2_x1": ("nq", "!(i0&i1)"), "nor2_x1": ("nq", "!(i0|i1)"),
+         "xor2_x1": ("q", "i0^i1"), "zero_x1": ("zero", "0"), "one_x1": ("one", "1"), "dff_x1": ("q", "IQ")}
+FLIP_FLOP = Storage("ff", "clk", 1, "i", ("i",))
+PORTS = {name: (*sorted(set(re.findall(r"i\d?", function))), output) for name, (output, function) in CELLS.items()}
+LIBERTY = liberty.liberty({name: ({output: function}, FLIP_FLOP if name == "dff_x1" else None)
+                           for name, (output, function) in CELLS.items()},
+                          PORTS | {"dff_x1": ("clk", "i", "q")}, dict.fromkeys(CELLS, 10.0))
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Folder with rtl.v, cells.lib and the synthesized Counter."""
+    folder = tmp_path_factory.mktemp("counter")
+    (folder / "rtl.v").write_text(RTL)
+    (folder / "cells.lib").write_text(LIBERTY)
+    step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
+    found = step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
+                     {name: folder / file for name, file in step.outputs.items()})
+    assert found["flip_flops"] == 5
+    return folder
+
+
+def verdict(folder, netlist, rtl=RTL):
+    """What Equivalence says of ``netlist`` (Netlist) against the Verilog ``rtl``."""
+    netlist.write(folder / "tried.json")
+    (folder / "tried.v").write_text(netlist.verilog())
+    (folder / "tried_rtl.v").write_text(rtl)
+    return Equivalence(EquivalenceParameters("Counter")).run(
+        {"rtl": folder / "tried_rtl.v", "netlist": folder / "tried.json", "verilog": folder / "tried.v",
+         "liberty": folder / "cells.lib"}, {"summary": folder / "equivalence.json"})
+
+
+def test_the_netlist_is_proven_with_its_constant_register_shown_by_induction(made):
+    assert verdict(made, Netlist.read(made / "netlist.json")) == {
+        "equivalence": "proven", "registers": 5, "constant_registers": 1}
+
+
+@pytest.mark.parametrize("old, new", [("4'd9", "4'd8"), ("odd <= count[0]", "odd <= count[1]"), ("4'd0 :", "4'd1 :")])
+def test_a_changed_bit_of_the_rtl_is_found(made, old, new):
+    assert verdict(made, Netlist.read(made / "netlist.json"), RTL.replace(old, new))["equivalence"] == "failed"
+
+
+def test_every_swapped_cell_is_found(made):
+    netlist = Netlist.read(made / "netlist.json")
+    swaps = {"nand2_x1": "nor2_x1", "nor2_x1": "nand2_x1", "xor2_x1": "nand2_x1"}
+    places = [k for k, instance in enumerate(netlist.instances) if instance.cell in swaps][:4]
+    for k in places:
+        old = netlist.instances[k]
+        pins = {"nq" if pin == "q" else pin: net for pin, net in old.pins.items()}
+        swapped = (*netlist.instances[:k], Instance(old.name, swaps[old.cell], pins), *netlist.instances[k + 1:])
+        assert verdict(made, replace(netlist, instances=swapped))["equivalence"] == "failed"
+
+
+def test_a_cut_net_is_found(made):
+    netlist = Netlist.read(made / "netlist.json")
+    k = next(k for k, i in enumerate(netlist.instances) if i.cell.startswith("nand2"))
+    old = netlist.instances[k]
+    cut = (*netlist.instances[:k], replace(old, pins=old.pins | {"i0": "nowhere"}), *netlist.instances[k + 1:])
+    assert verdict(made, replace(netlist, instances=cut))["equivalence"] == "failed"
+
+
+def test_a_flip_flop_that_is_no_register_is_named(made):
+    netlist = Netlist.read(made / "netlist.json")
+    renamed = [replace(i, name="other_reg") if i.name == "count[0]_reg" else i for i in netlist.instances]
+    with pytest.raises(StepError, match="the RTL has no register other"):
+        verdict(made, replace(netlist, instances=tuple(renamed)))

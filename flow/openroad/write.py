@@ -1,0 +1,39 @@
+"""All that a design's run needs, in one folder: Verilog, SDC, Tcl, and projects for flow-scripts and LibreLane."""
+
+import sys
+from pathlib import Path
+
+from flow.files import staged
+from flow.layout.constraints import sdc
+from flow.simulate.process import ToolError, finish
+
+from .librelane import librelane
+from .orfs import orfs
+from .stages import SCRIPTS
+from .tinytapeout import PROJECTS, project_files
+from .variables import variables
+
+ROOT = Path(__file__).parents[2]
+
+
+def rtl(design, folder):
+    """The Verilog of a Design, exported now: text. Raises ToolError."""
+    done = finish([sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder, *design.options], cwd=ROOT)
+    if done.returncode:
+        raise ToolError((done.stderr.strip().splitlines() or ["rtl.export failed"])[-1])
+    return (Path(folder) / f"{design.top}.v").read_text()
+
+
+def write(design, known, folder):
+    """Write the files of ``design`` for the process ``known`` (OpenRoad) into ``folder``; returns their names."""
+    folder = Path(folder)
+    verilog = rtl(design, folder)
+    files = {f"{design.top}.sdc": sdc(design, propagated=False), "design.tcl": variables(design, known),
+             **orfs(design, known, verilog), **librelane(design, known, verilog)}
+    if design.name in PROJECTS:
+        files |= project_files(PROJECTS[design.name], design, verilog)
+    files |= {script.name: script.read_text() for script in SCRIPTS.glob("*.tcl")}
+    for name, text in files.items():
+        with staged((folder / name).parent) as part:
+            (part / Path(name).name).write_text(text)
+    return [f"{design.top}.v", *sorted(files)]

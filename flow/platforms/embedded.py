@@ -1,0 +1,79 @@
+"""What the embedded backend (Coriolis, KLayout) must know of a process: one object a process."""
+
+import importlib
+from dataclasses import dataclass
+
+from models.parameters import ParameterError
+
+PROCESSES = ("sky130",)
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A wiring layer: its name in PDKMaster, GDS layer and datatype, capacitance to the ground plane (aF/um2, aF/um
+    of edge), resistance (Ohm per square), thickness (um), and the most side wall by gate area: antenna_ratio on a net
+    without a diffusion, else antenna_diffusion[0] plus antenna_diffusion[1] an um2 of it."""
+
+    name: str
+    layer: int
+    datatype: int
+    area_af_um2: float
+    edge_af_um: float
+    ohm: float
+    thickness_um: float
+    antenna_ratio: float
+    antenna_diffusion: tuple
+
+
+@dataclass(frozen=True)
+class Cut:
+    """Between two wires: name, GDS layer and datatype, size, space and enclosure by the wires (um), Ohm of one."""
+
+    name: str
+    layer: int
+    datatype: int
+    size_um: float
+    space_um: float
+    enclosure_um: float
+    ohm: float
+
+
+@dataclass(frozen=True)
+class Embedded:
+    """name: of the process. package, wheel: Python package of PDKMaster's description, and its distribution.
+
+    row_um, site_um, grid_um: cell height, placement grid, manufacturing grid. supply_v: volts. fill_cells: cells of no
+    function for empty places. wires: from the cells' rails up; cuts[i] joins wires[i] and wires[i + 1]; straps run on
+    the last wire, strap_um wide, and meet a rail over rail_overlap_um. pin_pitch_um: tracks of the pins' two layers,
+    'horizontal' (west and east) and 'vertical'. label_datatype,
+    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop. poly,
+    active, contact: (GDS layer, datatype), the last between the first two and the lowest wire.
+    """
+
+    name: str
+    package: str
+    wheel: str
+    row_um: float
+    site_um: float
+    grid_um: float
+    supply_v: float
+    fill_cells: tuple
+    wires: tuple
+    cuts: tuple
+    strap_um: float
+    rail_overlap_um: float
+    pin_pitch_um: dict
+    label_datatype: int
+    pin_datatype: int
+    blockage_layer: int
+    poly: tuple
+    active: tuple
+    contact: tuple
+
+
+def process(pdk):
+    """(Embedded, function that makes the PDKMaster library) of ``pdk``. Raises ParameterError."""
+    if pdk not in PROCESSES:
+        raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)}")
+    module = importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.embedded")
+    return module.PROCESS, module.library

@@ -1,0 +1,89 @@
+"""Steps: run once for the same inputs, held to what they declare."""
+
+from dataclasses import dataclass, field
+
+import pytest
+
+from flow.steps import Runner, Step, StepError
+from models.parameters import ParameterError
+
+
+@dataclass(frozen=True)
+class Times:
+    times: int = field(default=2, metadata={"unit": "1"})
+
+
+class Repeat(Step):
+    name = "repeat"
+    inputs = {"text": "text"}
+    outputs = {"text": "out.txt"}
+    Parameters = Times
+    metrics = {"length": "B"}
+
+    def run(self, inputs, outputs):
+        made = inputs["text"].read_text() * self.parameters.times
+        outputs["text"].write_text(made)
+        return {"length": len(made)}
+
+
+class Again(Repeat):
+    name = "again"
+    inputs = {"text": "repeat.text"}
+
+
+class Careless(Repeat):
+    name = "careless"
+
+    def run(self, inputs, outputs):
+        outputs["text"].with_name("more.txt").write_text("")
+        return {"length": 0}
+
+
+class Crash(Repeat):
+    name = "crash"
+
+    def run(self, inputs, outputs):
+        import os
+        os._exit(3)
+
+
+@pytest.fixture
+def text(tmp_path):
+    (tmp_path / "text").write_text("ab")
+    return tmp_path / "text"
+
+
+def test_a_chain_runs_once_and_again_when_its_input_changed(tmp_path, text):
+    def run():
+        runner = Runner(tmp_path / "steps", {"text": text})
+        return [runner.run(step) for step in (Repeat(Times(3)), Again())], runner.paths["again.text"]
+
+    (first, second), path = run()
+    assert path.read_text() == "ab" * 6 and second["metrics"] == {"length": 12}
+    assert first["parameters"] == {"times": 3} and first["parameter_units"] == {"times": "1"}
+    made = path.stat().st_mtime_ns
+    assert run()[1].stat().st_mtime_ns == made
+    text.write_text("c")
+    assert run()[1].read_text() == "c" * 6
+    assert path.exists()
+
+
+def test_a_step_that_breaks_its_declaration_leaves_nothing(tmp_path, text):
+    with pytest.raises(StepError, match=r"did not write \['out.txt'\], wrote undeclared \['more.txt'\]"):
+        Runner(tmp_path / "steps", {"text": text}).run(Careless())
+    assert not list((tmp_path / "steps").iterdir())
+
+
+def test_a_crash_in_a_step_is_told(tmp_path, text):
+    with pytest.raises(StepError, match="ended without a word"):
+        Runner(tmp_path / "steps", {"text": text}).run(Crash())
+
+
+def test_a_missing_input_is_named(tmp_path):
+    with pytest.raises(StepError, match="nothing gives its input repeat.text"):
+        Runner(tmp_path, {}).run(Again())
+
+
+def test_parameters_of_another_step_are_refused():
+    with pytest.raises(ParameterError, match="must be a Times"):
+        Repeat({"times": 2})
