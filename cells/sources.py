@@ -14,7 +14,7 @@ from flow.simulate import process as child
 from models.parameters import ParameterError
 
 LIBRARIES = ("sky130_hd", "flexcell")
-NETLISTS = ("extracted", "devices", "schematic")
+NETLISTS = ("extracted", "capacitances", "devices", "schematic")
 FLEXCELL = Path("build/cells/flexcell")
 # cells without an input that hold a constant: cell -> pin: level
 CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}},
@@ -47,21 +47,22 @@ def names(library):
 
 
 def source(library, name, netlist="extracted"):
-    """Source of one cell. netlist: 'extracted' with stray capacitances, 'devices' with the transistors as laid out
+    """Source of one cell. netlist: 'extracted' with stray capacitances and the resistance of wires and contacts,
 
-    alone, 'schematic' as the library's own netlist has it. Raises ParameterError for a cell that is not there.
+    'capacitances' with the former alone, 'devices' with the transistors as laid out alone, 'schematic' as the library's
+    own netlist has it. Raises ParameterError for a cell that is not there.
     """
     if netlist not in NETLISTS:
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
-    strays = netlist == "extracted"
+    strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
     if library == "flexcell":
         if netlist == "schematic":
             raise ParameterError("netlist = 'schematic': must be extracted or devices for flexcell")
         gds = FLEXCELL / "flexcell.gds"
-        return Source(name, extract(gds, name, sky130_layout, strays=strays), gds, None, None, _flexcell_areas()[name])
+        return Source(name, extract(gds, name, sky130_layout, **strays), gds, None, None, _flexcell_areas()[name])
     files = {kind: sky130_hd.file(name, kind) for kind in ("gds", "spice", "lef", "functional.v")}
     text = (files["spice"].read_text() if netlist == "schematic" else
-            extract(files["gds"], files["gds"].stem, sky130_layout, strays=strays))
+            extract(files["gds"], files["gds"].stem, sky130_layout, **strays))
     lef = files["lef"].read_text()
     return Source(name, text, files["gds"], lef, files["functional.v"].read_text(), area(lef))
 

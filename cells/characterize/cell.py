@@ -21,6 +21,7 @@ def characterize(cell, process, conditions):
         tried = _Tries(out["failed"])
         axes = {output: tried(f"{output}: axes", axes_of, bench, output) for output in cell.machine.outputs}
         bench.pressed = {output: axis[1][-2] for output, axis in axes.items() if axis}
+        bench.middle = {output: float(np.sqrt(axis[1][0] * axis[1][-1])) for output, axis in axes.items() if axis}
         out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
         out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
         out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,

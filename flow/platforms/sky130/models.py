@@ -26,7 +26,7 @@ from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 
 SETS = ("binned", "continuous", "fitted")
-FIT = {"n": 0.88, "p": 1.0}
+FIT = {"n": 0.913, "p": 1.10}
 LEAKAGE = {"tt": "tt_leak", "ff": "leak"}
 POLARITY = {"sky130_fd_pr__nfet_01v8": "n", "sky130_fd_pr__special_nfet_01v8": "n",
             "sky130_fd_pr__nfet_01v8_lvt": "n", "sky130_fd_pr__pfet_01v8": "p", "sky130_fd_pr__pfet_01v8_hvt": "p",
