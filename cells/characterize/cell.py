@@ -20,8 +20,10 @@ def characterize(cell, process, conditions):
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
         axes = {output: tried(f"{output}: axes", axes_of, bench, output) for output in cell.machine.outputs}
-        bench.pressed = {output: axis[1][-2] for output, axis in axes.items() if axis}
-        bench.middle = {output: float(np.sqrt(axis[1][0] * axis[1][-1])) for output, axis in axes.items() if axis}
+        for output, axis in axes.items():
+            if axis:
+                bench.middle[output] = _between(axis[1], 1 / 2)
+                bench.pressed[output] = _between(axis[1], 2 / 3)
         out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
         out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
         out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,
@@ -68,6 +70,11 @@ def axes_of(bench, output):
     edges = list({change.after.outputs[number]: change for change in changes}.values())
     loads = delay.load_axis(bench.conditions, delay.largest_load(bench, edges, output))
     return grid.refined(bench, edges, output, loads)
+
+
+def _between(loads, share):
+    """F at a ``share`` of an axis, by its ends: more points in it change nothing."""
+    return float(loads[0] ** (1 - share) * loads[-1] ** share)
 
 
 def _arc(bench, arc, slews, loads):
