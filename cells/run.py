@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from cells import sources
 from cells.characterize.cell import characterize
-from cells.liberty import build, compare, reference, write
+from cells.liberty import accept, build, compare, reference, write
 from cells.liberty import check as check_library
 from cells.netlist.check import check
 from cells.netlist.function import understand
@@ -24,7 +24,10 @@ CODE = Path(__file__).resolve().parent
 
 
 def run(library, conditions, wanted, netlist, out, against, workers, started):
-    """Characterize and write <out>/<library>/<corner>.lib, .lef, .v and summary.json: the summary.
+    """Characterize and write <out>/<library>/<corner>.lib, <library>.lef, <library>.v and summary.json: the summary.
+
+    summary.json: that of this corner, and of every corner whose .lib lies there under 'corners'; LEF and Verilog have
+    the cells of all of them.
 
     wanted: names, or None for all. netlist: as in sources.NETLISTS. against: folder of SkyWater's tables, or None.
     """
@@ -46,11 +49,12 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
-        macros = (sources.abstract(c, s) for c, s in zip(cells, found, strict=True))
-        (part / f"{library}.lef").write_text("\n".join(["VERSION 5.8 ;", *macros, "END LIBRARY", ""]))
-        if verilog := [s.verilog for s in found if s.verilog]:
-            (part / f"{library}.v").write_text("\n".join(verilog))
-        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+        summary |= {"names": [s.name for s in found], "read_by": accept.readers(part / f"{name}.lib")}
+        summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items() if said not in accept.GOOD]
+        corners = _corners(folder) | {name: dict(summary)}
+        for suffix, text in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
+            (part / f"{library}.{suffix}").write_text(text)
+        (part / "summary.json").write_text(json.dumps({"corner": name, **summary, "corners": corners}, indent=1) + "\n")
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
             file = folder / "failed" / f"{measure['name']}.{k}.sp"
@@ -78,6 +82,15 @@ def job(source, conditions, process):
 def _measure(source, conditions, process):
     module = importlib.import_module(process)
     return characterize(cell_of(source, module), module, conditions)
+
+
+def _corners(folder):
+    """{corner: summary} of earlier runs whose library is still there."""
+    try:
+        known = json.loads((folder / "summary.json").read_text()).get("corners", {})
+    except (OSError, ValueError):
+        return {}
+    return {name: summary for name, summary in known.items() if (folder / f"{name}.lib").exists()}
 
 
 def _summary(cells, measured, tree, known, seconds):

@@ -1,4 +1,4 @@
-"""Where the cells of a library come from: netlist, abstract, Verilog and area of each."""
+"""Where the cells of a library come from: netlist and area of each, abstracts and Verilog of all."""
 
 import json
 import re
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cells.extract import extract
+from cells.lef import header as lef_header
 from flow.platforms.sky130 import cells as sky130_hd
 from flow.platforms.sky130 import models as sky130
 from flow.platforms.sky130 import process as sky130_layout
@@ -24,16 +25,10 @@ _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
 
 @dataclass(frozen=True)
 class Source:
-    """name: short ('nand2_1'). netlist: SPICE text; gds: its file; lef: text or None; verilog: text or None;
-
-    area: um2.
-    """
+    """name: short ('nand2_1'). netlist: SPICE text; area: um2."""
 
     name: str
     netlist: str
-    gds: Path
-    lef: str | None
-    verilog: str | None
     area: float
 
 
@@ -57,14 +52,23 @@ def source(library, name, netlist="extracted"):
     strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
     if library == "flexcell":
         if netlist == "schematic":
-            raise ParameterError("netlist = 'schematic': must be extracted or devices for flexcell")
-        gds = FLEXCELL / "flexcell.gds"
-        return Source(name, extract(gds, name, sky130_layout, **strays), gds, None, None, _flexcell_areas()[name])
-    files = {kind: sky130_hd.file(name, kind) for kind in ("gds", "spice", "lef", "functional.v")}
-    text = (files["spice"].read_text() if netlist == "schematic" else
-            extract(files["gds"], files["gds"].stem, sky130_layout, **strays))
-    lef = files["lef"].read_text()
-    return Source(name, text, files["gds"], lef, files["functional.v"].read_text(), area(lef))
+            raise ParameterError("netlist = 'schematic': must be another for flexcell")
+        return Source(name, extract(FLEXCELL / "flexcell.gds", name, sky130_layout, **strays), _flexcell_areas()[name])
+    gds = sky130_hd.file(name, "gds")
+    text = (sky130_hd.file(name, "spice").read_text() if netlist == "schematic" else
+            extract(gds, gds.stem, sky130_layout, **strays))
+    return Source(name, text, area(sky130_hd.file(name, "lef").read_text()))
+
+
+def files(library, cells):
+    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of FlexCell all cells."""
+    if library == "flexcell":
+        return {suffix: (FLEXCELL / f"flexcell.{suffix}").read_text() for suffix in ("lef", "v")}
+    names = sorted({*cells, *CONSTANTS[library]})
+    macros = (sky130_hd.file(name, "lef").read_text() for name in names)
+    macros = [text[text.find("MACRO"):text.rfind("END LIBRARY")].rstrip() for text in macros]
+    return {"lef": lef_header(*sky130_hd.SITE) + "\n\n".join(macros) + "\n\nEND LIBRARY\n",
+            "v": "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names)}
 
 
 def constants(library):
@@ -86,19 +90,6 @@ def process(library):
     if library not in LIBRARIES:
         raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
     return sky130
-
-
-def abstract(cell, source):
-    """LEF macro of ``cell`` (Cell): the vendor's, or made from its GDS."""
-    if source.lef is not None:
-        return source.lef[source.lef.find("MACRO"):source.lef.rfind("END LIBRARY")].rstrip()
-    from cells import lef
-    machine, clock = cell.machine, cell.storage and cell.storage.clock
-    pins = {pin: lef.Pin("INPUT", "CLOCK" if pin == clock else "SIGNAL") for pin in machine.inputs}
-    pins |= {pin: lef.Pin("OUTPUT") for pin in machine.outputs}
-    pins |= {rail: lef.Pin("INOUT", "POWER" if level else "GROUND") for rail, level in sky130.SUPPLIES.items()
-             if rail in machine.netlist.ports}
-    return lef.abstract(source.gds, cell.name, sky130_layout.PROCESS, pins, "flexcell").rstrip()
 
 
 def _flexcell_areas():
