@@ -15,6 +15,7 @@ from cells.liberty import check as check_library
 from cells.netlist.check import check
 from cells.netlist.function import understand
 from cells.netlist.spice import parse
+from cells.spice.circuit import circuit
 from flow import jobs
 from flow.files import staged
 from flow.simulate.process import finish
@@ -39,12 +40,15 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     found = [sources.source(library, cell, netlist) for cell in tqdm(wanted or everything, "netlists", disable=None)]
     found.sort(key=lambda source: -len(source.netlist))              # what takes longest goes first
     cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
-    folder = Path(out) / library
-    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{library} {name}",
+    for cell in cells:
+        _has_models(cell, process, conditions)
+    title = sources.title(library)
+    folder = Path(out) / title
+    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{title} {name}",
                         workers)
     by_name = sorted(zip(cells, measured, found, strict=True), key=lambda entry: entry[2].name)
     cells, measured, found = zip(*by_name, strict=True)
-    tree = build.library(f"{library}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
+    tree = build.library(f"{title}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
                          {} if wanted else sources.constants(library))
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
@@ -53,7 +57,7 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
         summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items() if said not in accept.GOOD]
         corners = _corners(folder) | {name: dict(summary)}
         for suffix, text in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
-            (part / f"{library}.{suffix}").write_text(text)
+            (part / f"{title}.{suffix}").write_text(text)
         (part / "summary.json").write_text(json.dumps({"corner": name, **summary, "corners": corners}, indent=1) + "\n")
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
@@ -66,9 +70,16 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
 def cell_of(source, process):
     """Cell of a Source, checked. Raises ParameterError."""
     netlist = parse(source.netlist, origin=source.name)
-    rails = [rail for rail in process.SUPPLIES if rail in netlist.ports]
-    check(netlist, process.POLARITY, rails)
+    check(netlist, process.POLARITY, process.SUPPLIES)
     return understand(netlist, process.POLARITY, process.SUPPLIES)
+
+
+def _has_models(cell, process, conditions):
+    """Raise ParameterError, before anything runs, when a transistor of ``cell`` has a size that no model is for."""
+    try:
+        circuit(cell.machine.netlist, process, conditions.models, conditions.corner)
+    except ParameterError as error:
+        raise ParameterError(f"netlist = {cell.name}: {error}") from None
 
 
 def job(source, conditions, process):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cells.extract import extract
 from cells.lef import header as lef_header
+from cells.netlist import spice
 from flow.platforms.sky130 import cells as sky130_hd
 from flow.platforms.sky130 import models as sky130
 from flow.platforms.sky130 import process as sky130_layout
@@ -25,20 +26,28 @@ _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
 
 @dataclass(frozen=True)
 class Source:
-    """name: short ('nand2_1'). netlist: SPICE text; area: um2."""
+    """name: short ('nand2_1'). netlist: SPICE text; area: um2, or None where no layout says it."""
 
     name: str
     netlist: str
-    area: float
+    area: float | None
 
 
 def names(library):
-    """Cells of ``library`` that synthesis may use, sorted. FlexCell is drawn first if it is not there."""
+    """Cells of ``library`` that synthesis may use, sorted: of LIBRARIES, or every .subckt of a SPICE file.
+
+    FlexCell is drawn first if it is not there.
+    """
     if library == "sky130_hd":
         return sky130_hd.names()
     if library == "flexcell":
         return sorted(name for name in _flexcell_areas() if not name.startswith(_NOT_LOGIC))
-    raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
+    return sorted(spice.read_all(_file(library)))
+
+
+def title(library):
+    """What its folder and files are called."""
+    return library if library in LIBRARIES else _file(library).stem
 
 
 def source(library, name, netlist="extracted"):
@@ -49,6 +58,8 @@ def source(library, name, netlist="extracted"):
     """
     if netlist not in NETLISTS:
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
+    if library not in LIBRARIES:
+        return Source(name, spice.subcircuit(_file(library).read_text(), name), None)
     strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
     if library == "flexcell":
         if netlist == "schematic":
@@ -61,7 +72,12 @@ def source(library, name, netlist="extracted"):
 
 
 def files(library, cells):
-    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of FlexCell all cells."""
+    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of FlexCell all cells.
+
+    Nothing of a SPICE file, which has neither.
+    """
+    if library not in LIBRARIES:
+        return {}
     if library == "flexcell":
         return {suffix: (FLEXCELL / f"flexcell.{suffix}").read_text() for suffix in ("lef", "v")}
     names = sorted({*cells, *CONSTANTS[library]})
@@ -73,6 +89,8 @@ def files(library, cells):
 
 def constants(library):
     """{cell's whole name: (pin: level, area in um2)} of the cells that hold a constant."""
+    if library not in LIBRARIES:
+        return {}
     if library == "flexcell":
         return {name: (pins, _flexcell_areas()[name]) for name, pins in CONSTANTS[library].items()}
     return {f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
@@ -88,8 +106,16 @@ def area(lef):
 def process(library):
     """Module with the models of the process that ``library`` is made in."""
     if library not in LIBRARIES:
-        raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
+        _file(library)
     return sky130
+
+
+def _file(library):
+    """Path of a SPICE file given as library. Raises ParameterError when there is none."""
+    path = Path(library)
+    if not path.is_file():
+        raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}, or a SPICE file")
+    return path
 
 
 def _flexcell_areas():

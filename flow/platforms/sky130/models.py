@@ -130,7 +130,7 @@ def _subcircuit(path, name, sizes):
         if any(low_l - 1e-6 <= l <= high_l + 1e-6 and low_w - 1e-6 <= w <= high_w + 1e-6 for w, l in sizes):
             lines += bin_lines
     if bins and not lines:
-        raise ParameterError(f"netlist = {name}: has no model for w and l of {sorted(sizes)} um")
+        raise ParameterError(f"model = {name}: has no model for w and l of {sorted(sizes)} um")
     return [*_joined(head), *lines, *tail]
 
 
