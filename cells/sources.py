@@ -7,6 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cells.extract import extract
+from cells.flexcell.canvas import Canvas
+from cells.flexcell.catalogue import schematics
+from cells.flexcell.library import schematic_spice, written
 from cells.lef import header as lef_header
 from cells.netlist import spice
 from flow.platforms.sky130 import cells as sky130_hd
@@ -63,7 +66,7 @@ def source(library, name, netlist="extracted"):
     strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
     if library == "flexcell":
         if netlist == "schematic":
-            raise ParameterError("netlist = 'schematic': must be another for flexcell")
+            return Source(name, schematic_spice(schematics()[name], Canvas()), _flexcell_areas()[name])
         return Source(name, extract(FLEXCELL / "flexcell.gds", name, sky130_layout, **strays), _flexcell_areas()[name])
     gds = sky130_hd.file(name, "gds")
     text = (sky130_hd.file(name, "spice").read_text() if netlist == "schematic" else
@@ -119,7 +122,6 @@ def _file(library):
 
 
 def _flexcell_areas():
-    """um2 of every cell of FlexCell, drawn now if it is not there."""
-    if not (FLEXCELL / "areas.json").exists():
-        child.run([sys.executable, "-m", "cells.flexcell", "--no-check", "--out", FLEXCELL])
+    """um2 of every cell of FlexCell, drawn now if it is not there or was drawn by other code."""
+    written(FLEXCELL)
     return json.loads((FLEXCELL / "areas.json").read_text())
