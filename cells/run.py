@@ -54,7 +54,8 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
         summary |= {"names": [s.name for s in found], "read_by": accept.readers(part / f"{name}.lib")}
-        summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items() if said not in accept.GOOD]
+        summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items()
+                                if said not in accept.GOOD]
         corners = _corners(folder) | {name: dict(summary)}
         for suffix, text in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
             (part / f"{title}.{suffix}").write_text(text)
@@ -87,7 +88,8 @@ def job(source, conditions, process):
     code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
     name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
     return jobs.Job(name, _measure, (source, conditions, process.__name__),
-                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), finish(["ngspice", "--version"]).stdout, *code))
+                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__),
+                     finish(["ngspice", "--version"]).stdout, *code))
 
 
 def _measure(source, conditions, process):
@@ -111,7 +113,9 @@ def _summary(cells, measured, tree, known, seconds):
                "simulations": sum(m["simulations"] for m in measured),
                "repeated": sum(m["repeated"] for m in measured), "failed": failed,
                "problems": check_library.problems(tree), "wall_s": round(seconds, 1),
-               "cell_s": {m["name"]: m["wall_s"] for m in measured}}
+               "cpu_s": round(sum(m["cpu_s"] for m in measured), 1),
+               "cell_s": {m["name"]: m["wall_s"] for m in measured},
+               "cell_cpu_s": {m["name"]: m["cpu_s"] for m in measured}}
     if known:
         summary |= compare.summary(compare.library(tree, known))
     return summary

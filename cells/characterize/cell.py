@@ -1,5 +1,6 @@
 """Everything about one cell at one corner, as plain data that JSON holds: what Liberty is written from."""
 
+import resource
 import time
 
 import numpy as np
@@ -14,8 +15,11 @@ from cells.spice.engine import SimulationError
 
 
 def characterize(cell, process, conditions):
-    """dict: what `cells.liberty.build` takes, with SI units, 'failed' (what, why, deck), counts and seconds."""
-    started = time.monotonic()
+    """dict: what `cells.liberty.build` takes, with SI units, 'failed' (what, why, deck), counts and seconds.
+
+    wall_s: by the clock; cpu_s: of this process and of ngspice.
+    """
+    started, used = time.monotonic(), _cpu()
     out = {"name": cell.name, "failed": [], "slews": conditions.slews}
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
@@ -40,8 +44,14 @@ def characterize(cell, process, conditions):
     with Bench(cell, process, conditions, leakage=True) as bench:
         out["leakage"] = tried("leakage", leakage, bench) or []
     out["simulations"], out["repeated"] = runs + bench.simulator.runs, repeated + bench.simulator.repeated
-    out["wall_s"] = round(time.monotonic() - started, 2)
+    out["wall_s"], out["cpu_s"] = round(time.monotonic() - started, 2), round(_cpu() - used, 2)
     return out
+
+
+def _cpu():
+    """Processor's seconds of this process and of its children that have ended."""
+    return sum(part.ru_utime + part.ru_stime
+               for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
 
 
 class _Tries:
@@ -83,7 +93,6 @@ def _arc(bench, arc, slews, loads):
     return {"pin": arc.pin, "pin_edge": arc.pin_edge, "output": arc.output, "edge": arc.edge, "type": arc.type,
             "sense": arc.sense, "slews": table.slews, "loads": table.loads,
             "state": list(change.before.inputs), **_lists(table.values)}
-
 
 
 def _without_clock(out, cell):

