@@ -19,7 +19,7 @@ def characterize(cell, process, conditions):
 
     wall_s: by the clock; cpu_s: of this process and of ngspice.
     """
-    started, used = time.monotonic(), _cpu()
+    started, used = time.monotonic(), cpu_seconds()
     out = {"name": cell.name, "failed": [], "slews": conditions.slews}
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
@@ -44,11 +44,11 @@ def characterize(cell, process, conditions):
     with Bench(cell, process, conditions, leakage=True) as bench:
         out["leakage"] = tried("leakage", leakage, bench) or []
     out["simulations"], out["repeated"] = runs + bench.simulator.runs, repeated + bench.simulator.repeated
-    out["wall_s"], out["cpu_s"] = round(time.monotonic() - started, 2), round(_cpu() - used, 2)
+    out["wall_s"], out["cpu_s"] = round(time.monotonic() - started, 2), round(cpu_seconds() - used, 2)
     return out
 
 
-def _cpu():
+def cpu_seconds():
     """Processor's seconds of this process and of its children that have ended."""
     return sum(part.ru_utime + part.ru_stime
                for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
