@@ -68,7 +68,7 @@ def spef(netlist, nets):
     pins = {}
     for instance in netlist.instances:
         for pin, net in instance.pins.items():
-            pins.setdefault(net, []).append((f"{_name(instance.name)}:{pin}", pin))
+            pins.setdefault(net, []).append((f"{_name(instance.name, ())}:{pin}", pin))
     ports = {net: port.direction for port in netlist.ports for net in port.bits()}
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.name}"', '*DATE ""', '*VENDOR ""', '*PROGRAM "talbot"',
              '*VERSION ""', '*DESIGN_FLOW ""', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS",
@@ -76,9 +76,9 @@ def spef(netlist, nets):
     for net, (femtofarad, ohm) in sorted(nets.items()):
         ends = [f"*I {pin} {'O' if name in OUTPUTS else 'I'}" for pin, name in pins.get(net, [])]
         if net in ports:
-            ends.append(f"*P {_name(net)} {'I' if ports[net] == 'input' else 'O'}")
-        center = f"{_name(net)}:1"
-        lines += ["", f"*D_NET {_name(net)} {femtofarad:.4f}", "*CONN", *ends, "*CAP", f"1 {center} {femtofarad:.4f}",
+            ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
+        center = f"{_name(net, ports)}:1"
+        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends, "*CAP", f"1 {center} {femtofarad:.4f}",
                   "*RES", *(f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1)),
                   "*END"]
     return "\n".join(lines) + "\n"
@@ -87,6 +87,8 @@ def spef(netlist, nets):
 OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 
 
-def _name(name):
-    """As SPEF writes it: everything but letters, digits, _ and a bus's brackets behind a backslash."""
-    return "".join(c if c.isalnum() or c in "_[]" else f"\\{c}" for c in name)
+def _name(name, ports):
+    """As SPEF writes it: everything but letters, digits and _ behind a backslash, but for the brackets of a bus's bit
+    (what is in ``ports``): a bracket in the name of a register is a letter of it."""
+    letters = "_[]" if name in ports else "_"
+    return "".join(c if c.isalnum() or c in letters else f"\\{c}" for c in name)

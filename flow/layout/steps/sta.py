@@ -53,6 +53,8 @@ class Sta(Step):
         script.write_text(SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
         said = run(["sta", "-no_splash", "-no_init", "-exit", script])
         outputs["report"].write_text(said)
+        if lost := re.search(r"spef.*not found", said):
+            raise StepError(f"sta: OpenSTA does not know a name of the SPEF: {lost[0]}")
         if "Error" in said or "WORST setup" not in said:
             raise StepError(f"sta: OpenSTA: {next((s for s in said.splitlines() if 'Error' in s), 'no slack')}")
         worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
