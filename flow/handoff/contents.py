@@ -7,17 +7,15 @@ from pathlib import Path
 
 from flow.layout.netlist import SUPPLIES
 from flow.layout.summary import broken
-from flow.platforms import embedded, openroad
 from models.parameters import ParameterError
 
-from .abstract import abstract, ports
 from .archive import sha256
 from .pages import datasheet, pinout
 from .power import powered
 
 WAIVERS = Path(__file__).parent / "waivers.json"
 # suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
-REQUIRED = {"gds": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports", "lvsdb": "reports"}
+REQUIRED = {"gds": "layout", "lef": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports", "lvsdb": "reports"}
 OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, with the SPEF and the cells' Liberty"),
             "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
             "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
@@ -69,20 +67,11 @@ def contents(design, folder, waivers):
         if not found:
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
-    lef = _lef(folder / f"{design.name}.lef", summary["pdk"], netlist)
-    files |= {f"layout/{design.name}.lef": lef.encode(),
-              f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
+    lef = files[f"layout/{design.name}.lef"].decode()
+    files |= {f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
               "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
               "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode()}
     return files, substitutes
-
-
-def _lef(path, pdk, netlist):
-    """Text of the layout's LEF, made from its GDS where it has none."""
-    if path.is_file():
-        return path.read_text()
-    names = {numbers: name for name, numbers in openroad.process(pdk).gds.items()} if pdk in openroad.PROCESSES else {}
-    return abstract(path.with_suffix(".gds"), ports(netlist), embedded.process(pdk)[0], names)
 
 
 def manifest(design, files, substitutes):

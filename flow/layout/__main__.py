@@ -21,7 +21,10 @@ from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
 RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
-           "spef": "extraction.spef", "sdc": "sdc"}
+           "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
+BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty",
+             "power.json": "power_{}.instances"}
+FIRST = "sdf", "lib"            # of the first corner, also under the design's name alone
 
 
 def arguments():
@@ -50,8 +53,10 @@ def main(argv=None):
             runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)
-        results = RESULTS | {f"{corner}.{suffix}": f"sta_{corner}.{output}" for corner in settings.corners
-                             for suffix, output in (("sdf", "sdf"), ("sta.txt", "report"))}
+        results = RESULTS | {f"{corner}.{suffix}": source.format(corner) for corner in settings.corners
+                             for suffix, source in BY_CORNER.items()}
+        for suffix in FIRST if settings.corners else ():
+            results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
         made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png")]
         with staged(folder, made) as part:       # an earlier run's go where this one has none
             for suffix, source in results.items():

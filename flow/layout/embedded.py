@@ -11,16 +11,21 @@ from models.parameters import ParameterError, check_real
 
 from .constraints import sdc
 from .steps.antenna import Antenna, AntennaParameters
+from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
+from .steps.gate_delays import GateDelays, GateDelaysParameters
 from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
+from .steps.lef import Lef, LefParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
+from .steps.power import Power, PowerParameters
 from .steps.sta import Sta, StaParameters
+from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
 
@@ -93,12 +98,28 @@ def judged(design, options):
 
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
-    clock = design.clock
-    tests = ([GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
-             if design.netlist_names else [GateFrames()])
-    timing = [Sta(StaParameters(design.top, corner, clock.period_ns)) for corner in options.corners]
-    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
-            Extraction(ExtractionParameters(options.pdk)), *timing]
+    return [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design), Lvs(),
+            Lef(LefParameters(options.pdk)), Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+
+
+def simulations(design):
+    """The block's tests on both netlists, in both simulators; of the chip, whole frames."""
+    if not design.netlist_names:
+        return [GateFrames()]
+    return [GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top, netlist, simulator))
+            for netlist, simulator in (("synthesized", "icarus"), ("final", "icarus"), ("final", "verilator"))]
+
+
+def timed(design, options):
+    """The steps that want characterized cells, corner by corner."""
+    clock, around = design.clock, design.surroundings
+    steps = [Stimulus(StimulusParameters(design.top))] if options.corners else []
+    for corner in options.corners:
+        steps += [Sta(StaParameters(design.top, corner, clock.period_ns)),
+                  BlockLiberty(BlockLibertyParameters(corner, clock.port)),
+                  GateDelays(GateDelaysParameters(corner, clock.period_ns, around.input_delay, around.output_delay)),
+                  Power(PowerParameters(design.top, corner, clock.period_ns))]
+    return steps
 
 
 def layout(design, options, runner):

@@ -41,8 +41,8 @@ class Antenna(Step):
         return {"antenna_violations": sum(map(len, found.values())), "density": density}
 
 
-def violations(layout, top, known, level):
-    """Boxes (um, as text) of the nets whose wire known.wires[level] is too large for their gates: list."""
+def connected(layout, top, known, level):
+    """(LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]), all below that wire joined."""
     import klayout.db as db
 
     def region(pair):
@@ -74,6 +74,13 @@ def violations(layout, top, known, level):
             l2n.connect(below)
             l2n.connect(metal, below)
     l2n.extract_netlist()
+    return l2n, gate, diffusion, wires
+
+
+def violations(layout, top, known, level):
+    """Boxes (um, as text) of the nets whose wire known.wires[level] is too large for their gates: list."""
+    import klayout.db as db
+    l2n, gate, diffusion, wires = connected(layout, top, known, level)
     wire = known.wires[level]
     safe = 1e9          # for what has a diffusion, in the check of what has none
     base, more = wire.antenna_diffusion
