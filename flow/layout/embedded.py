@@ -18,7 +18,7 @@ from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.library import Library, LibraryParameters
-from .steps.lvs import Lvs
+from .steps.lvs import Lvs, LvsParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.sta import Sta, StaParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
@@ -97,7 +97,7 @@ def back(design, options):
     tests = ([GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
              if design.netlist_names else [GateFrames()])
     timing = [Sta(StaParameters(design.top, corner, clock.period_ns)) for corner in options.corners]
-    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
+    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(LvsParameters(options.pdk)),
             Extraction(ExtractionParameters(options.pdk)), *timing]
 
 
