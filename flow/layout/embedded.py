@@ -21,7 +21,7 @@ from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.lef import Lef, LefParameters
 from .steps.library import Library, LibraryParameters
-from .steps.lvs import Lvs
+from .steps.lvs import Lvs, LvsParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.power import Power, PowerParameters
 from .steps.sta import Sta, StaParameters
@@ -98,8 +98,9 @@ def judged(design, options):
 
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
-    return [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design), Lvs(),
-            Lef(LefParameters(options.pdk)), Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+    return [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
+            Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
+            Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
 
 
 def simulations(design):
