@@ -20,10 +20,10 @@ from .report import page
 from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
-RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
+RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
            "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
 BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty",
-             "power.json": "power_{}.instances"}
+             "power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
 FIRST = "sdf", "lib"            # of the first corner, also under the design's name alone
 
 
@@ -62,8 +62,8 @@ def main(argv=None):
             for suffix, source in results.items():
                 if source in runner.paths:
                     shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
-            if "stream_out.gds" in runner.paths:
-                render(runner.paths["stream_out.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
+            if "fill.gds" in runner.paths:
+                render(runner.paths["fill.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
             picture = f"{chosen.name}.png" if (part / f"{chosen.name}.png").exists() else None
             (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture))
             (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")

@@ -15,10 +15,12 @@ from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
+from .steps.fill import Fill, FillParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.gate_delays import GateDelays, GateDelaysParameters
 from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
+from .steps.ir_drop import IrDrop, IrDropParameters
 from .steps.lef import Lef, LefParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs, LvsParameters
@@ -92,7 +94,7 @@ def tries(design, options):
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc(),
+    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Fill(FillParameters(options.pdk)), Drc(),
             Antenna(AntennaParameters(options.pdk))]
 
 
@@ -119,7 +121,8 @@ def timed(design, options):
         steps += [Sta(StaParameters(design.top, corner, clock.period_ns)),
                   BlockLiberty(BlockLibertyParameters(corner, clock.port)),
                   GateDelays(GateDelaysParameters(corner, clock.period_ns, around.input_delay, around.output_delay)),
-                  Power(PowerParameters(design.top, corner, clock.period_ns))]
+                  Power(PowerParameters(design.top, corner, clock.period_ns)),
+                  IrDrop(IrDropParameters(options.pdk, corner))]
     return steps
 
 

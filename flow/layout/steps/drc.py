@@ -12,7 +12,7 @@ class Drc(Step):
     """Every rule of the deck over the whole layout; the report opens in KLayout."""
 
     name = "drc"
-    inputs = {"gds": "stream_out.gds", "deck": "library.drc"}
+    inputs = {"gds": "fill.gds", "deck": "library.drc"}
     outputs = {"report": "drc.lyrdb", "summary": "drc.json"}
     metrics = {"drc_violations": ""}
     uses = (klayout_decks,)

@@ -27,7 +27,7 @@ class Lvs(Step):
     """
 
     name = "lvs"
-    inputs = {"gds": "stream_out.gds", "spice": "stream_out.spice", "netlist": "place_route.netlist",
+    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "place_route.netlist",
               "deck": "library.lvs"}
     outputs = {"report": "lvs.lvsdb", "deck": "ports.lvs"}
     Parameters = LvsParameters
