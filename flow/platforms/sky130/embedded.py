@@ -1,9 +1,7 @@
 """SKY130 for the embedded backend: what Coriolis, KLayout and the steps of flow.layout must know of it."""
 
-import asyncio
-import contextlib
-
 from flow.platforms.embedded import Cut, Embedded, Fill, Wire
+from flow.platforms.patience import patience
 
 
 def library():
@@ -19,22 +17,11 @@ def library():
         pmos_min_w=0.84, cell_height=PROCESS.row_um, cell_horplacement_grid=PROCESS.site_um, m1_vssrail_width=0.95,
         m1_vddrail_width=0.95, well_edge_height=2.7)
     made = RoutingGaugeLibrary(name="StdCellLib", tech=tech, routinggauge=canvas.routinggauge)
-    with _patience():
+    with patience():
         stdcell.StdCellFactory(lib=made, canvas=canvas).add_default()
         for cell in made.cells:
             cell.layout
     return made
-
-
-@contextlib.contextmanager
-def _patience():
-    """c4m-flexcell gives up on a cell after 1 s by the wall clock, which a busy machine exceeds; here after 60 s."""
-    wait = asyncio.wait
-    asyncio.wait = lambda tasks, timeout: wait(tasks, timeout=60 * timeout)
-    try:
-        yield
-    finally:
-        asyncio.wait = wait
 
 
 PROCESS = Embedded(
