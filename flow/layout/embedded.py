@@ -19,6 +19,7 @@ from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs, LvsParameters
+from .steps.mend import Mend, MendParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.sta import Sta, StaParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
@@ -87,7 +88,7 @@ def tries(design, options):
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc(),
+    return [Mend(MendParameters(options.pdk, design.clock.port)), StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc(),
             Antenna(AntennaParameters(options.pdk))]
 
 
@@ -104,7 +105,7 @@ def back(design, options):
 def layout(design, options, runner):
     """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
 
-    A try closes when every net is routed and no rule of design or antennas broken. Returns the tries: list of
+    A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken. Returns the tries: list of
     {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
     """
     pair = next(tries(design, options))
@@ -119,9 +120,9 @@ def layout(design, options, runner):
         found = runner.run(place_route)["metrics"]
         tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
                       "rules_broken": None})
-        if found["routed"] and not found["open_segments"]:
-            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0)
-                         for step in judged(design, options))
+        mend, *others = judged(design, options)
+        if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
+            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
             tried[-1]["rules_broken"] = broken
             if not broken:
                 for step in back(design, options):
