@@ -76,7 +76,8 @@ def find(gds, name, process):
     circuit = l2n.netlist().top_circuit()
     found = _collect(l2n, circuit, layers, process)
     found.dbu = layout.dbu
-    strips = {mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark]))) for mark in MARKS}
+    strips = {mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark])))
+              for mark in MARKS if mark in process.devices}
     found.devices = [_device(device, found, strips) for device in circuit.each_device()]
     return found
 
@@ -96,10 +97,11 @@ def _layers(l2n, layout, process, box):
         layers[f"well.label{i}"] = l2n.make_text_layer(layout.layer(*spec), f"well.label{i}")
     for i, (spec, _, _) in enumerate(process.cuts):
         layers[f"cut{i}"] = drawn(f"cut{i}", spec)
-    active = raw["diff"] + raw["tap"]
+    active = raw["diff"] + raw.get("tap", db.Region())
     nwell, poly = raw["nwell"], layers["poly"]
     pwell = db.Region(box.enlarged(1000)) - nwell
-    pactive, nactive = active & raw["psdm"], active & raw["nsdm"]
+    pactive = active & raw["psdm"]
+    nactive = active & raw["nsdm"] if "nsdm" in raw else active - pactive
     made = {"nbulk": pwell, "pbulk": nwell, "ngate": (nactive - nwell) & poly, "pgate": (pactive & nwell) & poly,
             "nsd": nactive - nwell - poly, "psd": (pactive & nwell) - poly,
             "ntap": nactive & nwell, "ptap": pactive - nwell, "active": active}
@@ -163,7 +165,7 @@ def _device(device, found, strips):
     point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
     w, length = value("W"), value("L")
     spot = db.Region(db.Box(point.x - 5, point.y - 5, point.x + 5, point.y + 5))
-    marks = frozenset(mark for mark in MARKS if not strips[mark].interacting(spot).is_empty())
+    marks = frozenset(mark for mark, strip in strips.items() if not strip.interacting(spot).is_empty())
     box = found.active.bbox()
     line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
     run = next(part.bbox() for part in line.each_merged() if part.inside(point))

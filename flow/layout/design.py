@@ -63,7 +63,7 @@ DESIGNS = {made.name: made for made in (
     Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
-    Design("asp_chip", "AspChip", "asp_chip", utilization=0.76))}
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.6))}
 
 
 def design(name):

@@ -24,6 +24,7 @@ from .steps.ir_drop import IrDrop, IrDropParameters
 from .steps.lef import Lef, LefParameters
 from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs, LvsParameters
+from .steps.mend import Mend, MendParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.power import Power, PowerParameters
 from .steps.sta import Sta, StaParameters
@@ -94,8 +95,9 @@ def tries(design, options):
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Fill(FillParameters(options.pdk)), Drc(),
-            Antenna(AntennaParameters(options.pdk))]
+    clock = design.clock.port
+    return [Mend(MendParameters(options.pdk, clock)), StreamOut(StreamOutParameters(options.pdk, clock)),
+            Fill(FillParameters(options.pdk)), Drc(), Antenna(AntennaParameters(options.pdk))]
 
 
 def back(design, options):
@@ -129,8 +131,8 @@ def timed(design, options):
 def layout(design, options, runner):
     """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
 
-    A try closes when every net is routed and no rule of design or antennas broken. Returns the tries: list of
-    {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
+    A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken. Returns
+    the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
     """
     pair = next(tries(design, options))
     for step in (*front(design, options), *pair, *judged(design, options), *back(design, options)):
@@ -144,9 +146,9 @@ def layout(design, options, runner):
         found = runner.run(place_route)["metrics"]
         tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
                       "rules_broken": None})
-        if found["routed"] and not found["open_segments"]:
-            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0)
-                         for step in judged(design, options))
+        mend, *others = judged(design, options)
+        if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
+            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
             tried[-1]["rules_broken"] = broken
             if not broken:
                 for step in back(design, options):

@@ -26,7 +26,7 @@ def summarize(design, options, runner, tried):
         "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
         "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
         "utilization": tried[-1]["utilization"], "tried": tried,
-        "wire_um": metric("place_route", "wire_um"), "open_nets": metric("place_route", "open_segments"),
+        "wire_um": metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"), "mended": metric("mend", "mended"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
         "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("fill", "after"),

@@ -41,7 +41,8 @@ class Crossing:
 class Process:
     """wires: from the lowest. cuts: (GDS layer, lower conductors, upper wire). halo: um, reach of fringe fields.
 
-    devices: layer name -> GDS layer of what makes transistors (active, taps, wells, implants, threshold marks).
+    devices: layer name -> GDS layer of what makes transistors (active, taps, wells, implants, threshold marks); a
+    process without a layer of its own for taps, n implants or marks leaves these out.
     outlines: GDS layers that may hold a cell's outline. well_labels: GDS layers of the names of n well and p substrate.
     """
 

@@ -17,13 +17,14 @@ def main(request):
     database = configure(request)
     cell = load(request["cell"])
     from .block import make_block
-    from .dump import instances, wires
+    from .dump import instances, shapes, wires
     block = make_block(cell, request, database)
     times = {"load": time.perf_counter() - begin}
     routed = block.doPnR()
     times.update(block.times)
     begin = time.perf_counter()
     block.save()
+    Path("shapes.json").write_text(json.dumps(shapes(cell)))
     Path("result.json").write_text(json.dumps({
         "routed": bool(routed), "straps": block.straps, "pins": block.pins, "instances": instances(cell),
         "wires": wires(cell), "times": times | {"save": time.perf_counter() - begin}}))

@@ -26,7 +26,7 @@ class Extraction(Step):
     """From lengths and widths in the router's database and the process's coefficients per layer."""
 
     name = "extraction"
-    inputs = {"netlist": "place_route.netlist", "placement": "place_route.placement", "platform": "platform",
+    inputs = {"netlist": "place_route.netlist", "placement": "mend.placement", "platform": "platform",
               "liberty": "library.liberty"}
     outputs = {"spef": "wires.spef"}
     Parameters = ExtractionParameters
@@ -37,7 +37,8 @@ class Extraction(Step):
         known, _ = process(self.parameters.pdk)
         netlist = Netlist.read(inputs["netlist"])
         wires = json.loads(inputs["placement"].read_text())["wires"]
-        nets = {net: parasitics(parts, known) for net, parts in wires.items() if net in set(_nets(netlist))}
+        there = {net for instance in netlist.instances for net in instance.pins.values()}
+        nets = {net: parasitics(parts, known) for net, parts in wires.items() if net in there}
         outputs["spef"].write_text(spef(netlist, nets))
         return {"wire_pf": round(sum(c for c, _ in nets.values()) / 1000, 3),
                 "largest_ff": round(max(c for c, _ in nets.values()), 2),
@@ -57,10 +58,6 @@ def parasitics(parts, known):
             attofarad += length * (width * wire.area_af_um2 + 2 * wire.edge_af_um)
             ohm += length / width * wire.ohm
     return attofarad / 1000, ohm
-
-
-def _nets(netlist):
-    return [net for instance in netlist.instances for net in instance.pins.values()]
 
 
 def spef(netlist, nets):

@@ -2,11 +2,12 @@
 
 import importlib
 import json
+import re
 from dataclasses import asdict, dataclass, field
 
 from flow.platforms.embedded import process
 from flow.simulate.process import run
-from flow.steps import Step
+from flow.steps import Step, StepError
 
 from .. import liberty
 from ..netlist import SUPPLIES
@@ -30,7 +31,7 @@ class Library(Step):
     inputs = {"platform": "platform"}
     outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
                "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v",
-               "rules": "rules.json",               "geometry": "geometry.json"}
+               "rules": "rules.json", "geometry": "geometry.json"}
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
@@ -44,9 +45,8 @@ class Library(Step):
         library = make()
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         outputs["geometry"].write_text(json.dumps(geometry(known), indent=1) + "\n")
-        outputs["rules"].write_text(json.dumps({"space_um": {
-            wire.name: float(description.tech.primitives[wire.name].min_space) for wire in known.wires}}) + "\n")
-        _coriolis(outputs["coriolis"], description, library)
+        outputs["rules"].write_text(json.dumps(wiring_rules(known, description.tech.primitives), indent=1) + "\n")
+        _coriolis(outputs["coriolis"], description, library, known)
         _klayout(outputs, description, package, library)
         areas = {cell.name: _area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))
@@ -63,10 +63,31 @@ class Library(Step):
 def geometry(known):
     """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
     made = asdict(known)
+    del made["fill"], made["rail_um"]
     for wire in made["wires"]:
         for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
             del wire[name]
     return made
+
+
+def wiring_rules(known, primitives):
+    """What PDKMaster's ``primitives`` say of the wires and cuts of ``known``, in um: a dict for JSON."""
+    def enclosure(made):
+        return [float(made.first), float(made.second)]
+
+    wires = {wire.name: primitives[wire.name] for wire in known.wires}
+    cuts = {cut.name: (primitives[cut.name], level) for level, cut in enumerate(known.cuts)}
+    return {"space_um": {name: float(wire.min_space) for name, wire in wires.items()},
+            "wires": {name: {"width": float(wire.min_width), "space": float(wire.min_space),
+                             "area": float(wire.min_area or 0)} for name, wire in wires.items()},
+            "cuts": {name: {"below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.wires[level])),
+                            "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.wires[level + 1]))}
+                     for name, (cut, level) in cuts.items()}}
+
+
+def _of(layers, enclosures, wire):
+    """The enclosure by ``wire``, one of ``layers``."""
+    return next(made for layer, made in zip(layers, enclosures, strict=True) if layer.name == wire.name)
 
 
 def _area(cell):
@@ -74,7 +95,7 @@ def _area(cell):
     return round((box.right - box.left) * (box.top - box.bottom), 4)
 
 
-def _coriolis(folder, description, library):
+def _coriolis(folder, description, library, known):
     from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
     spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
     export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
@@ -82,7 +103,24 @@ def _coriolis(folder, description, library):
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
     (package / "techno.py").write_text(export())
-    (package / "StdCellLib.py").write_text(export(library))
+    (package / "StdCellLib.py").write_text(narrowed(export(library), known, description.tech.primitives))
+
+
+def narrowed(text, known, primitives):
+    """The export for Coriolis with the tracks of the highest wire as near as its pads may lie: PDKMaster keeps room
+    there for cuts to the wire above, of which there are none (1.48 um instead of 0.68 um in SKY130)."""
+    wire, cut = known.wires[-1], known.cuts[-1]
+    pad = cut.size_um + 2 * cut.enclosure_um
+    numbers = [pad + float(primitives[wire.name].min_space), pad]
+    begin = text.index(f"metal = tech.getLayer('{wire.name}')")
+    head, gauge = text[:begin], text[begin:]
+    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, (u({cut.enclosure_um}), "
+                                f"u({cut.enclosure_um})))", gauge, count=1)
+    gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge,
+                            count=1)
+    if not enclosures or not tracks:
+        raise StepError(f"library: PDKMaster's export has no gauge of {wire.name} that could be narrowed")
+    return head + gauge
 
 
 def _klayout(outputs, description, package, library):

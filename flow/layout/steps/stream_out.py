@@ -23,7 +23,7 @@ class StreamOut(Step):
     """Labels get the names of the ports, on the layers that the process's decks read."""
 
     name = "stream_out"
-    inputs = {"gds": "place_route.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
+    inputs = {"gds": "mend.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
               "cells": "library.spice", "rules": "library.rules", "geometry": "library.geometry"}
     outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
     Parameters = StreamOutParameters
