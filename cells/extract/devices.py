@@ -121,7 +121,7 @@ def _connect(l2n, layers, process):
         l2n.connect(layers[wire.name], layers[f"{wire.name}.pinlabel"])
     l2n.connect(layers["pbulk"], layers["ntap"])
     l2n.connect(layers["nbulk"], layers["ptap"])
-    for i, bulk in enumerate(("pbulk", "nbulk")):
+    for i, bulk in enumerate(("pbulk", "nbulk")[:len(process.well_labels)]):
         l2n.connect(layers[bulk], layers[f"well.label{i}"])
     for i, (_, lowers, upper) in enumerate(process.cuts):
         cut = layers[f"cut{i}"]

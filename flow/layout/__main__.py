@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from flow.files import staged
-from flow.platforms.embedded import process
+from flow.platforms.embedded import PROCESSES, process
 from flow.simulate.process import ToolError
 from flow.steps import Runner, StepError
 from models.parameters import ParameterError, check_choice
@@ -30,7 +30,7 @@ FIRST = "sdf", "lib"            # of the first corner, also under the design's n
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.layout", description=__doc__.splitlines()[0])
     parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
-    parser.add_argument("--pdk", default="sky130", help="process (%(default)s)")
+    parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)} (%(default)s)")
     parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area where the search for the smallest begins; default: the design's")
@@ -40,13 +40,18 @@ def arguments():
     return parser
 
 
+def folder_name(design, pdk):
+    """Of a design's results: its own name, that of the process behind it where it is not the usual one."""
+    return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"
+
+
 def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         chosen = design(options.design)
         check_choice("backend", options.backend, ("coriolis",))
         settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty))
-        folder = options.out / chosen.name
+        folder = options.out / folder_name(chosen, options.pdk)
         steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
                  *back(chosen, settings))
         with Steps(step.name for step in steps) as bar:

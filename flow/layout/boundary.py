@@ -29,6 +29,7 @@ proc slack {{args}} {{
 """
 OUTPUTS = """
 set_output_delay 0 -clock {clock} [all_outputs]
+set_false_path -from [get_ports {{{inputs}}}]
 foreach slew {{{slews}}} {{
   set_input_transition $slew [all_inputs]
   foreach load {{{loads}}} {{
@@ -43,6 +44,7 @@ foreach slew {{{slews}}} {{
 }}
 """
 THROUGH = """
+set_output_delay 0 -clock {clock} [all_outputs]
 set_input_delay 0 -clock {clock} [get_ports {{{inputs}}}]
 foreach slew {{{slews}}} {{
   set_input_transition $slew [all_inputs]
@@ -75,8 +77,8 @@ foreach slew {{{slews}}} {{
 """
 PORTS = """
 foreach port {{{inputs}}} {{ puts "PORT $port"; report_net -connections -verbose -digits 6 $port }}
-report_power -digits 6
 """
+LEAKAGE = "report_power -digits 6\n"       # ends OpenSTA 2.0.17 where a model has a path from input to output
 
 
 @dataclass(frozen=True)
@@ -118,9 +120,10 @@ def reach(netlist, clock):
 OUTPUT_PINS = {"q", "nq", "zero", "one", "sum", "carry"}
 
 
-def measure(netlist, clock, files, slews, loads):
+def measure(netlist, clock, files, slews, loads, leakage=True):
     """The Boundary of ``netlist`` (Netlist). files: paths liberty, verilog, folder (of scripts), spef where
-    there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. Raises StepError."""
+    there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. leakage: whether to
+    ask for it. Raises StepError."""
     pairs, registered = reach(netlist, clock)
     nets = {way: [net for port in netlist.ports if port.direction == way for net in port.bits()]
             for way in ("input", "output")}
@@ -138,18 +141,18 @@ def measure(netlist, clock, files, slews, loads):
             raise StepError("boundary: OpenSTA: " + next(x for x in said[-1].splitlines() if "Error" in x))
 
     said = []
-    ask(OUTPUTS, files["folder"], outputs=nets["output"])
+    ask(OUTPUTS, files["folder"], outputs=nets["output"], inputs=[net for net in nets["input"] if net != clock])
     if pairs:
-        ask(OUTPUTS.partition("foreach")[0] + THROUGH, files["folder"], inputs=sorted({a for a, _ in pairs}))
+        ask(THROUGH, files["folder"], inputs=sorted({a for a, _ in pairs}))
     if registered:
         ask(CONSTRAINTS, files["folder"], inputs=registered)
-    ask(PORTS, files["folder"], inputs=nets["input"])
+    ask(PORTS + LEAKAGE * leakage, files["folder"], inputs=nets["input"])
     return _boundary("\n".join(said))
 
 
 def _boundary(said):
     """From what OpenSTA printed."""
-    capacitance, delays, slews, checks, at = {}, {}, {}, {}, None
+    capacitance, delays, slews, checks, at, leakage = {}, {}, {}, {}, None, 0.0
     for line in said.splitlines():
         word, *rest = line.split() or [""]
         if word == "DELAY" and rest[-1] != "none":
@@ -164,8 +167,8 @@ def _boundary(said):
         elif found := re.match(r"(\S+) \^ \S+?:(\S+) v \S+?:(\S+)", line):
             for edge, value in (("rise", found[2]), ("fall", found[3])):
                 slews.setdefault((found[1], edge), {})[at] = float(value)
-        elif found := re.match(r" Total capacitance: r (\S+?)(?:-\S+)? f (\S+?)(?:-\S+)?$", line):
-            capacitance[at] = max(float(found[1]), float(found[2]))
+        elif line.startswith(" Total capacitance:"):        # one number, a range, or these for rise and fall
+            capacitance[at] = max(map(float, re.findall(r"\d+\.\d+", line)))
         elif word == "Total" and len(rest) >= 4:
             leakage = float(rest[2]) * 1e9
     return Boundary(capacitance, delays, slews, checks, round(leakage, 4))

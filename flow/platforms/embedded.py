@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from models.parameters import ParameterError
 
-PROCESSES = ("sky130",)
+PROCESSES = "sky130", "ihp-sg13g2"
 
 
 @dataclass(frozen=True)

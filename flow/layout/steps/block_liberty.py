@@ -60,7 +60,7 @@ class BlockLiberty(Step):
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
         model = measure(netlist, self.parameters.clock, {"liberty": made, "verilog": wrapper, "folder": folder,
-                                                         "top": "Wrapper"}, *point)
+                                                         "top": "Wrapper"}, *point, leakage=False)
         differences = []
         for name in ("delays", "checks"):
             one, other = getattr(own, name), getattr(model, name)
@@ -98,7 +98,7 @@ def liberty(netlist, clock, found, corner, source, area):
         library.add("type", f"bus{width}", base_type="array", data_type="bit", bit_width=width, bit_from=width - 1,
                     bit_to=0, downto=True)
     cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=found.leakage_nw,
-                       dont_touch=True, dont_use=True)
+                       dont_touch=True, dont_use=True, interface_timing=True)      # else OpenSTA sees latches
     for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
         cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
     for port in netlist.ports:
@@ -127,7 +127,7 @@ def _constraints(pin, net, clock, found):
 
 def _delays(pin, net, clock, found):
     for source in sorted({source for source, output, _ in found.delays if output == net}):
-        more = {"timing_type": "rising_edge"} if source == clock else {"timing_sense": "non_unate"}
+        more = {"timing_type": "rising_edge"} if source == clock else {"timing_type": "combinational", "timing_sense": "non_unate"}
         timing = pin.add("timing", related_pin=source, **more)
         for edge in EDGES:
             for name, tables in ((f"cell_{edge}", found.delays[source, net, edge]),

@@ -68,7 +68,7 @@ def open_nets(log):
 def mended(layout, rules, found):
     """Take the nets ``found`` (dict net -> its shapes, as coriolis.dump has them) out of the layout's top cell and put
     them in anew: dict net -> its wires as in placement.json. None, and the layout as it was, if one has no way."""
-    top = layout.highcell()
+    top = layout.top_cell()
     before = top.dup()
     for made in found.values():
         take_out(layout, top, rules, made)

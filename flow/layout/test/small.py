@@ -51,6 +51,7 @@ def liberty(setup=0.2, hold=0.1):
     return (f"""library (small) {{ delay_model : table_lookup; time_unit : "1ns"; voltage_unit : "1V";
 current_unit : "1mA"; leakage_power_unit : "1nW"; pulling_resistance_unit : "1kohm"; capacitive_load_unit (1, "pf");
 nom_process : 1; nom_temperature : 25; nom_voltage : 2; {percent} voltage_map ("vdd", 2); voltage_map ("vss", 0);
+operating_conditions (typical) {{ process : 1; temperature : 25; voltage : 2; tree_type : balanced_tree; }}
 lu_table_template (t) {{ variable_1 : input_net_transition; variable_2 : total_output_net_capacitance; {AXES} }}
 power_lut_template (t) {{ variable_1 : input_transition_time; variable_2 : total_output_net_capacitance; {AXES} }}
 lu_table_template (c) {{ variable_1 : related_pin_transition; variable_2 : constrained_pin_transition;
