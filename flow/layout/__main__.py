@@ -15,8 +15,11 @@ from talbot.progress import Steps
 
 from .design import DESIGNS, design
 from .embedded import Options, back, files, front, judged, layout, tries
-from .picture import render
+from .energy import blocks
+from .netlist import Netlist, is_register
+from .picture import by_block, render
 from .report import page
+from .steps.extraction import OUTPUTS
 from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
@@ -45,12 +48,34 @@ def folder_name(design, pdk):
     return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"
 
 
+def figures(folder, name, runner, options):
+    """Draw the cells by block where they are placed; (file, words) of this and of the voltage drop: list."""
+    found, first = [], next(iter(options.corners), "")
+    if "place_route.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
+        read = {key: json.loads(runner.paths[key].read_text())
+                for key in ("place_route.placement", "library.areas", "floorplan.floorplan")}
+        netlist = Netlist.read(runner.paths["place_route.netlist"])
+        by_block(folder / f"{name}.blocks.png", netlist, read["place_route.placement"]["instances"],
+                 read["library.areas"], process(options.pdk)[0], blocks(netlist, is_register, OUTPUTS),
+                 read["floorplan.floorplan"])
+        found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
+    return found
+
+
+def one_line(error):
+    """What went wrong: the first line of an error and, of what a tool said in it, the line that tells."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [type(error).__name__]
+    told = next((line for line in lines[1:] if "error" in line.lower()), lines[-1])
+    return lines[0] if len(lines) == 1 else f"{lines[0]} {told}"
+
+
 def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         chosen = design(options.design)
         check_choice("backend", options.backend, ("coriolis",))
-        settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty))
+        settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
+                           tuple(options.liberty))
         folder = options.out / folder_name(chosen, options.pdk)
         steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
                  *back(chosen, settings))
@@ -62,18 +87,20 @@ def main(argv=None):
                              for suffix, source in BY_CORNER.items()}
         for suffix in FIRST if settings.corners else ():
             results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
-        made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png")]
+        made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png", "blocks.png")]
         with staged(folder, made) as part:       # an earlier run's go where this one has none
             for suffix, source in results.items():
                 if source in runner.paths:
                     shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
             if "fill.gds" in runner.paths:
                 render(runner.paths["fill.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
+            pictures = figures(part, chosen.name, runner, settings)
             picture = f"{chosen.name}.png" if (part / f"{chosen.name}.png").exists() else None
-            (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture))
+            (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture,
+                                                     pictures))
             (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     except (ParameterError, ToolError, StepError, OSError) as error:
-        print(f"flow.layout: {error}", file=sys.stderr)
+        print(f"flow.layout: {one_line(error)}", file=sys.stderr)
         return 2
     for line in broken(summary):
         print(f"flow.layout: {chosen.name}: {line}", file=sys.stderr)

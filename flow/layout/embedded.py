@@ -1,5 +1,6 @@
 """The embedded backend: its steps in order, for a design and a process."""
 
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,6 +58,8 @@ class Options:
         for path in self.liberty:
             if not path.is_file():
                 raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
+            if not re.match(r"\s*(/\*.*?\*/\s*)*library\s*\(", path.read_text(errors="replace")[:10_000], re.S):
+                raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
         if len(self.corners) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST, 0.95)
@@ -118,7 +121,7 @@ def simulations(design):
 def timed(design, options):
     """The steps that want characterized cells, corner by corner."""
     clock, around = design.clock, design.surroundings
-    steps = [Stimulus(StimulusParameters(design.top))] if options.corners else []
+    steps = [Stimulus(StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac))] if options.corners else []
     for corner in options.corners:
         steps += [Sta(StaParameters(design.top, corner, clock.period_ns)),
                   BlockLiberty(BlockLibertyParameters(corner, clock.port)),
@@ -128,14 +131,16 @@ def timed(design, options):
     return steps
 
 
-def layout(design, options, runner):
-    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
+def layout(design, options, runner, behind=back):
+    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes; ``behind``: function
+    (design, options) -> the steps behind it.
 
     A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken. Returns
     the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
     """
+    version(f"python {process(options.pdk)[0].wheel}")
     pair = next(tries(design, options))
-    for step in (*front(design, options), *pair, *judged(design, options), *back(design, options)):
+    for step in (*front(design, options), *pair, *judged(design, options), *behind(design, options)):
         for tool in step.tools:
             version(tool)               # a tool that is missing is told before anything runs
     for step in front(design, options):
@@ -151,7 +156,7 @@ def layout(design, options, runner):
             broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
             tried[-1]["rules_broken"] = broken
             if not broken:
-                for step in back(design, options):
+                for step in behind(design, options):
                     runner.run(step)
                 return tried
     return tried

@@ -4,7 +4,7 @@ import json
 import re
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from flow.simulate.process import ToolError, finish, run
@@ -33,10 +33,18 @@ SCENE, SIZE = "motorcycle", (12, 18)        # of `make sim`'s own scene; pixels 
 
 @dataclass(frozen=True)
 class StimulusParameters:
-    """top: module. chip: options of rtl.export that give the chip in which the block is looked for."""
+    """top: module. rows, cols, divider, n_frac: of the chip in which the block is looked for."""
 
     top: str = ""
-    chip: tuple = (f"--rows={SIZE[0]}", f"--cols={SIZE[1]}")
+    rows: int = SIZE[0]
+    cols: int = SIZE[1]
+    divider: str = "radix4"
+    n_frac: int = 8
+
+    @property
+    def options(self):
+        """Of rtl.export."""
+        return f"--rows={self.rows}", f"--cols={self.cols}", f"--divider={self.divider}", f"--n-frac={self.n_frac}"
 
 
 class Stimulus(Step):
@@ -47,23 +55,23 @@ class Stimulus(Step):
     inputs = {"rtl": "rtl", "tests": "tests", "bench": "frame_bench"}
     outputs = {"head": "stimulus.json", "trace": "stimulus.trace"}
     Parameters = StimulusParameters
-    metrics = {"source": "", "cycles": ""}
+    metrics = {"source": "", "cycles": "", "results": ""}
     tools = ("iverilog", "yosys")
 
     def run(self, inputs, outputs):
         top = self.parameters.top
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
-            run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.chip], cwd=ROOT)
+            run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options], cwd=ROOT)
             chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
             if top == CHIP:
                 own = chip
             if set(modules(own).items()) <= set(modules(chip).items()):
-                head = in_frame(top, folder, outputs["trace"])
+                head = in_frame(self.parameters, folder, outputs["trace"])
             else:
                 head = in_tests(top, own, folder, outputs["trace"])
         outputs["head"].write_text(json.dumps(head, indent=1) + "\n")
-        return {"source": head["source"], "cycles": head["cycles"]}
+        return {name: head[name] for name in self.metrics}
 
 
 def modules(verilog):
@@ -72,8 +80,8 @@ def modules(verilog):
     return {match[1]: match[0] for match in re.finditer(r"(?ms)^module (\w+)\b.*?^endmodule", text)}
 
 
-def in_frame(top, folder, trace):
-    """Record the first instance of ``top`` in the chip in ``folder`` through a frame, to the file ``trace``: head."""
+def in_frame(parameters, folder, trace):
+    """Record the first instance of the block in the chip in ``folder`` through a frame, to the file ``trace``: head."""
     from flow.frame.hardware import simulate
     from flow.frame.job import expose, see
     from flow.frame.request import request
@@ -81,6 +89,7 @@ def in_frame(top, folder, trace):
     design = folder / "hierarchy.json"
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / f'{CHIP}.v'}; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
+    top = parameters.top
     path = instance_of(tree, CHIP, top)
     ports = [{"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
              for name, port in tree[next(name for name in tree if name.lstrip("\\") == top)]["ports"].items()
@@ -88,7 +97,9 @@ def in_frame(top, folder, trace):
     names = {out: ", ".join(".".join(("Clock.bench.chip", *path, port["path"]))
                             for port in reversed(ports) if port["output"] == out) for out in (False, True)}
     (folder / "tap.v").write_text(TAP.format(inputs=names[False], outputs=names[True]))
-    asked = request(*SIZE, scene=SCENE, mode="tof", phase=True)
+    asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True)
+    chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
+    asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     scene, todo = see(asked)
     exposed = expose(asked, scene, todo)
     program = compiled([folder / f"{CHIP}.v", folder / "tap.v"], asked.sensor, folder, ("Tap",))
@@ -99,7 +110,20 @@ def in_frame(top, folder, trace):
     lines = [line for line in (folder / "tap.trace").read_text().splitlines() if "x" not in line.partition(" ")[2]]
     lines[0] = "1" + lines[0][1:]
     trace.write_text("\n".join(lines) + "\n")
-    return {"source": "frame", "scene": SCENE, "instance": ".".join(path), "ports": ports, "cycles": len(lines)}
+    return {"source": "frame", "scene": SCENE, "instance": ".".join(path), "ports": ports, "cycles": len(lines),
+            "results": results(lines, ports)}
+
+
+def results(lines, ports):
+    """Messages that left at the port `send` of a trace: cycles in which it is valid and its taker ready."""
+    places, low = {}, {False: 0, True: 0}
+    for port in ports:
+        places[port["path"].replace(".", "__")] = port["output"], low[port["output"]]
+        low[port["output"]] += port["width"]
+    if not {"send__val", "send__rdy"} <= set(places):
+        return 0
+    wanted = [(1 + output, at) for output, at in (places["send__val"], places["send__rdy"])]
+    return sum(all(int(line.split()[column], 16) >> at & 1 for column, at in wanted) for line in lines)
 
 
 def instance_of(tree, module, wanted):
@@ -126,5 +150,6 @@ def in_tests(top, own, folder, trace):
         if modules(text) == modules(own):
             trace.write_bytes(path.with_suffix(".trace").read_bytes())
             head = json.loads(path.read_text())
-            return {"source": "tests", "ports": head["ports"], "cycles": head["cycles"]}
+            return {"source": "tests", "ports": head["ports"], "cycles": head["cycles"],
+                    "results": results(trace.read_text().splitlines(), head["ports"])}
     raise StepError(f"stimulus: no test of {top} builds it with the parameters that are laid out")

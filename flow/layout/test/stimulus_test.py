@@ -1,6 +1,6 @@
 """Where a block lies in the chip, and whether it is the same one."""
 
-from flow.layout.steps.stimulus import instance_of, modules
+from flow.layout.steps.stimulus import instance_of, modules, results
 
 BLOCK = """
 module Leaf (input clk);
@@ -25,3 +25,11 @@ def test_the_first_instance_is_found():
     assert instance_of(tree, "Top", "Other") is None
 
 
+
+
+def test_results_are_what_left():
+    ports = [{"path": "a", "width": 4, "output": False}, {"path": "send.rdy", "width": 1, "output": False},
+             {"path": "send.msg", "width": 7, "output": True}, {"path": "send.val", "width": 1, "output": True}]
+    lines = ["0 10 80", "0 1f ff", "0 0f ff", "0 10 7f"]        # both; both; not ready; not valid
+    assert results(lines, ports) == 2
+    assert results(lines, ports[:2]) == 0
