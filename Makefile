@@ -96,9 +96,18 @@ else
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 endif
 
+.PHONY: layout-pareto
+layout-pareto: $(LAYOUT_READY)  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+	@$(PY) -m flow.layout.sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+
+.PHONY: layout-effort
+layout-effort: $(LAYOUT_READY)  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+	@$(PY) -m flow.layout.sweep effort --design $(or $(DESIGN),quad_divider) \
+		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
-	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider)
+	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)

@@ -20,6 +20,8 @@ OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, wi
             "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
             "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
             "sta.txt": ("reports", "no static timing was run")}
+OF_A_RUN = "wall_s", "peak_mib"                  # figures that differ from run to run of the same layout
+RUN = re.compile(rb"(?s)<!-- run -->.*?<!-- end of run -->")
 SHOWN = re.compile(r'\bsrc="([^":/]+)"')         # files that the report's page shows
 
 
@@ -58,11 +60,13 @@ def contents(design, folder, waivers):
     lines = [line for line in broken(summary) if line.partition(" = ")[0] not in rules]
     if lines:
         raise Broken("\n".join(lines))
-    files, substitutes = {name: path.read_bytes() for name, path in sources.items()}, {}
+    files, substitutes = {name: plain(path.read_bytes(), folder) for name, path in sources.items()}, {}
+    files["reports/summary.json"] = (json.dumps({name: value for name, value in summary.items() if name not in OF_A_RUN},
+                                                indent=1) + "\n").encode()
     corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
     for suffix, (place, substitute) in OPTIONAL.items():
         paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]
-        found = {f"{place}/{path.name}": path.read_bytes() for path in paths if path.is_file()}
+        found = {f"{place}/{path.name}": plain(path.read_bytes(), folder) for path in paths if path.is_file()}
         files |= found
         if not found:
             substitutes[suffix] = substitute
@@ -72,6 +76,11 @@ def contents(design, folder, waivers):
               "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
               "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode()}
     return files, substitutes
+
+
+def plain(data, folder):
+    """``data`` without what tells of the run that made it: its seconds, and where the layout's folder lies."""
+    return RUN.sub(b"", data).replace(f"{folder.resolve()}/".encode(), b"")
 
 
 def manifest(design, files, substitutes):

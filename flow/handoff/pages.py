@@ -3,6 +3,9 @@
 from .lef import pins, size
 
 
+WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
+
+
 def pinout(lef):
     """Markdown table of the pins of a LEF."""
     rows = [f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |"
@@ -22,6 +25,14 @@ def datasheet(design, summary, lef, waivers):
             ("input delay, output delay", f"{around.input_delay:.0%}, {around.output_delay:.0%} of the period"),
             ("load of an output", f"{around.load_pf:g} pF"), *_figures(summary, "wns_ns", "setup slack, ns"),
             *_figures(summary, "whs_ns", "hold slack, ns"), ("timing rests on", summary.get("timing_rests_on")),
+            ("power rests on", f"{summary.get('stimulus_cycles')} cycles of {WATCHED[summary['stimulus']]}"
+             if summary.get("stimulus") else None),
+            *_figures(summary, "energy_pj_cycle", "energy a cycle, pJ"),
+            *_figures(summary, "ir_drop_percent", "largest voltage drop, % of the supply"),
+            ("netlist's tests passed, failed", " and ".join(str(summary["gate_tests"][name]) for name in
+                                                            ("passed", "failed")) if summary.get("gate_tests") else None),
+            ("metal by layer", ", ".join(f"{name} {share:.0%}" for name, share in (summary.get("density") or {}).items())
+             or None),
             ("DRC violations", summary.get("drc_violations")), ("layout = netlist", summary.get("lvs_match")),
             ("netlist = RTL", summary.get("equivalence")), ("antenna violations", summary.get("antenna_violations")),
             ("open nets", summary.get("open_nets"))]

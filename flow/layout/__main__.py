@@ -13,7 +13,7 @@ from flow.steps import Runner, StepError
 from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
-from .design import DESIGNS, design
+from .design import DESIGNS, design, folder_name
 from .embedded import Options, back, files, front, judged, layout, tries
 from .energy import blocks
 from .netlist import Netlist, is_register
@@ -41,11 +41,6 @@ def arguments():
                         help="characterized cells at a corner (again for further corners); none: no timing")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
-
-
-def folder_name(design, pdk):
-    """Of a design's results: its own name, that of the process behind it where it is not the usual one."""
-    return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"
 
 
 def figures(folder, name, runner, options):

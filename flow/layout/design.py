@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from flow.platforms.embedded import PROCESSES
 from models.parameters import ParameterError, check_real
 
 
@@ -78,3 +79,8 @@ def design(name):
     if name not in DESIGNS:
         raise ParameterError(f"DESIGN = {name!r}: must be one of {', '.join(DESIGNS)}")
     return DESIGNS[name]
+
+
+def folder_name(design, pdk):
+    """Of a design's results: its own name, that of the process behind it where it is not the usual one."""
+    return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"
