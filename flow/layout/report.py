@@ -9,7 +9,8 @@ from .picture import PALETTE
 PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on")
 BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("setup_margin_ns", "least seen, setup, ns"),
              ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
-             ("energy_pj_cycle", "pJ a cycle"), ("supply_drop_mv", "supply's drop, mV"),
+             ("energy_pj_cycle", "pJ a cycle"),
+             ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"), ("supply_drop_mv", "supply's drop, mV"),
              ("ground_rise_mv", "ground's rise, mV"), ("model_error_ns", "block's Liberty off by, ns"))
 
 

@@ -3,6 +3,9 @@
 import json
 from pathlib import Path
 
+from models.parameters import ChipParameters, EnergyParameters
+
+CHIP = "AspChip"
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
 
@@ -35,6 +38,8 @@ def summarize(design, options, runner, tried):
         "timing_rests_on": timing(options), **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
+        "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
+        "thesis_timing_uw": round(EnergyParameters().timing * 1e6, 3) if design.top == CHIP else None,
         "power_by_block_uw": metric(f"power_{first}", "by_block"), "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
         **{name: by_corner(name, "ir_drop") for name in ("supply_drop_mv", "ground_rise_mv", "ir_drop_percent")},
         "stimulus": metric("stimulus", "source"), "stimulus_cycles": metric("stimulus", "cycles"),
@@ -46,6 +51,12 @@ def summarize(design, options, runner, tried):
         "wall_s": {name: record["wall_s"] for name, record in records.items()},
         "peak_mib": {name: record["peak_mib"] for name, record in records.items()},
         "tools": dict(sorted(tools.items()))}
+
+
+def at_chip_clock(energies):
+    """uW by corner at the clock of the thesis's chip, from pJ a cycle. Of the whole chip it stands beside Table 6.1's
+    timing and addressing (thesis_timing_uw): the digital part, without the pins' loads."""
+    return energies and {corner: round(pj * ChipParameters().f_clk / 1e6, 3) for corner, pj in energies.items()}
 
 
 def gate_tests(records):
