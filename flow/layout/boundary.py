@@ -6,7 +6,7 @@ Debian's OpenSTA (2.0.17) has no `write_timing_model`: its slacks at a grid of s
 import re
 from dataclasses import dataclass
 
-from flow.simulate.process import run
+from flow.simulate.process import finish
 from flow.steps import StepError
 
 from .netlist import is_register
@@ -136,9 +136,11 @@ def measure(netlist, clock, files, slews, loads, leakage=True):
         path = folder / f"boundary{len(said)}.log"
         path.write_text((LOAD + script).format(**words | {name: " ".join(f"{{{net}}}" for net in value)
                                                           for name, value in more.items()}) + "\nexit\n")
-        said.append(run(["sta", "-no_splash", "-no_init", "-exit", path]))
-        if "Error" in said[-1]:
-            raise StepError("boundary: OpenSTA: " + next(x for x in said[-1].splitlines() if "Error" in x))
+        done = finish(["sta", "-no_splash", "-no_init", "-exit", path])
+        said.append(done.stdout)
+        if done.returncode or "Error" in done.stdout + done.stderr:
+            told = (done.stdout + done.stderr).strip().splitlines()
+            raise StepError(f"boundary: OpenSTA: {next((x for x in told if 'Error' in x), told[-1:])}")
 
     said = []
     ask(OUTPUTS, files["folder"], outputs=nets["output"], inputs=[net for net in nets["input"] if net != clock])

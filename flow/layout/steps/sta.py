@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from flow.simulate.process import run
+from flow.simulate.process import ToolError, finish
 from flow.steps import Step, StepError
 
 SCRIPT = """
@@ -50,12 +50,15 @@ class Sta(Step):
         p = self.parameters
         script = outputs["report"].with_name("sta.log")
         script.write_text(SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
-        said = run(["sta", "-no_splash", "-no_init", "-exit", script])
+        done = finish(["sta", "-no_splash", "-no_init", "-exit", script])
+        said, warned = done.stdout, done.stdout + done.stderr
+        if done.returncode:
+            raise ToolError(f"sta failed with status {done.returncode}: {warned.strip()[-300:]}")
         outputs["report"].write_text(said)
-        if lost := re.search(r"spef.*not found", said):
+        if lost := re.search(r"spef.*not found", warned):
             raise StepError(f"sta: OpenSTA does not know a name of the SPEF: {lost[0]}")
-        if "Error" in said or "WORST setup" not in said:
-            raise StepError(f"sta: OpenSTA: {next((s for s in said.splitlines() if 'Error' in s), 'no slack')}")
+        if "Error" in warned or "WORST setup" not in said:
+            raise StepError(f"sta: OpenSTA: {next((s for s in warned.splitlines() if 'Error' in s), 'no slack')}")
         worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
         return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4),
                 "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2)}
