@@ -119,13 +119,16 @@ def simulations(design):
 
 
 def timed(design, options):
-    """The steps that want characterized cells, corner by corner."""
+    """The steps that want characterized cells, corner by corner; of the chip, whose frames take minutes with delays,
+    simulation and power at the first alone."""
     clock, around = design.clock, design.surroundings
-    steps = [Stimulus(StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac))] if options.corners else []
+    watched = StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac)
+    steps = [Stimulus(watched)] if options.corners else []
     for corner in options.corners:
         steps += [Sta(StaParameters(design.top, corner, clock.period_ns)),
-                  BlockLiberty(BlockLibertyParameters(corner, clock.port)),
-                  GateDelays(GateDelaysParameters(corner, clock.period_ns, around.input_delay, around.output_delay)),
+                  BlockLiberty(BlockLibertyParameters(corner, clock.port))]
+    for corner in options.corners if design.netlist_names else list(options.corners)[:1]:
+        steps += [GateDelays(GateDelaysParameters(corner, clock.period_ns, around.input_delay, around.output_delay)),
                   Power(PowerParameters(design.top, corner, clock.period_ns)),
                   IrDrop(IrDropParameters(options.pdk, corner))]
     return steps
