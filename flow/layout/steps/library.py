@@ -128,7 +128,8 @@ def _klayout(outputs, description, package, library):
     from pdkmaster.io.spice import SpiceNetlistFactory
     devices = package.prims_spiceparams
     decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
-    outputs["drc"].write_text(decks["drc"])
+    # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide wires farther
+    outputs["drc"].write_text(decks["drc"].replace(", Projection)", ", projection)"))
     outputs["lvs"].write_text(decks["lvs"])
     export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
               add_pin_label=True).write(str(outputs["gds"]))
