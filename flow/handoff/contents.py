@@ -15,7 +15,8 @@ from .power import powered
 
 WAIVERS = Path(__file__).parent / "waivers.json"
 # suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
-REQUIRED = {"gds": "layout", "lef": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports", "lvsdb": "reports"}
+REQUIRED = {"gds": "layout", "lef": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports",
+            "lvsdb": "reports"}
 OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, with the SPEF and the cells' Liberty"),
             "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
             "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
@@ -61,8 +62,8 @@ def contents(design, folder, waivers):
     if lines:
         raise Broken("\n".join(lines))
     files, substitutes = {name: plain(path.read_bytes(), folder) for name, path in sources.items()}, {}
-    files["reports/summary.json"] = (json.dumps({name: value for name, value in summary.items() if name not in OF_A_RUN},
-                                                indent=1) + "\n").encode()
+    told = {name: value for name, value in summary.items() if name not in OF_A_RUN}
+    files["reports/summary.json"] = (json.dumps(told, indent=1) + "\n").encode()
     corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
     for suffix, (place, substitute) in OPTIONAL.items():
         paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]

@@ -18,6 +18,7 @@ def datasheet(design, summary, lef, waivers):
     """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
     width, height = size(lef)
     around, clock = design.surroundings, design.clock
+    tests, density = summary.get("gate_tests"), summary.get("density") or {}
     rows = [("top", design.top), ("process", summary.get("pdk")), ("size", f"{width:g} x {height:g} um"),
             ("cells", summary.get("cells")), ("flip-flops", summary.get("flip_flops")),
             ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),
@@ -29,10 +30,8 @@ def datasheet(design, summary, lef, waivers):
              if summary.get("stimulus") else None),
             *_figures(summary, "energy_pj_cycle", "energy a cycle, pJ"),
             *_figures(summary, "ir_drop_percent", "largest voltage drop, % of the supply"),
-            ("netlist's tests passed, failed", " and ".join(str(summary["gate_tests"][name]) for name in
-                                                            ("passed", "failed")) if summary.get("gate_tests") else None),
-            ("metal by layer", ", ".join(f"{name} {share:.0%}" for name, share in (summary.get("density") or {}).items())
-             or None),
+            ("netlist's tests passed, failed", tests and f"{tests['passed']}, {tests['failed']}"),
+            ("metal by layer", ", ".join(f"{name} {share:.0%}" for name, share in density.items()) or None),
             ("DRC violations", summary.get("drc_violations")), ("layout = netlist", summary.get("lvs_match")),
             ("netlist = RTL", summary.get("equivalence")), ("antenna violations", summary.get("antenna_violations")),
             ("open nets", summary.get("open_nets"))]

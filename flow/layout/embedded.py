@@ -138,8 +138,9 @@ def layout(design, options, runner, behind=back):
     """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes; ``behind``: function
     (design, options) -> the steps behind it.
 
-    A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken. Returns
-    the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
+    A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken.
+    Returns the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without
+    a layout)}.
     """
     version(f"python {process(options.pdk)[0].wheel}")
     pair = next(tries(design, options))

@@ -10,7 +10,8 @@ PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tool
 BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("setup_margin_ns", "least seen, setup, ns"),
              ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
              ("energy_pj_cycle", "pJ a cycle"),
-             ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"), ("supply_drop_mv", "supply's drop, mV"),
+             ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
+             ("supply_drop_mv", "supply's drop, mV"),
              ("ground_rise_mv", "ground's rise, mV"), ("model_error_ns", "block's Liberty off by, ns"))
 
 

@@ -40,7 +40,8 @@ def summarize(design, options, runner, tried):
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
         "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
         "thesis_timing_uw": round(EnergyParameters().timing * 1e6, 3) if design.top == CHIP else None,
-        "power_by_block_uw": metric(f"power_{first}", "by_block"), "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
+        "power_by_block_uw": metric(f"power_{first}", "by_block"),
+        "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
         **{name: by_corner(name, "ir_drop") for name in ("supply_drop_mv", "ground_rise_mv", "ir_drop_percent")},
         "stimulus": metric("stimulus", "source"), "stimulus_cycles": metric("stimulus", "cycles"),
         **{name: by_corner(name, "gate_delays") for name in ("setup_margin_ns", "hold_margin_ns")},
@@ -71,7 +72,8 @@ def timing(options):
     if not options.liberty:
         return "no timing: no characterized Liberty was given"
     return (f"cells: {', '.join(path.name for path in options.liberty)}; wires: area and edge capacitance "
-            "to the substrate and resistance from the router's wires, no coupling; power: transitions of the netlist in its recorded trace")
+            "to the substrate and resistance from the router's wires, no coupling; power: transitions of the netlist in "
+            "its recorded trace")
 
 
 def broken(summary, rules=RULES):

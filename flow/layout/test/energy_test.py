@@ -37,8 +37,9 @@ def test_power_follows_the_transitions():
 
 
 def test_a_net_without_activity_is_named():
+    without = {net: activity for net, activity in ACTIVITY.items() if net != "w1"}
     with pytest.raises(StepError, match="w1"):
-        powers(small.shift(), Cells(parse(small.liberty())), {n: a for n, a in ACTIVITY.items() if n != "w1"}, {}, {}, 10)
+        powers(small.shift(), Cells(parse(small.liberty())), without, {}, {}, 10.0)
 
 
 def test_a_cell_belongs_to_what_it_drives():

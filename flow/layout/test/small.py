@@ -38,9 +38,10 @@ def cell(name, pins, more=""):
 
 
 def gate(name, output, function, delay):
+    sense = "negative" if "!" in function else "positive"
     return cell(name, f'pin (i) {{ direction : input; capacitance : 0.01; }} pin ({output}) {{ direction : output; '
                       f'function : "{function}"; max_capacitance : 1; '
-                      f'{arc("i", delay, "timing_sense : " + ("negative" if "!" in function else "positive") + "_unate;")}'
+                      f'{arc("i", delay, f"timing_sense : {sense}_unate;")}'
                       f' {power("i", 0.2, 0.4)} }}')
 
 
