@@ -49,8 +49,8 @@ class StreamOut(Step):
 def relabel(source, target, top_name, names, ports, known, spaces):
     """Write ``source`` as ``target``; returns (the top cell's box in um, wires' ends trimmed).
 
-    spaces: dict wire -> least space (um). names: dict Coriolis's name -> net. Labels of ports stay (one a port and layer), with their names; Coriolis's
-    blockages go. Raises StepError when a port has no label.
+    spaces: dict wire -> least space (um). names: dict Coriolis's name -> net. Labels of ports stay (one a port and
+    layer), with their names; Coriolis's blockages go. Raises StepError when a port has no label.
     """
     import klayout.db as db
     layout = db.Layout()
@@ -62,13 +62,17 @@ def relabel(source, target, top_name, names, ports, known, spaces):
         label = layout.layer(wire.layer, known.label_datatype)
         pin = layout.layer(wire.layer, known.pin_datatype)
         texts = top.shapes(layout.layer(wire.layer, 0))
-        for shape in list(texts.each(db.Shapes.STexts)):
+        labels = list(texts.each(db.Shapes.STexts))
+        for shape in labels:
             net = names.get(shape.text.string, shape.text.string)
             if net in ports:
                 for layer in (label, pin):
                     top.shapes(layer).insert(db.Text(net, shape.text.trans))
                 seen.add(net)
-        texts.clear()
+        for shape in labels:
+            shape.delete()
+        if wire.datatype:           # else it is where the wires themselves are
+            texts.clear()
     if ports - seen:
         raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - seen)[:5])}")
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
