@@ -80,8 +80,8 @@ def contents(design, folder, waivers):
 
 
 def plain(data, folder):
-    """``data`` without what tells of the run that made it: its seconds, and where the layout's folder lies."""
-    return RUN.sub(b"", data).replace(f"{folder.resolve()}/".encode(), b"")
+    """``data`` without what tells of the run that made it: its seconds, and where the layouts lie."""
+    return RUN.sub(b"", data).replace(f"{folder.resolve().parent}/".encode(), b"")
 
 
 def manifest(design, files, substitutes):

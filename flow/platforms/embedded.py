@@ -61,8 +61,8 @@ class Embedded:
     the last wire, strap_um wide, and meet a rail over rail_overlap_um; a rail on the lowest wire is
     rail_um wide, half of that at the edge. pin_pitch_um: tracks of the pins' two layers,
     'horizontal' (west and east) and 'vertical'. label_datatype,
-    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop. poly,
-    active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. fill: Fill, of all wires
+    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop.
+    poly, active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. fill: Fill, of all wires
     but the lowest.
     """
 

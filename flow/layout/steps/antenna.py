@@ -19,7 +19,7 @@ class AntennaParameters:
 
 
 class Antenna(Step):
-    """Every layer in turn, on the connections that exist by then. """
+    """Every layer in turn, on the connections that exist by then."""
 
     name = "antenna"
     inputs = {"gds": "fill.gds", "platform": "platform"}

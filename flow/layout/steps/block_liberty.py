@@ -15,6 +15,7 @@ from ..netlist import Netlist, SUPPLIES
 SLEWS = 0.02, 0.2, 1.0              # ns
 LOADS = 0.001, 0.01, 0.05, 0.2      # pF
 EDGES = "rise", "fall"
+COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
 
 
 @dataclass(frozen=True)
@@ -127,7 +128,7 @@ def _constraints(pin, net, clock, found):
 
 def _delays(pin, net, clock, found):
     for source in sorted({source for source, output, _ in found.delays if output == net}):
-        more = {"timing_type": "rising_edge"} if source == clock else {"timing_type": "combinational", "timing_sense": "non_unate"}
+        more = {"timing_type": "rising_edge"} if source == clock else COMBINATIONAL
         timing = pin.add("timing", related_pin=source, **more)
         for edge in EDGES:
             for name, tables in ((f"cell_{edge}", found.delays[source, net, edge]),

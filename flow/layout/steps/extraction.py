@@ -75,9 +75,9 @@ def spef(netlist, nets):
         if net in ports:
             ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
         center = f"{_name(net, ports)}:1"
-        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends, "*CAP", f"1 {center} {femtofarad:.4f}",
-                  "*RES", *(f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1)),
-                  "*END"]
+        branches = (f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1))
+        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends, "*CAP",
+                  f"1 {center} {femtofarad:.4f}", "*RES", *branches, "*END"]
     return "\n".join(lines) + "\n"
 
 

@@ -42,7 +42,8 @@ class Fill(Step):
         options.gds2_write_timestamps = False       # the same layout is the same file
         layout.write(str(outputs["gds"]), options)
         dense = {name: density for name, density in after.items() if density > known.fill.density_most}
-        outputs["summary"].write_text(json.dumps({"before": before, "after": after, "too dense": dense}, indent=1) + "\n")
+        told = {"before": before, "after": after, "too dense": dense}
+        outputs["summary"].write_text(json.dumps(told, indent=1) + "\n")
         return {"squares": squares, "before": before, "after": after, "density_violations": len(dense)}
 
 

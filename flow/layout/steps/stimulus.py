@@ -28,6 +28,7 @@ TAP = """module Tap;
   end
 endmodule
 """
+OF_A_TRACE = "import sys; from verif.replay import load; print(load(sys.argv[1]).verilog())"
 SCENE, SIZE = "motorcycle", (12, 18)        # of `make sim`'s own scene; pixels of the chip's array
 
 
@@ -62,7 +63,8 @@ class Stimulus(Step):
         top = self.parameters.top
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
-            run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options], cwd=ROOT)
+            run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options],
+                cwd=ROOT)
             chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
             if top == CHIP:
                 own = chip
@@ -87,7 +89,7 @@ def in_frame(parameters, folder, trace):
     from flow.frame.request import request
     from models.digital.chip import golden_frame
     design = folder / "hierarchy.json"
-    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / f'{CHIP}.v'}; hierarchy -top {CHIP}; proc; write_json {design}"])
+    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
     top = parameters.top
     path = instance_of(tree, CHIP, top)
@@ -145,8 +147,7 @@ def in_tests(top, own, folder, trace):
         raise ToolError(f"verif.replay: {done.stderr.strip().splitlines()[-1]}")
     heads = sorted((folder / "traces").glob("*.json"), key=lambda path: -path.with_suffix(".trace").stat().st_size)
     for path in heads:
-        text = run([sys.executable, "-c", "import sys; from verif.replay import load; print(load(sys.argv[1]).verilog())",
-                    path], cwd=ROOT)
+        text = run([sys.executable, "-c", OF_A_TRACE, path], cwd=ROOT)
         if modules(text) == modules(own):
             trace.write_bytes(path.with_suffix(".trace").read_bytes())
             head = json.loads(path.read_text())
