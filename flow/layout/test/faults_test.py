@@ -11,7 +11,6 @@ from flow.layout.constraints import sdc
 from flow.layout.design import Design
 from flow.layout.steps.drc import Drc
 from flow.layout.steps.lvs import Lvs
-from flow.layout.steps.stream_out import StreamOut, StreamOutParameters
 from flow.steps import Runner
 
 TOOLS = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
@@ -43,7 +42,8 @@ def runner(tmp_path_factory):
     floorplan, place_route = next(embedded.tries(design, options))
     made.run(floorplan)
     assert made.run(place_route)["metrics"]["routed"]
-    made.run(StreamOut(StreamOutParameters()))
+    for step in embedded.judged(design, options)[:3]:           # mended, streamed out, filled
+        made.run(step)
     return made
 
 
@@ -58,7 +58,7 @@ def changed(runner, folder, change):
     """The layout with ``change`` (called with layout and top cell) applied: path."""
     import klayout.db as db
     layout = db.Layout()
-    layout.read(str(runner.paths["stream_out.gds"]))
+    layout.read(str(runner.paths["fill.gds"]))
     change(layout, layout.top_cell())
     layout.write(str(folder / "changed.gds"))
     return folder / "changed.gds"
@@ -66,7 +66,7 @@ def changed(runner, folder, change):
 
 def test_the_layout_is_clean_and_matches(runner, tmp_path):
     assert runner.run(Drc())["metrics"] == {"drc_violations": 0}
-    assert lvs(runner, runner.paths["stream_out.gds"], tmp_path)
+    assert lvs(runner, runner.paths["fill.gds"], tmp_path)
 
 
 def test_a_short_between_a_strap_and_a_signal_is_found(runner, tmp_path):
