@@ -35,6 +35,7 @@ from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
 
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
+CHIP_FRAME = {"rows": 4, "cols": 6}      # pixels: its netlist with delays runs a thousand times slower than a block's
 STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
 
 
@@ -122,7 +123,8 @@ def timed(design, options):
     """The steps that want characterized cells, corner by corner; of the chip, whose frames take minutes with delays,
     simulation and power at the first alone."""
     clock, around = design.clock, design.surroundings
-    watched = StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac)
+    size = {} if design.netlist_names else CHIP_FRAME
+    watched = StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac, **size)
     steps = [Stimulus(watched)] if options.corners else []
     for corner in options.corners:
         steps += [Sta(StaParameters(design.top, corner, clock.period_ns)),
