@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from flow.platforms.embedded import PROCESSES, process
+from flow.platforms.patience import patience
 from models.parameters import ParameterError
 
 FLOW = Path(__file__).parents[2]
@@ -34,13 +35,15 @@ def test_figures_fit_each_other(pdk):
     assert list(known.fill.sides_um) == sorted(known.fill.sides_um, reverse=True)
 
 
+@pytest.mark.slow                   # importing a process's package draws its cells
 @pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")       # c4m-pdk-ihpsg13g2's own
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_what_the_wheel_says_agrees(pdk):
     known, _ = process(pdk)
     if not importlib.util.find_spec("pdkmaster"):
         pytest.skip("pdkmaster: not installed; make layout installs it")
-    tech = importlib.import_module(f"{known.package}.pdkmaster")
+    with patience():
+        tech = importlib.import_module(f"{known.package}.pdkmaster")
     for wire in (*known.wires, *known.cuts):
         assert tech.gds_layers[wire.name] == (wire.layer, wire.datatype)
     for wire in known.wires[1:]:
