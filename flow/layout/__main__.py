@@ -32,7 +32,8 @@ def arguments():
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area where the search for the smallest begins; default: the design's")
     parser.add_argument("--liberty", type=Path, action="append", default=[],
-                        help="characterized cells at a corner (again for further corners); none: no timing")
+                        help="characterized cells at a corner (again for further corners); default: measured now")
+    parser.add_argument("--untimed", action="store_true", help="no timing: cells by area alone")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
 
@@ -42,7 +43,8 @@ def main(argv=None):
     try:
         chosen = design(options.design)
         check_choice("backend", options.backend, ("coriolis",))
-        settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty))
+        settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty),
+                           options.untimed)
         folder = options.out / chosen.name
         steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
                  *back(chosen, settings))

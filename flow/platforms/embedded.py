@@ -46,8 +46,9 @@ class Embedded:
     function for empty places. wires: from the cells' rails up; cuts[i] joins wires[i] and wires[i + 1]; straps run on
     the last wire, strap_um wide, and meet a rail over rail_overlap_um. pin_pitch_um: tracks of the pins' two layers,
     'horizontal' (west and east) and 'vertical'. label_datatype,
-    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop. poly,
-    active, contact: (GDS layer, datatype), the last between the first two and the lowest wire.
+    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop.
+    poly, active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. corners: at which
+    cells are timed, that of synthesis first; () where there are no models of the devices.
     """
 
     name: str
@@ -69,6 +70,7 @@ class Embedded:
     poly: tuple
     active: tuple
     contact: tuple
+    corners: tuple = ()
 
 
 def process(pdk):
@@ -77,3 +79,9 @@ def process(pdk):
         raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)}")
     module = importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.embedded")
     return module.PROCESS, module.library
+
+
+def modules(pdk):
+    """Modules with the device models (POLARITY, SUPPLIES ...) and the layers (PROCESS) of ``pdk``, for `cells`."""
+    return tuple(importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.{name}")
+                 for name in ("models", "process"))

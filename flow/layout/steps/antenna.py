@@ -34,7 +34,9 @@ class Antenna(Step):
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
         top, area = layout.top_cell(), layout.top_cell().bbox().area()
-        found = {wire.name: violations(layout, top, known, level) for level, wire in enumerate(known.wires)}
+        found = {wire.name: sorted({str(polygon.bbox().to_dtype(layout.dbu))
+                                    for polygon in violations(layout, top, known, level).each()})
+                 for level, wire in enumerate(known.wires)}
         density = {wire.name: round(db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype)))
                                     .merged().area() / area, 4) for wire in known.wires}
         outputs["summary"].write_text(json.dumps({"violations": found, "density": density}, indent=1) + "\n")
@@ -42,17 +44,13 @@ class Antenna(Step):
 
 
 def violations(layout, top, known, level):
-    """Boxes (um, as text) of the nets whose wire known.wires[level] is too large for their gates: list."""
+    """klayout.db.Region: known.wires[level] of the nets on which it is too large for their gates."""
     import klayout.db as db
 
-    def region(pair):
-        return db.Region(top.begin_shapes_rec(layout.layer(*pair)))
-
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
-    poly, active = region(known.poly), region(known.active)
-    layers = {"poly": l2n.make_polygon_layer(layout.layer(*known.poly), "poly"),
-              "contact": l2n.make_polygon_layer(layout.layer(*known.contact), "contact")}
-    gate, diffusion = poly & active, active - poly
+    layers = {name: l2n.make_polygon_layer(layout.layer(*pair), name) for name, pair in
+              (("poly", known.poly), ("active", known.active), ("contact", known.contact))}
+    gate, diffusion = layers["poly"] & layers["active"], layers["active"] - layers["poly"]
     for name, made in (("gate", gate), ("diffusion", diffusion)):
         l2n.register(made, name)
     l2n.connect(layers["poly"])
@@ -80,4 +78,4 @@ def violations(layout, top, known, level):
     bad = db.Region()
     for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
         bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, ratio, [[diffusion, by_diffusion]])
-    return sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+    return db.Region(list(bad.each()))          # no longer of the extraction, which ends here

@@ -52,4 +52,5 @@ PROCESS = Embedded(
           Cut("via2", 69, 44, 0.20, 0.20, 0.085, 3.41), Cut("via3", 70, 44, 0.20, 0.20, 0.09, 3.41)),
     strap_um=1.2, rail_overlap_um=1.2,
     pin_pitch_um={"horizontal": 0.46, "vertical": 0.51}, label_datatype=5, pin_datatype=16,
-    blockage_layer=100, poly=(66, 20), active=(65, 20), contact=(66, 44))
+    blockage_layer=100, poly=(66, 20), active=(65, 20), contact=(66, 44),
+    corners=("tt_025C_1v80", "ss_100C_1v60", "ff_n40C_1v95"))
