@@ -64,6 +64,7 @@ class Library(Step):
 def geometry(known):
     """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
     made = asdict(known)
+    del made["corners"]
     for wire in made["wires"]:
         for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
             del wire[name]
