@@ -38,7 +38,8 @@ def arguments():
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area where the search for the smallest begins; default: the design's")
     parser.add_argument("--liberty", type=Path, action="append", default=[],
-                        help="characterized cells at a corner (again for further corners); none: no timing")
+                        help="characterized cells at a corner (again for further corners); default: measured now")
+    parser.add_argument("--untimed", action="store_true", help="no timing: cells by area alone")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
 
@@ -70,7 +71,7 @@ def main(argv=None):
         chosen = design(options.design)
         check_choice("backend", options.backend, ("coriolis",))
         settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
-                           tuple(options.liberty))
+                           tuple(options.liberty), options.untimed)
         folder = options.out / folder_name(chosen, options.pdk)
         steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
                  *back(chosen, settings))

@@ -32,6 +32,7 @@ from .steps.sta import Sta, StaParameters
 from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
+from .steps.timing import Timing, TimingParameters
 
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
@@ -43,17 +44,21 @@ STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one b
 class Options:
     """pdk: process. utilization: cells' area by core area at which the search begins.
 
-    liberty: paths of characterized cells, one a corner; synthesis takes the first. () for no timing.
+    liberty: paths of characterized cells, one a corner; () for the process's corners, measured now. untimed: whether
+    there is no timing at all.
     """
 
     pdk: str = "sky130"
     utilization: float = 0.8
     liberty: tuple = ()
+    untimed: bool = False
 
     @property
     def corners(self):
-        """dict corner -> its Liberty file, the corner of synthesis first."""
-        return {path.stem: path for path in self.liberty}
+        """Names of the corners, that of synthesis first."""
+        if self.untimed:
+            return ()
+        return tuple(path.stem for path in self.liberty) or process(self.pdk)[0].corners
 
     def __post_init__(self):
         for path in self.liberty:
@@ -61,7 +66,7 @@ class Options:
                 raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
             if not re.match(r"\s*(/\*.*?\*/\s*)*library\s*\(", path.read_text(errors="replace")[:10_000], re.S):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
-        if len(self.corners) != len(self.liberty):
+        if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST, 0.95)
 
@@ -77,15 +82,19 @@ def files(design, options, folder):
     given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
              "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
              "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
-    first = {"timing": options.liberty[0]} if options.liberty else {}
-    return given | first | {f"timing.{corner}": path for corner, path in options.corners.items()}
+    measure = {f"cells.{part}": ROOT / "cells" / part
+               for part in ("characterize", "spice", "netlist", "liberty", "extract")}
+    return given | measure | {f"timing.{path.stem}": path for path in options.liberty}
 
 
 def front(design, options):
     """The steps ahead of a floorplan."""
-    return [Library(LibraryParameters(options.pdk)),
-            TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT)) if options.liberty else
-            Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+    library = Library(LibraryParameters(options.pdk))
+    if not options.corners:
+        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+    timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
+    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT),
+                                             options.corners[0])]
 
 
 def tries(design, options):

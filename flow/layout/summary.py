@@ -29,7 +29,8 @@ def summarize(design, options, runner, tried):
         "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
         "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
         "utilization": tried[-1]["utilization"], "tried": tried,
-        "wire_um": metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"), "mended": metric("mend", "mended"),
+        "wire_um": metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"),
+        "mended": metric("mend", "mended"), "hopped": metric("mend", "hopped"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
         "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("fill", "after"),
@@ -69,11 +70,11 @@ def gate_tests(records):
 
 def timing(options):
     """What the timing figures rest on, in words."""
-    if not options.liberty:
-        return "no timing: no characterized Liberty was given"
-    return (f"cells: {', '.join(path.name for path in options.liberty)}; wires: area and edge capacitance "
-            "to the substrate and resistance from the router's wires, no coupling; power: transitions of the netlist in "
-            "its recorded trace")
+    if not options.corners:
+        return "no timing: cells by area alone"
+    cells = ", ".join(path.name for path in options.liberty) or f"measured at {', '.join(options.corners)}"
+    return (f"cells: {cells}; wires: area and edge capacitance to the substrate and resistance from the router's "
+            "wires, no coupling; power: transitions of the netlist in its recorded trace")
 
 
 def broken(summary, rules=RULES):

@@ -62,8 +62,9 @@ class Embedded:
     rail_um wide, half of that at the edge. pin_pitch_um: tracks of the pins' two layers,
     'horizontal' (west and east) and 'vertical'. label_datatype,
     pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop.
-    poly, active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. fill: Fill, of all wires
-    but the lowest.
+    poly, active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. fill: Fill, of all
+    wires but the lowest. corners: at which cells are timed, that of synthesis first; () where there are no models of
+    the devices.
     """
 
     name: str
@@ -87,6 +88,7 @@ class Embedded:
     active: tuple
     contact: tuple
     fill: Fill
+    corners: tuple = ()
 
 
 def process(pdk):
@@ -95,3 +97,9 @@ def process(pdk):
         raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)}")
     module = importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.embedded")
     return module.PROCESS, module.library
+
+
+def modules(pdk):
+    """Modules with the device models (POLARITY, SUPPLIES ...) and the layers (PROCESS) of ``pdk``, for `cells`."""
+    return tuple(importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.{name}")
+                 for name in ("models", "process"))

@@ -7,6 +7,8 @@ from .search import search
 from .window import Window
 
 MARGINS_NM = (20_000, 60_000, 200_000)      # of the window around the pins: of the first try, of the next
+HIGHEST = 8                                 # price of the highest wire where it is to be short
+HOP_NM, REACH = 1500, 40                    # length of a piece of it; its distance from a pin, in steps of the grid
 CELL_PINS = 0                               # level of the layer of the cells' pins, on which nothing is routed
 
 
@@ -30,10 +32,11 @@ class Shapes:
                 self.wire(at, _around(x, y, x, y, half))
 
 
-def routed(layout, top, wiring, pins):
+def routed(layout, top, wiring, pins, hops=False):
     """Shapes of a net whose pins are ``pins``: lists of (level, left, bottom, right, top), of which any is to be met.
 
-    None when there is no way, or no room for what a rule asks.
+    hops: whether every cell is joined over a piece of the highest wire, against antennas: until that is there, what is
+    joined to a gate is short. None when there is no way, or no room for what a rule asks.
     """
     own = {}
     for box in (box for pin in pins for box in pin if box[0] != CELL_PINS):
@@ -44,19 +47,25 @@ def routed(layout, top, wiring, pins):
         box = (max(around[0] - margin, die.left), max(around[1] - margin, die.bottom),
                min(around[2] + margin, die.right), min(around[3] + margin, die.top))
         window = Window(layout, top, wiring, box, own)
-        shapes = _connected(window, [_accesses(window, pin) for pin in pins])
+        accesses = [_accesses(window, pin) for pin in pins]
+        if hops:
+            accesses = [_hop(window, access) if pin[0][0] == CELL_PINS else access
+                        for pin, access in zip(pins, accesses, strict=True)]
+        shapes = _connected(window, accesses, {len(wiring.layers) - 1: HIGHEST} if hops else None)
         if shapes and enlarged(window, shapes):
             return shapes
     return None
 
 
-def _connected(window, pins):
-    """Shapes that join ``pins``: dicts place -> Shapes that lead from there into the pin."""
+def _connected(window, pins, prices):
+    """Shapes that join ``pins``: dicts place -> Shapes that lead from there into the pin; None without a way."""
     shapes, tree = Shapes(), set()
     first, *left = pins
     while left:
         targets = {place: (k, access) for k, pin in enumerate(left) for place, access in pin.items()}
-        way = search(window, tree or set(first), set(targets)) if targets else None
+        if not targets or not first:
+            return None
+        way = search(window, tree or set(first), set(targets), prices)
         if way is None:
             return None
         if not tree:
@@ -67,6 +76,34 @@ def _connected(window, pins):
         tree |= set(way)
         del left[k]
     return shapes
+
+
+def _hop(window, accesses):
+    """The same pin met on the highest wire alone, HOP_NM from the cut that leads down: dict place -> Shapes; {} where
+    there is no room. What lies below is an obstacle from then on."""
+    highest = len(window.wiring.layers) - 1
+    free, cuts = window.wires[highest], window.cuts[highest - 1]
+    right, up = (-(-HOP_NM // window.dx), 0) if window.wiring.layers[highest].across else (0, -(-HOP_NM // window.dy))
+    places = {}
+    for _, i, j in list(accesses)[:1]:
+        for column in range(max(right, i - REACH), min(window.columns - right, i + REACH)):
+            for row in range(max(up, j - REACH), min(window.rows - up, j + REACH)):
+                if cuts[column, row]:
+                    for x, y in ((column + right, row + up), (column - right, row - up)):
+                        if cuts[x, y] and free[min(x, column):max(x, column) + 1, min(y, row):max(y, row) + 1].all():
+                            places[highest, column, row] = highest, x, y
+    way = search(window, set(accesses), set(places)) if places else None
+    if way is None:
+        return {}
+    shapes, end = Shapes(), places[way[-1]]
+    _join(shapes, accesses[way[0]])
+    _draw(shapes, window, way)
+    below = {level: list(boxes) for level, boxes in shapes.wires.items() if level != highest}
+    _draw(shapes, window, [way[-1], end])
+    for level, boxes in below.items():
+        for box in boxes:
+            window.block(level, box)
+    return {end: shapes}
 
 
 def _accesses(window, pin):
@@ -109,7 +146,7 @@ def _join(shapes, more):
 
 
 def _draw(shapes, window, way):
-    """Add the wires and cuts of ``way``."""
+    """Add the wires and cuts of ``way``, places of which one follows another along a row, a column or through a cut."""
     for (level, *here), (other, *there) in pairwise(way):
         if other != level:
             shapes.cut(window.wiring, min(level, other), *window.at(*here))

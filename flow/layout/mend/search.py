@@ -6,15 +6,20 @@ AGAINST = 3         # cost of a step against the direction of a layer's wires, i
 CUT_NM = 2000       # cost of a cut, as that of so long a wire
 
 
-def search(window, sources, targets):
-    """[(level, i, j), ...] from one of ``sources`` to one of ``targets`` (both sets of the same), or None."""
+def search(window, sources, targets, prices=None):
+    """[(level, i, j), ...] from one of ``sources`` to one of ``targets`` (both sets of the same), or None.
+
+    prices: dict level -> by how much its wires are dearer than others.
+    """
     columns, rows = window.columns, window.rows
     layer = columns * rows
     wires = {level: free.tobytes() for level, free in window.wires.items()}
     cuts = {level: free.tobytes() for level, free in window.cuts.items()}
-    steps = {level: ((rows, window.dx * (1 if made.across else AGAINST)),
-                     (1, window.dy * (AGAINST if made.across else 1)))
-             for level, made in enumerate(window.wiring.layers) if level}
+    steps = {}
+    for level, made in enumerate(window.wiring.layers[1:], 1):
+        x, y = (window.dx, window.dy * AGAINST) if made.across else (window.dx * AGAINST, window.dy)
+        price = (prices or {}).get(level, 1)
+        steps[level] = (rows, x * price), (1, y * price)
 
     def number(place):
         return place[0] * layer + place[1] * rows + place[2]

@@ -14,7 +14,7 @@ class Window:
         reach = (self.left - 1000, self.bottom - 1000, box[2] + 1000, box[3] + 1000)
         self.obstacles = {level: _boxes(layout, top, layer, reach, own.get(level, ()))
                           for level, layer in enumerate(wiring.layers) if level}
-        self.wires = {level: self._free(level, (wiring.layers[level].width // 2,) * 2) for level in self.obstacles}
+        self.wires = {level: self._free(level, self._half(level)) for level in self.obstacles}
         self.cuts = {level: self._free(level, cut.below) & self._free(level + 1, cut.above)
                      for level, cut in enumerate(wiring.cuts) if level}
 
@@ -35,17 +35,30 @@ class Window:
         return not np.any((there[:, 0] < box[2] + space) & (there[:, 2] > box[0] - space)
                           & (there[:, 1] < box[3] + space) & (there[:, 3] > box[1] - space))
 
+    def block(self, level, box):
+        """From now on nothing comes near ``box`` (nm) of the same net."""
+        self.obstacles[level] = np.vstack([self.obstacles[level], box])
+        self._keep_off(self.wires[level], level, self._half(level), box)
+        for below, pad in ((level, "below"), (level - 1, "above")):
+            if below in self.cuts:
+                self._keep_off(self.cuts[below], level, getattr(self.wiring.cuts[below], pad), box)
+
+    def _half(self, level):
+        return (self.wiring.layers[level].width // 2,) * 2
+
     def _free(self, level, half):
         """Where a box of half the size ``half`` keeps its distance; never at the window's edge."""
         free = np.zeros((self.columns, self.rows), bool)
         free[1:-1, 1:-1] = True
-        reach = np.array(half) + self.wiring.layers[level].space
-        for left, bottom, right, top in self.obstacles[level]:
-            free[max(0, (left - reach[0] - self.left) // self.dx + 1):
-                 max(0, -(-(right + reach[0] - self.left) // self.dx)),
-                 max(0, (bottom - reach[1] - self.bottom) // self.dy + 1):
-                 max(0, -(-(top + reach[1] - self.bottom) // self.dy))] = False
+        for box in self.obstacles[level]:
+            self._keep_off(free, level, half, box)
         return free
+
+    def _keep_off(self, free, level, half, box):
+        x, y = (size + self.wiring.layers[level].space for size in half)
+        left, bottom, right, top = box
+        free[max(0, (left - x - self.left) // self.dx + 1):max(0, -(-(right + x - self.left) // self.dx)),
+             max(0, (bottom - y - self.bottom) // self.dy + 1):max(0, -(-(top + y - self.bottom) // self.dy))] = False
 
 
 def _boxes(layout, top, layer, reach, own):

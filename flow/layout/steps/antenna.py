@@ -34,7 +34,9 @@ class Antenna(Step):
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
         top = layout.top_cell()
-        found = {wire.name: violations(layout, top, known, level) for level, wire in enumerate(known.wires)}
+        found = {wire.name: sorted({str(polygon.bbox().to_dtype(layout.dbu))
+                                    for polygon in violations(layout, top, known, level).each()})
+                 for level, wire in enumerate(known.wires)}
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
 
@@ -43,14 +45,10 @@ def connected(layout, top, known, level):
     """(LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]), all below that wire joined."""
     import klayout.db as db
 
-    def region(pair):
-        return db.Region(top.begin_shapes_rec(layout.layer(*pair)))
-
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
-    poly, active = region(known.poly), region(known.active)
-    layers = {"poly": l2n.make_polygon_layer(layout.layer(*known.poly), "poly"),
-              "contact": l2n.make_polygon_layer(layout.layer(*known.contact), "contact")}
-    gate, diffusion = poly & active, active - poly
+    layers = {name: l2n.make_polygon_layer(layout.layer(*pair), name) for name, pair in
+              (("poly", known.poly), ("active", known.active), ("contact", known.contact))}
+    gate, diffusion = layers["poly"] & layers["active"], layers["active"] - layers["poly"]
     for name, made in (("gate", gate), ("diffusion", diffusion)):
         l2n.register(made, name)
     l2n.connect(layers["poly"])
@@ -76,7 +74,7 @@ def connected(layout, top, known, level):
 
 
 def violations(layout, top, known, level):
-    """Boxes (um, as text) of the nets whose wire known.wires[level] is too large for their gates: list."""
+    """klayout.db.Region: known.wires[level] of the nets on which it is too large for their gates."""
     import klayout.db as db
     l2n, gate, diffusion, wires = connected(layout, top, known, level)
     wire = known.wires[level]
@@ -85,4 +83,4 @@ def violations(layout, top, known, level):
     bad = db.Region()
     for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
         bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, ratio, [[diffusion, by_diffusion]])
-    return sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+    return db.Region(list(bad.each()))          # no longer of the extraction, which ends here

@@ -5,7 +5,7 @@ import json
 import re
 from dataclasses import asdict, dataclass, field
 
-from flow.platforms.embedded import process
+from flow.platforms.embedded import modules, process
 from flow.simulate.process import run
 from flow.steps import Step, StepError
 
@@ -51,19 +51,20 @@ class Library(Step):
         areas = {cell.name: _area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
-        models, layers = (importlib.import_module(f"flow.platforms.{self.parameters.pdk.replace('-', '_')}.{name}")
-                          for name in ("models", "process"))
-        found = liberty.functions(outputs["gds"], [name for name in ports if not name.startswith(UNUSED)], models, layers)
+        models, layers = modules(self.parameters.pdk)
+        logic = [name for name in ports if not name.startswith(UNUSED)]
+        found = liberty.functions(outputs["gds"], logic, models, layers)
         outputs["liberty"].write_text(liberty.liberty({
             name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas))
-        run(["yosys", "-q", "-p", f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
+        run(["yosys", "-q", "-p",
+             f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
         return {"cells": len(cells)}
 
 
 def geometry(known):
     """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
     made = asdict(known)
-    del made["fill"], made["rail_um"]
+    del made["fill"], made["rail_um"], made["corners"]
     for wire in made["wires"]:
         for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
             del wire[name]
@@ -114,8 +115,9 @@ def narrowed(text, known, primitives):
     numbers = [pad + float(primitives[wire.name].min_space), pad]
     begin = text.index(f"metal = tech.getLayer('{wire.name}')")
     head, gauge = text[:begin], text[begin:]
-    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, (u({cut.enclosure_um}), "
-                                f"u({cut.enclosure_um})))", gauge, count=1)
+    around = f"u({cut.enclosure_um})"
+    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, ({around}, {around}))",
+                                gauge, count=1)
     gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge,
                             count=1)
     if not enclosures or not tracks:

@@ -1,4 +1,4 @@
-"""Nets that the router left open, taken out of the layout and routed anew by a search; without one, the layout as is."""
+"""Nets that the router left open or with an antenna, taken out of the layout and routed anew by a search."""
 
 import json
 import re
@@ -12,6 +12,8 @@ from .. import netlist as netlist_module
 from ..mend import nets, search, window, wiring
 from ..mend.wiring import Wiring
 from ..netlist import Netlist
+from . import antenna
+from .antenna import violations
 from .place_route import plain_names
 
 
@@ -28,7 +30,9 @@ class MendParameters:
 
 
 class Mend(Step):
-    """open_nets: left open, every one that was where a net could not be routed. mended: nets routed anew."""
+    """open_nets: left open, every one that was where a net could not be routed. mended: nets routed
+
+    anew. hopped: nets with an antenna routed anew, each gate behind a piece of the highest wire."""
 
     name = "mend"
     inputs = {"gds": "place_route.gds", "placement": "place_route.placement", "shapes": "place_route.shapes",
@@ -36,8 +40,8 @@ class Mend(Step):
               "geometry": "library.geometry"}
     outputs = {"gds": "mended.gds", "placement": "placement.json"}
     Parameters = MendParameters
-    metrics = {"open_nets": "", "mended": "", "wire_um": "um"}
-    uses = (nets, search, window, wiring, netlist_module)
+    metrics = {"open_nets": "", "mended": "", "hopped": "", "wire_um": "um"}
+    uses = (antenna, nets, search, window, wiring, netlist_module)
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
@@ -47,16 +51,18 @@ class Mend(Step):
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         layout, left = db.Layout(), open_nets(inputs["log"].read_text())
         layout.read(str(inputs["gds"]))
-        made = {}
-        if 0 < len(left) <= p.most:
-            rules = Wiring.of(known, json.loads(inputs["rules"].read_text()))
-            shapes = json.loads(inputs["shapes"].read_text())
-            made = mended(layout, rules, {net: shapes[net] for net in left}) or {}
-        for net, wires in made.items():
+        rules = Wiring.of(known, json.loads(inputs["rules"].read_text()))
+        shapes = json.loads(inputs["shapes"].read_text())
+        made = again(layout, rules, {net: shapes[net] for net in left}) if len(left) <= p.most else {}
+        hopped = {}
+        if len(made) == len(left):
+            charged = {net: shapes[net] for net in antennas(layout, known, shapes) if net not in made}
+            hopped = again(layout, rules, charged, hops=True) if len(charged) <= p.most else {}
+        for net, wires in (made | hopped).items():
             placement["wires"][names.get(net, f"cts_{net}")] = wires
         layout.write(str(outputs["gds"]))
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
-        return {"open_nets": len(left) - len(made), "mended": len(made),
+        return {"open_nets": len(left) - len(made), "mended": len(made), "hopped": len(hopped),
                 "wire_um": round(sum(wire[1] for net in placement["wires"].values() for wire in net), 1)}
 
 
@@ -65,47 +71,68 @@ def open_nets(log):
     return list(dict.fromkeys(re.findall(r"^\s+\d+\| &<id:\d+ (?:Horizontal|Vertical) (\S+) ", log, re.M)))
 
 
-def mended(layout, rules, found):
+def antennas(layout, known, shapes):
+    """Names of the nets, of ``shapes``, on which a wire is too large for its gates."""
+    import klayout.db as db
+    middles = {}
+    for net, made in shapes.items():
+        for name, *box in made["wires"]:
+            middles.setdefault(name, []).append((*_middle(_nm(box)), net))
+    found = set()
+    for level, wire in enumerate(known.wires):
+        for polygon in violations(layout, layout.top_cell(), known, level).each():
+            box = polygon.bbox()
+            found |= {net for x, y, net in middles.get(wire.name, ()) if box.left <= x <= box.right
+                      and box.bottom <= y <= box.top and polygon.inside(db.Point(x, y))}
+    return sorted(found)
+
+
+def again(layout, rules, found, hops=False):
     """Take the nets ``found`` (dict net -> its shapes, as coriolis.dump has them) out of the layout's top cell and put
-    them in anew: dict net -> its wires as in placement.json. None, and the layout as it was, if one has no way."""
-    top = layout.top_cell()
-    before = top.dup()
-    for made in found.values():
-        take_out(layout, top, rules, made)
-    wires, level = {}, {layer.name: k for k, layer in enumerate(rules.layers)}
+    them in anew, small ones first: dict net -> its wires as in placement.json, of those that there was a way for. What
+    had none is as it was, shorts of an open net included."""
+    top, wires = layout.top_cell(), {}
+    levels = {layer.name: k for k, layer in enumerate(rules.layers)}
+    erased = {net: take_out(layout, top, rules, made) for net, made in found.items()}
     for net, made in sorted(found.items(), key=lambda item: _span(item[1])):
-        pins = [[(level[name], *_nm(box)) for name, *box in pin] for pin in made["pins"]]
-        shapes = nets.routed(layout, top, rules, pins)
-        if shapes is None:
-            name = top.name
-            layout.delete_cell(top.cell_index())
-            before.name = name
-            return None
-        put_in(layout, top, rules, shapes)
-        wires[net] = _wires(rules, shapes)
-    layout.delete_cell(before.cell_index())
+        pins = [[(levels[name], *_nm(box)) for name, *box in pin] for pin in made["pins"]]
+        shapes = nets.routed(layout, top, rules, pins, hops)
+        if shapes:
+            put_in(layout, top, rules, shapes)
+            wires[net] = _wires(rules, shapes)
+        else:
+            for layer, polygon in erased[net]:
+                top.shapes(layer).insert(polygon)
     return wires
 
 
 def take_out(layout, top, rules, made):
-    """Erase the wires and cuts of one net from ``top``."""
-    boxes, middles = {}, {}
-    for name, *box in made["wires"]:
-        left, bottom, right, high = _nm(box)
-        if left == right or bottom == high:      # drawn as a pad
-            middles.setdefault(name, set()).add(((left + right) // 2, (bottom + high) // 2))
-        else:
-            boxes.setdefault(name, set()).add((left, bottom, right, high))
-    for name, x, y in made["cuts"]:
-        for part in name.split("_"):
-            middles.setdefault(part, set()).add(_nm((x, y)))
-    for layer in (*rules.layers, *rules.cuts):
-        shapes = top.shapes(layout.layer(layer.layer, layer.datatype))
-        where, at = boxes.get(layer.name, set()), middles.get(layer.name, set())
-        for shape in [shape for shape in shapes.each() if not shape.is_text()]:
-            box = shape.bbox()
-            if (box.left, box.bottom, box.right, box.top) in where or (box.center().x, box.center().y) in at:
+    """Erase the wires and cuts of one net from ``top``: list of (layer, polygon) that lay there."""
+    import klayout.db as db
+    wanted = [(name, _nm(box)) for name, *box in made["wires"]]
+    wanted += [(name, (x, y, x, y)) for name, box in wanted for x, y in _ends(*box)]       # where wires meet lie pads
+    wanted += [(part, 2 * _nm((x, y))) for name, x, y in made["cuts"] for part in name.split("_")]
+    ports, erased = {_nm(box) for pin in made["pins"] for _, *box in pin}, []
+    layers = {layer.name: layout.layer(layer.layer, layer.datatype) for layer in (*rules.layers, *rules.cuts)}
+    for name, box in wanted:
+        shapes = top.shapes(layers[name])
+        for shape in list(shapes.each_touching(db.Box(*box))):
+            there = shape.bbox()
+            ends = there.left, there.bottom, there.right, there.top
+            if not shape.is_text() and ends not in ports and (ends == box or 2 * _middle(ends) == box):
+                erased.append((layers[name], shape.polygon))
                 shape.delete()
+    return erased
+
+
+def _middle(box):
+    return (box[0] + box[2]) // 2, (box[1] + box[3]) // 2
+
+
+def _ends(left, bottom, right, top):
+    """Middles of the two ends of a wire."""
+    x, y = _middle((left, bottom, right, top))
+    return ((left, y), (right, y)) if right - left > top - bottom else ((x, bottom), (x, top))
 
 
 def put_in(layout, top, rules, shapes):

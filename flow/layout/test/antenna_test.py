@@ -29,5 +29,5 @@ def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
         draw(known.active, 0, -3, 1, -2)
         draw(known.contact, 0.4, -2.5, 0.5, -2.4)
         draw((li.layer, li.datatype), 0.3, -2.6, 0.7, -0.5)
-    assert len(violations(layout, top, known, 1)) == bad
-    assert not violations(layout, top, known, 0)
+    assert violations(layout, top, known, 1).count() == bad
+    assert violations(layout, top, known, 0).is_empty()

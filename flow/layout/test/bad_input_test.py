@@ -45,7 +45,7 @@ def test_a_file_that_is_no_liberty(tmp_path):
     with pytest.raises(ParameterError, match="x.lib: must be a Liberty file"):
         embedded.Options(liberty=(tmp_path / "x.lib",))
     (tmp_path / "x.lib").write_text("/* made */\n" + small.liberty())
-    assert embedded.Options(liberty=(tmp_path / "x.lib",)).corners == {"x": tmp_path / "x.lib"}
+    assert embedded.Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
 
 
 @pytest.mark.parametrize("missing", ["klayout", "yosys", "iverilog"])

@@ -38,7 +38,7 @@ PROCESS = Embedded(
            Wire("Metal5", 67, 0, 7.14, 27.53, 0.103, 0.45, 200, _DIFFUSION)),
     cuts=tuple(Cut(f"Via{k}", layer, 0, 0.19, 0.29, 0.05, 20.0) for k, layer in enumerate((19, 29, 49, 66), 1)),
     # below 1 um: along more than that, wires wider than 0.39 um would have to be farther from the router's
-    strap_um=0.95, rail_um=2.24, rail_overlap_um=0.95,
+    strap_um=0.95, rail_um=2.24, rail_overlap_um=0.9,
     pin_pitch_um={"horizontal": 0.5, "vertical": 0.5}, label_datatype=25, pin_datatype=2,
     blockage_layer=100, poly=(5, 0), active=(1, 0), contact=(6, 0),
     # 35 to 60 % in windows of 200 um; IHP fills on its side, too
