@@ -16,13 +16,14 @@ def grow(layout, top, wires, rules):
     grown = 0
     for wire in wires:
         least = round(rules[wire.name]["area"] / layout.dbu ** 2)
-        space = round(1.2 * rules[wire.name]["space"] / layout.dbu)     # wide wires keep farther away
+        space = round(rules[wire.name]["space"] / layout.dbu)
         layer = layout.layer(wire.layer, wire.datatype)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
         for polygon in (metal.with_area(1, least, False).each() if least else ()):
             others = metal - db.Region(polygon)
             for box in longer(polygon.bbox(), least):
-                if (others & db.Region(box.enlarged(space))).is_empty():
+                new = db.Region(box) - db.Region(polygon)           # its neighbours are as near as tracks are
+                if (others & new.sized(space)).is_empty():
                     top.shapes(layer).insert(box)
                     metal += box
                     grown += 1

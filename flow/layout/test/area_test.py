@@ -37,6 +37,11 @@ def test_it_grows_away_from_its_neighbours(known):
     assert found.space_check(210).count() == 0
 
 
+def test_between_two_tracks_it_grows_along_them(known):
+    count, found = metal(known, [(0, 0, 0.29, 0.29), (0.5, -2, 0.7, 2), (-0.5, -2, -0.21, 2)])
+    assert count == 1 and found.space_check(210).count() == 0 and found.with_area(0, 144_000, False).count() == 0
+
+
 def test_one_without_room_stays(known):
     ring = [(-1, -1, 1.3, -0.25), (-1, 0.54, 1.3, 1.3), (-1, -1, -0.25, 1.3), (0.54, -1, 1.3, 1.3)]
     count, found = metal(known, [(0, 0, 0.29, 0.29), *ring])
