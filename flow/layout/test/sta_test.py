@@ -26,8 +26,8 @@ def liberty(setup, hold):
 
     tables = " ".join(f'{name}(scalar) {{ values("{value}"); }}' for name, value in
                       (("cell_rise", 0.3), ("cell_fall", 0.3), ("rise_transition", 0.1), ("fall_transition", 0.1)))
-    percent = "".join(f"input_threshold_pct_{edge} : 50; output_threshold_pct_{edge} : 50; slew_lower_threshold_pct_{edge}"
-                      f" : 20; slew_upper_threshold_pct_{edge} : 80; " for edge in ("rise", "fall"))
+    percent = "".join(f"{name}_threshold_pct_{edge} : {value}; " for edge in ("rise", "fall") for name, value in
+                      (("input", 50), ("output", 50), ("slew_lower", 20), ("slew_upper", 80)))
     return f"""library(one) {{ {percent}
   delay_model : table_lookup; time_unit : "1ns"; capacitive_load_unit(1, pf); voltage_unit : "1V"; current_unit : "1mA";
   leakage_power_unit : "1nW"; nom_voltage : 1.8; nom_temperature : 25; nom_process : 1;

@@ -11,7 +11,8 @@ from flow.platforms.patience import patience
 from models.parameters import ParameterError
 
 FLOW = Path(__file__).parents[2]
-OF_A_PROCESS = re.compile(r'sky130(?!")|ihp|sg13|[np]fet|\bmet\d|\(\d+, (?:20|16|5|44)\)')     # "sky130" alone: a default
+# "sky130" in quotes: a default
+OF_A_PROCESS = re.compile(r'sky130(?!")|ihp|sg13|[np]fet|\bmet\d|\(\d+, (?:20|16|5|44)\)')
 
 
 def test_no_step_knows_a_process():
