@@ -24,7 +24,8 @@ def library():
     return made
 
 
-# With a diffusion of 0.16 um2 on a net, 3200 and 20,000 an um2 more; none here is smaller
+# With a diffusion of 0.16 um2 on a net, 3200 and 20,000 an um2 more; none here is smaller. IHP's ratio is that of areas,
+# all layers together, and the step's that of side walls, layer by layer: 4.5 times as much of a wire of least width
 _DIFFUSION = (3200, 20000)
 PROCESS = Embedded(
     name="ihp-sg13g2", package="c4m.pdk.ihpsg13g2", wheel="c4m-pdk-ihpsg13g2", row_um=5.31, site_um=0.885,
