@@ -64,7 +64,7 @@ class Embedded:
     pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop.
     poly, active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. fill: Fill, of all
     wires but the lowest. corners: at which cells are timed, that of synthesis first; () where there are no models of
-    the devices.
+    the devices. antenna_walls: whether antenna ratios are those of a wire's side walls, else of its area.
     """
 
     name: str
@@ -89,6 +89,7 @@ class Embedded:
     contact: tuple
     fill: Fill
     corners: tuple = ()
+    antenna_walls: bool = True
 
 
 def process(pdk):

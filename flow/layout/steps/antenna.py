@@ -80,7 +80,8 @@ def violations(layout, top, known, level):
     wire = known.wires[level]
     safe = 1e9          # for what has a diffusion, in the check of what has none
     base, more = wire.antenna_diffusion
+    factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)       # of the metal's area, its edges
     bad = db.Region()
     for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
-        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, ratio, [[diffusion, by_diffusion]])
+        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], *factors, ratio, [[diffusion, by_diffusion]])
     return db.Region(list(bad.each()))          # no longer of the extraction, which ends here

@@ -24,8 +24,8 @@ def library():
     return made
 
 
-# With a diffusion of 0.16 um2 on a net, 3200 and 20,000 an um2 more; none here is smaller. IHP's ratio is that of areas,
-# all layers together, and the step's that of side walls, layer by layer: 4.5 times as much of a wire of least width
+# With a diffusion of 0.16 um2 on a net, 3200 and 20,000 an um2 more; none here is smaller. IHP's limit is that of all
+# layers together, the step's of each
 _DIFFUSION = (3200, 20000)
 PROCESS = Embedded(
     name="ihp-sg13g2", package="c4m.pdk.ihpsg13g2", wheel="c4m-pdk-ihpsg13g2", row_um=5.31, site_um=0.885,
@@ -44,4 +44,4 @@ PROCESS = Embedded(
     blockage_layer=100, poly=(5, 0), active=(1, 0), contact=(6, 0),
     # 35 to 60 % in windows of 200 um; IHP fills on its side, too
     fill=Fill(sides_um=(2.0, 1.0, 0.5), space_um=0.42, clearance_um=0.6, density=0.36, density_most=0.6,
-              window_um=200.0))
+              window_um=200.0), antenna_walls=False)
