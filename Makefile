@@ -87,12 +87,12 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 LIBERTY='a.lib b.lib']
+layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
 ifeq ($(BACKEND),openroad)
 	@$(PY) -m flow.openroad $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
 else
 	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
-		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) \
+		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 endif
 

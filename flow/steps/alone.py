@@ -3,6 +3,7 @@ this process is the end of that one and of the tools that it runs."""
 
 import ctypes
 import multiprocessing
+import os
 import resource
 import signal
 import sys
@@ -17,7 +18,7 @@ def alone(call, *arguments):
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
     child = context.Process(target=_measured, args=(sender, call, arguments))
-    child.start()
+    _start(child)
     sender.close()
     try:
         result, peak = receiver.recv()
@@ -33,6 +34,18 @@ def alone(call, *arguments):
     if isinstance(result, BaseException):
         raise result
     return result, peak
+
+
+def _start(child):
+    """With fixed hashes of texts: sets have the same order each time, and what is written from them is the same file."""
+    before = os.environ.get("PYTHONHASHSEED")
+    os.environ["PYTHONHASHSEED"] = "0"
+    try:
+        child.start()
+    finally:
+        del os.environ["PYTHONHASHSEED"]
+        if before is not None:
+            os.environ["PYTHONHASHSEED"] = before
 
 
 def _measured(sender, call, arguments):

@@ -94,6 +94,21 @@ def test_parameters_of_another_step_are_refused():
         Repeat({"times": 2})
 
 
+class Order(Repeat):
+    name = "order"
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(" ".join({str(n) for n in range(100)}))
+        return {"length": 0}
+
+
+def test_sets_have_the_same_order_in_every_run(tmp_path, text):
+    for folder in "ab":
+        Runner(tmp_path / folder, {"text": text}).run(Order())
+    first, second = (next((tmp_path / folder).glob("order.*/out.txt")).read_text() for folder in "ab")
+    assert first == second
+
+
 class Tool(Repeat):
     """A tool that would run for a minute, its process's number told in the given file."""
 
