@@ -2,8 +2,9 @@
 
 What was measured of Icarus 11.0: IOPATH is annotated when all three values of a triple are there (OpenSTA leaves the
 typical one out, and a path then stays without delay and without a word); INTERCONNECT is a syntax error; checks of
-setup and hold are not made. So a wire's delay is added to that of the cell that drives it, the largest of its branches,
-and setup and hold are modules of the bench (replay.py).
+setup and hold are not made. So a wire's delay is added to that of the cell that drives it, the largest of its branches
+(that of an input port's wire is left out), and setup and hold are modules of the bench (replay.py), each with the later
+time of both edges.
 """
 
 import re

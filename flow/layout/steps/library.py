@@ -136,5 +136,14 @@ def _klayout(outputs, description, package, library):
     export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
               add_pin_label=True).write(str(outputs["gds"]))
     netlists = SpiceNetlistFactory(params=devices)
-    outputs["spice"].write_text("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
-                                        if cell.name != "Gallery"))
+    outputs["spice"].write_text(transistors("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
+                                                    if cell.name != "Gallery")))
+
+
+def transistors(spice):
+    """SPICE with every transistor as one: where a process has it as a subcircuit, KLayout would not know it."""
+    cells = set(re.findall(r"(?im)^\.subckt (\S+)", spice))
+
+    def device(match):
+        return match[0] if match[2] in cells else f"M{match[1]}{match[2]}{match[3]}"
+    return re.sub(r"(?m)^X(\S+ (?:\S+ ){4})(\w+)((?: \w+=\S+)+)$", device, spice)
