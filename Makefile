@@ -87,18 +87,27 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 LIBERTY='a.lib b.lib']
+layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
 ifeq ($(BACKEND),openroad)
 	@$(PY) -m flow.openroad $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
 else
 	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
-		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) \
+		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 endif
 
+.PHONY: layout-pareto
+layout-pareto: $(LAYOUT_READY)  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+	@$(PY) -m flow.layout.sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+
+.PHONY: layout-effort
+layout-effort: $(LAYOUT_READY)  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+	@$(PY) -m flow.layout.sweep effort --design $(or $(DESIGN),quad_divider) \
+		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
-	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider)
+	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)

@@ -29,6 +29,8 @@ def pytest_addoption(parser):
     group = parser.getgroup("netlists", "run the Icarus level of the tests on netlists")
     group.addoption("--netlist", action="append", default=[], metavar="NAME=FILE[:MODULE]",
                     help="this Verilog in place of what the tests build as NAME (rtl/<block>/test): AmpCtrl=gates.v")
+    group.addoption("--netlist-in", choices=("icarus", "verilator"), default="icarus",
+                    help="simulator of the netlists; Verilator knows no X (%(default)s)")
     group.addoption("--cells", action="append", default=[], metavar="FILE", help="models of the netlists' cells")
 
 
@@ -41,6 +43,10 @@ def pytest_configure(config):
         from rtl import icarus_level
         icarus_level.netlists[match[1]] = match[2], match[3]
         icarus_level.cells[:] = config.getoption("cells")
+    if config.getoption("netlist") and config.getoption("netlist_in") == "verilator":
+        from rtl import icarus_level
+        from verif.coverage.netlists import in_verilator
+        icarus_level.start = in_verilator
 
 
 def pytest_collection_modifyitems(config, items):

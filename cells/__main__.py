@@ -18,7 +18,8 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def main(argv=None):
     parser = argparse.ArgumentParser(prog="python -m cells", description=__doc__.splitlines()[0])
-    parser.add_argument("--lib", default="sky130_hd", choices=sources.LIBRARIES, help="which library")
+    parser.add_argument("--lib", default="sky130_hd",
+                        help=f"{', '.join(sources.LIBRARIES)}, or a SPICE file of cells")
     parser.add_argument("--corner", default="tt_025C_1v80", help="process, temperature, supply: ff_n40C_1v95")
     parser.add_argument("--cells", help="names with commas between (inv_1,nand2_1); default: all for synthesis")
     parser.add_argument("--models", default="fitted", choices=sources.process("sky130_hd").SETS,
@@ -37,7 +38,7 @@ def main(argv=None):
     except (ParameterError, ToolError, SimulationError, OSError) as error:
         print(f"cells: {error}", file=sys.stderr)
         return 2
-    print(json.dumps({k: v for k, v in summary.items() if k != "by_cell"}, indent=1))
+    print(json.dumps({k: v for k, v in summary.items() if k not in ("cell_s", "cell_cpu_s", "names")}, indent=1))
     return 1 if summary["failed"] or summary["problems"] else 0
 
 

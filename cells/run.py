@@ -10,11 +10,12 @@ from tqdm import tqdm
 
 from cells import sources
 from cells.characterize.cell import characterize
-from cells.liberty import build, compare, reference, write
+from cells.liberty import accept, build, compare, reference, write
 from cells.liberty import check as check_library
 from cells.netlist.check import check
 from cells.netlist.function import understand
 from cells.netlist.spice import parse
+from cells.spice.circuit import circuit
 from flow import jobs
 from flow.files import staged
 from flow.simulate.process import finish
@@ -24,7 +25,10 @@ CODE = Path(__file__).resolve().parent
 
 
 def run(library, conditions, wanted, netlist, out, against, workers, started):
-    """Characterize and write <out>/<library>/<corner>.lib, .lef, .v and summary.json: the summary.
+    """Characterize and write <out>/<library>/<corner>.lib, <library>.lef, <library>.v and summary.json: the summary.
+
+    summary.json: that of this corner, and of every corner whose .lib lies there under 'corners'; LEF and Verilog have
+    the cells of all of them.
 
     wanted: names, or None for all. netlist: as in sources.NETLISTS. against: folder of SkyWater's tables, or None.
     """
@@ -36,21 +40,26 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     found = [sources.source(library, cell, netlist) for cell in tqdm(wanted or everything, "netlists", disable=None)]
     found.sort(key=lambda source: -len(source.netlist))              # what takes longest goes first
     cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
-    folder = Path(out) / library
-    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{library} {name}",
+    for cell in cells:
+        _has_models(cell, process, conditions)
+    title = sources.title(library)
+    folder = Path(out) / title
+    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{title} {name}",
                         workers)
     by_name = sorted(zip(cells, measured, found, strict=True), key=lambda entry: entry[2].name)
     cells, measured, found = zip(*by_name, strict=True)
-    tree = build.library(f"{library}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
+    tree = build.library(f"{title}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
                          {} if wanted else sources.constants(library))
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
-        macros = (sources.abstract(c, s) for c, s in zip(cells, found, strict=True))
-        (part / f"{library}.lef").write_text("\n".join(["VERSION 5.8 ;", *macros, "END LIBRARY", ""]))
-        if verilog := [s.verilog for s in found if s.verilog]:
-            (part / f"{library}.v").write_text("\n".join(verilog))
-        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+        summary |= {"names": [s.name for s in found], "read_by": accept.readers(part / f"{name}.lib")}
+        summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items()
+                                if said not in accept.GOOD]
+        corners = _corners(folder) | {name: dict(summary)}
+        for suffix, text in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
+            (part / f"{title}.{suffix}").write_text(text)
+        (part / "summary.json").write_text(json.dumps({"corner": name, **summary, "corners": corners}, indent=1) + "\n")
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
             file = folder / "failed" / f"{measure['name']}.{k}.sp"
@@ -62,9 +71,16 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
 def cell_of(source, process):
     """Cell of a Source, checked. Raises ParameterError."""
     netlist = parse(source.netlist, origin=source.name)
-    rails = [rail for rail in process.SUPPLIES if rail in netlist.ports]
-    check(netlist, process.POLARITY, rails)
+    check(netlist, process.POLARITY, process.SUPPLIES)
     return understand(netlist, process.POLARITY, process.SUPPLIES)
+
+
+def _has_models(cell, process, conditions):
+    """Raise ParameterError, before anything runs, when a transistor of ``cell`` has a size that no model is for."""
+    try:
+        circuit(cell.machine.netlist, process, conditions.models, conditions.corner)
+    except ParameterError as error:
+        raise ParameterError(f"netlist = {cell.name}: {error}") from None
 
 
 def job(source, conditions, process):
@@ -72,12 +88,22 @@ def job(source, conditions, process):
     code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
     name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
     return jobs.Job(name, _measure, (source, conditions, process.__name__),
-                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__), finish(["ngspice", "--version"]).stdout, *code))
+                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__),
+                     finish(["ngspice", "--version"]).stdout, *code))
 
 
 def _measure(source, conditions, process):
     module = importlib.import_module(process)
     return characterize(cell_of(source, module), module, conditions)
+
+
+def _corners(folder):
+    """{corner: summary} of earlier runs whose library is still there."""
+    try:
+        known = json.loads((folder / "summary.json").read_text()).get("corners", {})
+    except (OSError, ValueError):
+        return {}
+    return {name: summary for name, summary in known.items() if (folder / f"{name}.lib").exists()}
 
 
 def _summary(cells, measured, tree, known, seconds):
@@ -87,7 +113,9 @@ def _summary(cells, measured, tree, known, seconds):
                "simulations": sum(m["simulations"] for m in measured),
                "repeated": sum(m["repeated"] for m in measured), "failed": failed,
                "problems": check_library.problems(tree), "wall_s": round(seconds, 1),
-               "cell_s": {m["name"]: m["wall_s"] for m in measured}}
+               "cpu_s": round(sum(m["cpu_s"] for m in measured), 1),
+               "cell_s": {m["name"]: m["wall_s"] for m in measured},
+               "cell_cpu_s": {m["name"]: m["cpu_s"] for m in measured}}
     if known:
         summary |= compare.summary(compare.library(tree, known))
     return summary

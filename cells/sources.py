@@ -1,4 +1,4 @@
-"""Where the cells of a library come from: netlist, abstract, Verilog and area of each."""
+"""Where the cells of a library come from: netlist and area of each, abstracts and Verilog of all."""
 
 import json
 import re
@@ -7,6 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cells.extract import extract
+from cells.flexcell.canvas import Canvas
+from cells.flexcell.catalogue import schematics
+from cells.flexcell.library import schematic_spice, written
+from cells.lef import header as lef_header
+from cells.netlist import spice
 from flow.platforms.sky130 import cells as sky130_hd
 from flow.platforms.sky130 import models as sky130
 from flow.platforms.sky130 import process as sky130_layout
@@ -14,7 +19,7 @@ from flow.simulate import process as child
 from models.parameters import ParameterError
 
 LIBRARIES = ("sky130_hd", "flexcell")
-NETLISTS = ("extracted", "devices", "schematic")
+NETLISTS = ("extracted", "capacitances", "devices", "schematic")
 FLEXCELL = Path("build/cells/flexcell")
 # cells without an input that hold a constant: cell -> pin: level
 CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}},
@@ -24,50 +29,71 @@ _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
 
 @dataclass(frozen=True)
 class Source:
-    """name: short ('nand2_1'). netlist: SPICE text; gds: its file; lef: text or None; verilog: text or None;
-
-    area: um2.
-    """
+    """name: short ('nand2_1'). netlist: SPICE text; area: um2, or None where no layout says it."""
 
     name: str
     netlist: str
-    gds: Path
-    lef: str | None
-    verilog: str | None
-    area: float
+    area: float | None
 
 
 def names(library):
-    """Cells of ``library`` that synthesis may use, sorted. FlexCell is drawn first if it is not there."""
+    """Cells of ``library`` that synthesis may use, sorted: of LIBRARIES, or every .subckt of a SPICE file.
+
+    FlexCell is drawn first if it is not there.
+    """
     if library == "sky130_hd":
         return sky130_hd.names()
     if library == "flexcell":
         return sorted(name for name in _flexcell_areas() if not name.startswith(_NOT_LOGIC))
-    raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
+    return sorted(spice.read_all(_file(library)))
+
+
+def title(library):
+    """What its folder and files are called."""
+    return library if library in LIBRARIES else _file(library).stem
 
 
 def source(library, name, netlist="extracted"):
-    """Source of one cell. netlist: 'extracted' with stray capacitances, 'devices' with the transistors as laid out
+    """Source of one cell. netlist: 'extracted' with stray capacitances and the resistance of wires and contacts,
 
-    alone, 'schematic' as the library's own netlist has it. Raises ParameterError for a cell that is not there.
+    'capacitances' with the former alone, 'devices' with the transistors as laid out alone, 'schematic' as the library's
+    own netlist has it. Raises ParameterError for a cell that is not there.
     """
     if netlist not in NETLISTS:
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
-    strays = netlist == "extracted"
+    if library not in LIBRARIES:
+        return Source(name, spice.subcircuit(_file(library).read_text(), name), None)
+    strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
     if library == "flexcell":
         if netlist == "schematic":
-            raise ParameterError("netlist = 'schematic': must be extracted or devices for flexcell")
-        gds = FLEXCELL / "flexcell.gds"
-        return Source(name, extract(gds, name, sky130_layout, strays=strays), gds, None, None, _flexcell_areas()[name])
-    files = {kind: sky130_hd.file(name, kind) for kind in ("gds", "spice", "lef", "functional.v")}
-    text = (files["spice"].read_text() if netlist == "schematic" else
-            extract(files["gds"], files["gds"].stem, sky130_layout, strays=strays))
-    lef = files["lef"].read_text()
-    return Source(name, text, files["gds"], lef, files["functional.v"].read_text(), area(lef))
+            return Source(name, schematic_spice(schematics()[name], Canvas()), _flexcell_areas()[name])
+        return Source(name, extract(FLEXCELL / "flexcell.gds", name, sky130_layout, **strays), _flexcell_areas()[name])
+    gds = sky130_hd.file(name, "gds")
+    text = (sky130_hd.file(name, "spice").read_text() if netlist == "schematic" else
+            extract(gds, gds.stem, sky130_layout, **strays))
+    return Source(name, text, area(sky130_hd.file(name, "lef").read_text()))
+
+
+def files(library, cells):
+    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of FlexCell all cells.
+
+    Nothing of a SPICE file, which has neither.
+    """
+    if library not in LIBRARIES:
+        return {}
+    if library == "flexcell":
+        return {suffix: (FLEXCELL / f"flexcell.{suffix}").read_text() for suffix in ("lef", "v")}
+    names = sorted({*cells, *CONSTANTS[library]})
+    macros = (sky130_hd.file(name, "lef").read_text() for name in names)
+    macros = [text[text.find("MACRO"):text.rfind("END LIBRARY")].rstrip() for text in macros]
+    return {"lef": lef_header(*sky130_hd.SITE) + "\n\n".join(macros) + "\n\nEND LIBRARY\n",
+            "v": "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names)}
 
 
 def constants(library):
     """{cell's whole name: (pin: level, area in um2)} of the cells that hold a constant."""
+    if library not in LIBRARIES:
+        return {}
     if library == "flexcell":
         return {name: (pins, _flexcell_areas()[name]) for name, pins in CONSTANTS[library].items()}
     return {f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
@@ -83,25 +109,19 @@ def area(lef):
 def process(library):
     """Module with the models of the process that ``library`` is made in."""
     if library not in LIBRARIES:
-        raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}")
+        _file(library)
     return sky130
 
 
-def abstract(cell, source):
-    """LEF macro of ``cell`` (Cell): the vendor's, or made from its GDS."""
-    if source.lef is not None:
-        return source.lef[source.lef.find("MACRO"):source.lef.rfind("END LIBRARY")].rstrip()
-    from cells import lef
-    machine, clock = cell.machine, cell.storage and cell.storage.clock
-    pins = {pin: lef.Pin("INPUT", "CLOCK" if pin == clock else "SIGNAL") for pin in machine.inputs}
-    pins |= {pin: lef.Pin("OUTPUT") for pin in machine.outputs}
-    pins |= {rail: lef.Pin("INOUT", "POWER" if level else "GROUND") for rail, level in sky130.SUPPLIES.items()
-             if rail in machine.netlist.ports}
-    return lef.abstract(source.gds, cell.name, sky130_layout.PROCESS, pins, "flexcell").rstrip()
+def _file(library):
+    """Path of a SPICE file given as library. Raises ParameterError when there is none."""
+    path = Path(library)
+    if not path.is_file():
+        raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}, or a SPICE file")
+    return path
 
 
 def _flexcell_areas():
-    """um2 of every cell of FlexCell, drawn now if it is not there."""
-    if not (FLEXCELL / "areas.json").exists():
-        child.run([sys.executable, "-m", "cells.flexcell", "--no-check", "--out", FLEXCELL])
+    """um2 of every cell of FlexCell, drawn now if it is not there or was drawn by other code."""
+    written(FLEXCELL)
     return json.loads((FLEXCELL / "areas.json").read_text())

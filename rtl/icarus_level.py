@@ -72,9 +72,17 @@ class Conversation:
         return self.answer
 
 
+def in_icarus(dut, name):
+    """Command of the simulation of ``dut``; name: see `program`."""
+    return ["vvp", "-n", program(dut, name)]
+
+
+start = in_icarus       # another simulator's takes its place for netlists (conftest.py)
+
+
 def icarus_level(dut, name):
     """The DrivenLevel for the elaborated component ``dut`` in Icarus; name: see `program`."""
-    return driven_level(dut, Driven(["vvp", "-n", program(dut, name)], ports_of(dut)))
+    return driven_level(dut, Driven(start(dut, name), ports_of(dut)))
 
 
 def driven_level(dut, simulation):

@@ -40,6 +40,7 @@ class Bench:
                                    conditions.corner.temperature, conditions.settings)
         self.tail = {}          # output -> [s, s a farad]: the slowest seen
         self.pressed = {}       # output -> F under which constraints are measured
+        self.middle = {}        # output -> F in the middle of its load axis
         self.edges = {}         # what `edge` has measured
         self.stubborn = set()   # states that the operating point does not find
 

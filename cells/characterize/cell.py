@@ -1,5 +1,6 @@
 """Everything about one cell at one corner, as plain data that JSON holds: what Liberty is written from."""
 
+import resource
 import time
 
 import numpy as np
@@ -14,13 +15,19 @@ from cells.spice.engine import SimulationError
 
 
 def characterize(cell, process, conditions):
-    """dict: what `cells.liberty.build` takes, with SI units, 'failed' (what, why, deck), counts and seconds."""
-    started = time.monotonic()
+    """dict: what `cells.liberty.build` takes, with SI units, 'failed' (what, why, deck), counts and seconds.
+
+    wall_s: by the clock; cpu_s: of this process and of ngspice.
+    """
+    started, used = time.monotonic(), cpu_seconds()
     out = {"name": cell.name, "failed": [], "slews": conditions.slews}
     with Bench(cell, process, conditions) as bench:
         tried = _Tries(out["failed"])
         axes = {output: tried(f"{output}: axes", axes_of, bench, output) for output in cell.machine.outputs}
-        bench.pressed = {output: axis[1][-2] for output, axis in axes.items() if axis}
+        for output, axis in axes.items():
+            if axis:
+                bench.middle[output] = _between(axis[1], 1 / 2)
+                bench.pressed[output] = _between(axis[1], 2 / 3)
         out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
         out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
         out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,
@@ -37,8 +44,14 @@ def characterize(cell, process, conditions):
     with Bench(cell, process, conditions, leakage=True) as bench:
         out["leakage"] = tried("leakage", leakage, bench) or []
     out["simulations"], out["repeated"] = runs + bench.simulator.runs, repeated + bench.simulator.repeated
-    out["wall_s"] = round(time.monotonic() - started, 2)
+    out["wall_s"], out["cpu_s"] = round(time.monotonic() - started, 2), round(cpu_seconds() - used, 2)
     return out
+
+
+def cpu_seconds():
+    """Processor's seconds of this process and of its children that have ended."""
+    return sum(part.ru_utime + part.ru_stime
+               for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
 
 
 class _Tries:
@@ -69,13 +82,17 @@ def axes_of(bench, output):
     return grid.refined(bench, edges, output, loads)
 
 
+def _between(loads, share):
+    """F at a ``share`` of an axis, by its ends: more points in it change nothing."""
+    return float(loads[0] ** (1 - share) * loads[-1] ** share)
+
+
 def _arc(bench, arc, slews, loads):
     change = delay.slowest(bench, arc, loads[len(loads) // 2])
     table = delay.table(bench, change, arc.output, loads, slews)
     return {"pin": arc.pin, "pin_edge": arc.pin_edge, "output": arc.output, "edge": arc.edge, "type": arc.type,
             "sense": arc.sense, "slews": table.slews, "loads": table.loads,
             "state": list(change.before.inputs), **_lists(table.values)}
-
 
 
 def _without_clock(out, cell):

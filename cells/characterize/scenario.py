@@ -87,16 +87,20 @@ class Scenarios:
                             data if latch else self.clock)
         return None
 
-    def pulse(self, pin, level):
-        """(state, expected output) for a pulse to ``level`` on ``pin`` (clock, set or reset) that must move it."""
+    def pulses(self, pin, level):
+        """[(state, expected output)], one for each level that a pulse to ``level`` on ``pin`` (clock, set or reset) can
+
+        move the output to.
+        """
         number = self.machine.inputs.index(pin)
         states = (self._quiet(1 - level) if number == self.clock else
                   [s for s in self.states if all(s.inputs[p] == v for p, v in self.idle.items())])
+        found = {}
         for s in states:
             first = self.after.get((s, number))
             last = first and self.after.get((first, number))
             if s.inputs[number] == level or last is None:
                 continue
             if last.outputs[0] != s.outputs[0]:
-                return s, last.outputs[0]
-        return None
+                found.setdefault(last.outputs[0], s)
+        return [(state, expected) for expected, state in sorted(found.items())]

@@ -15,6 +15,7 @@ class Device:
     """A transistor. kind: 'n' or 'p'. w, l: um; ad, as_: um2; pd, ps: um, a shared diffusion divided among its gates;
 
     sa, sb: um from the gate to the ends of its diffusion. marks: the threshold and library marks over the gate.
+    at: middle of its gate, dbu.
     """
 
     kind: str
@@ -31,13 +32,16 @@ class Device:
     sa: float
     sb: float
     marks: frozenset
+    at: db.Point
 
 
 @dataclass
 class Layout:
     """What was found. shapes: conductor (a wire's name or DIFFUSION) -> net -> region (in dbu); wells: net -> region;
 
-    ports: the names that labels give; dbu: um. active: all diffusion, gates included.
+    ports: the names that labels give; dbu: um. active: all diffusion, gates included. islands: 'n' or 'p' -> net ->
+
+    sources and drains; cuts: for every one of Process.cuts its region; labels: net -> [(wire, point)], highest first.
     """
 
     dbu: float
@@ -46,6 +50,9 @@ class Layout:
     shapes: dict = field(default_factory=dict)
     wells: dict = field(default_factory=dict)
     active: db.Region = None
+    islands: dict = field(default_factory=dict)
+    cuts: list = field(default_factory=list)
+    labels: dict = field(default_factory=dict)
 
 
 def read_cell(gds, name):
@@ -76,8 +83,20 @@ def find(gds, name, process):
     circuit = l2n.netlist().top_circuit()
     found = _collect(l2n, circuit, layers, process)
     found.dbu = layout.dbu
-    strips = {mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark]))) for mark in MARKS}
+    strips = {mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark])))
+              for mark in MARKS if mark in process.devices}
     found.devices = [_device(device, found, strips) for device in circuit.each_device()]
+    found.cuts = [db.Region(list(layers[f"cut{i}"].each_merged())) for i in range(len(process.cuts))]
+    found.labels = _labels(layout, cell, process)
+    return found
+
+
+def _labels(layout, cell, process):
+    found = {}
+    for wire in reversed(process.wires):
+        for layer in (wire.pin, wire.label):
+            for shape in cell.shapes(layout.layer(*layer)).each(db.Shapes.STexts):
+                found.setdefault(shape.text_string, []).append((wire.name, db.Point() + shape.text_trans.disp))
     return found
 
 
@@ -96,10 +115,11 @@ def _layers(l2n, layout, process, box):
         layers[f"well.label{i}"] = l2n.make_text_layer(layout.layer(*spec), f"well.label{i}")
     for i, (spec, _, _) in enumerate(process.cuts):
         layers[f"cut{i}"] = drawn(f"cut{i}", spec)
-    active = raw["diff"] + raw["tap"]
+    active = raw["diff"] + raw.get("tap", db.Region())
     nwell, poly = raw["nwell"], layers["poly"]
     pwell = db.Region(box.enlarged(1000)) - nwell
-    pactive, nactive = active & raw["psdm"], active & raw["nsdm"]
+    pactive = active & raw["psdm"]
+    nactive = active & raw["nsdm"] if "nsdm" in raw else active - pactive
     made = {"nbulk": pwell, "pbulk": nwell, "ngate": (nactive - nwell) & poly, "pgate": (pactive & nwell) & poly,
             "nsd": nactive - nwell - poly, "psd": (pactive & nwell) - poly,
             "ntap": nactive & nwell, "ptap": pactive - nwell, "active": active}
@@ -119,7 +139,7 @@ def _connect(l2n, layers, process):
         l2n.connect(layers[wire.name], layers[f"{wire.name}.pinlabel"])
     l2n.connect(layers["pbulk"], layers["ntap"])
     l2n.connect(layers["nbulk"], layers["ptap"])
-    for i, bulk in enumerate(("pbulk", "nbulk")):
+    for i, bulk in enumerate(("pbulk", "nbulk")[:len(process.well_labels)]):
         l2n.connect(layers[bulk], layers[f"well.label{i}"])
     for i, (_, lowers, upper) in enumerate(process.cuts):
         cut = layers[f"cut{i}"]
@@ -134,6 +154,7 @@ def _collect(l2n, circuit, layers, process):
     found = Layout(dbu=0, ports=set(), devices=[], active=db.Region(list(layers["active"].each_merged())))
     groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {wire.name: (wire.name,) for wire in process.wires}
     found.shapes = {conductor: {} for conductor in groups}
+    found.islands = {"n": {}, "p": {}}
     for net in circuit.each_net():
         name = node(net)
         if net.name:
@@ -144,6 +165,10 @@ def _collect(l2n, circuit, layers, process):
                 region += l2n.shapes_of_net(net, layers[layer], True)
             if not region.is_empty():
                 found.shapes[conductor][name] = found.shapes[conductor].get(name, db.Region()) + region.merged()
+        for kind, islands in found.islands.items():
+            region = l2n.shapes_of_net(net, layers[f"{kind}sd"], True)
+            if not region.is_empty():
+                islands[name] = islands.get(name, db.Region()) + region.merged()
         for bulk in ("nbulk", "pbulk"):
             region = l2n.shapes_of_net(net, layers[bulk], True)
             if not region.is_empty():
@@ -163,10 +188,10 @@ def _device(device, found, strips):
     point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
     w, length = value("W"), value("L")
     spot = db.Region(db.Box(point.x - 5, point.y - 5, point.x + 5, point.y + 5))
-    marks = frozenset(mark for mark in MARKS if not strips[mark].interacting(spot).is_empty())
+    marks = frozenset(mark for mark, strip in strips.items() if not strip.interacting(spot).is_empty())
     box = found.active.bbox()
     line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
     run = next(part.bbox() for part in line.each_merged() if part.inside(point))
     sa, sb = ((point.x - run.left) * found.dbu - length / 2, (run.right - point.x) * found.dbu - length / 2)
     return Device(device.device_class().name, net["D"], net["G"], net["S"], net["B"], w, length, value("AD"),
-                  value("AS"), value("PD"), value("PS"), sa, sb, marks)
+                  value("AS"), value("PD"), value("PS"), sa, sb, marks, point)

@@ -28,7 +28,7 @@ class Canvas:
     p: tuple = (2.14, 2.725)
     tap: float = 0.125
     implant: float = 0.26
-    rail: float = 0.22
+    rail: float = 0.15
     li_rail: float = 0.14
     well: float = 1.55
     length: float = 0.15

@@ -1,7 +1,7 @@
 """The rectangles of a cell: what its transistors, taps, rails and wires are made of."""
 
 from collections import defaultdict
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 CUT, WIRE = 0.17, 0.17          # um: licon and mcon; li
 PAD = (0.27, 0.33)              # um: poly around its contact
@@ -54,6 +54,8 @@ class Drawing(Pen):
                 bottom, top = self._reach(net, x, bottom, top)
             for layer in ("li", "li.pin"):
                 self.box(layer, net, x - WIRE / 2, bottom, x + WIRE / 2, top)
+        self.shapes += [replace(s, layer="m1.block", net="") for s in self.shapes
+                        if s.layer == "m1" and s.net not in ("vdd", "vss")]
 
     def x(self, h):
         return (h + 1) * self.canvas.site / 2
@@ -153,8 +155,6 @@ class Drawing(Pen):
             name = {"met1": "m1"}.get(layer, layer)
             height = {"li": WIRE, "poly": PAD[1], "m1": 0.14}[name]
             self.box(name, net, self.x(h), rows[r] - height / 2, self.x(h + 1), rows[r] + height / 2)
-            if layer == "met1":
-                self.box("m1.block", net, self.x(h) - 0.07, rows[r] - 0.07, self.x(h + 1) + 0.07, rows[r] + 0.07)
             if layer == "li" and {(h, r), (h + 1, r)} <= upright:
                 self.box("li", net, self.x(h), rows[r], self.x(h + 1), rows[r + 1])
 

@@ -1,6 +1,5 @@
 """The library: every cell of the catalogue made once and kept, and as PDKMaster's objects for its exporters."""
 
-import re
 import shutil
 from pathlib import Path
 
@@ -11,7 +10,6 @@ from cells.flexcell.ties import diode, ties
 from flow.files import staged
 from flow.jobs import Job, run
 from flow.simulate.cache import digest
-from models.parameters import ParameterError
 
 NAME = "StdCellLib"
 FOLDER = Path("build/cells/flexcell")
@@ -47,33 +45,6 @@ def library(canvas=None, store=FOLDER / "drawn", workers=-1):
     return to_pdkmaster(NAME, canvas, drawn(canvas, store, workers))
 
 
-def names():
-    """Cells that synthesis may use, sorted: all with an output, but the constants."""
-    return sorted(name for name, s in schematics().items() if s.inputs and s.outputs)
-
-
-def source(name, netlist="extracted", folder=FOLDER):
-    """cells.sources.Source of cell ``name``. netlist: 'extracted', 'devices' or 'schematic' (see there).
-
-    folder: of the library's files, made when it is not there. Raises ParameterError for a cell that is not there.
-    """
-    from cells.extract import extract
-    from cells.flexcell.verilog import module
-    from cells.lef import abstract
-    from cells.sources import Source
-    from flow.platforms.sky130 import process
-
-    schematic = schematics().get(name)
-    if schematic is None:
-        raise ParameterError(f"cell = {name!r}: must be one of {', '.join(schematics())}")
-    gds, canvas = written(folder), Canvas()
-    text = (_schematic_spice(schematic, canvas) if netlist == "schematic" else
-            extract(gds, name, process, schematic.ports, strays=netlist == "extracted"))
-    lef = abstract(gds, name, process.PROCESS, pins(schematic), SITE)
-    width, height = map(float, re.search(r"SIZE (\S+) BY (\S+)", lef).groups())
-    return Source(name, text, lef, module(schematic), width * height)
-
-
 def pins(schematic):
     """Port -> cells.lef.Pin."""
     from cells.lef import Pin
@@ -102,7 +73,7 @@ def written(folder=FOLDER, canvas=None):
     return folder / "flexcell.gds"
 
 
-def _schematic_spice(schematic, canvas):
+def schematic_spice(schematic, canvas):
     """The transistors alone, in um, as SkyWater's models want them."""
     lines = [f".subckt {schematic.name} {' '.join(schematic.ports)}"]
     for kind, switches, (low, high), bulk in (("n", schematic.n, canvas.n, "vss"), ("p", schematic.p, canvas.p, "vdd")):

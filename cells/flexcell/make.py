@@ -17,7 +17,7 @@ from cells.flexcell.rules import broken
 RECIPES = Path(__file__).with_name("recipes.json")
 SEEDS = 24          # placements tried when there is no recipe
 GAPS = 3            # extra gaps at most
-CHOICES = 8         # recipes of one width that are compared
+CHOICES = 30        # recipes of one width that are compared
 WIDE = 8            # gate columns from which li alone is not tried
 
 
@@ -46,12 +46,12 @@ def make(schematic, canvas, known=None):
 
     known: a Recipe to follow, should it still work. Raises NoLayout.
     """
-    drawing = known and _draw(schematic, place(schematic, known.seed), known.spread, canvas, known.met1)
+    drawing = known and _draw(schematic, place(schematic, known.seed), known, canvas)
     if not drawing:
         known = choose(schematic, canvas, range(SEEDS))
         if known is None:
             raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
-        drawing = _draw(schematic, place(schematic, known.seed), known.spread, canvas, known.met1)
+        drawing = _draw(schematic, place(schematic, known.seed), known, canvas)
     return {"width": drawing.width, "recipe": [known.sites, known.met1, known.seed, known.spread],
             "shapes": [asdict(shape) for shape in drawing.shapes]}
 
@@ -80,29 +80,25 @@ def search(schematic, canvas, seeds, below=None):
 
     width.
     """
-    placed = {}
-    for seed in seeds:
-        columns = place(schematic, seed)
-        placed.setdefault(tuple(columns), seed)
+    placed = {seed: place(schematic, seed) for seed in seeds}
     tried = []
-    for columns, seed in placed.items():
+    for seed, columns in placed.items():
         for extra in range(GAPS + 1):
             sites = len(columns) + 1 + len(breaks(columns)) + extra
             tried += [Recipe(sites, met1, seed, spread) for met1 in ((False, True) if len(columns) < WIDE else (True,))
                       for spread in _spreads(columns, extra, seed)]
-    by_seed = {seed: columns for columns, seed in placed.items()}
     for trial in sorted(tried):
         if below is not None and trial.sites >= below.sites:
             return
-        drawing = _draw(schematic, list(by_seed[trial.seed]), trial.spread, canvas, trial.met1)
+        drawing = _draw(schematic, placed[trial.seed], trial, canvas)
         if drawing:
             yield trial, drawing
 
 
-def _draw(schematic, columns, spread, canvas, met1):
+def _draw(schematic, columns, recipe_, canvas):
     """Drawing, or None where it cannot be routed or breaks a rule."""
-    made = assemble(columns, spread)
-    wiring = route(task(made, canvas, schematic.ports), met1)
+    made = assemble(columns, recipe_.spread)
+    wiring = route(task(made, canvas, schematic.ports), recipe_.met1, recipe_.seed)
     if wiring is None:
         return None
     drawings = (Drawing(canvas, made, wiring, reach) for reach in (True, False))

@@ -13,6 +13,7 @@ from numba import njit
 from cells.flexcell.grid import Grid
 
 ROUNDS = 80
+NOISE = 0.2
 
 
 @dataclass
@@ -38,9 +39,13 @@ class Wiring:
     pins: dict
 
 
-def route(task, met1=True):
-    """Wiring of ``task`` without a conflict, or None. met1: may the cell use it?"""
-    grid, arrays = _grid(task.columns, task.canvas, met1)
+def route(task, met1=True, seed=0):
+    """Wiring of ``task`` without a conflict, or None. met1: may the cell use it?
+
+    seed: prices differ by up to NOISE at random, so that another seed tries other ways of equal length.
+    """
+    grid, (price, *arrays) = _grid(task.columns, task.canvas, met1)
+    price = price * (1 + NOISE * np.random.default_rng(seed).random(len(price)))
     nets = sorted(task.terminals, key=lambda net: (len(task.terminals[net]), net))
     pins = {v for v in grid.vertices if v[0] in ("pin", "tap")}
     sets = [[*task.terminals[net], *([pins] if net in task.ports else [])] for net in nets]
@@ -51,7 +56,7 @@ def route(task, met1=True):
     used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
     for k, own in enumerate(task.blocked.values()):
         used[len(nets) + k, [grid.number[v] for v in own]] = True
-    ok, edges = _negotiate(*arrays, net_start, set_start, members, used, len(nets), ROUNDS)
+    ok, edges = _negotiate(price, *arrays, net_start, set_start, members, used, len(nets), ROUNDS)
     if not ok:
         return None
     return _wiring(grid, [*nets, *task.blocked], used, edges)

@@ -48,7 +48,8 @@ def _run(options):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     span = int(seeds[1]), int(seeds[2])
     sources = sorted(RECIPES.parent.glob("*.py"))
-    jobs = [Job(f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}", best, (name, *span, not options.anew), (recipe(name), Canvas(), *sources))
+    jobs = [Job(f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}", best, (name, *span, not options.anew),
+                (recipe(name), Canvas(), *sources))
             for name in names]
     found = run(jobs, "build/cells/flexcell/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}

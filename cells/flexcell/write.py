@@ -8,6 +8,27 @@ from cells.flexcell.verilog import verilog
 from cells.lef import abstract, header
 from flow.platforms.sky130.process import PROCESS
 
+# Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
+BLOCKAGES = '''"""What the router must go round inside the cells: their own met1."""
+
+from coriolis.helpers.overlay import UpdateSession
+from coriolis.Hurricane import DataBase, Horizontal, Net
+
+
+def fix(library):
+    layer = DataBase.getDB().getTechnology().getLayer("m1.block")
+    with UpdateSession():
+        for cell in library.getCells():
+            boxes = [component.getBoundingBox() for net in cell.getNets() for component in net.getComponents()
+                     if component.getLayer().getName() == "m1.block"]
+            if not boxes:
+                continue
+            net = Net.create(cell, "blockage")
+            net.setType(Net.Type.BLOCKAGE)
+            for box in boxes:
+                Horizontal.create(net, layer, (box.getYMin() + box.getYMax()) // 2, box.getYMax() - box.getYMin(),
+                                  box.getXMin(), box.getXMax())
+'''
 OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 BOUNDARY = (235, 4)
 NPC = (95, 20)              # nitride cut over the gates' contacts: a mask that PDKMaster's technology leaves out
@@ -85,6 +106,7 @@ def _coriolis(library, folder):
     package.mkdir(parents=True)
     (package / "techno.py").write_text(exporter())
     (package / f"{NAME}.py").write_text(exporter(library))
+    (package / f"{NAME}_fix.py").write_text(BLOCKAGES)
     (package / "__init__.py").write_text("")
 
 

@@ -204,4 +204,5 @@ def _power(pin, related, arcs):
 
 
 def _table(group, kind, template, arc, values):
-    group.add(kind, f"{template}_{_size(arc)}", index_1=NS * np.array(arc["slews"]), index_2=PF * np.array(arc["loads"]), values=values)
+    group.add(kind, f"{template}_{_size(arc)}", index_1=NS * np.array(arc["slews"]), index_2=PF * np.array(arc["loads"]),
+              values=values)

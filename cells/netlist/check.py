@@ -3,21 +3,22 @@
 from models.parameters import ParameterError
 
 
-def check(netlist, models, rails, ports=None):
+def check(netlist, models, rails):
     """Raise ParameterError for the first error of ``netlist`` (a Netlist).
 
-    models: names of the device models that the process has. rails: names of supply and bulk ports that must be there.
-    ports: the set of signal ports that the cell's abstract has, where there is one.
+    models: names of the device models that the process has. rails: name of a supply or bulk port -> its level, of which
+    there must be one at least for each level.
     """
     fail = _failure(netlist)
     if not netlist.transistors:
         fail("it has no transistor")
-    for rail in rails:
-        if rail not in netlist.ports:
-            fail(f"port {rail} is missing; it has {', '.join(netlist.ports)}")
-    signals = [p for p in netlist.ports if p not in rails]
-    if ports is not None and set(signals) != set(ports):
-        fail(f"ports {' '.join(sorted(signals))} must be {' '.join(sorted(ports))}")
+    for level in (1, 0):
+        same = [rail for rail, at in rails.items() if at == level]
+        if not set(same) & set(netlist.ports):
+            fail(f"port {' or '.join(same)} is missing; it has {', '.join(netlist.ports)}")
+    twice = sorted({port for port in netlist.ports if netlist.ports.count(port) > 1})
+    if twice:
+        fail(f"two ports have the name {twice[0]}")
     names = [t.name for t in netlist.transistors]
     for t in netlist.transistors:
         if t.model not in models:

@@ -73,6 +73,28 @@ def read(path, cell=None):
 
 def parse(text, cell=None, origin="netlist"):
     """As `read`, of a text. Raises ParameterError naming the line that is not understood."""
+    found = _subcircuits(text, origin)
+    if cell is None:
+        return next(iter(found.values()))
+    if cell not in found:
+        raise ParameterError(f"netlist = {origin}: has no subcircuit {cell}; it has {', '.join(found)}")
+    return found[cell]
+
+
+def read_all(path):
+    """Every subcircuit of a SPICE file: name -> Netlist."""
+    return _subcircuits(Path(path).read_text(), str(path))
+
+
+def subcircuit(text, name):
+    """The lines of subcircuit ``name`` in a SPICE text, its .subckt and .ends included."""
+    lines = _joined(text)
+    first = next(i for i, line in enumerate(lines) if line.lower().startswith(".subckt") and line.split()[1] == name)
+    last = next(i for i in range(first, len(lines)) if lines[i].lower().startswith(".ends"))
+    return "\n".join([*lines[first:last + 1], ""])
+
+
+def _subcircuits(text, origin):
     found, current = {}, None
     for line in _joined(text):
         words = re.sub(r"\s*=\s*", "=", line).split()
@@ -86,11 +108,7 @@ def parse(text, cell=None, origin="netlist"):
             _element(current, words, line, origin)
     if not found:
         raise ParameterError(f"netlist = {origin}: has no .subckt")
-    if cell is None:
-        return next(iter(found.values()))
-    if cell not in found:
-        raise ParameterError(f"netlist = {origin}: has no subcircuit {cell}; it has {', '.join(found)}")
-    return found[cell]
+    return found
 
 
 def _joined(text):

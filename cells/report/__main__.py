@@ -49,7 +49,8 @@ def main(argv=None):
         print(f"cells.report: {error}", file=sys.stderr)
         return 2
     for kind, e in page["kinds"].items():
-        print(f"{kind:12} median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, {e['entries']} entries")
+        print(f"{kind:12} median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, "
+              f"{e['entries']} entries")
     print(options.out / "index.html")
     return 0
 

@@ -1,6 +1,5 @@
 """Error against run time: tolerances, time steps and grids, each against a dense transient of the same netlist."""
 
-import time
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +7,7 @@ import numpy as np
 from cells import run, sources
 from cells.characterize import delay
 from cells.characterize.bench import Bench
-from cells.characterize.cell import axes_of
+from cells.characterize.cell import axes_of, cpu_seconds
 from cells.spice.settings import Settings
 from flow import jobs
 
@@ -34,7 +33,7 @@ def settings(conditions):
 
 
 def measure(library, conditions, store):
-    """[{name, cell, seconds, delay and slew: errors in per cent}], one worker, so that the times are comparable."""
+    """[{name, cell, seconds of the processor, error: of delay and slew in per cent}], by one worker."""
     process, todo = sources.process(library), []
     for name in CELLS:
         source = sources.source(library, name)
@@ -50,12 +49,12 @@ def one(library, name, label, conditions, base):
     cell = run.cell_of(sources.source(library, name), process)
     truth = _truth(cell, process, base)
     found = {"name": label, "cell": name, "error": []}
-    started = time.process_time(), time.monotonic()
+    started = cpu_seconds()
     with Bench(cell, process, conditions) as bench:
         grid = {output: axes_of(bench, output) for output in cell.machine.outputs}
         tables = [delay.table(bench, arc.changes[0], arc.output, grid[arc.output][1], grid[arc.output][0])
                   for arc in cell.arcs]
-    found["seconds"] = time.monotonic() - started[1]
+    found["seconds"] = cpu_seconds() - started
     for table, points in zip(tables, truth, strict=True):
         for slew, load, exact in points:
             found["error"] += [100 * (table.at(field, slew, load) / exact[field] - 1) for field in ("delay", "slew")]

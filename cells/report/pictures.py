@@ -34,23 +34,24 @@ def heat_maps(differences):
         values = (d.ours - d.theirs) * 1e3 if time else 100 * d.relative
         axis.imshow(values, cmap="RdBu_r", vmin=-SCALE, vmax=SCALE)
         for (i, j), value in np.ndenumerate(values):
-            axis.text(j, i, f"{value:.0f}", ha="center", va="center", fontsize=6)
+            axis.text(j, i, f"{value:.0f}", ha="center", va="center", fontsize=6,
+                      color="white" if abs(value) > 0.7 * SCALE else "black")
         axis.set_title(f"{d.what}{' (ps)' if time else ' (%)'}", fontsize=6)
     return embedded(figure)
 
 
 def error_against_time(rows, default):
-    """Seconds against the median and the 95th percentile of the error, every setting a point."""
+    """Seconds against the median and the 95th percentile of the error; points have their numbers in ``rows``."""
     figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
-    for name, seconds, median, high in rows:
+    for number, (name, seconds, median, high) in enumerate(rows, start=1):
         grid = name.startswith("grid")
         axis.plot([seconds, seconds], [median, high], "-", color="0.8", zorder=1)
         axis.plot(seconds, median, "s" if grid else "o", color="C0")
         axis.plot(seconds, high, "s" if grid else "o", color="C3", mfc="none")
         weight = "bold" if name == default else "normal"
-        axis.annotate(name, (seconds, high), fontsize=6, rotation=30, weight=weight, xytext=(2, 3),
+        axis.annotate(str(number), (seconds, high), fontsize=8, weight=weight, xytext=(2, 3),
                       textcoords="offset points")
-    axis.set(xscale="log", yscale="log", xlabel="seconds, three cells",
+    axis.set(xscale="log", yscale="log", xlabel="seconds of the processor, three cells",
              ylabel="error in per cent: median, 95th percentile")
     axis.grid(alpha=0.3, which="both")
     return embedded(figure)

@@ -9,7 +9,7 @@ from models.parameters import ParameterError
 class Settings:
     """reltol, trtol: ngspice's tolerances of the solution and of the time step. steps: time points that a ramp at the
 
-    cell's input is cut into at least. timeout: seconds a transient may take. method: trap or gear.
+    cell's input is cut into at least. timeout: processor's seconds a transient may take. method: trap or gear.
     """
 
     reltol: float = 1e-3

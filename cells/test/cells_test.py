@@ -1,6 +1,7 @@
 """A cell from GDS to Liberty, with the tools that read it."""
 
 import importlib.util
+import json
 import shutil
 import subprocess
 
@@ -102,6 +103,58 @@ def test_storage_and_tri_state_are_read_too(tmp_path):
 def test_an_unknown_cell_is_refused(tmp_path, capsys):
     assert main(["--cells", "nand2_1,nope_1", "--out", str(tmp_path)]) == 2
     assert "cells = nope_1: must be of sky130_hd" in capsys.readouterr().err
+
+
+OWN = """* a user's cells
+.subckt myinv A Y VPWR VGND
+X0 Y A VGND VGND sky130_fd_pr__nfet_01v8 w=0.65 l=0.15
+X1 Y A VPWR VPWR sky130_fd_pr__pfet_01v8_hvt w=1.0 l=0.15
+.ends
+.subckt other A Y VPWR VGND
+X0 Y A VGND VGND sky130_fd_pr__nfet_01v8 w=0.42 l=0.15
+X1 Y A VPWR VPWR sky130_fd_pr__pfet_01v8_hvt w=0.64 l=0.15
+.ends
+"""
+
+
+@ready
+def test_a_netlist_of_ones_own_becomes_a_library(tmp_path):
+    (tmp_path / "mine.sp").write_text(OWN)
+    arguments = ["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1", "--cells", "myinv"]
+    assert main(arguments) == 0
+    library = read(tmp_path / "mine" / "tt_025C_1v80.lib")
+    assert [cell.name for cell in library.all("cell")] == ["myinv"] and problems(library) == []
+    assert main([*arguments[:-1], "other", "--corner", "ff_025C_1v95"]) == 0
+    summary = json.loads((tmp_path / "mine" / "summary.json").read_text())
+    assert summary["corner"] == "ff_025C_1v95" and set(summary["corners"]) == {"tt_025C_1v80", "ff_025C_1v95"}
+    assert summary["corners"]["tt_025C_1v80"]["names"] == ["myinv"] and summary["names"] == ["other"]
+
+
+@ready
+@pytest.mark.parametrize("old, new, why", [
+    ("X1 Y A VPWR", "X1 Y Q VPWR", "netlist = myinv: the gate of X1 is floating: nothing drives node Q"),
+    ("sky130_fd_pr__pfet_01v8_hvt", "pmos", "netlist = myinv: transistor X1 has model pmos, which the process"),
+    ("myinv A Y", "myinv A Y B", "netlist = myinv: port B is connected to nothing"),
+    ("VPWR", "POWER", "netlist = myinv: port VPWR or VPB or vdd is missing; it has A, Y, POWER, VGND"),
+    ("w=0.65", "w=0.65u", "netlist = myinv: model = sky130_fd_pr__nfet_01v8: has no model for w and l"),
+    ("X0 Y A VGND VGND sky", "D0 Y A sky", "is no transistor, capacitor or resistor"),
+    (".subckt", "*", "has no .subckt")])
+def test_a_wrong_netlist_is_refused_before_anything_runs(tmp_path, capsys, old, new, why):
+    (tmp_path / "mine.sp").write_text(OWN[:OWN.index(".subckt other")].replace(old, new))
+    assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
+    assert why in capsys.readouterr().err
+    assert not (tmp_path / "mine").exists()
+
+
+@ready
+def test_the_abstracts_are_what_a_lef_reader_takes(gates):
+    _, path = gates
+    import klayout.db as db
+    layout = db.Layout()
+    layout.read(str(path.parent / "sky130_hd.lef"))
+    assert {cell.name.split("__")[1] for cell in layout.each_cell()} == {"inv_1", "nand2_1", "conb_1"}
+    assert "SITE unithd\n  CLASS CORE ;\n  SYMMETRY Y ;\n  SIZE 0.460 BY 2.720 ;" in (
+        path.parent / "sky130_hd.lef").read_text()
 
 
 def _sta(path, folder):

@@ -37,11 +37,12 @@ def program(sensor, taps, waves=False, note=lambda text: None):
     return bench_program(build_of(sensor, taps, waves), note)
 
 
-def simulate(binary, sensor, frame, samples, front_end, stall=0, waves=None):
+def simulate(binary, sensor, frame, samples, front_end, stall=0, waves=None, more=()):
     """Run one frame; returns HardwareFrame.
 
     samples: (taps, rows, cols, 2), what the amplifier reads. front_end: its converters and trims.
-    waves: (file, first row, last row), with a binary built for it. Raises ToolError.
+    waves: (file, first row, last row), with a binary built for it.
+    more: arguments of the program. Raises ToolError.
     """
     after = status_transfers()
     script = host_script(write_transfers(frame_writes(frame, front_end.trim)) + [command("start")], after)
@@ -49,7 +50,7 @@ def simulate(binary, sensor, frame, samples, front_end, stall=0, waves=None):
         analog, converter = Path(folder) / "samples", Path(folder) / "converter"
         write_samples(analog, samples)
         write_converter(converter, front_end)
-        run = run_frame(binary, analog, converter, script, stall=stall, waves=waves)
+        run = run_frame(binary, analog, converter, script, stall=stall, waves=waves, more=more)
     replies, end = [], len(run.miso)
     for transfer in reversed(after):
         replies.insert(0, run.miso[end - len(transfer):end])

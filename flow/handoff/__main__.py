@@ -5,8 +5,9 @@ import sys
 from pathlib import Path
 
 from flow.files import check_folder, staged
-from flow.layout.design import DESIGNS, design
-from models.parameters import ParameterError
+from flow.layout.design import DESIGNS, design, folder_name
+from flow.platforms.embedded import PROCESSES
+from models.parameters import ParameterError, check_choice
 
 from .archive import archive, sha256
 from .contents import Broken, contents, manifest, waived
@@ -17,6 +18,7 @@ ROOT = Path(__file__).parents[2]
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.handoff", description=__doc__.splitlines()[0])
     parser.add_argument("--design", default="quad_divider", help=f"one of {', '.join(DESIGNS)} (%(default)s)")
+    parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)} (%(default)s)")
     parser.add_argument("--layouts", type=Path, default=ROOT / "build" / "layout",
                         help="folder of the layouts (%(default)s)")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "handoff", help="folder (%(default)s)")
@@ -27,11 +29,13 @@ def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         chosen = design(options.design)
+        check_choice("pdk", options.pdk, PROCESSES)
         check_folder("out", options.out)
-        files, substitutes = contents(chosen, options.layouts / chosen.name, waived(chosen))
+        name = folder_name(chosen, options.pdk)
+        files, substitutes = contents(chosen, options.layouts / name, waived(chosen))
         files["manifest.json"] = manifest(chosen, files, substitutes)
         with staged(options.out) as part:
-            archive(part / f"{chosen.name}.tar.gz", chosen.name, files)
+            archive(part / f"{name}.tar.gz", name, files)
     except Broken as error:
         for line in str(error).splitlines():
             print(f"flow.handoff: {chosen.name}: {line}", file=sys.stderr)
@@ -39,7 +43,7 @@ def main(argv=None):
     except (ParameterError, OSError, ValueError) as error:
         print(f"flow.handoff: {error}", file=sys.stderr)
         return 2
-    path = options.out / f"{chosen.name}.tar.gz"
+    path = options.out / f"{name}.tar.gz"
     print(f"{path}: {len(files)} files, sha256 {sha256(path.read_bytes())}")
     return 0
 

@@ -7,21 +7,22 @@ from pathlib import Path
 
 from flow.layout.netlist import SUPPLIES
 from flow.layout.summary import broken
-from flow.platforms import embedded, openroad
 from models.parameters import ParameterError
 
-from .abstract import abstract, ports
 from .archive import sha256
 from .pages import datasheet, pinout
 from .power import powered
 
 WAIVERS = Path(__file__).parent / "waivers.json"
 # suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
-REQUIRED = {"gds": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports", "lvsdb": "reports"}
+REQUIRED = {"gds": "layout", "lef": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports",
+            "lvsdb": "reports"}
 OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, with the SPEF and the cells' Liberty"),
             "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
             "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
             "sta.txt": ("reports", "no static timing was run")}
+OF_A_RUN = "wall_s", "peak_mib"                  # figures that differ from run to run of the same layout
+RUN = re.compile(rb"(?s)<!-- run -->.*?<!-- end of run -->")
 SHOWN = re.compile(r'\bsrc="([^":/]+)"')         # files that the report's page shows
 
 
@@ -60,29 +61,27 @@ def contents(design, folder, waivers):
     lines = [line for line in broken(summary) if line.partition(" = ")[0] not in rules]
     if lines:
         raise Broken("\n".join(lines))
-    files, substitutes = {name: path.read_bytes() for name, path in sources.items()}, {}
+    files, substitutes = {name: plain(path.read_bytes(), folder) for name, path in sources.items()}, {}
+    told = {name: value for name, value in summary.items() if name not in OF_A_RUN}
+    files["reports/summary.json"] = (json.dumps(told, indent=1) + "\n").encode()
     corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
     for suffix, (place, substitute) in OPTIONAL.items():
         paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]
-        found = {f"{place}/{path.name}": path.read_bytes() for path in paths if path.is_file()}
+        found = {f"{place}/{path.name}": plain(path.read_bytes(), folder) for path in paths if path.is_file()}
         files |= found
         if not found:
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
-    lef = _lef(folder / f"{design.name}.lef", summary["pdk"], netlist)
-    files |= {f"layout/{design.name}.lef": lef.encode(),
-              f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
+    lef = files[f"layout/{design.name}.lef"].decode()
+    files |= {f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
               "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
               "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode()}
     return files, substitutes
 
 
-def _lef(path, pdk, netlist):
-    """Text of the layout's LEF, made from its GDS where it has none."""
-    if path.is_file():
-        return path.read_text()
-    names = {numbers: name for name, numbers in openroad.process(pdk).gds.items()} if pdk in openroad.PROCESSES else {}
-    return abstract(path.with_suffix(".gds"), ports(netlist), embedded.process(pdk)[0], names)
+def plain(data, folder):
+    """``data`` without what tells of the run that made it: its seconds, and where the layouts lie."""
+    return RUN.sub(b"", data).replace(f"{folder.resolve().parent}/".encode(), b"")
 
 
 def manifest(design, files, substitutes):

@@ -7,34 +7,62 @@ import sys
 from pathlib import Path
 
 from flow.files import staged
-from flow.platforms.embedded import process
+from flow.platforms.embedded import PROCESSES, process
 from flow.simulate.process import ToolError
 from flow.steps import Runner, StepError
 from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
-from .design import DESIGNS, design
+from .design import DESIGNS, design, folder_name
 from .embedded import Options, back, files, front, judged, layout, tries
-from .picture import render
+from .energy import blocks
+from .netlist import Netlist, is_register
+from .picture import by_block, render
 from .report import page
+from .steps.extraction import OUTPUTS
 from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
-RESULTS = {"gds": "stream_out.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
-           "spef": "extraction.spef", "sdc": "sdc"}
+RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
+           "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
+BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty",
+             "power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
+FIRST = "sdf", "lib"            # of the first corner, also under the design's name alone
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.layout", description=__doc__.splitlines()[0])
     parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
-    parser.add_argument("--pdk", default="sky130", help="process (%(default)s)")
+    parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)} (%(default)s)")
     parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
     parser.add_argument("--utilization", type=float,
                         help="cells' area by core area where the search for the smallest begins; default: the design's")
     parser.add_argument("--liberty", type=Path, action="append", default=[],
-                        help="characterized cells at a corner (again for further corners); none: no timing")
+                        help="characterized cells at a corner (again for further corners); default: measured now")
+    parser.add_argument("--untimed", action="store_true", help="no timing: cells by area alone")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
+
+
+def figures(folder, name, runner, options):
+    """Draw the cells by block where they are placed; (file, words) of this and of the voltage drop: list."""
+    found, first = [], next(iter(options.corners), "")
+    if "place_route.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
+        read = {key: json.loads(runner.paths[key].read_text())
+                for key in ("place_route.placement", "library.areas", "floorplan.floorplan")}
+        netlist = Netlist.read(runner.paths["place_route.netlist"])
+        by_block(folder / f"{name}.blocks.png", netlist, read["place_route.placement"]["instances"],
+                 read["library.areas"], process(options.pdk)[0], blocks(netlist, is_register, OUTPUTS),
+                 read["floorplan.floorplan"])
+        found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
+    return found
+
+
+def one_line(error):
+    """What went wrong: the first line of an error and, of what a tool said in it, the line that tells."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [type(error).__name__]
+    told = next((line for line in lines[1:] if "error" in line.lower()), lines[-1])
+    return lines[0] if len(lines) == 1 else f"{lines[0]} {told}"
 
 
 def main(argv=None):
@@ -42,28 +70,33 @@ def main(argv=None):
     try:
         chosen = design(options.design)
         check_choice("backend", options.backend, ("coriolis",))
-        settings = Options(options.pdk, options.utilization or chosen.utilization, tuple(options.liberty))
-        folder = options.out / chosen.name
+        settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
+                           tuple(options.liberty), options.untimed)
+        folder = options.out / folder_name(chosen, options.pdk)
         steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
                  *back(chosen, settings))
         with Steps(step.name for step in steps) as bar:
             runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)
-        results = RESULTS | {f"{corner}.{suffix}": f"sta_{corner}.{output}" for corner in settings.corners
-                             for suffix, output in (("sdf", "sdf"), ("sta.txt", "report"))}
-        made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png")]
+        results = RESULTS | {f"{corner}.{suffix}": source.format(corner) for corner in settings.corners
+                             for suffix, source in BY_CORNER.items()}
+        for suffix in FIRST if settings.corners else ():
+            results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
+        made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png", "blocks.png")]
         with staged(folder, made) as part:       # an earlier run's go where this one has none
             for suffix, source in results.items():
                 if source in runner.paths:
                     shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
-            if "stream_out.gds" in runner.paths:
-                render(runner.paths["stream_out.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
+            if "fill.gds" in runner.paths:
+                render(runner.paths["fill.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
+            pictures = figures(part, chosen.name, runner, settings)
             picture = f"{chosen.name}.png" if (part / f"{chosen.name}.png").exists() else None
-            (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture))
+            (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture,
+                                                     pictures))
             (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     except (ParameterError, ToolError, StepError, OSError) as error:
-        print(f"flow.layout: {error}", file=sys.stderr)
+        print(f"flow.layout: {one_line(error)}", file=sys.stderr)
         return 2
     for line in broken(summary):
         print(f"flow.layout: {chosen.name}: {line}", file=sys.stderr)

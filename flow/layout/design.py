@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from flow.platforms.embedded import PROCESSES
 from models.parameters import ParameterError, check_real
 
 
@@ -34,7 +35,8 @@ class Surroundings:
 class Design:
     """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
     block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
-    smallest area begins. A block whose tests have a size of their own is laid out in that size.
+    smallest area begins. A block whose tests have a size of their own is laid out in that size. divider, n_frac: of the
+    chip in whose frame the block is watched.
     """
 
     name: str
@@ -43,12 +45,18 @@ class Design:
     netlist_names: tuple = ()
     options: tuple = ()
     utilization: float = 0.88
+    divider: str = "radix4"
+    n_frac: int = 8
     clock: Clock = Clock()
     surroundings: Surroundings = Surroundings()
 
 
-def _divider(name, top, variant):
-    return Design(name, top, "quad_divider", (f"QuadDivider_{variant}_8_10",))
+def divider(name, variant, n_frac=8):
+    """The Design of a variant of the divider with ``n_frac`` fraction bits."""
+    top = {"radix2": "QuadDividerRadix2", "radix4": "QuadDividerRadix4", "pipelined": "QuadDividerPipelined",
+           "cordic": "Cordic"}[variant]
+    return Design(name, top, "quad_divider", (f"QuadDivider_{variant}_{n_frac}_10",), (f"--n-frac={n_frac}",),
+                  divider=variant, n_frac=n_frac)
 
 
 DESIGNS = {made.name: made for made in (
@@ -56,14 +64,14 @@ DESIGNS = {made.name: made for made in (
     Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_13_75_8",), ("--rows=13", "--cols=75")),
     Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
     Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
-    _divider("quad_divider", "QuadDividerRadix4", "radix4"),
-    _divider("quad_divider_radix2", "QuadDividerRadix2", "radix2"),
-    _divider("quad_divider_pipelined", "QuadDividerPipelined", "pipelined"),
-    _divider("cordic", "Cordic", "cordic"),
+    divider("quad_divider", "radix4"),
+    divider("quad_divider_radix2", "radix2"),
+    divider("quad_divider_pipelined", "pipelined"),
+    divider("cordic", "cordic"),
     Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
-    Design("asp_chip", "AspChip", "asp_chip", utilization=0.76))}
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.6))}
 
 
 def design(name):
@@ -71,3 +79,8 @@ def design(name):
     if name not in DESIGNS:
         raise ParameterError(f"DESIGN = {name!r}: must be one of {', '.join(DESIGNS)}")
     return DESIGNS[name]
+
+
+def folder_name(design, pdk):
+    """Of a design's results: its own name, that of the process behind it where it is not the usual one."""
+    return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"

@@ -1,5 +1,6 @@
 """The embedded backend: its steps in order, for a design and a process."""
 
+import re
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,21 +12,31 @@ from models.parameters import ParameterError, check_real
 
 from .constraints import sdc
 from .steps.antenna import Antenna, AntennaParameters
+from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
+from .steps.fill import Fill, FillParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
+from .steps.gate_delays import GateDelays, GateDelaysParameters
 from .steps.gate_frames import FRAME, GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
+from .steps.ir_drop import IrDrop, IrDropParameters
+from .steps.lef import Lef, LefParameters
 from .steps.library import Library, LibraryParameters
-from .steps.lvs import Lvs
+from .steps.lvs import Lvs, LvsParameters
+from .steps.mend import Mend, MendParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
+from .steps.power import Power, PowerParameters
 from .steps.sta import Sta, StaParameters
+from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
+from .steps.timing import Timing, TimingParameters
 
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
+CHIP_FRAME = {"rows": 4, "cols": 6}      # pixels: its netlist with delays runs a thousand times slower than a block's
 STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
 
 
@@ -33,23 +44,29 @@ STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one b
 class Options:
     """pdk: process. utilization: cells' area by core area at which the search begins.
 
-    liberty: paths of characterized cells, one a corner; synthesis takes the first. () for no timing.
+    liberty: paths of characterized cells, one a corner; () for the process's corners, measured now. untimed: whether
+    there is no timing at all.
     """
 
     pdk: str = "sky130"
     utilization: float = 0.8
     liberty: tuple = ()
+    untimed: bool = False
 
     @property
     def corners(self):
-        """dict corner -> its Liberty file, the corner of synthesis first."""
-        return {path.stem: path for path in self.liberty}
+        """Names of the corners, that of synthesis first."""
+        if self.untimed:
+            return ()
+        return tuple(path.stem for path in self.liberty) or process(self.pdk)[0].corners
 
     def __post_init__(self):
         for path in self.liberty:
             if not path.is_file():
                 raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
-        if len(self.corners) != len(self.liberty):
+            if not re.match(r"\s*(/\*.*?\*/\s*)*library\s*\(", path.read_text(errors="replace")[:10_000], re.S):
+                raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
+        if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST, 0.95)
 
@@ -65,15 +82,19 @@ def files(design, options, folder):
     given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
              "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
              "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
-    first = {"timing": options.liberty[0]} if options.liberty else {}
-    return given | first | {f"timing.{corner}": path for corner, path in options.corners.items()}
+    measure = {f"cells.{part}": ROOT / "cells" / part
+               for part in ("characterize", "spice", "netlist", "liberty", "extract")}
+    return given | measure | {f"timing.{path.stem}": path for path in options.liberty}
 
 
 def front(design, options):
     """The steps ahead of a floorplan."""
-    return [Library(LibraryParameters(options.pdk)),
-            TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT)) if options.liberty else
-            Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+    library = Library(LibraryParameters(options.pdk))
+    if not options.corners:
+        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+    timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
+    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT),
+                                             options.corners[0])]
 
 
 def tries(design, options):
@@ -87,28 +108,54 @@ def tries(design, options):
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    return [StreamOut(StreamOutParameters(options.pdk, design.clock.port)), Drc(),
-            Antenna(AntennaParameters(options.pdk))]
+    clock = design.clock.port
+    return [Mend(MendParameters(options.pdk, clock)), StreamOut(StreamOutParameters(options.pdk, clock)),
+            Fill(FillParameters(options.pdk)), Drc(), Antenna(AntennaParameters(options.pdk))]
 
 
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
-    clock = design.clock
-    tests = ([GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top))]
-             if design.netlist_names else [GateFrames()])
-    timing = [Sta(StaParameters(design.top, corner, clock.period_ns)) for corner in options.corners]
-    return [Equivalence(EquivalenceParameters(design.top, clock.port)), *tests, Lvs(),
-            Extraction(ExtractionParameters(options.pdk)), *timing]
+    return [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
+            Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
+            Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
 
 
-def layout(design, options, runner):
-    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes.
+def simulations(design):
+    """The block's tests on both netlists, in both simulators; of the chip, whole frames."""
+    if not design.netlist_names:
+        return [GateFrames()]
+    return [GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top, netlist, simulator))
+            for netlist, simulator in (("synthesized", "icarus"), ("final", "icarus"), ("final", "verilator"))]
 
-    A try closes when every net is routed and no rule of design or antennas broken. Returns the tries: list of
-    {utilization, open_segments (None where the router gave up), rules_broken (None without a layout)}.
+
+def timed(design, options):
+    """The steps that want characterized cells, corner by corner; of the chip, whose frames take minutes with delays,
+    simulation and power at the first alone."""
+    clock, around = design.clock, design.surroundings
+    size = {} if design.netlist_names else CHIP_FRAME
+    watched = StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac, **size)
+    steps = [Stimulus(watched)] if options.corners else []
+    for corner in options.corners:
+        steps += [Sta(StaParameters(design.top, corner, clock.period_ns)),
+                  BlockLiberty(BlockLibertyParameters(corner, clock.port))]
+    for corner in options.corners if design.netlist_names else list(options.corners)[:1]:
+        steps += [GateDelays(GateDelaysParameters(corner, clock.period_ns, around.input_delay, around.output_delay)),
+                  Power(PowerParameters(design.top, corner, clock.period_ns)),
+                  IrDrop(IrDropParameters(options.pdk, corner))]
+    return steps
+
+
+def layout(design, options, runner, behind=back):
+    """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes; ``behind``: function
+    (design, options) -> the steps behind it.
+
+    A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken.
+    Returns the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without
+    a layout)}.
     """
+    version(f"python {process(options.pdk)[0].wheel}")
     pair = next(tries(design, options))
-    for step in (*front(design, options), *pair, *judged(design, options), *back(design, options)):
+    for step in (*front(design, options), *pair, *judged(design, options), *behind(design, options)):
         for tool in step.tools:
             version(tool)               # a tool that is missing is told before anything runs
     for step in front(design, options):
@@ -119,12 +166,12 @@ def layout(design, options, runner):
         found = runner.run(place_route)["metrics"]
         tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
                       "rules_broken": None})
-        if found["routed"] and not found["open_segments"]:
-            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0)
-                         for step in judged(design, options))
+        mend, *others = judged(design, options)
+        if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
+            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
             tried[-1]["rules_broken"] = broken
             if not broken:
-                for step in back(design, options):
+                for step in behind(design, options):
                     runner.run(step)
                 return tried
     return tried

@@ -27,3 +27,25 @@ def render(gds, png, known, side=2400):
         layers.next()
     view.zoom_fit()
     view.save_image(str(png), side, side)
+
+
+def by_block(png, netlist, placed, areas, known, found, plan):
+    """Write the cells' places, coloured by block. placed: of the placement, in the netlist's order; areas: cell -> um2;
+    found: instance -> block; plan: width_um, height_um."""
+    from matplotlib.collections import PatchCollection
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
+    figure = Figure(figsize=(8, 6), layout="constrained")
+    axes = figure.subplots()
+    groups = {}
+    for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
+        if instance.name in found and instance.pins:
+            width, down, left = areas[cell] / known.row_um, orientation in ("6", "2"), orientation in ("4", "2")
+            groups.setdefault(found[instance.name], []).append(
+                Rectangle((x - width * left, y - known.row_um * down), width, known.row_um))
+    for k, (block, boxes) in enumerate(sorted(groups.items(), key=lambda item: -len(item[1]))):
+        axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))
+        axes.plot([], [], "s", color=f"C{k % 10}", label=f"{block} ({len(boxes)})")
+    axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="um", ylabel="um")
+    figure.legend(loc="outside right upper", frameon=False)
+    figure.savefig(png, dpi=130, metadata={"Software": None})

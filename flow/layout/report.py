@@ -7,14 +7,22 @@ from jinja2 import Environment, FileSystemLoader
 from .picture import PALETTE
 
 PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on")
+BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("setup_margin_ns", "least seen, setup, ns"),
+             ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
+             ("energy_pj_cycle", "pJ a cycle"),
+             ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
+             ("supply_drop_mv", "supply's drop, mV"),
+             ("ground_rise_mv", "ground's rise, mV"), ("model_error_ns", "block's Liberty off by, ns"))
 
 
-def page(summary, broken, known, picture=None):
-    """The report as HTML text. broken: lines of `summary.broken`; known: Embedded; picture: file name beside it."""
+def page(summary, broken, known, picture=None, pictures=()):
+    """The report as HTML text. broken: lines of `summary.broken`; known: Embedded; picture: of the layout, file name
+    beside it; pictures: further (file name, what it shows)."""
     environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
     key = [(wire.name, f"#{color:06x}") for wire, color in zip(known.wires, PALETTE)]
     return environment.get_template("report.html").render(
-        s=summary, broken=broken, tiles=_tiles(summary, broken), figures=_figures(summary), picture=picture, key=key)
+        s=summary, broken=broken, tiles=_tiles(summary, broken), figures=_figures(summary), picture=picture, key=key,
+        pictures=pictures, corners=_corners(summary), blocks=_blocks(summary))
 
 
 def _tiles(s, broken):
@@ -33,6 +41,19 @@ def _tiles(s, broken):
             tile(s["f_max_mhz"], "MHz at most"), tile(s["antenna_violations"], "antennas", "antenna_violations")]
 
 
+def _corners(s):
+    """(names of the corners, rows (words, value a corner)) of what is known by corner, or None without timing."""
+    corners = list(s.get("wns_ns") or ())
+    rows = [(words, [s[name].get(corner) for corner in corners]) for name, words in BY_CORNER if s.get(name)]
+    return (corners, rows) if corners else None
+
+
+def _blocks(s):
+    """(block, uW, share) by power, the largest first."""
+    found = s.get("power_by_block_uw") or {}
+    return [(name, value, value / (sum(found.values()) or 1)) for name, value in found.items()]
+
+
 def _figures(s):
     """(name, value as text) of everything that is a figure."""
     def text(value):
@@ -41,4 +62,5 @@ def _figures(s):
         if isinstance(value, bool):
             return "yes" if value else "no"
         return "-" if value is None else f"{value:,}" if isinstance(value, (int, float)) else str(value)
-    return [(name, text(value)) for name, value in s.items() if name not in PLAIN]
+    return [(name, text(value)) for name, value in s.items()
+            if name not in PLAIN and name not in dict(BY_CORNER) and name != "power_by_block_uw"]

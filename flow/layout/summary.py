@@ -3,6 +3,9 @@
 import json
 from pathlib import Path
 
+from models.parameters import ChipParameters, EnergyParameters
+
+CHIP = "AspChip"
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
 
@@ -13,11 +16,11 @@ def summarize(design, options, runner, tried):
     def metric(step, name):
         return records[step]["metrics"].get(name) if step in records else None
 
-    def by_corner(name):
-        return {corner: metric(f"sta_{corner}", name) for corner in options.corners
-                if f"sta_{corner}" in records} or None
+    def by_corner(name, step="sta"):
+        return {corner: metric(f"{step}_{corner}", name) for corner in options.corners
+                if f"{step}_{corner}" in records} or None
 
-    area = metric("floorplan", "core_area_um2")
+    area, first = metric("floorplan", "core_area_um2"), next(iter(options.corners), "")
     tools = {}
     for record in records.values():
         tools |= record["tools"]
@@ -26,28 +29,52 @@ def summarize(design, options, runner, tried):
         "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
         "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
         "utilization": tried[-1]["utilization"], "tried": tried,
-        "wire_um": metric("place_route", "wire_um"), "open_nets": metric("place_route", "open_segments"),
+        "wire_um": metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"),
+        "mended": metric("mend", "mended"), "hopped": metric("mend", "hopped"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
-        "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("antenna", "density"),
+        "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("fill", "after"),
+        "density_violations": metric("fill", "density_violations"), "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing(options), **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
-        "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()), "power_uw": by_corner("power_uw"),
+        "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
+        **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
+        "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
+        "thesis_timing_uw": round(EnergyParameters().timing * 1e6, 3) if design.top == CHIP else None,
+        "power_by_block_uw": metric(f"power_{first}", "by_block"),
+        "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
+        **{name: by_corner(name, "ir_drop") for name in ("supply_drop_mv", "ground_rise_mv", "ir_drop_percent")},
+        "stimulus": metric("stimulus", "source"), "stimulus_cycles": metric("stimulus", "cycles"),
+        **{name: by_corner(name, "gate_delays") for name in ("setup_margin_ns", "hold_margin_ns")},
+        "model_error_ns": by_corner("model_error_ns", "block_liberty"),
         "wire_pf": metric("extraction", "wire_pf"),
         "registers": metric("equivalence", "registers"),
-        "gate_tests": next((records[name]["metrics"] for name in ("gate_tests", "gate_frames")
-                            if name in records), None),
+        "gate_tests": gate_tests(records),
         "wall_s": {name: record["wall_s"] for name, record in records.items()},
         "peak_mib": {name: record["peak_mib"] for name, record in records.items()},
         "tools": dict(sorted(tools.items()))}
 
 
+def at_chip_clock(energies):
+    """uW by corner at the clock of the thesis's chip, from pJ a cycle. Of the whole chip it stands beside Table 6.1's
+    timing and addressing (thesis_timing_uw): the digital part, without the pins' loads."""
+    return energies and {corner: round(pj * ChipParameters().f_clk / 1e6, 3) for corner, pj in energies.items()}
+
+
+def gate_tests(records):
+    """passed, failed: of all simulations of netlists; of each of them what it passed and failed. None without one."""
+    runs = {name: {kind: record["metrics"][kind] for kind in ("passed", "failed")} for name, record in records.items()
+            if name.startswith("gate_")}
+    return {kind: sum(run[kind] for run in runs.values()) for kind in ("passed", "failed")} | runs if runs else None
+
+
 def timing(options):
     """What the timing figures rest on, in words."""
-    if not options.liberty:
-        return "no timing: no characterized Liberty was given"
-    return (f"cells: {', '.join(path.name for path in options.liberty)}; wires: area and edge capacitance "
-            "to the substrate and resistance from the router's wires, no coupling; power: OpenSTA's default activity, not a simulation's")
+    if not options.corners:
+        return "no timing: cells by area alone"
+    cells = ", ".join(path.name for path in options.liberty) or f"measured at {', '.join(options.corners)}"
+    return (f"cells: {cells}; wires: area and edge capacitance to the substrate and resistance from the router's "
+            "wires, no coupling; power: transitions of the netlist in its recorded trace")
 
 
 def broken(summary, rules=RULES):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from models.parameters import ParameterError
 
-PROCESSES = ("sky130",)
+PROCESSES = "sky130", "ihp-sg13g2"
 
 
 @dataclass(frozen=True)
@@ -39,15 +39,32 @@ class Cut:
 
 
 @dataclass(frozen=True)
+class Fill:
+    """Metal that belongs to no net: sides of its squares (um, the largest first), their space to one another and to
+    wires (um), and the share of a layer that is to be covered, where there is room. density_most: of a layer, all metal
+    counted, in every window of window_um."""
+
+    sides_um: tuple
+    space_um: float
+    clearance_um: float
+    density: float
+    density_most: float
+    window_um: float
+
+
+@dataclass(frozen=True)
 class Embedded:
     """name: of the process. package, wheel: Python package of PDKMaster's description, and its distribution.
 
     row_um, site_um, grid_um: cell height, placement grid, manufacturing grid. supply_v: volts. fill_cells: cells of no
     function for empty places. wires: from the cells' rails up; cuts[i] joins wires[i] and wires[i + 1]; straps run on
-    the last wire, strap_um wide, and meet a rail over rail_overlap_um. pin_pitch_um: tracks of the pins' two layers,
+    the last wire, strap_um wide, and meet a rail over rail_overlap_um; a rail on the lowest wire is
+    rail_um wide, half of that at the edge. pin_pitch_um: tracks of the pins' two layers,
     'horizontal' (west and east) and 'vertical'. label_datatype,
-    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop. poly,
-    active, contact: (GDS layer, datatype), the last between the first two and the lowest wire.
+    pin_datatype: GDS datatypes of a wire's labels and of what the decks take for pins. blockage_layer: of GDS, to drop.
+    poly, active, contact: (GDS layer, datatype), the last between the first two and the lowest wire. fill: Fill, of all
+    wires but the lowest. corners: at which cells are timed, that of synthesis first; () where there are no models of
+    the devices. antenna_walls: whether antenna ratios are those of a wire's side walls, else of its area.
     """
 
     name: str
@@ -61,6 +78,7 @@ class Embedded:
     wires: tuple
     cuts: tuple
     strap_um: float
+    rail_um: float
     rail_overlap_um: float
     pin_pitch_um: dict
     label_datatype: int
@@ -69,6 +87,9 @@ class Embedded:
     poly: tuple
     active: tuple
     contact: tuple
+    fill: Fill
+    corners: tuple = ()
+    antenna_walls: bool = True
 
 
 def process(pdk):
@@ -77,3 +98,9 @@ def process(pdk):
         raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)}")
     module = importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.embedded")
     return module.PROCESS, module.library
+
+
+def modules(pdk):
+    """Modules with the device models (POLARITY, SUPPLIES ...) and the layers (PROCESS) of ``pdk``, for `cells`."""
+    return tuple(importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.{name}")
+                 for name in ("models", "process"))

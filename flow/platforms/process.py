@@ -10,7 +10,7 @@ class Wire:
 
     layer, label, pin: GDS (layer, datatype) of its shapes, its net names and its pin shapes. area: aF/um2 to the
     substrate. fringe: aF/um of edge to the substrate. sidewall: aF, times length / (distance + offset in um), between
-    two facing edges.
+    two facing edges. sheet: ohm a square.
     """
 
     name: str
@@ -21,6 +21,7 @@ class Wire:
     fringe: float
     sidewall: float
     offset: float
+    sheet: float
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,10 @@ class Crossing:
 class Process:
     """wires: from the lowest. cuts: (GDS layer, lower conductors, upper wire). halo: um, reach of fringe fields.
 
-    devices: layer name -> GDS layer of what makes transistors (active, taps, wells, implants, threshold marks).
+    devices: layer name -> GDS layer of what makes transistors (active, taps, wells, implants, threshold marks); a
+    process without a layer of its own for taps, n implants or marks leaves these out.
     outlines: GDS layers that may hold a cell's outline. well_labels: GDS layers of the names of n well and p substrate.
+    contacts: ohm of one cut to what lies under it: 'n', 'p' (diffusion) or a wire's name.
     """
 
     wires: tuple
@@ -52,6 +55,7 @@ class Process:
     outlines: tuple
     well_labels: tuple
     halo: float
+    contacts: dict
 
     def wire(self, name):
         return next(wire for wire in self.wires if wire.name == name)

@@ -35,11 +35,12 @@ def host_script(before, after):
     return transfers(before) + WAIT + transfers(after) + STOP
 
 
-def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000_000, waves=None):
+def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000_000, waves=None, more=()):
     """Run the bench ``program`` (an executable, or .vvp of Icarus) on one frame; returns FrameRun.
 
     samples, converter: files of the analog front end (pixels/README.md). script: bytes of `host_script`.
     stall: the link is not ready in this many of 256 cycles. waves: (file, first row, last row) for a VCD.
+    more: further arguments of the program.
     Raises ToolError when the bench does not finish.
     """
     simulator = ["vvp"] if Path(program).suffix == ".vvp" else []
@@ -51,7 +52,7 @@ def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000
         if waves:
             arguments += [f"+waves={waves[0]}", f"+waves_row0={waves[1]}", f"+waves_row1={waves[2]}"]
         start = perf_counter()
-        result = finish([*simulator, program, *arguments])
+        result = finish([*simulator, program, *arguments, *more])
         spent = perf_counter() - start
         if result.returncode or not (folder / "activity").exists():
             tail = (result.stdout + result.stderr).strip()[-800:]

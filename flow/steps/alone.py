@@ -1,25 +1,65 @@
-"""A call in a process of its own: what it used is measured, and a library that crashes ends no one else."""
+"""A call in a process of its own: what it used is measured, a library that crashes ends no one else, and the end of
+this process is the end of that one and of the tools that it runs."""
 
+import ctypes
 import multiprocessing
+import os
 import resource
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+import signal
+import sys
 
 from .step import StepError
+
+PR_SET_PDEATHSIG = 1        # linux/prctl.h: the signal that a process gets when its parent ends
 
 
 def alone(call, *arguments):
     """(result, peak memory in MiB of the call or of the largest tool it ran). Exceptions come through."""
     context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(1, mp_context=context) as pool:
-        try:
-            return pool.submit(_measured, call, arguments).result()
-        except BrokenProcessPool:
-            raise StepError(f"{getattr(call, '__qualname__', call)}: its process ended without a word "
-                            "(a crash in a library, or no memory left)") from None
+    receiver, sender = context.Pipe(duplex=False)
+    child = context.Process(target=_measured, args=(sender, call, arguments))
+    _start(child)
+    sender.close()
+    try:
+        result, peak = receiver.recv()
+    except EOFError:
+        raise StepError(f"{getattr(call, '__qualname__', call)}: its process ended without a word "
+                        "(a crash in a library, or no memory left)") from None
+    except BaseException:
+        child.terminate()
+        raise
+    finally:
+        receiver.close()
+        child.join()
+    if isinstance(result, BaseException):
+        raise result
+    return result, peak
 
 
-def _measured(call, arguments):
-    result = call(*arguments)
+def _start(child):
+    """With fixed hashes of texts: sets have the same order each time, and what is written from them is the same file."""
+    before = os.environ.get("PYTHONHASHSEED")
+    os.environ["PYTHONHASHSEED"] = "0"
+    try:
+        child.start()
+    finally:
+        del os.environ["PYTHONHASHSEED"]
+        if before is not None:
+            os.environ["PYTHONHASHSEED"] = before
+
+
+def _measured(sender, call, arguments):
+    signal.signal(signal.SIGTERM, _end)
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    try:
+        result = call(*arguments)
+    except Exception as error:
+        result = error
     kib = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return result, round(kib / 1024)
+    sender.send((result, round(kib / 1024)))
+
+
+def _end(signum, frame):
+    """As an exception, so that what runs in flow.simulate.process ends its tool."""
+    raise SystemExit(128 + signum)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cells.characterize.conditions import Conditions
-from cells.characterize.constraint import bisect
+from cells.characterize.constraint import RESOLUTION, bisect
 from cells.characterize.grid import _refine
 from cells.characterize.table import bilinear
 from cells.corner import Corner
@@ -46,7 +46,7 @@ def test_bisection_finds_where_the_delay_has_grown_by_its_share(guess):
         return None if x < 20e-12 else 100e-12 * (1 + np.exp(-(x - 20e-12) / 10e-12))
 
     found = bisect(run, 1e-9, True, 0.1, guess=guess)
-    assert found == pytest.approx(20e-12 + 10e-12 * np.log(10), abs=1.1e-12)
+    assert found == pytest.approx(20e-12 + 10e-12 * np.log(10), abs=1.1 * RESOLUTION)
     assert len(runs) < 20
 
 

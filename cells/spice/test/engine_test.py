@@ -1,6 +1,9 @@
 """The engine on circuits whose answer is known."""
 
+import os
 import shutil
+import signal
+import threading
 
 import numpy as np
 import pytest
@@ -41,6 +44,20 @@ def test_a_run_beyond_its_time_is_ended():
         slow = Settings(timeout=0.2)
         with pytest.raises(SimulationError, match="time-out"):
             simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 1e-3, 1e-12, settings=slow, retry=False)
+
+
+@ngspice
+@pytest.mark.skipif(not os.path.isdir("/proc"), reason="needs /proc, which says what a process has used")
+def test_a_busy_machine_is_no_time_out():
+    """A child that gets no processor for longer than its time-out, here a stopped one, has its answer waited for."""
+    with Simulator(RC, ["A"], ["Y"], {}, 25) as simulator:
+        stimulus = {"A": [(0, 0), (1e-9, 1)]}
+        simulator.transient(stimulus, {"Y": 1e-15}, 2e-9, 1e-10)
+        os.kill(simulator._child.pid, signal.SIGSTOP)
+        threading.Timer(1.5, os.kill, (simulator._child.pid, signal.SIGCONT)).start()
+        before = simulator._child.pid
+        wave = simulator.transient(stimulus, {"Y": 1e-15}, 2e-9, 1e-10, settings=Settings(timeout=1), retry=False)
+        assert wave.time[-1] == pytest.approx(2e-9) and simulator._child.pid == before
 
 
 def test_crossings_are_between_the_points_and_the_last_counts():

@@ -173,3 +173,19 @@ def test_lef_is_read_in_the_order_of_the_bits():
         size("VERSION 5.8 ;")
     with pytest.raises(ParameterError, match="pin a: must have"):
         pins("  PIN a\n  DIRECTION INPUT ;\n  END a\n")
+
+
+def test_what_tells_of_a_run_stays_behind(layouts, tmp_path):
+    folder = layouts / NAME
+    summary = json.loads((folder / "summary.json").read_text())
+    archives = []
+    for seconds in (1.0, 2.0):
+        (folder / "summary.json").write_text(json.dumps(summary | {"wall_s": {"drc": seconds}}))
+        (folder / "report.html").write_text(f"<p>page</p><!-- run -->{seconds} s<!-- end of run -->")
+        (folder / f"{NAME}.drc.lyrdb").write_text(f"<file>{folder.resolve()}/steps/a.gds</file>")
+        assert run(layouts, tmp_path / str(seconds)) == 0
+        archives.append((tmp_path / str(seconds) / f"{NAME}.tar.gz").read_bytes())
+    assert archives[0] == archives[1]
+    with tarfile.open(tmp_path / "1.0" / f"{NAME}.tar.gz") as archive:
+        text = archive.extractfile(f"{NAME}/reports/{NAME}.drc.lyrdb").read()
+    assert text == f"<file>{NAME}/steps/a.gds</file>".encode()

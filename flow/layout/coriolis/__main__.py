@@ -17,13 +17,16 @@ def main(request):
     database = configure(request)
     cell = load(request["cell"])
     from .block import make_block
-    from .dump import instances, wires
+    from .dump import instances, shapes, wires
+    from .short import draw_short
     block = make_block(cell, request, database)
     times = {"load": time.perf_counter() - begin}
     routed = block.doPnR()
     times.update(block.times)
     begin = time.perf_counter()
+    print(f"short wires drawn: {draw_short(cell)}")
     block.save()
+    Path("shapes.json").write_text(json.dumps(shapes(cell)))
     Path("result.json").write_text(json.dumps({
         "routed": bool(routed), "straps": block.straps, "pins": block.pins, "instances": instances(cell),
         "wires": wires(cell), "times": times | {"save": time.perf_counter() - begin}}))

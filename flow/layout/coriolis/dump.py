@@ -1,6 +1,6 @@
 """What is in Hurricane's database after routing, as plain lists."""
 
-from coriolis.Hurricane import Contact, DbU, Horizontal, Vertical
+from coriolis.Hurricane import Contact, DbU, Horizontal, Pin, Vertical
 
 
 def _um(value):
@@ -38,3 +38,30 @@ def _wire(component):
                                                                             - component.getSourceY())
         return [layer, _um(length), _um(component.getWidth())]
     return [layer, 0, 0] if isinstance(component, Contact) and "_" in layer else None
+
+
+def shapes(cell):
+    """Where each signal net is, for who routes one anew: dict net -> lists of 'wires' [layer, left, bottom, right, top],
+    'cuts' [layer, x, y], 'pins' (of every cell and port on the net the boxes, as wires, of which any one is to be met).
+    """
+    nets = {}
+    for net in cell.getNets():
+        if net.isSupply():
+            continue
+        made = nets[net.getName()] = {"wires": [], "cuts": [], "pins": []}
+        for component in net.getComponents():
+            if isinstance(component, Pin):
+                made["pins"].append([_box(component.getLayer(), component.getBoundingBox())])
+            elif isinstance(component, (Horizontal, Vertical)) and _wire(component):
+                made["wires"].append(_box(component.getLayer(), component.getBoundingBox()))
+            elif isinstance(component, Contact) and _wire(component):
+                made["cuts"].append([component.getLayer().getName(), _um(component.getX()), _um(component.getY())])
+        for plug in net.getPlugs():
+            place = plug.getInstance().getTransformation()
+            made["pins"].append([_box(part.getLayer(), place.getBox(part.getBoundingBox()))
+                                 for part in plug.getMasterNet().getExternalComponents()])
+    return nets
+
+
+def _box(layer, box):
+    return [layer.getName(), *map(_um, (box.getXMin(), box.getYMin(), box.getXMax(), box.getYMax()))]

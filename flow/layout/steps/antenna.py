@@ -19,13 +19,13 @@ class AntennaParameters:
 
 
 class Antenna(Step):
-    """Every layer in turn, on the connections that exist by then. density: covered share of the core, by layer."""
+    """Every layer in turn, on the connections that exist by then."""
 
     name = "antenna"
-    inputs = {"gds": "stream_out.gds", "platform": "platform"}
+    inputs = {"gds": "fill.gds", "platform": "platform"}
     outputs = {"summary": "antenna.json"}
     Parameters = AntennaParameters
-    metrics = {"antenna_violations": "", "density": ""}
+    metrics = {"antenna_violations": ""}
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
@@ -33,26 +33,22 @@ class Antenna(Step):
         known, _ = process(self.parameters.pdk)
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
-        top, area = layout.top_cell(), layout.top_cell().bbox().area()
-        found = {wire.name: violations(layout, top, known, level) for level, wire in enumerate(known.wires)}
-        density = {wire.name: round(db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype)))
-                                    .merged().area() / area, 4) for wire in known.wires}
-        outputs["summary"].write_text(json.dumps({"violations": found, "density": density}, indent=1) + "\n")
-        return {"antenna_violations": sum(map(len, found.values())), "density": density}
+        top = layout.top_cell()
+        found = {wire.name: sorted({str(polygon.bbox().to_dtype(layout.dbu))
+                                    for polygon in violations(layout, top, known, level).each()})
+                 for level, wire in enumerate(known.wires)}
+        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        return {"antenna_violations": sum(map(len, found.values()))}
 
 
-def violations(layout, top, known, level):
-    """Boxes (um, as text) of the nets whose wire known.wires[level] is too large for their gates: list."""
+def connected(layout, top, known, level):
+    """(LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]), all below that wire joined."""
     import klayout.db as db
 
-    def region(pair):
-        return db.Region(top.begin_shapes_rec(layout.layer(*pair)))
-
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
-    poly, active = region(known.poly), region(known.active)
-    layers = {"poly": l2n.make_polygon_layer(layout.layer(*known.poly), "poly"),
-              "contact": l2n.make_polygon_layer(layout.layer(*known.contact), "contact")}
-    gate, diffusion = poly & active, active - poly
+    layers = {name: l2n.make_polygon_layer(layout.layer(*pair), name) for name, pair in
+              (("poly", known.poly), ("active", known.active), ("contact", known.contact))}
+    gate, diffusion = layers["poly"] & layers["active"], layers["active"] - layers["poly"]
     for name, made in (("gate", gate), ("diffusion", diffusion)):
         l2n.register(made, name)
     l2n.connect(layers["poly"])
@@ -74,10 +70,18 @@ def violations(layout, top, known, level):
             l2n.connect(below)
             l2n.connect(metal, below)
     l2n.extract_netlist()
+    return l2n, gate, diffusion, wires
+
+
+def violations(layout, top, known, level):
+    """klayout.db.Region: known.wires[level] of the nets on which it is too large for their gates."""
+    import klayout.db as db
+    l2n, gate, diffusion, wires = connected(layout, top, known, level)
     wire = known.wires[level]
     safe = 1e9          # for what has a diffusion, in the check of what has none
     base, more = wire.antenna_diffusion
+    factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)       # of the metal's area, its edges
     bad = db.Region()
     for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
-        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], 0.0, wire.thickness_um, ratio, [[diffusion, by_diffusion]])
-    return sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], *factors, ratio, [[diffusion, by_diffusion]])
+    return db.Region(list(bad.each()))          # no longer of the extraction, which ends here

@@ -1,6 +1,7 @@
 """Design rules: the deck that PDKMaster exports for the process, in KLayout."""
 
 import json
+import re
 
 from flow.steps import Step, StepError
 
@@ -8,22 +9,48 @@ from . import klayout_decks
 from .klayout_decks import run_deck, violations
 
 
+WARNING = "[Warning]"
+
+
 class Drc(Step):
-    """Every rule of the deck over the whole layout; the report opens in KLayout."""
+    """Every rule of the deck over the whole layout; the report opens in KLayout.
+
+    What the deck calls a warning (wide wires nearer than long ones may be) is in the report and no violation: the rule
+    itself, with the length, stands beside it.
+    """
 
     name = "drc"
-    inputs = {"gds": "stream_out.gds", "deck": "library.drc"}
-    outputs = {"report": "drc.lyrdb", "summary": "drc.json"}
+    inputs = {"gds": "fill.gds", "deck": "library.drc"}
+    outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "spaces.drc"}
     metrics = {"drc_violations": ""}
     uses = (klayout_decks,)
     tools = ("klayout",)
 
     def run(self, inputs, outputs):
         log = outputs["report"].with_suffix(".log")
-        status = run_deck(inputs["deck"], {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "",
+        outputs["deck"].write_text(with_flat_spaces(inputs["deck"].read_text()))
+        status = run_deck(outputs["deck"], {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "",
                                            "REPORT_FILE": outputs["report"].resolve()}, log)
         if status:
-            raise StepError(f"drc: KLayout failed with status {status}: {log.read_text().strip().splitlines()[-1:]}")
+            told = log.read_text().strip().splitlines()
+            raise StepError(f"drc: KLayout failed with status {status}: "
+                            f"{next((line for line in told if 'ERROR' in line), told[-1:])}")
         found = violations(outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
-        return {"drc_violations": sum(found.values())}
+        return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}
+
+
+def with_flat_spaces(deck):
+    """The deck with the spaces of drawn layers checked behind all else and without cells.
+
+    Wells, implants and rails go on from cell to cell through whole rows; to check those cell by cell takes two thirds
+    of the deck's time, without cells a tenth of that. Raises StepError when the deck has no such rules.
+    """
+    drawn = dict(re.findall(r"^(\w+) = (input\(\d+, \d+\))$", deck, re.M))
+    rules = [m for m in re.finditer(r"^(\w+)\.space\([\d.]+\)\.output\(\n(?:.*\n)*?\)\n", deck, re.M) if m[1] in drawn]
+    if not rules:
+        raise StepError("drc: the deck has no rule of a space that could be checked without cells")
+    for rule in rules:
+        deck = deck.replace(rule[0], "", 1)
+    layers = dict.fromkeys(rule[1] for rule in rules)
+    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *(rule[0] for rule in rules)])

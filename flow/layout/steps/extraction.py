@@ -26,7 +26,7 @@ class Extraction(Step):
     """From lengths and widths in the router's database and the process's coefficients per layer."""
 
     name = "extraction"
-    inputs = {"netlist": "place_route.netlist", "placement": "place_route.placement", "platform": "platform",
+    inputs = {"netlist": "place_route.netlist", "placement": "mend.placement", "platform": "platform",
               "liberty": "library.liberty"}
     outputs = {"spef": "wires.spef"}
     Parameters = ExtractionParameters
@@ -37,7 +37,8 @@ class Extraction(Step):
         known, _ = process(self.parameters.pdk)
         netlist = Netlist.read(inputs["netlist"])
         wires = json.loads(inputs["placement"].read_text())["wires"]
-        nets = {net: parasitics(parts, known) for net, parts in wires.items() if net in set(_nets(netlist))}
+        there = {net for instance in netlist.instances for net in instance.pins.values()}
+        nets = {net: parasitics(parts, known) for net, parts in wires.items() if net in there}
         outputs["spef"].write_text(spef(netlist, nets))
         return {"wire_pf": round(sum(c for c, _ in nets.values()) / 1000, 3),
                 "largest_ff": round(max(c for c, _ in nets.values()), 2),
@@ -59,16 +60,12 @@ def parasitics(parts, known):
     return attofarad / 1000, ohm
 
 
-def _nets(netlist):
-    return [net for instance in netlist.instances for net in instance.pins.values()]
-
-
 def spef(netlist, nets):
     """The SPEF file as text. nets: dict net -> (fF, Ohm)."""
     pins = {}
     for instance in netlist.instances:
         for pin, net in instance.pins.items():
-            pins.setdefault(net, []).append((f"{_name(instance.name)}:{pin}", pin))
+            pins.setdefault(net, []).append((f"{_name(instance.name, ())}:{pin}", pin))
     ports = {net: port.direction for port in netlist.ports for net in port.bits()}
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.name}"', '*DATE ""', '*VENDOR ""', '*PROGRAM "talbot"',
              '*VERSION ""', '*DESIGN_FLOW ""', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS",
@@ -76,17 +73,19 @@ def spef(netlist, nets):
     for net, (femtofarad, ohm) in sorted(nets.items()):
         ends = [f"*I {pin} {'O' if name in OUTPUTS else 'I'}" for pin, name in pins.get(net, [])]
         if net in ports:
-            ends.append(f"*P {_name(net)} {'I' if ports[net] == 'input' else 'O'}")
-        center = f"{_name(net)}:1"
-        lines += ["", f"*D_NET {_name(net)} {femtofarad:.4f}", "*CONN", *ends, "*CAP", f"1 {center} {femtofarad:.4f}",
-                  "*RES", *(f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1)),
-                  "*END"]
+            ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
+        center = f"{_name(net, ports)}:1"
+        branches = (f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1))
+        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends, "*CAP",
+                  f"1 {center} {femtofarad:.4f}", "*RES", *branches, "*END"]
     return "\n".join(lines) + "\n"
 
 
 OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 
 
-def _name(name):
-    """As SPEF writes it: everything but letters, digits, _ and a bus's brackets behind a backslash."""
-    return "".join(c if c.isalnum() or c in "_[]" else f"\\{c}" for c in name)
+def _name(name, ports):
+    """As SPEF writes it: everything but letters, digits and _ behind a backslash, but for the brackets of a bus's bit
+    (what is in ``ports``): a bracket in the name of a register is a letter of it."""
+    letters = "_[]" if name in ports else "_"
+    return "".join(c if c.isalnum() or c in letters else f"\\{c}" for c in name)

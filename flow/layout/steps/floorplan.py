@@ -4,7 +4,7 @@ import json
 import math
 from dataclasses import dataclass, field
 
-from flow.steps import Step
+from flow.steps import Step, StepError
 from models.parameters import check_real
 
 from ..netlist import Netlist
@@ -39,6 +39,10 @@ class Floorplan(Step):
     def run(self, inputs, outputs):
         p = self.parameters
         netlist, areas = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
+        unknown = sorted({i.cell for i in netlist.instances} - set(areas))
+        if unknown:
+            raise StepError(f"floorplan: no layout of the cells {', '.join(unknown[:5])}: LIBERTY must be of the cells "
+                            "that are laid out")
         area = sum(areas[i.cell] for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE) / p.utilization
         rows = max(4, 2 * round(math.sqrt(area / p.aspect) / p.row_um / 2))     # even: the top rail is ground too
         columns = math.ceil(area / (rows * p.row_um) / p.site_um)

@@ -52,11 +52,15 @@ def exposure(sensor):
     return common + rng.normal(0, 20.0, (*common.shape[:3], 2)) * (rng.random(common.shape) < 0.3)
 
 
-def compiled(chip, sensor, folder):
-    """The frame bench around the Verilog files ``chip``, compiled by Icarus into ``folder``: its path."""
+def compiled(chip, sensor, folder, tops=()):
+    """The frame bench around the Verilog files ``chip``, compiled by Icarus into ``folder``: its path.
+
+    tops: modules beside the bench.
+    """
     program = folder / "bench.vvp"
     sizes = {"ROWS": sensor.array.rows, "COLS": sensor.array.cols, "LANES": sensor.chip.lanes,
              "TILE_ROWS": sensor.tile.rows, "TILE_COLS": sensor.tile.cols, "TAPS": TAPS}
-    run(["iverilog", "-g2012", "-s", "Clock", *(f"-PClock.{name}={value}" for name, value in sizes.items()),
+    run(["iverilog", "-g2012", "-s", "Clock", *(part for top in tops for part in ("-s", top)),
+         *(f"-PClock.{name}={value}" for name, value in sizes.items()),
          "-o", program, *chip, ROOT / "pixels" / "afe.sv", FRAME / "bench.sv", FRAME / "clock.sv"])
     return program

@@ -1,4 +1,4 @@
-"""The block's own tests on a netlist: their Icarus level, which knows X and fails on one at any output."""
+"""The block's own tests on a netlist: in Icarus, which knows X and fails on one at any output, or in Verilator."""
 
 import sys
 import tempfile
@@ -8,28 +8,41 @@ from pathlib import Path
 
 from flow.simulate.process import finish
 from flow.steps import Step, StepError
+from models.parameters import check_choice
 
 ROOT = Path(__file__).parents[3]
+NETLISTS = {"final": "stream_out.verilog", "synthesized": "synthesis.verilog"}
 
 
 @dataclass(frozen=True)
 class GateTestsParameters:
-    """folder: of the block in rtl/. names: what its tests build the block as, with the parameters laid out."""
+    """folder: of the block in rtl/. names: what its tests build the block as, with the parameters laid out. top: its
+    module. netlist: 'final' or 'synthesized'. simulator: 'icarus' or 'verilator', which knows no X."""
 
     folder: str = ""
     names: tuple = ()
     top: str = ""
+    netlist: str = "final"
+    simulator: str = "icarus"
+
+    def __post_init__(self):
+        check_choice("netlist", self.netlist, tuple(NETLISTS))
+        check_choice("simulator", self.simulator, ("icarus", "verilator"))
 
 
 class GateTests(Step):
     """Zero delay: the cells are their functions; timing is the STA's matter."""
 
-    name = "gate_tests"
-    inputs = {"verilog": "stream_out.verilog", "cells": "library.verilog", "tests": "tests"}
+    inputs = {"cells": "library.verilog", "tests": "tests"}
     outputs = {"report": "tests.xml"}
     Parameters = GateTestsParameters
     metrics = {"passed": "", "failed": ""}
     tools = ("iverilog",)
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.name = f"gate_tests_{parameters.netlist}_{parameters.simulator}"
+        self.inputs = self.inputs | {"verilog": NETLISTS[parameters.netlist]}
 
     def run(self, inputs, outputs):
         p = self.parameters
@@ -37,11 +50,11 @@ class GateTests(Step):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             done = finish([sys.executable, "-m", "pytest", f"rtl/{p.folder}", "-p", "no:xdist", "-p",
                            "no:cacheprovider", f"--basetemp={folder}/tmp", f"--junitxml={folder}/tests.xml", *netlists,
-                           f"--cells={inputs['cells'].resolve()}"], cwd=ROOT)
+                           f"--netlist-in={p.simulator}", f"--cells={inputs['cells'].resolve()}"], cwd=ROOT)
             outputs["report"].with_suffix(".log").write_text(done.stdout + done.stderr)
             report = Path(folder) / "tests.xml"
             if done.returncode not in (0, 1) or not report.exists():
-                raise StepError(f"gate_tests: pytest said: {(done.stdout + done.stderr).strip().splitlines()[-1:]}")
+                raise StepError(f"{self.name}: pytest said: {(done.stdout + done.stderr).strip().splitlines()[-1:]}")
             outputs["report"].write_bytes(report.read_bytes())
         suite = ET.parse(outputs["report"]).getroot().find("testsuite")
         count = {kind: int(suite.get(kind)) for kind in ("tests", "failures", "errors", "skipped")}

@@ -2,11 +2,12 @@
 
 import importlib
 import json
+import re
 from dataclasses import asdict, dataclass, field
 
-from flow.platforms.embedded import process
+from flow.platforms.embedded import modules, process
 from flow.simulate.process import run
-from flow.steps import Step
+from flow.steps import Step, StepError
 
 from .. import liberty
 from ..netlist import SUPPLIES
@@ -30,7 +31,7 @@ class Library(Step):
     inputs = {"platform": "platform"}
     outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
                "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v",
-               "rules": "rules.json",               "geometry": "geometry.json"}
+               "rules": "rules.json", "geometry": "geometry.json"}
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
@@ -44,29 +45,50 @@ class Library(Step):
         library = make()
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         outputs["geometry"].write_text(json.dumps(geometry(known), indent=1) + "\n")
-        outputs["rules"].write_text(json.dumps({"space_um": {
-            wire.name: float(description.tech.primitives[wire.name].min_space) for wire in known.wires}}) + "\n")
-        _coriolis(outputs["coriolis"], description, library)
+        outputs["rules"].write_text(json.dumps(wiring_rules(known, description.tech.primitives), indent=1) + "\n")
+        _coriolis(outputs["coriolis"], description, library, known)
         _klayout(outputs, description, package, library)
         areas = {cell.name: _area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
-        models, layers = (importlib.import_module(f"flow.platforms.{self.parameters.pdk.replace('-', '_')}.{name}")
-                          for name in ("models", "process"))
-        found = liberty.functions(outputs["gds"], [name for name in ports if not name.startswith(UNUSED)], models, layers)
+        models, layers = modules(self.parameters.pdk)
+        logic = [name for name in ports if not name.startswith(UNUSED)]
+        found = liberty.functions(outputs["gds"], logic, models, layers)
         outputs["liberty"].write_text(liberty.liberty({
             name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas))
-        run(["yosys", "-q", "-p", f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
+        run(["yosys", "-q", "-p",
+             f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
         return {"cells": len(cells)}
 
 
 def geometry(known):
     """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
     made = asdict(known)
+    del made["fill"], made["rail_um"], made["corners"]
     for wire in made["wires"]:
         for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
             del wire[name]
     return made
+
+
+def wiring_rules(known, primitives):
+    """What PDKMaster's ``primitives`` say of the wires and cuts of ``known``, in um: a dict for JSON."""
+    def enclosure(made):
+        return [float(made.first), float(made.second)]
+
+    wires = {wire.name: primitives[wire.name] for wire in known.wires}
+    cuts = {cut.name: (primitives[cut.name], level) for level, cut in enumerate(known.cuts)}
+    return {"space_um": {name: float(wire.min_space) for name, wire in wires.items()},
+            "wires": {name: {"width": float(wire.min_width), "space": float(wire.min_space),
+                             "area": float(wire.min_area or 0)} for name, wire in wires.items()},
+            "cuts": {name: {"below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.wires[level])),
+                            "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.wires[level + 1]))}
+                     for name, (cut, level) in cuts.items()}}
+
+
+def _of(layers, enclosures, wire):
+    """The enclosure by ``wire``, one of ``layers``."""
+    return next(made for layer, made in zip(layers, enclosures, strict=True) if layer.name == wire.name)
 
 
 def _area(cell):
@@ -74,7 +96,7 @@ def _area(cell):
     return round((box.right - box.left) * (box.top - box.bottom), 4)
 
 
-def _coriolis(folder, description, library):
+def _coriolis(folder, description, library, known):
     from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
     spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
     export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
@@ -82,7 +104,25 @@ def _coriolis(folder, description, library):
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
     (package / "techno.py").write_text(export())
-    (package / "StdCellLib.py").write_text(export(library))
+    (package / "StdCellLib.py").write_text(narrowed(export(library), known, description.tech.primitives))
+
+
+def narrowed(text, known, primitives):
+    """The export for Coriolis with the tracks of the highest wire as near as its pads may lie: PDKMaster keeps room
+    there for cuts to the wire above, of which there are none (1.48 um instead of 0.68 um in SKY130)."""
+    wire, cut = known.wires[-1], known.cuts[-1]
+    pad = cut.size_um + 2 * cut.enclosure_um
+    numbers = [pad + float(primitives[wire.name].min_space), pad]
+    begin = text.index(f"metal = tech.getLayer('{wire.name}')")
+    head, gauge = text[:begin], text[begin:]
+    around = f"u({cut.enclosure_um})"
+    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, ({around}, {around}))",
+                                gauge, count=1)
+    gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge,
+                            count=1)
+    if not enclosures or not tracks:
+        raise StepError(f"library: PDKMaster's export has no gauge of {wire.name} that could be narrowed")
+    return head + gauge
 
 
 def _klayout(outputs, description, package, library):
@@ -90,10 +130,20 @@ def _klayout(outputs, description, package, library):
     from pdkmaster.io.spice import SpiceNetlistFactory
     devices = package.prims_spiceparams
     decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
-    outputs["drc"].write_text(decks["drc"])
+    # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide wires farther
+    outputs["drc"].write_text(decks["drc"].replace(", Projection)", ", projection)"))
     outputs["lvs"].write_text(decks["lvs"])
     export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
               add_pin_label=True).write(str(outputs["gds"]))
     netlists = SpiceNetlistFactory(params=devices)
-    outputs["spice"].write_text("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
-                                        if cell.name != "Gallery"))
+    outputs["spice"].write_text(transistors("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
+                                                    if cell.name != "Gallery")))
+
+
+def transistors(spice):
+    """SPICE with every transistor as one: where a process has it as a subcircuit, KLayout would not know it."""
+    cells = set(re.findall(r"(?im)^\.subckt (\S+)", spice))
+
+    def device(match):
+        return match[0] if match[2] in cells else f"M{match[1]}{match[2]}{match[3]}"
+    return re.sub(r"(?m)^X(\S+ (?:\S+ ){4})(\w+)((?: \w+=\S+)+)$", device, spice)

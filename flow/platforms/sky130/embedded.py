@@ -1,9 +1,7 @@
 """SKY130 for the embedded backend: what Coriolis, KLayout and the steps of flow.layout must know of it."""
 
-import asyncio
-import contextlib
-
-from flow.platforms.embedded import Cut, Embedded, Wire
+from flow.platforms.embedded import Cut, Embedded, Fill, Wire
+from flow.platforms.patience import patience
 
 
 def library():
@@ -19,22 +17,11 @@ def library():
         pmos_min_w=0.84, cell_height=PROCESS.row_um, cell_horplacement_grid=PROCESS.site_um, m1_vssrail_width=0.95,
         m1_vddrail_width=0.95, well_edge_height=2.7)
     made = RoutingGaugeLibrary(name="StdCellLib", tech=tech, routinggauge=canvas.routinggauge)
-    with _patience():
+    with patience():
         stdcell.StdCellFactory(lib=made, canvas=canvas).add_default()
         for cell in made.cells:
             cell.layout
     return made
-
-
-@contextlib.contextmanager
-def _patience():
-    """c4m-flexcell gives up on a cell after 1 s by the wall clock, which a busy machine exceeds; here after 60 s."""
-    wait = asyncio.wait
-    asyncio.wait = lambda tasks, timeout: wait(tasks, timeout=60 * timeout)
-    try:
-        yield
-    finally:
-        asyncio.wait = wait
 
 
 PROCESS = Embedded(
@@ -50,6 +37,11 @@ PROCESS = Embedded(
            Wire("m4", 71, 20, 8.42, 36.68, 0.047, 0.80, 400, (2600, 400))),
     cuts=(Cut("mcon", 67, 44, 0.17, 0.19, 0.085, 9.3), Cut("via", 68, 44, 0.15, 0.17, 0.085, 4.5),
           Cut("via2", 69, 44, 0.20, 0.20, 0.085, 3.41), Cut("via3", 70, 44, 0.20, 0.20, 0.09, 3.41)),
-    strap_um=1.2, rail_overlap_um=1.2,
+    strap_um=1.2, rail_um=1.9, rail_overlap_um=1.2,
     pin_pitch_um={"horizontal": 0.46, "vertical": 0.51}, label_datatype=5, pin_datatype=16,
-    blockage_layer=100, poly=(66, 20), active=(65, 20), contact=(66, 44))
+    blockage_layer=100, poly=(66, 20), active=(65, 20), contact=(66, 44),
+    # at most 60 % of a wire's layer (rules *.pd.1d as efabless's mpw_precheck checks them); there is no least density:
+    # SkyWater fills on its side. The squares keep every width, area and space of m1 to m4 (0.3 um, 0.24 um2)
+    fill=Fill(sides_um=(2.0, 1.0, 0.5), space_um=0.4, clearance_um=0.6, density=0.3, density_most=0.6,
+              window_um=700.0),
+    corners=("tt_025C_1v80", "ss_100C_1v60", "ff_n40C_1v95"))

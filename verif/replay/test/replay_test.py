@@ -101,10 +101,11 @@ def test_gates(recorded, gates, folder):
 
 
 @needs_yosys
-def test_the_tests_themselves_run_on_gates(gates, folder):
+@pytest.mark.parametrize("simulator", ["icarus", pytest.param("verilator", marks=pytest.mark.slow)])
+def test_the_tests_themselves_run_on_gates(gates, folder, simulator):
     netlist, cells = gates
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "rtl/edge_adc", "-k", "every_code",
-               "--netlist", f"EdgeAdc={netlist}", "--cells"]
+               "--netlist-in", simulator, "--netlist", f"EdgeAdc={netlist}", "--cells"]
     good = subprocess.run([*command, cells], cwd=ROOT, capture_output=True, text=True)
     assert good.returncode == 0 and "1 passed" in good.stdout, good.stdout
     bad = subprocess.run([*command, planted(cells, folder, "A ^ B", "A | B")], cwd=ROOT, capture_output=True, text=True)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.handoff.abstract import abstract, ports
 from flow.handoff.lef import pins, size
+from flow.layout.abstract import abstract, ports, read_back
 from flow.platforms.embedded import process
 from models.parameters import ParameterError
 
@@ -64,3 +64,33 @@ def test_obstructions_cover_all_but_the_pins(gds, known, tmp_path):
 def test_a_port_without_metal_is_named(gds, known):
     with pytest.raises(ParameterError, match="must have metal for the pins lost"):
         abstract(gds, ports(NETLIST) | {"lost": "input"}, known, {})
+
+
+def test_what_a_pin_bears_is_what_its_net_has(gds, known):
+    layout = db.Layout()
+    layout.read(str(gds))
+    top = layout.top_cell()
+    (li, m1), mcon = known.wires[:2], known.cuts[0]
+    for layer, *box in ((known.active, 1.0, 0.4, 2.0, 0.9), (known.poly, 1.4, 0.2, 1.6, 1.4),
+                        (known.contact, 1.45, 1.1, 1.55, 1.2), ((li.layer, li.datatype), 1.3, 1.0, 1.7, 1.4),
+                        ((mcon.layer, mcon.datatype), 1.45, 1.1, 1.55, 1.2)):
+        top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
+    layout.write(str(gds))
+    pin = abstract(gds, ports(NETLIST), known, {}).partition("PIN a")[2].partition("END a")[0]
+    assert "ANTENNAGATEAREA 0.1000 ;" in pin                    # 0.2 x 0.5 um2
+    assert f"ANTENNAPARTIALMETALSIDEAREA {2 * (3.1 + 0.3) * m1.thickness_um:.4f} LAYER m1 ;" in pin
+    assert f"ANTENNAPARTIALMETALSIDEAREA {4 * 0.4 * li.thickness_um:.4f} LAYER li ;" in pin
+    assert "ANTENNADIFFAREA" not in pin
+
+
+def test_an_abstract_that_lies_is_found(gds, known, tmp_path):
+    lef = tmp_path / "two.lef"
+    directions, text = ports(NETLIST), abstract(gds, ports(NETLIST), known, {})
+    lef.write_text(text)
+    assert read_back(lef, gds, directions, known, {}) == []
+    lef.write_text(text.replace("0.000 1.000 0.300 1.300", "0.000 3.000 0.300 3.300"))
+    assert read_back(lef, gds, directions, known, {})[0] == "m1: a pin where there is no metal"
+    lef.write_text(text.partition("  OBS")[0] + "END Two\nEND LIBRARY\n")
+    assert "m1: metal that is neither pin nor obstruction" in read_back(lef, gds, directions, known, {})
+    lef.write_text(text.replace("PIN a\n", "PIN b\n").replace("END a\n", "END b\n"))
+    assert read_back(lef, gds, directions, known, {}) == ["pins that differ: a, b"]

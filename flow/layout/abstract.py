@@ -2,8 +2,10 @@
 
 import re
 
-from flow.layout.netlist import SUPPLIES
 from models.parameters import ParameterError
+
+from .netlist import SUPPLIES
+from .steps.antenna import connected
 
 EDGE_UM = 0.3           # how far from the edge a pin is taken for one
 USES = dict(zip(SUPPLIES, ("POWER", "GROUND"), strict=True))
@@ -36,6 +38,7 @@ def abstract(gds, directions, known, names):
     for wire in known.wires:
         for net, pin in _pins(layout, top, die, wire, known, strap=wire is known.wires[-1]):
             found.setdefault(net, []).append((wire, pin))
+    charged = antennas(layout, top, known, found, set(directions))
     lacking = sorted((set(directions) | set(SUPPLIES)) - set(found))
     if lacking:
         raise ParameterError(f"gds = {gds}: must have metal for the pins {', '.join(lacking[:5])}")
@@ -50,7 +53,8 @@ def abstract(gds, directions, known, names):
              f"  SIZE {die.width() * layout.dbu:.3f} BY {die.height() * layout.dbu:.3f} ;", "  SYMMETRY X Y ;"]
     for name in sorted(found):
         direction = directions.get(name, "inout").upper()
-        lines += [f"  PIN {name}", f"    DIRECTION {direction} ;", f"    USE {USES.get(name, 'SIGNAL')} ;", "    PORT"]
+        lines += [f"  PIN {name}", f"    DIRECTION {direction} ;", f"    USE {USES.get(name, 'SIGNAL')} ;",
+                  *_antenna(charged.get(name), names), "    PORT"]
         for wire, pin in found[name]:
             lines += rectangles(wire, [pin], "      ")
         lines += ["    END", f"  END {name}"]
@@ -61,6 +65,71 @@ def abstract(gds, directions, known, names):
         rest = (db.Region(die) - pins).decompose_trapezoids_to_region(db.Polygon.TD_htrapezoids)
         lines += rectangles(wire, (part.bbox() for part in rest.each()), "    ")
     return "\n".join([*lines, "  END", f"END {top.name}", "END LIBRARY", ""])
+
+
+def antennas(layout, top, known, found, signals):
+    """What the nets of the pins ``found`` gather and bear: dict net -> (um2 of gates, um2 of diffusions, list of
+    (Wire, um2 of side walls)), all wires joined. signals: nets that are asked for."""
+    import klayout.db as db
+    l2n, gate, diffusion, wires = connected(layout, top, known, len(known.wires) - 1)
+
+    def area(net, region):
+        return l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu ** 2
+
+    made = {}
+    for name in sorted(signals & set(found)):
+        wire, pin = found[name][0]
+        net = l2n.probe_net(wires[known.wires.index(wire)], pin.center())
+        if net is not None:
+            sides = [(of, l2n.shapes_of_net(net, metal, True).merged().perimeter() * layout.dbu * of.thickness_um)
+                     for of, metal in zip(known.wires, wires, strict=True)]
+            made[name] = area(net, gate), area(net, diffusion), [(of, side) for of, side in sides if side]
+    return made
+
+
+def _antenna(charged, names):
+    """Lines of LEF. charged: as of `antennas`, or None."""
+    gate, diffusion, sides = charged or (0, 0, [])
+    for wire, side in sides:
+        layer = names.get((wire.layer, wire.datatype), wire.name)
+        yield f"    ANTENNAPARTIALMETALSIDEAREA {side:.4f} LAYER {layer} ;"
+    if gate:
+        yield "    ANTENNAMODEL OXIDE1 ;"
+        yield f"    ANTENNAGATEAREA {gate:.4f} ;"
+    if diffusion:
+        yield f"    ANTENNADIFFAREA {diffusion:.4f} ;"
+
+
+def read_back(lef, gds, directions, known, names):
+    """What is wrong with the file ``lef`` as KLayout reads it, against ``gds``: list of str, the rest as `abstract`.
+
+    Every pin must be there, on metal of its layer, and all other metal inside the outline under an obstruction or
+    nearer to a pin than obstructions come.
+    """
+    import klayout.db as db
+    layout, drawn = db.Layout(), db.Layout()
+    layout.read(str(lef))
+    drawn.read(str(gds))
+    made, top = layout.cell(drawn.top_cell().name), drawn.top_cell()
+    layers = {info.name: layout.layer(info) for info in layout.layer_infos()}
+
+    def shapes(name):
+        return made.shapes(layers[name]) if name in layers else db.Shapes()
+
+    wrong, labelled, outline = [], set(), db.Region(shapes("OUTLINE"))
+    for wire in known.wires:
+        name = names.get((wire.layer, wire.datatype), wire.name)
+        pins, obstructions = (db.Region(shapes(f"{name}.{kind}")) for kind in ("PIN", "OBS"))
+        metal = db.Region(top.begin_shapes_rec(drawn.layer(wire.layer, wire.datatype))).merged()
+        labelled |= {shape.text.string for shape in shapes(f"{name}.LABEL").each(db.Shapes.STexts)}
+        if not (pins - metal).is_empty():
+            wrong.append(f"{name}: a pin where there is no metal")
+        near = pins.sized(round(max(known.pin_pitch_um.values()) / drawn.dbu) + 1)
+        if not ((metal & outline) - obstructions - near).is_empty():
+            wrong.append(f"{name}: metal that is neither pin nor obstruction")
+    if labelled != set(directions) | set(SUPPLIES):
+        wrong.append(f"pins that differ: {', '.join(sorted(labelled ^ (set(directions) | set(SUPPLIES)))[:5])}")
+    return wrong
 
 
 def _pins(layout, top, die, wire, known, strap):

@@ -1,0 +1,158 @@
+"""Resistance of contacts and wires between a net's pin, its sources and drains, and its gates.
+
+KLayout's network extraction counts squares on every wire; a source or drain is one node, joined to the wire above by
+its contacts (a p diffusion with one contact has 585 ohm before its transistor). The network is then reduced to its
+terminals alone, exactly (Schur complement): as many nodes as a netlist must have, and no more.
+"""
+
+from dataclasses import dataclass
+
+import klayout.db as db
+import numpy as np
+from klayout import pex
+
+from flow.platforms.process import DIFFUSION
+
+IDEAL = 1e-3           # ohm a square of a diffusion, in which the transistor's model has the resistance
+LEAST = 1e-3           # ohm; what is less is as much
+MOST = 1e6             # ohm; what is more is left out
+
+
+@dataclass(frozen=True)
+class Resistances:
+    """resistors: [(node, node, ohm)]. terminals: device number -> {'drain', 'gate', 'source': node}. Nodes that are not
+
+    in it have their net's name.
+    """
+
+    resistors: list
+    terminals: dict
+
+
+def resistances(found, process):
+    """Resistances of a Layout (cells.extract.devices)."""
+    resistors, terminals = [], {i: {} for i in range(len(found.devices))}
+    sides = {net: [] for net in {d for device in found.devices for d in (device.drain, device.gate, device.source)}}
+    for i, device in enumerate(found.devices):
+        for role, region in _sides(device, found).items():
+            sides[getattr(device, role)].append((i, role, *region))
+    for net in sorted(sides):
+        ports = _ports(net, sides[net], found)
+        nodes = [net, *(f"{net}_r{k}" for k in range(1, len(ports)))]
+        for node, (_, _, users) in zip(nodes, ports, strict=True):
+            for i, role in users:
+                terminals[i][role] = node
+        if len(ports) > 1:
+            matrix = _conductances(net, ports, found, process)
+            resistors += [(nodes[a], nodes[b], max(-1 / matrix[a, b], LEAST)) for a in range(len(ports))
+                          for b in range(a + 1, len(ports)) if -matrix[a, b] > 1 / MOST]
+    return Resistances(resistors, terminals)
+
+
+def _sides(device, found):
+    """role -> (layer, region) of a transistor: its gate's poly, the islands of its source and drain."""
+    step = round(device.l / found.dbu / 2) + 10
+    poly, gate = found.shapes["poly"][device.gate], db.Box(device.at, device.at).enlarged(5)
+    sides = {"gate": ("poly", (poly & found.active).interacting(db.Region(gate)))}
+    left, right = (_island(device, found, sign * step) for sign in (-1, 1))
+    crossed = left[0] != device.source
+    sides["source"], sides["drain"] = ((device.kind, side[1]) for side in ((right, left) if crossed else (left, right)))
+    return sides
+
+
+def _island(device, found, step):
+    """(net, region) of the diffusion ``step`` dbu beside the middle of a gate."""
+    spot = db.Region(db.Box(device.at, device.at).enlarged(2).moved(step, 0))
+    for net, islands in found.islands[device.kind].items():
+        part = islands.merged().interacting(spot)
+        if not part.is_empty():
+            return net, part
+    raise AssertionError(f"no diffusion beside a gate of {device.gate}")
+
+
+def _ports(net, sides, found):
+    """[(layer, region or point, [(device number, role)])] of a net's terminals; its pin, if it has one, first."""
+    ports = {}
+    for i, role, layer, region in sides:
+        key = layer, str(region.bbox())
+        ports.setdefault(key, (layer, region, []))[2].append((i, role))
+    ports = sorted(ports.values(), key=lambda port: (port[0] != "poly", str(port[1].bbox())))
+    for wire, point in found.labels.get(net, ()):
+        if not found.shapes[wire].get(net, db.Region()).interacting(_spot(point)).is_empty():
+            return [(wire, point, []), *ports]
+    return ports
+
+
+def _spot(point):
+    return db.Region(db.Box(point, point).enlarged(1))
+
+
+def _conductances(net, ports, found, process):
+    """(ports, ports) S of ``net``: its network without the nodes in between."""
+    names = ["n", "p", *(wire.name for wire in process.wires)]
+    number = {name: k for k, name in enumerate(names)}
+    tech, geometry = pex.RExtractorTech(), {}
+    for name in names:
+        region = (found.islands[name] if name in found.islands else found.shapes[name]).get(net)
+        if region is not None:
+            geometry[number[name]] = region.merged()
+            conductor = pex.RExtractorTechConductor()
+            conductor.layer = number[name]
+            conductor.resistance = IDEAL if name in found.islands else process.wire(name).sheet
+            tech.add_conductor(conductor)
+    for k, (cut, (_, lowers, upper)) in enumerate(zip(found.cuts, process.cuts, strict=True)):
+        for lower in [name for name in names if name in lowers or (name in found.islands and DIFFUSION in lowers)]:
+            if number[lower] in geometry and number[upper] in geometry:
+                _via(tech, geometry, len(names) * (k + 1) + number[lower], number[lower], number[upper],
+                     cut & geometry[number[lower]] & geometry[number[upper]], process.contacts[lower])
+    points, polygons = {}, {}
+    for layer, shape, _ in ports:
+        (points if isinstance(shape, db.Point) else polygons).setdefault(number[layer], []).append(shape)
+    flat = {layer: [part for region in regions for part in region.merged().each()]
+            for layer, regions in polygons.items()}
+    network = pex.RNetExtractor(found.dbu).extract(tech, geometry, points, flat)
+    return _reduced(network, [(number[layer], shape) for layer, shape, _ in ports], flat)
+
+
+def _via(tech, geometry, layer, lower, upper, region, ohm):
+    if region.is_empty():
+        return
+    geometry[layer] = region
+    via = pex.RExtractorTechVia()
+    via.cut_layer, via.bottom_conductor, via.top_conductor = layer, lower, upper
+    area = region.area() / region.count() * 1e-6
+    via.resistance = ohm * area
+    tech.add_via(via)
+
+
+def _reduced(network, ports, flat):
+    """Schur complement of the network's conductances on ``ports`` ((layer, shape)) in their order."""
+    nodes = {node.object_id(): k for k, node in enumerate(network.each_node())}
+    matrix = np.zeros((len(nodes), len(nodes)))
+    for element in network.each_element():
+        a, b = nodes[element.a().object_id()], nodes[element.b().object_id()]
+        conductance = 1 / max(element.resistance(), LEAST)
+        matrix[[a, b], [a, b]] += conductance
+        matrix[[a, b], [b, a]] -= conductance
+    kept = [[] for _ in ports]
+    for node in network.each_node():
+        for k, (layer, shape) in enumerate(ports):
+            if node.layer() == layer and _is(node, shape, flat.get(layer)):
+                kept[k].append(nodes[node.object_id()])
+    joined = np.zeros((len(ports) + len(nodes) - sum(map(len, kept)), len(nodes)))
+    for k, members in enumerate(kept):
+        joined[k, members] = 1
+    inner = [k for k in range(len(nodes)) if not any(k in members for members in kept)]
+    for row, k in enumerate(inner, start=len(ports)):
+        joined[row, k] = 1
+    whole, n = joined @ matrix @ joined.T, len(ports)
+    return whole[:n, :n] - whole[:n, n:] @ np.linalg.lstsq(whole[n:, n:], whole[n:, :n], rcond=None)[0]
+
+
+def _is(node, shape, polygons):
+    """Whether a network's node is the port ``shape``."""
+    if isinstance(shape, db.Point):
+        return node.type() == pex.RNode.VertexPort
+    if node.type() != pex.RNode.PolygonPort:
+        return False
+    return not shape.interacting(db.Region(polygons[node.port_index()])).is_empty()

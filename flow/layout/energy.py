@@ -1,0 +1,160 @@
+"""Power of every cell from the transitions on its nets, a Liberty's tables and the wires' capacitance.
+
+OpenSTA has this too, but Debian's 2.0.17 counts both energies of an output at each of its transitions (twice what the
+Liberty says), takes activities for some pins only, and its `set_power_activity -pins` ends in an error.
+"""
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from flow.steps import StepError
+
+SLEW_NS = 0.1       # of a pin that OpenSTA has no slew for: constants
+
+
+@dataclass(frozen=True)
+class Cells:
+    """The cells of a Liberty, tables in ns, pF, pJ, nW. library: Group of cells.liberty."""
+
+    library: object
+
+    @cached_property
+    def cells(self):
+        return {group.name: group for group in self.library.all("cell")}
+
+    @cached_property
+    def pins(self):
+        """dict (cell, pin) -> its Group."""
+        return {(name, pin.name): pin for name, cell in self.cells.items() for pin in cell.all("pin")}
+
+    @property
+    def supply_v(self):
+        return self.library.attributes["nom_voltage"]
+
+    def leakage_nw(self, cell):
+        return self.cells[cell].attributes.get("cell_leakage_power", 0.0) if cell in self.cells else 0.0
+
+    def capacitance_pf(self, cell, pin):
+        found = self.pins.get((cell, pin))
+        return found.attributes.get("capacitance", 0.0) if found else 0.0
+
+    def energies(self, cell, pin):
+        """List of (related pin or None, function (slew ns, load pF) -> pJ a transition, the mean of both edges)."""
+        key = cell, pin
+        if key not in self._energies:
+            group = self.pins.get(key)
+            self._energies[key] = [(power.attributes.get("related_pin"), _mean(power))
+                                   for power in (group.all("internal_power") if group else ())]
+        return self._energies[key]
+
+    @cached_property
+    def _energies(self):
+        return {}
+
+
+def _mean(power):
+    """Function (slew, load) -> mean of the tables of an internal_power Group."""
+    tables = [_interpolated(power.one(kind)) for kind in ("rise_power", "fall_power") if power.one(kind)]
+    return lambda slew, load: sum(table(slew, load) for table in tables) / max(1, len(tables))
+
+
+def _interpolated(table):
+    """Function (slew, load) of a table with one or two indices; beyond the grid, what its edge has."""
+    values = table.array("values")
+    slews = table.array("index_1") if "index_1" in table.attributes else np.zeros(1)
+    if "index_2" not in table.attributes:
+        return lambda slew, load: float(np.interp(slew, slews, np.ravel(values)))
+    loads, grid = table.array("index_2"), np.reshape(values, (len(slews), -1))
+
+    def at(slew, load):
+        load = min(max(load, loads[0]), loads[-1])
+        return float(np.interp(slew, slews, [np.interp(load, loads, row) for row in grid]))
+    return at
+
+
+@dataclass(frozen=True)
+class Power:
+    """uW of one instance."""
+
+    internal: float
+    switching: float
+    leakage: float
+
+    @property
+    def total(self):
+        return self.internal + self.switching + self.leakage
+
+
+def powers(netlist, cells, activity, wire_pf, slews, period_ns):
+    """dict instance name -> Power, of those with pins.
+
+    activity: net -> (transitions a cycle, share of time at 1). wire_pf: net -> pF. slews: (instance, pin) -> ns.
+    Raises StepError for a net without activity.
+    """
+    load = dict(wire_pf)
+    for instance in netlist.instances:
+        for pin, net in instance.pins.items():
+            load[net] = load.get(net, 0.0) + cells.capacitance_pf(instance.cell, pin)
+    lost = sorted({net for i in netlist.instances for net in i.pins.values()} - set(activity))
+    if lost:
+        raise StepError(f"power: no activity of the nets {', '.join(lost[:5])}")
+    mega = 1000 / period_ns             # cycles a us: pJ a cycle to uW
+    return {instance.name: _power(instance, cells, activity, load, slews, mega)
+            for instance in netlist.instances if instance.pins}
+
+
+def _power(instance, cells, activity, load, slews, mega):
+    internal = switching = 0.0
+    for pin, net in instance.pins.items():
+        toggles = activity[net][0]
+        group = cells.pins.get((instance.cell, pin))
+        output = group is not None and group.attributes.get("direction") == "output"
+        energies = cells.energies(instance.cell, pin)
+        weights = [activity[instance.pins[related]][0] if related in instance.pins else 1.0 for related, _ in energies]
+        if not sum(weights):
+            weights = [1.0] * len(weights)
+        for weight, (related, energy) in zip(weights, energies, strict=True):
+            share = weight / sum(weights) if output else 1.0
+            slew = slews.get((instance.name, related or pin), SLEW_NS)
+            internal += toggles * share * energy(slew, load[net] if output else 0.0) * mega
+        if output:
+            switching += 0.5 * load[net] * cells.supply_v ** 2 * toggles * mega
+    return Power(internal, switching, cells.leakage_nw(instance.cell) / 1000)
+
+
+def blocks(netlist, registers, outputs):
+    """dict instance -> block: of a register, the first part of its name; of a cell, that of most that it drives.
+
+    registers: function of a cell's name. outputs: names of output pins. What only drives clocks is 'clock tree', what
+    drives nothing but ports 'ports'.
+    """
+    sinks, driven = {}, {}
+    for instance in netlist.instances:
+        for pin, net in instance.pins.items():
+            (driven if pin in outputs else sinks).setdefault(net, []).append((instance, pin))
+    found = {i.name: i.name.partition(".")[0] if "." in i.name else "top" for i in netlist.instances
+             if registers(i.cell)}
+    for start in netlist.instances:
+        stack = [start] if start.pins else []
+        while stack:
+            instance = stack[-1]
+            after = [sink for pin, net in instance.pins.items() if pin in outputs for sink in sinks.get(net, ())]
+            todo = [sink for sink, _ in after if sink.name not in found and sink not in stack]
+            if instance.name in found or not todo:
+                found.setdefault(instance.name, _most(after, found, registers))
+                stack.pop()
+            else:
+                stack.append(todo[0])
+    return found
+
+
+def _most(after, found, registers):
+    votes = {}
+    for sink, pin in after:
+        clock = registers(sink.cell) and re.fullmatch("clk|ck", pin) or found.get(sink.name) == "clock tree"
+        name = "clock tree" if clock else found.get(sink.name, "ports")
+        votes[name] = votes.get(name, 0) + 1
+    return max(sorted(votes), key=votes.get) if votes else "ports"

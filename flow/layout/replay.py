@@ -1,0 +1,185 @@
+"""A recorded trace driven into a netlist in Icarus at its clock's full rate, with delays; transitions are counted.
+
+A trace (verif/replay's): lines 'fresh inputs outputs', hexadecimal, packed port by port, the first lowest; fresh marks
+a simulator's first cycle, where registers hold anything.
+"""
+
+import json
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from flow.simulate.process import ToolError, finish, run
+from flow.steps import StepError
+
+from .delays import constrained, icarus, specified
+from .netlist import Instance, Netlist
+from .steps.place_route import plain_names
+
+BENCH = """`timescale 1ns/1ps
+module Replay;
+  reg clk = 0, fresh, counting = 0;
+  reg [{in_top}:0] in, next;
+  reg [{out_top}:0] want;
+  wire [{out_top}:0] got;
+  wire [{out_top}:0] care = {{{care}}};
+  real setup_margin = 1e9, hold_margin = 1e9, begun = 0;
+  {top} dut ({pins});
+  integer file, cycle = 0, wrong = 0;
+  reg [8*1024-1:0] name;
+  initial begin
+    {annotate}
+    if (!$value$plusargs("trace=%s", name)) $fatal(1, "+trace=FILE is missing");
+    file = $fopen(name, "r");
+    if (file == 0) $fatal(1, "+trace: cannot be read");
+    while ($fscanf(file, "%b %h %h", fresh, next, want) == 3) begin
+      #{input_ns} in = next;
+      #{fall_ns} clk = 0;
+      #{sample_ns};
+      if (!fresh && (((got ^ want) & care) !== {out_bits}'b0 || ^got === 1'bx)) begin
+        wrong = wrong + 1;
+        if (wrong <= 5) $display("WRONG %0d %b %b", cycle, want, got);
+      end
+      #{edge_ns} clk = 1;
+      if (cycle == {settled}) begin counting = 1; begun = $realtime; end
+      cycle = cycle + 1;
+    end
+    counting = 0;
+    #1;
+    $display("END %0d %0d", cycle, wrong);
+    $display("MARGIN %.4f %.4f", setup_margin, hold_margin);
+    $finish;
+  end
+endmodule
+module Check (input clk, input d);
+  parameter real SETUP = 0, HOLD = 0;
+  realtime changed = -1e6, edge_at = -1e6;
+  real margin;
+  always @(d) begin
+    changed = $realtime;
+    margin = changed - edge_at - HOLD;
+    if (Replay.counting && margin < Replay.hold_margin) Replay.hold_margin = margin;
+    if (Replay.counting && margin < 0) $display("HOLD %m %.4f", margin);
+  end
+  always @(posedge clk) begin
+    edge_at = $realtime;
+    margin = edge_at - changed - SETUP;
+    if (Replay.counting && margin < Replay.setup_margin) Replay.setup_margin = margin;
+    if (Replay.counting && margin < 0) $display("SETUP %m %.4f", margin);
+  end
+endmodule
+module Count (input a);
+  integer changes = 0;
+  real high = 0, since = 0;
+  always @(a) if (Replay.counting) begin
+    changes = changes + 1;
+    if (a === 1'b1) since = $realtime;
+    else if (since > 0) begin high = high + $realtime - since; since = 0; end
+  end
+  always @(posedge Replay.counting) if (a === 1'b1) since = $realtime;
+  always @(negedge Replay.counting) begin
+    if (a === 1'b1 && since > 0) high = high + $realtime - since;
+    $display("NET %m %0d %.6f", changes, high / ($realtime - Replay.begun));
+  end
+endmodule
+"""
+SETTLED = 8         # cycles after which a reset has been taken, and transitions count
+
+
+@dataclass(frozen=True)
+class Timing:
+    """period_ns of the clock; input_delay, output_delay: of the surroundings, as shares of it."""
+
+    period_ns: float
+    input_delay: float
+    output_delay: float
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """cycles; wrong: of them, with an output that differs or is X; first: what the first of them say. margins: the
+    least seen of setup and hold, ns, None without delays. late: checks that failed. activity: net -> (transitions a
+    cycle, share of time at 1), where asked for."""
+
+    cycles: int
+    wrong: int
+    first: tuple
+    margins: tuple | None
+    late: tuple
+    activity: dict
+
+
+def replay(netlist, cells, trace, timing, folder, delays=None, count=False):
+    """Drive the trace whose head is the file ``trace`` (.json; its lines beside it, .trace) into ``netlist``: Replayed.
+
+    cells: Verilog of the cells, text. folder: for files. delays: Delays, or None for none. count: whether to count
+    transitions. Raises ToolError, StepError.
+    """
+    nets = plain_names(netlist, "")
+    names = {instance.name: f"x{k}" for k, instance in enumerate(netlist.instances)}
+    head = json.loads(Path(trace).read_text())
+    (folder / "cells.log").write_text(specified(cells, delays, netlist) if delays else cells)
+    (folder / "netlist.log").write_text(_netlist(netlist, nets, names, delays, count))
+    (folder / "bench.log").write_text(_bench(netlist.name, head["ports"], timing, folder if delays else None))
+    if delays:
+        (folder / "delays.log").write_text(icarus(delays, netlist, names))
+    program = folder / "replay.log"
+    run(["iverilog", "-g2012", "-gspecify", "-s", "Replay", "-o", program,
+         *(folder / f"{name}.log" for name in ("bench", "netlist", "cells"))])
+    done = finish(["vvp", "-n", program, f"+trace={Path(trace).with_suffix('.trace')}"])
+    program.unlink()
+    if "SDF ERROR" in done.stdout + done.stderr or "SDF WARNING" in done.stdout + done.stderr:
+        said = next(line for line in (done.stdout + done.stderr).splitlines() if "SDF" in line)
+        raise StepError(f"replay: Icarus did not annotate all delays: {said}")
+    end = re.search(r"^END (\d+) (\d+)$", done.stdout, re.M)
+    if done.returncode or not end or int(end[1]) != head["cycles"]:
+        raise ToolError(f"vvp: the replay ended early: {(done.stdout + done.stderr).strip()[-300:]}")
+    margin = re.search(r"^MARGIN (\S+) (\S+)$", done.stdout, re.M)
+    back = {plain: net for net, plain in nets.items()}
+    found = re.findall(r"^NET Replay\.dut\.n(w\d+) (\d+) (\S+)$", done.stdout, re.M)
+    cycles = int(end[1]) - SETTLED
+    return Replayed(int(end[1]), int(end[2]), tuple(re.findall(r"^WRONG .*$", done.stdout, re.M)),
+                    (float(margin[1]), float(margin[2])) if delays else None,
+                    tuple(re.findall(r"^(?:SETUP|HOLD) .*$", done.stdout, re.M)),
+                    {back[plain]: (int(changes) / cycles, float(high)) for plain, changes, high in found})
+
+
+def _netlist(netlist, nets, names, delays, count):
+    """The netlist with short names, the checks of its registers and counters of its nets."""
+    ports = {net for port in netlist.ports for net in port.bits()}
+    short = {net: net if net in ports else plain for net, plain in nets.items()}
+    renamed = Netlist(netlist.name, netlist.ports, tuple(
+        Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}) for i in netlist.instances))
+    lines = []
+    for k, (instance, pin, setup, hold) in enumerate(constrained(delays, netlist) if delays else ()):
+        clock = instance.pins[CLOCK_PIN]
+        lines.append(f"  Check #(.SETUP({setup:.4f}), .HOLD({hold:.4f})) k{k} (.clk({short[clock]}), "
+                     f".d({short[instance.pins[pin]]}));")
+    if count:
+        lines += [f"  Count n{plain} (.a({short[net]}));" for net, plain in nets.items()]
+    return renamed.verilog().replace("endmodule", "\n".join([*lines, "endmodule"]))
+
+
+CLOCK_PIN = "clk"
+
+
+def _bench(top, ports, timing, folder):
+    """Verilog of the bench. ports: of the trace's head, in the order in which they are packed."""
+    pins, widths, cares = [".clk(clk)"], {"in": 0, "got": 0}, []
+    valid = {}
+    for port in ports:
+        name, vector = port["path"].replace(".", "__"), "got" if port["output"] else "in"
+        pins.append(f".{name}({vector}[{widths[vector]} +: {port['width']}])")
+        if port["output"]:
+            valid[name] = widths[vector]
+            cares.append((name, port["width"]))
+        widths[vector] += port["width"]
+    care = [f"{{{width}{{want[{valid[name[:-3] + 'val']}]}}}}" if name.endswith("__msg") and name[:-3] + "val" in valid
+            else f"{{{width}{{1'b1}}}}" for name, width in reversed(cares)]
+    period = timing.period_ns
+    arrive, sample = period * timing.input_delay, period * (1 - timing.output_delay)
+    return BENCH.format(
+        top=top, pins=", ".join(pins), in_top=widths["in"] - 1, out_top=widths["got"] - 1, out_bits=widths["got"],
+        care=", ".join(care), annotate=f'$sdf_annotate("{folder / "delays.log"}", dut);' if folder else "",
+        input_ns=f"{arrive:.4f}", fall_ns=f"{period / 2 - arrive:.4f}", sample_ns=f"{sample - period / 2:.4f}",
+        edge_ns=f"{period - sample:.4f}", settled=SETTLED)

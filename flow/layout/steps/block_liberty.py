@@ -1,0 +1,137 @@
+"""The block's Liberty at one corner: delays, constraints and capacitances at its ports, and nothing of its inside."""
+
+import json
+from dataclasses import dataclass
+
+import numpy as np
+
+from flow.simulate.process import run
+from flow.steps import Step, StepError
+
+from .. import boundary as boundary_module
+from ..boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
+from ..netlist import Netlist, SUPPLIES
+
+SLEWS = 0.02, 0.2, 1.0              # ns
+LOADS = 0.001, 0.01, 0.05, 0.2      # pF
+EDGES = "rise", "fall"
+COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
+
+
+@dataclass(frozen=True)
+class BlockLibertyParameters:
+    """corner: its name in the reports. clock: port."""
+
+    corner: str = ""
+    clock: str = "clk"
+
+
+class BlockLiberty(Step):
+    """Outputs have their latest delay from the clock (and from inputs that reach them through cells alone), inputs
+    their setup and hold at the clock's port. Made from OpenSTA's slacks, then read back into OpenSTA and compared at a
+    slew and a load beside the grid: model_error_ns. There is no power in it but leakage."""
+
+    inputs = {"netlist": "place_route.netlist", "verilog": "stream_out.verilog", "spef": "extraction.spef"}
+    outputs = {"liberty": "block.lib"}
+    Parameters = BlockLibertyParameters
+    metrics = {"model_error_ns": "ns", "arcs": ""}
+    uses = (boundary_module,)
+    tools = ("sta", "yosys")
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.name = f"block_liberty_{parameters.corner}"
+        self.inputs = self.inputs | {"liberty": f"timing.{parameters.corner}", "areas": "floorplan.floorplan"}
+
+    def run(self, inputs, outputs):
+        clock, folder = self.parameters.clock, outputs["liberty"].parent
+        netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
+        files = {name: inputs[name] for name in ("liberty", "verilog", "spef")} | {"folder": folder}
+        found = measure(netlist, clock, files, SLEWS, LOADS)
+        outputs["liberty"].write_text(liberty(netlist, clock, found, self.parameters.corner, inputs["liberty"],
+                                              plan["width_um"] * plan["height_um"]))
+        error = self.checked(netlist, files, outputs["liberty"], folder)
+        return {"model_error_ns": error, "arcs": len(found.delays) + len(found.checks)}
+
+    def checked(self, netlist, files, made, folder):
+        """Largest difference (ns) of the model in a wrapper from the netlist, beside the grid. Raises StepError."""
+        run(["yosys", "-q", "-p", f"read_liberty -lib {made}; hierarchy -check -top {netlist.name}"])
+        wrapper = folder / "wrapper.log"
+        wrapper.write_text(_wrapper(netlist))
+        point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
+        own = measure(netlist, self.parameters.clock, files, *point)
+        model = measure(netlist, self.parameters.clock, {"liberty": made, "verilog": wrapper, "folder": folder,
+                                                         "top": "Wrapper"}, *point, leakage=False)
+        differences = []
+        for name in ("delays", "checks"):
+            one, other = getattr(own, name), getattr(model, name)
+            if set(one) != set(other):
+                raise StepError(f"{self.name}: OpenSTA does not find the arcs {sorted(set(one) ^ set(other))[:3]}")
+            differences += [abs(one[arc][at] - other[arc][at]) for arc in one for at in one[arc]]
+        return round(max(differences, default=0.0), 4)
+
+
+def _wrapper(netlist):
+    ports = [f"  {port.direction} {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};"
+             for port in netlist.ports]
+    names = [port.name for port in netlist.ports]
+    return "\n".join([f"module Wrapper ({', '.join(names)});", *ports,
+                      f"  {netlist.name} block ({', '.join(f'.{name}({name})' for name in names)});", "endmodule", ""])
+
+
+def liberty(netlist, clock, found, corner, source, area):
+    """Text of the Liberty file. found: Boundary; source: the cells' Liberty, whose units and thresholds it has."""
+    from cells.liberty.group import Group
+    from cells.liberty.read import read
+    from cells.liberty.write import text
+    cells = read(source)
+    library = Group("library", (f"{netlist.name}__{corner}",), {
+        name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
+        | {"voltage_map": list(zip(SUPPLIES, (cells.attributes["nom_voltage"], 0.0), strict=True))})
+    if conditions := cells.one("operating_conditions"):
+        library.groups.append(conditions)
+    slews, loads = np.array(SLEWS), np.array(LOADS)
+    library.add("lu_table_template", "delay", variable_1="input_net_transition",
+                variable_2="total_output_net_capacitance", index_1=slews, index_2=loads)
+    library.add("lu_table_template", "constraint", variable_1="related_pin_transition",
+                variable_2="constrained_pin_transition", index_1=slews, index_2=slews)
+    for width in sorted({port.width for port in netlist.ports if port.width > 1}):
+        library.add("type", f"bus{width}", base_type="array", data_type="bit", bit_width=width, bit_from=width - 1,
+                    bit_to=0, downto=True)
+    cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=found.leakage_nw,
+                       dont_touch=True, dont_use=True, interface_timing=True)      # else OpenSTA sees latches
+    for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
+        cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
+    for port in netlist.ports:
+        group = cell if port.width == 1 else cell.add("bus", port.name, bus_type=f"bus{port.width}",
+                                                      direction=port.direction)
+        for net in port.bits():
+            pin = group.add("pin", net, direction=port.direction)
+            if port.direction == "input":
+                pin.attributes |= {"capacitance": found.capacitance[net], **({"clock": True} if net == clock else {})}
+                _constraints(pin, net, clock, found)
+            else:
+                pin.attributes["max_capacitance"] = LOADS[-1]
+                _delays(pin, net, clock, found)
+    return text(library) + "\n"
+
+
+def _constraints(pin, net, clock, found):
+    for kind, timing_type in (("max", "setup_rising"), ("min", "hold_rising")):
+        if (net, kind, "rise") in found.checks:
+            timing = pin.add("timing", related_pin=clock, timing_type=timing_type)
+            for edge in EDGES:
+                table = found.checks[net, kind, edge]
+                timing.add(f"{edge}_constraint", "constraint", index_1=np.array(SLEWS), index_2=np.array(SLEWS),
+                           values=np.array([[table[a, b] for b in SLEWS] for a in SLEWS]))
+
+
+def _delays(pin, net, clock, found):
+    for source in sorted({source for source, output, _ in found.delays if output == net}):
+        more = {"timing_type": "rising_edge"} if source == clock else COMBINATIONAL
+        timing = pin.add("timing", related_pin=source, **more)
+        for edge in EDGES:
+            for name, tables in ((f"cell_{edge}", found.delays[source, net, edge]),
+                                 (f"{edge}_transition", found.slews[net, edge])):
+                timing.add(name, "delay", index_1=np.array(SLEWS), index_2=np.array(LOADS),
+                           values=np.array([[tables[a, b] for b in LOADS] for a in SLEWS]))

@@ -1,0 +1,71 @@
+"""The final netlist in Icarus with the delays of a corner, at the clock's full rate, through a recorded trace."""
+
+import json
+from dataclasses import dataclass, field
+
+from flow.steps import Step, StepError
+from models.parameters import check_real
+
+from .. import delays as delays_module
+from .. import netlist as netlist_module
+from .. import replay as replay_module
+from ..delays import read
+from ..netlist import Netlist
+from ..replay import Timing, replay
+
+CONSTANTS = {"zero", "one"}     # pins of cells without a path
+
+
+@dataclass(frozen=True)
+class GateDelaysParameters:
+    """corner: its name. period_ns: of the clock. input_delay, output_delay: of the surroundings, as shares of it."""
+
+    corner: str = ""
+    period_ns: float = field(default=20.0, metadata={"unit": "ns"})
+    input_delay: float = 0.2
+    output_delay: float = 0.2
+
+    def __post_init__(self):
+        check_real("period_ns", self.period_ns, 0.5, 1e4)
+        for name in ("input_delay", "output_delay"):
+            check_real(name, getattr(self, name), 0, 0.5)
+
+
+class GateDelays(Step):
+    """passed: the trace whole, without a wrong output, an X, or a register whose setup or hold was not kept.
+
+    Annotated: all path delays, with the wires' added to them (delays.py), and setup and hold of every register.
+    setup_margin_ns, hold_margin_ns: the least that occurred; no STA at this corner may promise more than they leave.
+    The activity: transitions a cycle and share of time at 1 of every net, glitches among them.
+    """
+
+    inputs = {"netlist": "place_route.netlist", "cells": "library.verilog", "head": "stimulus.head",
+              "trace": "stimulus.trace"}
+    outputs = {"activity": "activity.json"}
+    Parameters = GateDelaysParameters
+    metrics = {"passed": "", "failed": "", "cycles": "", "paths": "", "setup_margin_ns": "ns", "hold_margin_ns": "ns"}
+    uses = (delays_module, netlist_module, replay_module)
+    tools = ("iverilog",)
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.name = f"gate_delays_{parameters.corner}"
+        self.inputs = self.inputs | {"sdf": f"sta_{parameters.corner}.sdf"}
+
+    def run(self, inputs, outputs):
+        p, folder = self.parameters, outputs["activity"].parent
+        netlist, delays = Netlist.read(inputs["netlist"]), read(inputs["sdf"].read_text())
+        lacking = [i.name for i in netlist.instances if set(i.pins) - CONSTANTS and i.name not in delays.paths]
+        if lacking:
+            raise StepError(f"{self.name}: the SDF has no delay of {', '.join(lacking[:5])}")
+        found = replay(netlist, inputs["cells"].read_text(), inputs["head"],
+                       Timing(p.period_ns, p.input_delay, p.output_delay), folder, delays, count=True)
+        (folder / "verdict.log").write_text("\n".join((*found.first, *found.late[:100])) + "\n")
+        for name in ("cells", "netlist", "delays", "bench"):
+            (folder / f"{name}.log").unlink()
+        outputs["activity"].write_text(json.dumps(found.activity, indent=0) + "\n")
+        good = not found.wrong and not found.late
+        return {"passed": int(good), "failed": int(not good), "cycles": found.cycles,
+                "paths": sum(map(len, delays.paths.values())), "setup_margin_ns": round(found.margins[0], 4),
+                "hold_margin_ns": round(found.margins[1], 4)}
+

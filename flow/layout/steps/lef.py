@@ -1,0 +1,39 @@
+"""The block's abstract, LEF: outline, pins, obstructions, and what each pin gathers and bears as an antenna."""
+
+from dataclasses import dataclass
+
+from flow.platforms import openroad
+from flow.platforms.embedded import process
+from flow.steps import Step, StepError
+
+from .. import abstract as abstract_module
+from ..abstract import abstract, ports, read_back
+
+
+@dataclass(frozen=True)
+class LefParameters:
+    """pdk: process."""
+
+    pdk: str = "sky130"
+
+
+class Lef(Step):
+    """Made from the GDS, then read by KLayout and held against it."""
+
+    name = "lef"
+    inputs = {"gds": "fill.gds", "verilog": "stream_out.verilog", "platform": "platform"}
+    outputs = {"lef": "block.lef"}
+    Parameters = LefParameters
+    metrics = {"pins": ""}
+    uses = (abstract_module,)
+    tools = ("python klayout",)
+
+    def run(self, inputs, outputs):
+        pdk = self.parameters.pdk
+        known, directions = process(pdk)[0], ports(inputs["verilog"].read_text())
+        names = ({numbers: name for name, numbers in openroad.process(pdk).gds.items()}
+                 if pdk in openroad.PROCESSES else {})
+        outputs["lef"].write_text(abstract(inputs["gds"], directions, known, names))
+        if wrong := read_back(outputs["lef"], inputs["gds"], directions, known, names):
+            raise StepError(f"lef: read back, it differs from the GDS: {'; '.join(wrong)}")
+        return {"pins": len(directions)}

@@ -1,0 +1,156 @@
+"""What happens at a block's ports in a real frame: recorded in the chip's RTL; else what its tests do there."""
+
+import json
+import re
+import sys
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from flow.simulate.process import ToolError, finish, run
+from flow.steps import Step, StepError
+
+from .gate_frames import compiled
+
+ROOT = Path(__file__).parents[3]
+CHIP = "AspChip"
+TAP = """module Tap;
+  integer file;
+  reg [8*512-1:0] name;
+  initial begin
+    if (!$value$plusargs("tap=%s", name)) $fatal(1, "+tap=FILE is missing");
+    file = $fopen(name, "w");
+  end
+  reg fresh = 1;
+  always @(posedge Clock.clk) begin
+    $fwrite(file, "%b %h %h\\n", fresh, {{{inputs}}}, {{{outputs}}});
+    fresh <= 0;
+  end
+endmodule
+"""
+OF_A_TRACE = "import sys; from verif.replay import load; print(load(sys.argv[1]).verilog())"
+SCENE, SIZE = "motorcycle", (12, 18)        # of `make sim`'s own scene; pixels of the chip's array
+
+
+@dataclass(frozen=True)
+class StimulusParameters:
+    """top: module. rows, cols, divider, n_frac: of the chip in which the block is looked for."""
+
+    top: str = ""
+    rows: int = SIZE[0]
+    cols: int = SIZE[1]
+    divider: str = "radix4"
+    n_frac: int = 8
+
+    @property
+    def options(self):
+        """Of rtl.export."""
+        return f"--rows={self.rows}", f"--cols={self.cols}", f"--divider={self.divider}", f"--n-frac={self.n_frac}"
+
+
+class Stimulus(Step):
+    """The frame: time of flight with phases, so that every block works, of the scene of `make sim`, through a chip
+    with a small array. A block that is not in that chip with the same Verilog has the trace of its own tests."""
+
+    name = "stimulus"
+    inputs = {"rtl": "rtl", "tests": "tests", "bench": "frame_bench"}
+    outputs = {"head": "stimulus.json", "trace": "stimulus.trace"}
+    Parameters = StimulusParameters
+    metrics = {"source": "", "cycles": "", "results": ""}
+    tools = ("iverilog", "yosys")
+
+    def run(self, inputs, outputs):
+        top = self.parameters.top
+        with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+            folder = Path(folder)
+            run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options],
+                cwd=ROOT)
+            chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
+            if top == CHIP:
+                own = chip
+            if set(modules(own).items()) <= set(modules(chip).items()):
+                head = in_frame(self.parameters, folder, outputs["trace"])
+            else:
+                head = in_tests(top, own, folder, outputs["trace"])
+        outputs["head"].write_text(json.dumps(head, indent=1) + "\n")
+        return {name: head[name] for name in self.metrics}
+
+
+def modules(verilog):
+    """dict module name -> its text without comments and without the names of processes, which tell their place."""
+    text = re.sub(r"(?m)^\s*//.*\n|(?<=begin : )_lambda__\w+", "", verilog)
+    return {match[1]: match[0] for match in re.finditer(r"(?ms)^module (\w+)\b.*?^endmodule", text)}
+
+
+def in_frame(parameters, folder, trace):
+    """Record the first instance of the block in the chip in ``folder`` through a frame, to the file ``trace``: head."""
+    from flow.frame.hardware import simulate
+    from flow.frame.job import expose, see
+    from flow.frame.request import request
+    from models.digital.chip import golden_frame
+    design = folder / "hierarchy.json"
+    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
+    tree = json.loads(design.read_text())["modules"]
+    top = parameters.top
+    path = instance_of(tree, CHIP, top)
+    ports = [{"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
+             for name, port in tree[next(name for name in tree if name.lstrip("\\") == top)]["ports"].items()
+             if name != "clk"]
+    names = {out: ", ".join(".".join(("Clock.bench.chip", *path, port["path"]))
+                            for port in reversed(ports) if port["output"] == out) for out in (False, True)}
+    (folder / "tap.v").write_text(TAP.format(inputs=names[False], outputs=names[True]))
+    asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True)
+    chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
+    asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
+    scene, todo = see(asked)
+    exposed = expose(asked, scene, todo)
+    program = compiled([folder / f"{CHIP}.v", folder / "tap.v"], asked.sensor, folder, ("Tap",))
+    seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end,
+                    more=(f"+tap={folder / 'tap.trace'}",))
+    if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
+        raise StepError("stimulus: the chip's frame is not the golden chip's")
+    lines = [line for line in (folder / "tap.trace").read_text().splitlines() if "x" not in line.partition(" ")[2]]
+    lines[0] = "1" + lines[0][1:]
+    trace.write_text("\n".join(lines) + "\n")
+    return {"source": "frame", "scene": SCENE, "instance": ".".join(path), "ports": ports, "cycles": len(lines),
+            "results": results(lines, ports)}
+
+
+def results(lines, ports):
+    """Messages that left at the port `send` of a trace: cycles in which it is valid and its taker ready."""
+    places, low = {}, {False: 0, True: 0}
+    for port in ports:
+        places[port["path"].replace(".", "__")] = port["output"], low[port["output"]]
+        low[port["output"]] += port["width"]
+    if not {"send__val", "send__rdy"} <= set(places):
+        return 0
+    wanted = [(1 + output, at) for output, at in (places["send__val"], places["send__rdy"])]
+    return sum(all(int(line.split()[column], 16) >> at & 1 for column, at in wanted) for line in lines)
+
+
+def instance_of(tree, module, wanted):
+    """Path (tuple of instance names) from ``module`` to its first instance of ``wanted`` in Yosys's JSON, or None."""
+    if module == wanted:
+        return ()
+    for name, cell in sorted(tree[module]["cells"].items()):
+        if cell["type"] in tree:
+            below = instance_of(tree, cell["type"], wanted)
+            if below is not None:
+                return (name, *below)
+    return None
+
+
+def in_tests(top, own, folder, trace):
+    """Record the tests of the block; the trace whose Verilog is ``own`` goes to the file ``trace``: head."""
+    done = finish([sys.executable, "-m", "verif.replay", "record", top, "--out", folder / "traces"], cwd=ROOT)
+    if done.returncode:
+        raise ToolError(f"verif.replay: {done.stderr.strip().splitlines()[-1]}")
+    heads = sorted((folder / "traces").glob("*.json"), key=lambda path: -path.with_suffix(".trace").stat().st_size)
+    for path in heads:
+        text = run([sys.executable, "-c", OF_A_TRACE, path], cwd=ROOT)
+        if modules(text) == modules(own):
+            trace.write_bytes(path.with_suffix(".trace").read_bytes())
+            head = json.loads(path.read_text())
+            return {"source": "tests", "ports": head["ports"], "cycles": head["cycles"],
+                    "results": results(trace.read_text().splitlines(), head["ports"])}
+    raise StepError(f"stimulus: no test of {top} builds it with the parameters that are laid out")

@@ -1,0 +1,101 @@
+"""What is asked for wrongly is told in one line, with exit status 2, and leaves nothing under a final name."""
+
+import os
+import shutil
+import subprocess
+from dataclasses import replace
+
+import pytest
+
+from flow.layout import __main__ as command
+from flow.layout import embedded
+from flow.layout.netlist import Instance
+from flow.layout.steps.floorplan import Floorplan, FloorplanParameters
+from flow.steps import StepError, versions
+from models.parameters import ParameterError
+
+from . import small
+
+
+def told(capsys, arguments):
+    """The one line that `flow.layout` says, its status being 2."""
+    assert command.main(list(map(str, arguments))) == 2
+    out, err = capsys.readouterr()
+    line, = [line for line in err.splitlines() if not line.startswith("\r")] or [""]
+    assert not out and line.startswith("flow.layout: ")
+    return line
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["nope"], "DESIGN = 'nope': must be one of amp_ctrl"),
+    (["quad_divider", "--pdk", "gf180"], "pdk = 'gf180': must be one of sky130, ihp-sg13g2"),
+    (["quad_divider", "--backend", "magic"], "backend = 'magic': must be"),
+    (["quad_divider", "--utilization", "1.2"], "utilization = 1.2: must be"),
+    (["quad_divider", "--utilization", "0"], "utilization = 0.0: must be"),
+    (["quad_divider", "--utilization", "nan"], "utilization = nan: must be"),
+    (["quad_divider", "--liberty", "nowhere.lib"], "liberty = nowhere.lib: no such file"),
+])
+def test_bad_arguments(capsys, tmp_path, arguments, words):
+    assert words in told(capsys, [*arguments, "--out", tmp_path / "out"])
+    assert not list(tmp_path.rglob("*"))
+
+
+def test_a_file_that_is_no_liberty(tmp_path):
+    (tmp_path / "x.lib").write_text("module x; endmodule\n")
+    with pytest.raises(ParameterError, match="x.lib: must be a Liberty file"):
+        embedded.Options(liberty=(tmp_path / "x.lib",))
+    (tmp_path / "x.lib").write_text("/* made */\n" + small.liberty())
+    assert embedded.Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
+
+
+@pytest.mark.parametrize("missing", ["klayout", "yosys", "iverilog"])
+def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
+    folder = tmp_path / "bin"
+    folder.mkdir()
+    for tool in ("yosys", "yosys-abc", "klayout", "iverilog", "vvp", "sta", "git"):
+        if tool != missing and (there := shutil.which(tool)):
+            (folder / tool).symlink_to(there)
+    monkeypatch.setenv("PATH", str(folder))
+    versions.version.cache_clear()
+    try:
+        line = told(capsys, ["quad_divider", "--out", tmp_path / "out"])
+    finally:
+        versions.version.cache_clear()
+    assert "not found; install it with: make tools" in line
+    assert not (tmp_path / "out" / "quad_divider" / "summary.json").exists()
+
+
+def test_a_missing_pdk(capsys, tmp_path, monkeypatch):
+    known, library = embedded.process("sky130")
+    monkeypatch.setattr(embedded, "process", lambda pdk: (replace(known, wheel="c4m-pdk-none"), library))
+    assert "c4m-pdk-none: not installed" in told(capsys, ["quad_divider", "--out", tmp_path / "out"])
+
+
+def test_a_cell_without_a_layout_is_named(tmp_path):
+    netlist = small.shift()
+    replace(netlist, instances=(*netlist.instances, Instance("u9", "nand9_x1", {"i": "a"}))).write(tmp_path / "n.json")
+    (tmp_path / "areas.json").write_text('{"inv_x1": 5, "dff_x1": 20}')
+    with pytest.raises(StepError, match="no layout of the cells nand9_x1"):
+        Floorplan(FloorplanParameters()).run({"netlist": tmp_path / "n.json", "areas": tmp_path / "areas.json"},
+                                             {"floorplan": tmp_path / "floorplan.json"})
+
+
+@pytest.mark.parametrize("size", ["16k", pytest.param("128k", marks=pytest.mark.slow)])
+def test_a_full_disk(capsys, tmp_path, size):
+    """16k: the Verilog does not fit; 128k: the first step's files do not."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    if os.geteuid() or subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", disk],
+                                      capture_output=True).returncode:
+        pytest.skip("a small file system cannot be mounted here")
+    try:
+        line = told(capsys, ["quad_divider", "--out", disk])
+        assert "No space left" in line or "failed" in line
+        assert not [path for path in disk.rglob("*") if path.name == "summary.json" or ".part-" in path.name]
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_an_error_of_many_lines_is_told_in_one():
+    error = RuntimeError("yosys failed with status 1:\nreading\nERROR: no module Top\nbye")
+    assert command.one_line(error) == "yosys failed with status 1: ERROR: no module Top"

@@ -1,0 +1,137 @@
+"""A net taken out and routed anew: joined from pin to pin around what lies there, and every rule kept."""
+
+import random
+
+import pytest
+
+from flow.layout.mend.nets import routed
+from flow.layout.mend.wiring import Wiring
+from flow.layout.steps.mend import again, open_nets, put_in
+from flow.platforms.embedded import process
+
+db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+
+KNOWN, _ = process("sky130")
+RULES = {"wires": {"li": {"width": 0.17, "space": 0.17, "area": 0}, 
+                   "m1": {"width": 0.14, "space": 0.14, "area": 0.083},
+                   "m2": {"width": 0.14, "space": 0.14, "area": 0.0676},
+                   "m3": {"width": 0.3, "space": 0.3, "area": 0.24},
+                   "m4": {"width": 0.3, "space": 0.3, "area": 0.24}},
+         "cuts": {"mcon": {"below": [0, 0], "above": [0.03, 0.06]},
+                  "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
+                  "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
+                  "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]}}}
+WIRING = Wiring.of(KNOWN, RULES)
+SIDE = 40_000
+
+
+def empty():
+    layout = db.Layout()
+    top = layout.create_cell("top")
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, SIDE, SIDE))
+    return layout, top
+
+
+def draw(layout, top, level, *box):
+    layer = WIRING.layers[level]
+    top.shapes(layout.layer(layer.layer, layer.datatype)).insert(db.Box(*box))
+
+
+def pin(layout, top, x, y):
+    """A cell's pin, drawn: its boxes."""
+    box = x - 85, y - 1500, x + 85, y + 1500
+    draw(layout, top, 0, *box)
+    return [(0, *box)]
+
+
+def nets(layout, top, points):
+    """Numbers of the nets at (level, x, y), and how many there are with a wire."""
+    l2n, layers = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, [])), []
+    for level, layer in enumerate(WIRING.layers):
+        layers.append(l2n.make_layer(layout.layer(layer.layer, layer.datatype), layer.name))
+        l2n.connect(layers[-1])
+        if level:
+            cut = WIRING.cuts[level - 1]
+            cuts = l2n.make_layer(layout.layer(cut.layer, cut.datatype), cut.name)
+            for other in (cuts, layers[-1], layers[-2]):
+                l2n.connect(cuts, other)
+    l2n.extract_netlist()
+    return [l2n.probe_net(layers[level], db.Point(x, y)).cluster_id for level, x, y in points]
+
+
+def broken(layout, top):
+    """Rules of width, space and area that are broken: dict."""
+    found = {}
+    for layer in WIRING.layers[1:]:
+        region = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).merged()
+        found |= {f"{layer.name} space": region.space_check(layer.space).count(),
+                  f"{layer.name} width": region.width_check(layer.width).count(),
+                  f"{layer.name} area": region.with_area(0, layer.area, False).count()}
+    return {rule: number for rule, number in found.items() if number}
+
+
+def test_two_pins_with_nothing_between():
+    layout, top = empty()
+    pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
+    assert len(set(nets(layout, top, [(0, 5_000, 5_000), (0, 30_015, 20_000)]))) == 2
+    put_in(layout, top, WIRING, routed(layout, top, WIRING, pins))
+    first, second = nets(layout, top, [(0, 5_000, 5_000), (0, 30_015, 20_000)])
+    assert first == second
+    assert broken(layout, top) == {}
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("hops", [False, True])
+def test_through_a_crowd_of_other_wires(seed, hops):
+    rng = random.Random(seed)
+    layout, top = empty()
+    pins = [pin(layout, top, 85 * rng.randrange(40, 430), 5 * rng.randrange(800, 7000)) for _ in range(4)]
+    for track in range(0, SIDE - 700, 680):
+        for level, half in ((1, 70), (2, 70), (3, 150), (4, 150)):
+            start = rng.randrange(0, 25_000)
+            ends = start, start + rng.randrange(1_000, 12_000)
+            if rng.random() < 0.6:
+                box = (ends[0], track - half, ends[1], track + half)
+                draw(layout, top, level, *(box if WIRING.layers[level].across else (box[1], box[0], box[3], box[2])))
+    before = broken(layout, top)
+    shapes = routed(layout, top, WIRING, pins, hops)
+    if shapes is None:
+        assert hops                 # room for a piece of the highest wire may lack
+        return
+    put_in(layout, top, WIRING, shapes)
+    assert len(set(nets(layout, top, [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]))) == 1
+    assert broken(layout, top) == before
+    if hops:
+        assert shapes.lengths[4] >= 1_500
+
+
+def test_a_pin_behind_a_wall_is_given_up():
+    layout, top = empty()
+    pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
+    for level in (1, 2, 3, 4):
+        draw(layout, top, level, 20_000, 0, 20_400, SIDE)
+    assert routed(layout, top, WIRING, pins) is None
+
+
+def test_a_net_that_has_no_way_is_put_back():
+    layout, top = empty()
+    boxes = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
+    for level in (1, 2, 3, 4):
+        draw(layout, top, level, 20_000, 0, 20_400, SIDE)
+    draw(layout, top, 1, 4_930, 4_930, 6_000, 5_070)
+    pins = [[["li", *(value / 1000 for value in box[1:])] for box in made] for made in boxes]
+    found = {"w1": {"wires": [["m1", 4.93, 4.93, 6.0, 5.07]], "cuts": [], "pins": pins}}
+    before = db.Region(top.begin_shapes_rec(layout.layer(68, 20))).area()
+    assert again(layout, WIRING, found) == {}
+    assert db.Region(top.begin_shapes_rec(layout.layer(68, 20))).area() == before
+
+
+def test_open_nets_are_read_from_the_routers_list():
+    log = """  o  Routing did not complete, unrouted segments:
+      1| &<id:27198 Horizontal w916 m1 [44.37um 30.82um] [48.96um 30.82um] 0.32um rpD:3 ----- 0 ------->
+      2| &<id:43820 Vertical clk_root_0 m2 [48.96um 30.82um] [48.98um 30.82um] 0.32um rpD:1 --S---->
+      3| &<id:43821 Horizontal w916 m1 [48.96um 30.82um] [48.98um 30.82um] 0.32um rpD:1 --S---->
+[WARNING] Track::repair(): Closing same net gap in <HorizontalTrack [285] m1 @131.1um> near:
+          <id:660094 Vertical w10315 m2 [60.69um 333.2um] [60.69um 333.5um] 0.37um rpD:1>
+"""
+    assert open_nets(log) == ["w916", "clk_root_0"]

@@ -1,0 +1,35 @@
+"""Where a block lies in the chip, and whether it is the same one."""
+
+from flow.layout.steps.stimulus import instance_of, modules, results
+
+BLOCK = """
+module Leaf (input clk);
+  // At rtl/leaf.py:3
+  always @* begin : _lambda__s_one
+  end
+endmodule
+"""
+
+
+def test_the_same_module_elsewhere_is_the_same():
+    elsewhere = BLOCK.replace("_lambda__s_one", "_lambda__s_chip_part_one").replace("leaf.py:3", "leaf.py:9")
+    assert modules(elsewhere) == modules(BLOCK)
+    assert modules(BLOCK.replace("input clk", "input ck")) != modules(BLOCK)
+
+
+def test_the_first_instance_is_found():
+    tree = {"Top": {"cells": {"b": {"type": "Middle"}, "a": {"type": "$and"}}},
+            "Middle": {"cells": {"deep": {"type": "Leaf"}}}, "Leaf": {"cells": {}}}
+    assert instance_of(tree, "Top", "Leaf") == ("b", "deep")
+    assert instance_of(tree, "Top", "Top") == ()
+    assert instance_of(tree, "Top", "Other") is None
+
+
+
+
+def test_results_are_what_left():
+    ports = [{"path": "a", "width": 4, "output": False}, {"path": "send.rdy", "width": 1, "output": False},
+             {"path": "send.msg", "width": 7, "output": True}, {"path": "send.val", "width": 1, "output": True}]
+    lines = ["0 10 80", "0 1f ff", "0 0f ff", "0 10 7f"]        # both; both; not ready; not valid
+    assert results(lines, ports) == 2
+    assert results(lines, ports[:2]) == 0

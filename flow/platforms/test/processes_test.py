@@ -1,0 +1,61 @@
+"""Only flow/platforms/<pdk> knows a process; every process has what the embedded backend asks for."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from flow.platforms.embedded import PROCESSES, process
+from flow.platforms.patience import patience
+from models.parameters import ParameterError
+
+FLOW = Path(__file__).parents[2]
+# "sky130" in quotes: a default
+OF_A_PROCESS = re.compile(r'sky130(?!")|ihp|sg13|[np]fet|\bmet\d|\(\d+, (?:20|16|5|44)\)')
+
+
+def test_no_step_knows_a_process():
+    files = [path for folder in ("layout", "steps", "handoff") for path in (FLOW / folder).rglob("*.py")
+             if "test" not in path.parts]
+    assert len(files) > 40
+    found = {path.name: OF_A_PROCESS.findall(path.read_text()) for path in files}
+    assert {name: words for name, words in found.items() if words} == {}
+
+
+@pytest.mark.parametrize("pdk", PROCESSES)
+def test_figures_fit_each_other(pdk):
+    known, _ = process(pdk)
+    assert known.name == pdk
+    assert abs(known.row_um / known.site_um - round(known.row_um / known.site_um)) < 1e-9       # else wells overlap
+    assert len(known.cuts) == len(known.wires) - 1
+    for size in (known.row_um, known.site_um, known.strap_um, *known.pin_pitch_um.values()):
+        assert abs(size / known.grid_um - round(size / known.grid_um)) < 1e-6
+    assert all(cut.size_um + 2 * cut.enclosure_um < known.strap_um for cut in known.cuts)
+    assert known.fill.density < known.fill.density_most and known.fill.clearance_um >= known.fill.space_um
+    assert list(known.fill.sides_um) == sorted(known.fill.sides_um, reverse=True)
+
+
+@pytest.mark.slow                   # importing a process's package draws its cells
+@pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")       # c4m-pdk-ihpsg13g2's own
+@pytest.mark.parametrize("pdk", PROCESSES)
+def test_what_the_wheel_says_agrees(pdk):
+    known, _ = process(pdk)
+    if not importlib.util.find_spec("pdkmaster"):
+        pytest.skip("pdkmaster: not installed; make layout installs it")
+    with patience():
+        tech = importlib.import_module(f"{known.package}.pdkmaster")
+    for wire in (*known.wires, *known.cuts):
+        assert tech.gds_layers[wire.name] == (wire.layer, wire.datatype)
+    for wire in known.wires[1:]:
+        rules, fill = tech.tech.primitives[wire.name], known.fill
+        assert min(fill.sides_um) >= rules.min_width and min(fill.sides_um) ** 2 >= (rules.min_area or 0)
+        assert fill.space_um >= rules.min_space
+    for cut in known.cuts:
+        rules = tech.tech.primitives[cut.name]
+        assert cut.size_um == pytest.approx(rules.width) and cut.space_um >= rules.min_space
+
+
+def test_a_process_that_is_none():
+    with pytest.raises(ParameterError, match="must be one of sky130, ihp-sg13g2"):
+        process("gf180mcu")
