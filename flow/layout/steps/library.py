@@ -126,14 +126,17 @@ def narrowed(text, known, primitives):
 
 
 def _klayout(outputs, description, package, library):
+    from klayout.db import SaveLayoutOptions
     from pdkmaster.io.klayout import FileExporter, export2db
     from pdkmaster.io.spice import SpiceNetlistFactory
     devices = package.prims_spiceparams
     decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
     outputs["drc"].write_text(decks["drc"])
     outputs["lvs"].write_text(decks["lvs"])
+    plain = SaveLayoutOptions()
+    plain.gds2_write_timestamps = False
     export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
-              add_pin_label=True).write(str(outputs["gds"]))
+              add_pin_label=True).write(str(outputs["gds"]), plain)
     netlists = SpiceNetlistFactory(params=devices)
     outputs["spice"].write_text("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
                                         if cell.name != "Gallery"))
