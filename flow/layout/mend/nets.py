@@ -35,8 +35,8 @@ class Shapes:
 def routed(layout, top, wiring, pins, hops=False):
     """Shapes of a net whose pins are ``pins``: lists of (level, left, bottom, right, top), of which any is to be met.
 
-    hops: whether every cell is joined over a piece of the highest wire, against antennas: until that is there, what is
-    joined to a gate is short. None when there is no way, or no room for what a rule asks.
+    hops: whether every cell that has room for it is joined over a piece of the highest wire, against antennas: until
+    that is there, what is joined to a gate is short. None when there is no way, or no room for what a rule asks.
     """
     own = {}
     for box in (box for pin in pins for box in pin if box[0] != CELL_PINS):
@@ -49,9 +49,10 @@ def routed(layout, top, wiring, pins, hops=False):
         window = Window(layout, top, wiring, box, own)
         accesses = [_accesses(window, pin) for pin in pins]
         if hops:
-            accesses = [_hop(window, access) if pin[0][0] == CELL_PINS else access
+            accesses = [_hop(window, access) or access if pin[0][0] == CELL_PINS else access
                         for pin, access in zip(pins, accesses, strict=True)]
-        shapes = _connected(window, accesses, {len(wiring.layers) - 1: HIGHEST} if hops else None)
+        prices = {len(wiring.layers) - 1: HIGHEST} if hops else None
+        shapes = _connected(window, accesses, prices) if all(accesses) else None
         if shapes and enlarged(window, shapes):
             return shapes
     return None
@@ -63,8 +64,6 @@ def _connected(window, pins, prices):
     first, *left = pins
     while left:
         targets = {place: (k, access) for k, pin in enumerate(left) for place, access in pin.items()}
-        if not targets or not first:
-            return None
         way = search(window, tree or set(first), set(targets), prices)
         if way is None:
             return None

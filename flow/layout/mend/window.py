@@ -1,6 +1,7 @@
 """A part of the layout as a grid: where the middle of a wire, and a cut, may lie."""
 
 import numpy as np
+from numba import njit
 
 
 class Window:
@@ -50,15 +51,22 @@ class Window:
         """Where a box of half the size ``half`` keeps its distance; never at the window's edge."""
         free = np.zeros((self.columns, self.rows), bool)
         free[1:-1, 1:-1] = True
-        for box in self.obstacles[level]:
-            self._keep_off(free, level, half, box)
+        self._keep_off(free, level, half, self.obstacles[level])
         return free
 
-    def _keep_off(self, free, level, half, box):
-        x, y = (size + self.wiring.layers[level].space for size in half)
-        left, bottom, right, top = box
-        free[max(0, (left - x - self.left) // self.dx + 1):max(0, -(-(right + x - self.left) // self.dx)),
-             max(0, (bottom - y - self.bottom) // self.dy + 1):max(0, -(-(top + y - self.bottom) // self.dy))] = False
+    def _keep_off(self, free, level, half, boxes):
+        reach = np.array(half) + self.wiring.layers[level].space
+        boxes = np.reshape(boxes, (-1, 4)) - (self.left, self.bottom) * 2
+        step = np.array((self.dx, self.dy))
+        first, last = (boxes[:, :2] - reach) // step + 1, -((-boxes[:, 2:] - reach) // step)
+        _clear(free, np.maximum(0, first), np.maximum(0, last))
+
+
+@njit(cache=True)
+def _clear(free, first, last):
+    """Set ``free`` to False from the places ``first`` to before ``last``, arrays (n, 2)."""
+    for k in range(len(first)):
+        free[first[k, 0]:last[k, 0], first[k, 1]:last[k, 1]] = False
 
 
 def _boxes(layout, top, layer, reach, own):
@@ -69,5 +77,7 @@ def _boxes(layout, top, layer, reach, own):
     for polygon in area.each():
         parts = [polygon.bbox()] if polygon.is_box() else [part.bbox() for part in polygon.decompose_trapezoids()]
         found += [(p.left, p.bottom, p.right, p.top) for p in parts]
-    return np.array([a for a in found if not any(a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
-                                                 for b in own)], int).reshape(-1, 4)
+    found = np.array(found, int).reshape(-1, 4)
+    for a in own:
+        found = found[~np.all((found[:, :2] < a[2:]) & (found[:, 2:] > a[:2]), axis=1)]
+    return found

@@ -30,7 +30,7 @@ class Cut:
 
 @dataclass(frozen=True)
 class Wiring:
-    """layers: from the one of the cells' pins up. step: (x, y) of the search's grid, nm. reach: of a pin beyond a cut."""
+    """layers: from the one of the cells' pins up. step: (x, y) of the search's grid, nm."""
 
     layers: tuple
     cuts: tuple
@@ -39,9 +39,10 @@ class Wiring:
     @classmethod
     def of(cls, known, rules):
         """known: Embedded. rules: of the library step, "wires" and "cuts" in um."""
-        layers = tuple(Layer(w.name, w.layer, w.datatype, *(round(rules["wires"][w.name][kind] * scale) for kind, scale in
-                                                            (("width", 1e3), ("space", 1e3), ("area", 1e6))),
-                             across=level % 2 == 1) for level, w in enumerate(known.wires))
+        asked = [rules["wires"][wire.name] for wire in known.wires]
+        layers = tuple(Layer(w.name, w.layer, w.datatype, round(a["width"] * 1e3), round(a["space"] * 1e3),
+                             round(a["area"] * 1e6), across=level % 2 == 1)
+                       for level, (w, a) in enumerate(zip(known.wires, asked, strict=True)))
         cuts = tuple(Cut(c.name, c.layer, c.datatype, round(c.size_um * 1000),
                          *(_pad(layers[level + above], c, rules["cuts"][c.name][side])
                            for above, side in enumerate(("below", "above")))) for level, c in enumerate(known.cuts))

@@ -126,6 +126,7 @@ def narrowed(text, known, primitives):
 
 
 def _klayout(outputs, description, package, library):
+    from klayout.db import SaveLayoutOptions
     from pdkmaster.io.klayout import FileExporter, export2db
     from pdkmaster.io.spice import SpiceNetlistFactory
     devices = package.prims_spiceparams
@@ -133,8 +134,10 @@ def _klayout(outputs, description, package, library):
     # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide wires farther
     outputs["drc"].write_text(decks["drc"].replace(", Projection)", ", projection)"))
     outputs["lvs"].write_text(decks["lvs"])
+    plain = SaveLayoutOptions()
+    plain.gds2_write_timestamps = False
     export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
-              add_pin_label=True).write(str(outputs["gds"]))
+              add_pin_label=True).write(str(outputs["gds"]), plain)
     netlists = SpiceNetlistFactory(params=devices)
     outputs["spice"].write_text(transistors("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
                                                     if cell.name != "Gallery")))
