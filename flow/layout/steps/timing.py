@@ -83,5 +83,4 @@ def found(inputs, layers):
     areas = json.loads(inputs["areas"].read_text())
     groups = re.split(r"(?m)^ cell\(", inputs["functions"].read_text())[1:]
     names = [group[:group.index(")")] for group in groups if "direction : input" in group]
-    return [Source(name, extract(inputs["gds"], name, layers), inputs["gds"], None, None, areas[name])
-            for name in names]
+    return [Source(name, extract(inputs["gds"], name, layers), areas[name]) for name in names]
