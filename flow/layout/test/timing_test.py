@@ -5,7 +5,6 @@ import json
 
 import pytest
 
-from cells.run import cell_of
 from flow.layout.steps.timing import found
 from flow.platforms.embedded import modules
 from flow.platforms.sky130 import cells
@@ -25,6 +24,7 @@ FUNCTIONS = """library(sky130) {
 
 
 def test_a_source_for_every_cell_with_an_input(tmp_path):
+    from cells.run import cell_of       # it reads layouts
     models, layers = modules("sky130")
     inputs = {"areas": tmp_path / "areas.json", "functions": tmp_path / "functions.lib", "gds": cells.file("inv_1", "gds")}
     inputs["areas"].write_text(json.dumps({"sky130_fd_sc_hd__inv_1": 3.75}))
