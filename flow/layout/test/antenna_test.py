@@ -44,3 +44,23 @@ def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
         draw((li.layer, li.datatype), 0.3, -2.6, 0.7, -0.5)
     assert violations(layout, top, known, 1).count() == bad
     assert violations(layout, top, known, 0).is_empty()
+
+
+@pytest.mark.parametrize("cells", [1, 3])
+def test_gates_in_cells_and_the_wire_above(cells):
+    """A net through a hierarchy is found as the same net drawn flat is: its wire counts all that its gates share."""
+    known, _ = process("sky130")
+    layout = db.Layout()
+    top, gate = layout.create_cell("top"), layout.create_cell("gate")
+    li, m1, mcon = known.wires[0], known.wires[1], known.cuts[0]
+    for layer, *box in ((known.active, 0, 0, 1, 0.5), (known.poly, 0.4, -1, 0.55, 1), (known.contact, 0.4, -0.9, 0.55, -0.8),
+                        ((li.layer, li.datatype), 0.3, -1, 0.7, -0.5), ((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6),
+                        ((m1.layer, m1.datatype), 0.3, -0.8, 0.7, -0.5)):
+        gate.shapes(layout.layer(*layer)).insert(db.DBox(*box))
+    for i in range(cells):
+        top.insert(db.DCellInstArray(gate.cell_index(), db.DTrans(db.DVector(10 * i, 0))))
+    top.shapes(layout.layer(m1.layer, m1.datatype)).insert(db.DBox(0.3, -0.8, 60.3, -0.5))
+    hierarchical = violations(layout, top, known, 1).merged()
+    layout.flatten(top.cell_index(), -1, True)
+    flat = violations(layout, top, known, 1).merged()
+    assert (hierarchical ^ flat).is_empty() and flat.count() == (cells == 1)
