@@ -56,8 +56,16 @@ def _measured(sender, call, arguments):
         result = call(*arguments)
     except Exception as error:
         result = error
+    _send_workers_home()
     kib = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     sender.send((result, round(kib / 1024)))
+
+
+def _send_workers_home():
+    """The end of this process would wait for joblib's idle workers, five minutes."""
+    if "joblib.externals.loky" in sys.modules:
+        from joblib.externals.loky import get_reusable_executor
+        get_reusable_executor(reuse=True).shutdown(kill_workers=True)
 
 
 def _end(signum, frame):
