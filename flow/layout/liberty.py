@@ -17,7 +17,7 @@ def functions(gds, names, models, layers):
     from cells.netlist.spice import parse
     found = {}
     for name in names:
-        netlist = parse(extract(gds, name, layers, strays=False), origin=name)
+        netlist = parse(extract(gds, name, layers, strays=False, wires=False), origin=name)
         constant = {pin: CONSTANTS[pin] for pin in netlist.ports if pin in CONSTANTS}
         if constant:
             found[name] = constant, None

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from flow.platforms.embedded import PROCESSES, process
+from flow.platforms.embedded import PROCESSES, modules, process
 from flow.platforms.patience import patience
 from models.parameters import ParameterError
 
@@ -27,6 +27,8 @@ def test_no_step_knows_a_process():
 def test_figures_fit_each_other(pdk):
     known, _ = process(pdk)
     assert known.name == pdk
+    _, layers = modules(pdk)
+    assert {upper for _, _, upper in layers.PROCESS.cuts} <= {wire.name for wire in layers.PROCESS.wires}
     assert abs(known.row_um / known.site_um - round(known.row_um / known.site_um)) < 1e-9       # else wells overlap
     assert len(known.cuts) == len(known.wires) - 1
     for size in (known.row_um, known.site_um, known.strap_um, *known.pin_pitch_um.values()):
