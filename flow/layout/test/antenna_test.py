@@ -53,8 +53,9 @@ def test_gates_in_cells_and_the_wire_above(cells):
     layout = db.Layout()
     top, gate = layout.create_cell("top"), layout.create_cell("gate")
     li, m1, mcon = known.wires[0], known.wires[1], known.cuts[0]
-    for layer, *box in ((known.active, 0, 0, 1, 0.5), (known.poly, 0.4, -1, 0.55, 1), (known.contact, 0.4, -0.9, 0.55, -0.8),
-                        ((li.layer, li.datatype), 0.3, -1, 0.7, -0.5), ((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6),
+    for layer, *box in ((known.active, 0, 0, 1, 0.5), (known.poly, 0.4, -1, 0.55, 1),
+                        (known.contact, 0.4, -0.9, 0.55, -0.8), ((li.layer, li.datatype), 0.3, -1, 0.7, -0.5),
+                        ((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6),
                         ((m1.layer, m1.datatype), 0.3, -0.8, 0.7, -0.5)):
         gate.shapes(layout.layer(*layer)).insert(db.DBox(*box))
     for i in range(cells):

@@ -26,7 +26,8 @@ FUNCTIONS = """library(sky130) {
 def test_a_source_for_every_cell_with_an_input(tmp_path):
     from cells.run import cell_of       # it reads layouts
     models, layers = modules("sky130")
-    inputs = {"areas": tmp_path / "areas.json", "functions": tmp_path / "functions.lib", "gds": cells.file("inv_1", "gds")}
+    inputs = {"areas": tmp_path / "areas.json", "functions": tmp_path / "functions.lib",
+              "gds": cells.file("inv_1", "gds")}
     inputs["areas"].write_text(json.dumps({"sky130_fd_sc_hd__inv_1": 3.75}))
     inputs["functions"].write_text(FUNCTIONS)
     source, = found(inputs, layers)
