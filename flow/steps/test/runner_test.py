@@ -120,7 +120,9 @@ class Tool(Repeat):
         return {"length": 0}
 
 
-RUN_TOOL = "from flow.steps.test.runner_test import *; from pathlib import Path; " \
+# Ctrl-C counts also where the tests run behind a shell that ignores it
+RUN_TOOL = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); " \
+           "from flow.steps.test.runner_test import *; from pathlib import Path; " \
            "Runner(Path({folder!r}), {{'text': Path({text!r})}}).run(Tool())"
 
 
