@@ -4,6 +4,7 @@ import collections
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
+from flow.gds import write_gds
 from flow.jobs import Job, run
 from flow.simulate.process import ToolError, finish
 
@@ -49,9 +50,7 @@ def _arrange(folder, names):
                 x += box.width() + gap
         for cell in [cell for cell in layout.top_cells() if cell.name != top_name]:
             layout.delete_cell_rec(cell.cell_index())
-        options = db.SaveLayoutOptions()
-        options.gds2_write_timestamps = False
-        layout.write(str(folder / f"{top_name}.gds"), options)
+        write_gds(layout, folder / f"{top_name}.gds")
 
 
 def rules(folder, name):

@@ -6,6 +6,7 @@ from cells.flexcell.liberty import liberty
 from cells.flexcell.library import NAME, SITE, pins
 from cells.flexcell.verilog import verilog
 from cells.lef import abstract, header
+from flow.gds import write_gds
 from flow.platforms.sky130.process import PROCESS
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
@@ -65,9 +66,7 @@ def _gds(library, canvas, path):
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, low, width, high))
         layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
-    options = db.SaveLayoutOptions()
-    options.gds2_write_timestamps = False
-    layout.write(str(path), options)
+    write_gds(layout, path)
 
 
 def _spice(cells):

@@ -1,5 +1,6 @@
 """DEF and the cells' GDS -> one GDS, by KLayout's reader: OpenROAD itself writes none."""
 
+from flow.gds import write_gds
 from models.parameters import ParameterError
 
 ROUTED = "NET,SPNET,VIA,PIN,LEFPIN,FILL"
@@ -38,9 +39,6 @@ def merge(source, lefs, cells, known, target):
         raise ParameterError(f"gds = {cells}: must have the cell {lacking[0]}")
     for name in sorted(used):
         layout.cell(name).copy_tree(library.cell(name))
-    written = db.SaveLayoutOptions()
-    written.gds2_write_timestamps = False       # the same layout is the same file
-    written.select_cell(top.cell_index())
-    layout.write(str(target), written)
+    write_gds(layout, target, top)
     box = db.Region(top.shapes(layout.layer(*known.outline))).bbox()
     return round(box.width() * layout.dbu, 3), round(box.height() * layout.dbu, 3)

@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass
 
+from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step
 
@@ -38,9 +39,7 @@ class Fill(Step):
         for wire in known.wires[1:]:
             squares += fill(layout, top, wire, known.fill)
         after = {wire.name: densest(layout, top, wire, known.fill) for wire in known.wires}
-        options = db.SaveLayoutOptions()
-        options.gds2_write_timestamps = False       # the same layout is the same file
-        layout.write(str(outputs["gds"]), options)
+        write_gds(layout, outputs["gds"])
         dense = {name: density for name, density in after.items() if density > known.fill.density_most}
         told = {"before": before, "after": after, "too dense": dense}
         outputs["summary"].write_text(json.dumps(told, indent=1) + "\n")

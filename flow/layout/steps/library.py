@@ -5,6 +5,7 @@ import json
 import re
 from dataclasses import asdict, dataclass, field
 
+from flow.gds import write_gds
 from flow.platforms.embedded import modules, process
 from flow.simulate.process import run
 from flow.steps import Step, StepError
@@ -126,7 +127,6 @@ def narrowed(text, known, primitives):
 
 
 def _klayout(outputs, description, package, library):
-    from klayout.db import SaveLayoutOptions
     from pdkmaster.io.klayout import FileExporter, export2db
     from pdkmaster.io.spice import SpiceNetlistFactory
     devices = package.prims_spiceparams
@@ -134,10 +134,8 @@ def _klayout(outputs, description, package, library):
     # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide wires farther
     outputs["drc"].write_text(decks["drc"].replace(", Projection)", ", projection)"))
     outputs["lvs"].write_text(decks["lvs"])
-    plain = SaveLayoutOptions()
-    plain.gds2_write_timestamps = False
-    export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False,
-              add_pin_label=True).write(str(outputs["gds"]), plain)
+    write_gds(export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False, add_pin_label=True),
+              outputs["gds"])
     netlists = SpiceNetlistFactory(params=devices)
     outputs["spice"].write_text(transistors("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
                                                     if cell.name != "Gallery")))

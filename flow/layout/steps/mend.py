@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import dataclass
 
+from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step
 from models.parameters import check_int
@@ -60,7 +61,7 @@ class Mend(Step):
             hopped = again(layout, rules, charged, hops=True) if len(charged) <= p.most else {}
         for net, wires in (made | hopped).items():
             placement["wires"][names.get(net, f"cts_{net}")] = wires
-        layout.write(str(outputs["gds"]))
+        write_gds(layout, outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         return {"open_nets": len(left) - len(made), "mended": len(made), "hopped": len(hopped),
                 "wire_um": round(sum(wire[1] for net in placement["wires"].values() for wire in net), 1)}

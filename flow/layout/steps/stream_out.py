@@ -3,6 +3,7 @@
 import json
 from dataclasses import dataclass
 
+from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
@@ -79,7 +80,5 @@ def relabel(source, target, top_name, names, ports, known, rules):
         layout.clear_layer(layout.layer(info))
     trimmed = trim.trim(layout, top, known.wires, rules["space_um"])
     grown = area.grow(layout, top, known.wires, rules["wires"])
-    options = db.SaveLayoutOptions()
-    options.gds2_write_timestamps = False       # the same layout is the same file
-    layout.write(str(target), options)
+    write_gds(layout, target)
     return top.dbbox(), trimmed, grown
