@@ -7,6 +7,7 @@ from pathlib import Path
 
 from flow.platforms.embedded import process
 from flow.simulate.process import ToolError, finish
+from flow.simulate.verilator import FRAME
 from flow.steps.versions import version
 from models.parameters import ParameterError, check_real
 
@@ -19,7 +20,7 @@ from .steps.extraction import Extraction, ExtractionParameters
 from .steps.fill import Fill, FillParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.gate_delays import GateDelays, GateDelaysParameters
-from .steps.gate_frames import FRAME, GateFrames
+from .steps.gate_frames import GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.ir_drop import IrDrop, IrDropParameters
 from .steps.lef import Lef, LefParameters

@@ -7,10 +7,12 @@ import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from flow.simulate import icarus
+from flow.simulate.icarus import icarus_program
 from flow.simulate.process import ToolError, finish, run
 from flow.steps import Step, StepError
 
-from .gate_frames import compiled
+from .gate_frames import TAPS
 
 ROOT = Path(__file__).parents[3]
 CHIP = "AspChip"
@@ -57,6 +59,7 @@ class Stimulus(Step):
     outputs = {"head": "stimulus.json", "trace": "stimulus.trace"}
     Parameters = StimulusParameters
     metrics = {"source": "", "cycles": "", "results": ""}
+    uses = (icarus,)
     tools = ("iverilog", "yosys")
 
     def run(self, inputs, outputs):
@@ -84,7 +87,7 @@ def modules(verilog):
 
 def in_frame(parameters, folder, trace):
     """Record the first instance of the block in the chip in ``folder`` through a frame, to the file ``trace``: head."""
-    from flow.frame.hardware import simulate
+    from flow.frame.hardware import build_of, simulate
     from flow.frame.job import expose, see
     from flow.frame.request import request
     from models.digital.chip import golden_frame
@@ -104,7 +107,7 @@ def in_frame(parameters, folder, trace):
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     scene, todo = see(asked)
     exposed = expose(asked, scene, todo)
-    program = compiled([folder / f"{CHIP}.v", folder / "tap.v"], asked.sensor, folder, ("Tap",))
+    program = icarus_program(build_of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end,
                     more=(f"+tap={folder / 'tap.trace'}",))
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
