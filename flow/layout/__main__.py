@@ -16,10 +16,9 @@ from talbot.progress import Steps
 from .design import DESIGNS, design, folder_name
 from .embedded import Options, back, files, front, judged, layout, tries
 from .energy import blocks
-from .netlist import Netlist, is_register
+from .netlist import Netlist
 from .picture import by_block, render
 from .report import page
-from .steps.extraction import OUTPUTS
 from .summary import broken, summarize
 
 ROOT = Path(__file__).parents[2]
@@ -52,7 +51,7 @@ def figures(folder, name, runner, options):
                 for key in ("place_route.placement", "library.areas", "floorplan.floorplan")}
         netlist = Netlist.read(runner.paths["place_route.netlist"])
         by_block(folder / f"{name}.blocks.png", netlist, read["place_route.placement"]["instances"],
-                 read["library.areas"], process(options.pdk)[0], blocks(netlist, is_register, OUTPUTS),
+                 read["library.areas"], process(options.pdk)[0], blocks(netlist),
                  read["floorplan.floorplan"])
         found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
     return found

@@ -6,10 +6,8 @@ Debian's OpenSTA (2.0.17) has no `write_timing_model`: its slacks at a grid of s
 import re
 from dataclasses import dataclass
 
-from flow.simulate.process import finish
-from flow.steps import StepError
-
-from .netlist import is_register
+from .netlist import OUTPUT_PINS, is_register
+from .opensta import opensta
 
 FAR_NS = 100.0          # clock period of the measurement; OpenSTA computes in single precision
 CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027      # beside every grid: where a model made from one is held to its source
@@ -97,7 +95,7 @@ def reach(netlist, clock):
     """(pairs (input, output) joined by cells alone, inputs that reach a register), each sorted, the clock left out."""
     drives, ends = {}, set()
     for instance in netlist.instances:
-        outputs = set(instance.pins) & OUTPUT_PINS
+        outputs = set(instance.pins).intersection(OUTPUT_PINS)
         for pin in set(instance.pins) - outputs:
             if is_register(instance.cell):
                 ends.add(instance.pins[pin])
@@ -117,13 +115,10 @@ def reach(netlist, clock):
     return sorted(pairs), sorted(kept)
 
 
-OUTPUT_PINS = {"q", "nq", "zero", "one", "sum", "carry"}
-
-
 def measure(netlist, clock, files, slews, loads, leakage=True):
     """The Boundary of ``netlist`` (Netlist). files: paths liberty, verilog, folder (of scripts), spef where
     there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. leakage: whether to
-    ask for it. Raises StepError."""
+    ask for it. Raises StepError, ToolError."""
     pairs, registered = reach(netlist, clock)
     nets = {way: [net for port in netlist.ports if port.direction == way for net in port.bits()]
             for way in ("input", "output")}
@@ -133,14 +128,8 @@ def measure(netlist, clock, files, slews, loads, leakage=True):
              "pairs": " ".join(f"{{{a}}} {{{b}}}" for a, b in pairs)}
 
     def ask(script, folder, **more):
-        path = folder / f"boundary{len(said)}.log"
-        path.write_text((LOAD + script).format(**words | {name: " ".join(f"{{{net}}}" for net in value)
-                                                          for name, value in more.items()}) + "\nexit\n")
-        done = finish(["sta", "-no_splash", "-no_init", "-exit", path])
-        said.append(done.stdout)
-        if done.returncode or "Error" in done.stdout + done.stderr:
-            told = (done.stdout + done.stderr).strip().splitlines()
-            raise StepError(f"boundary: OpenSTA: {next((x for x in told if 'Error' in x), told[-1:])}")
+        lists = {name: " ".join(f"{{{net}}}" for net in value) for name, value in more.items()}
+        said.append(opensta(folder / f"boundary{len(said)}.log", (LOAD + script).format(**words | lists)))
 
     said = []
     ask(OUTPUTS, files["folder"], outputs=nets["output"], inputs=[net for net in nets["input"] if net != clock])

@@ -12,6 +12,8 @@ import numpy as np
 
 from flow.steps import StepError
 
+from .netlist import OUTPUT_PINS, is_register
+
 SLEW_NS = 0.1       # of a pin that OpenSTA has no slew for: constants
 
 
@@ -125,36 +127,36 @@ def _power(instance, cells, activity, load, slews, mega):
     return Power(internal, switching, cells.leakage_nw(instance.cell) / 1000)
 
 
-def blocks(netlist, registers, outputs):
+def blocks(netlist):
     """dict instance -> block: of a register, the first part of its name; of a cell, that of most that it drives.
 
-    registers: function of a cell's name. outputs: names of output pins. What only drives clocks is 'clock tree', what
-    drives nothing but ports 'ports'.
+    What only drives clocks is 'clock tree', what drives nothing but ports 'ports'.
     """
-    sinks, driven = {}, {}
+    sinks = {}
     for instance in netlist.instances:
         for pin, net in instance.pins.items():
-            (driven if pin in outputs else sinks).setdefault(net, []).append((instance, pin))
+            if pin not in OUTPUT_PINS:
+                sinks.setdefault(net, []).append((instance, pin))
     found = {i.name: i.name.partition(".")[0] if "." in i.name else "top" for i in netlist.instances
-             if registers(i.cell)}
+             if is_register(i.cell)}
     for start in netlist.instances:
         stack = [start] if start.pins else []
         while stack:
             instance = stack[-1]
-            after = [sink for pin, net in instance.pins.items() if pin in outputs for sink in sinks.get(net, ())]
+            after = [sink for pin, net in instance.pins.items() if pin in OUTPUT_PINS for sink in sinks.get(net, ())]
             todo = [sink for sink, _ in after if sink.name not in found and sink not in stack]
             if instance.name in found or not todo:
-                found.setdefault(instance.name, _most(after, found, registers))
+                found.setdefault(instance.name, _most(after, found))
                 stack.pop()
             else:
                 stack.append(todo[0])
     return found
 
 
-def _most(after, found, registers):
+def _most(after, found):
     votes = {}
     for sink, pin in after:
-        clock = registers(sink.cell) and re.fullmatch("clk|ck", pin) or found.get(sink.name) == "clock tree"
+        clock = is_register(sink.cell) and re.fullmatch("clk|ck", pin) or found.get(sink.name) == "clock tree"
         name = "clock tree" if clock else found.get(sink.name, "ports")
         votes[name] = votes.get(name, 0) + 1
     return max(sorted(votes), key=votes.get) if votes else "ports"

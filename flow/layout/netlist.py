@@ -8,6 +8,7 @@ from pathlib import Path
 from flow.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
+OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")       # of the library's cells
 REGISTER = "_reg"           # behind a register's name: its flip-flop
 
 

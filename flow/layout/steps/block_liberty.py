@@ -9,6 +9,7 @@ from flow.simulate.process import run
 from flow.steps import Step, StepError
 
 from .. import boundary as boundary_module
+from .. import opensta as opensta_module
 from ..boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
 from ..netlist import Netlist, SUPPLIES
 
@@ -35,7 +36,7 @@ class BlockLiberty(Step):
     outputs = {"liberty": "block.lib"}
     Parameters = BlockLibertyParameters
     metrics = {"model_error_ns": "ns", "arcs": ""}
-    uses = (boundary_module,)
+    uses = (boundary_module, opensta_module)
     tools = ("sta", "yosys")
 
     def __init__(self, parameters):

@@ -12,7 +12,7 @@ from flow.platforms.embedded import process
 from flow.steps import Step
 
 from .. import netlist as netlist_module
-from ..netlist import Netlist
+from ..netlist import OUTPUT_PINS, Netlist
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def spef(netlist, nets):
              '*VERSION ""', '*DESIGN_FLOW ""', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS",
              "*C_UNIT 1 FF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY"]
     for net, (femtofarad, ohm) in sorted(nets.items()):
-        ends = [f"*I {pin} {'O' if name in OUTPUTS else 'I'}" for pin, name in pins.get(net, [])]
+        ends = [f"*I {pin} {'O' if name in OUTPUT_PINS else 'I'}" for pin, name in pins.get(net, [])]
         if net in ports:
             ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
         center = f"{_name(net, ports)}:1"
@@ -79,9 +79,6 @@ def spef(netlist, nets):
         lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends, "*CAP",
                   f"1 {center} {femtofarad:.4f}", "*RES", *branches, "*END"]
     return "\n".join(lines) + "\n"
-
-
-OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 
 
 def _name(name, ports):

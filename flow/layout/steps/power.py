@@ -4,15 +4,15 @@ import json
 import re
 from dataclasses import dataclass, field
 
-from flow.simulate.process import run
 from flow.steps import Step
 from models.parameters import check_real
 
 from .. import energy as energy_module
 from .. import netlist as netlist_module
+from .. import opensta as opensta_module
 from ..energy import Cells, blocks, powers
-from ..netlist import Netlist, is_register
-from .extraction import OUTPUTS
+from ..netlist import Netlist
+from ..opensta import opensta
 
 SLEWS = """
 read_liberty {liberty}
@@ -22,7 +22,6 @@ source {sdc}
 read_spef {spef}
 set sta_report_default_digits 5
 foreach pin [get_pins *] {{ report_slews $pin }}
-exit
 """
 
 
@@ -49,7 +48,7 @@ class Power(Step):
     outputs = {"instances": "power.json"}
     Parameters = PowerParameters
     metrics = {"power_uw": "uW", "by_kind": "uW", "by_block": "uW", "energy_pj_cycle": "pJ", "transitions_cycle": ""}
-    uses = (energy_module, netlist_module)
+    uses = (energy_module, netlist_module, opensta_module)
     tools = ("sta",)
 
     def __init__(self, parameters):
@@ -64,7 +63,7 @@ class Power(Step):
         cells, activity = Cells(read(inputs["liberty"])), json.loads(inputs["activity"].read_text())
         found = powers(netlist, cells, activity, wire_pf(inputs["spef"].read_text()), self.slews(inputs, outputs),
                        p.period_ns)
-        where = blocks(netlist, is_register, OUTPUTS)
+        where = blocks(netlist)
         by_block = {}
         for name, power in found.items():
             by_block[where[name]] = by_block.get(where[name], 0.0) + power.total
@@ -79,9 +78,7 @@ class Power(Step):
 
     def slews(self, inputs, outputs):
         """dict (instance, pin) -> ns, the slower edge."""
-        script = outputs["instances"].with_suffix(".log")
-        script.write_text(SLEWS.format(top=self.parameters.top, **inputs))
-        said = run(["sta", "-no_splash", "-no_init", "-exit", script])
+        said = opensta(outputs["instances"].with_suffix(".log"), SLEWS.format(top=self.parameters.top, **inputs))
         return {tuple(name.replace("\\", "").rsplit("/", 1)): max(float(rise), float(fall)) for name, rise, fall in
                 re.findall(r"(?m)^(\S+/\S+) \^ \S+?:(\S+) v \S+?:(\S+)$", said)}
 

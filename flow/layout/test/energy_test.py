@@ -5,7 +5,6 @@ import pytest
 from cells.liberty.read import parse
 from flow.layout.energy import Cells, blocks, powers
 from flow.layout.netlist import Instance, Netlist, is_register
-from flow.layout.steps.extraction import OUTPUTS
 from flow.steps import StepError
 
 from . import small
@@ -47,5 +46,5 @@ def test_a_cell_belongs_to_what_it_drives():
     clock = (Instance("b", "buf_x1", {"i": "clk", "q": "leaf"}),)
     moved = tuple(Instance(i.name, i.cell, i.pins | {"clk": "leaf"}) if is_register(i.cell) else i
                   for i in netlist.instances)
-    assert blocks(Netlist("Shift", netlist.ports, moved + clock), is_register, OUTPUTS) == {
+    assert blocks(Netlist("Shift", netlist.ports, moved + clock)) == {
         "first.d_reg": "first", "second.d_reg": "second", "u0": "second", "u_n": "ports", "b": "clock tree"}
