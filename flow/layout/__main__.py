@@ -14,7 +14,7 @@ from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
 from .design import DESIGNS, design, folder_name
-from .embedded import Options, back, files, front, judged, layout, tries
+from .embedded import Options, chain, files, layout
 from .energy import blocks
 from .netlist import Netlist
 from .picture import by_block, render
@@ -72,9 +72,7 @@ def main(argv=None):
         settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
                            tuple(options.liberty), options.untimed)
         folder = options.out / folder_name(chosen, options.pdk)
-        steps = (*front(chosen, settings), *next(tries(chosen, settings)), *judged(chosen, settings),
-                 *back(chosen, settings))
-        with Steps(step.name for step in steps) as bar:
+        with Steps(step.name for step in chain(chosen, settings)) as bar:
             runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
             tried = layout(chosen, settings, runner)
         summary = summarize(chosen, settings, runner, tried)

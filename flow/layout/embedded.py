@@ -33,7 +33,7 @@ from .steps.sta import Sta, StaParameters
 from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
-from .steps.timing import Timing, TimingParameters
+from .steps.timing import MEASURES, Timing, TimingParameters
 
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
@@ -83,8 +83,7 @@ def files(design, options, folder):
     given = {"rtl": folder / "rtl" / f"{design.top}.v", "tests": ROOT / "rtl" / design.folder / "test",
              "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
              "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
-    measure = {f"cells.{part}": ROOT / "cells" / part
-               for part in ("characterize", "spice", "netlist", "liberty", "extract")}
+    measure = {f"cells.{part}": ROOT / "cells" / part for part in MEASURES}
     return given | measure | {f"timing.{path.stem}": path for path in options.liberty}
 
 
@@ -146,6 +145,11 @@ def timed(design, options):
     return steps
 
 
+def chain(design, options, behind=back):
+    """All steps of a first try that closes, in order. behind: as of `layout`."""
+    return [*front(design, options), *next(tries(design, options)), *judged(design, options), *behind(design, options)]
+
+
 def layout(design, options, runner, behind=back):
     """Run all steps with ``runner`` (flow.steps.Runner), searching the smallest area that closes; ``behind``: function
     (design, options) -> the steps behind it.
@@ -155,8 +159,7 @@ def layout(design, options, runner, behind=back):
     a layout)}.
     """
     version(f"python {process(options.pdk)[0].wheel}")
-    pair = next(tries(design, options))
-    for step in (*front(design, options), *pair, *judged(design, options), *behind(design, options)):
+    for step in chain(design, options, behind):
         for tool in step.tools:
             version(tool)               # a tool that is missing is told before anything runs
     for step in front(design, options):

@@ -10,6 +10,7 @@ from flow.platforms.embedded import modules, process
 from flow.steps import Step, StepError
 
 NS = 1e-9
+MEASURES = "characterize", "spice", "netlist", "liberty", "extract"         # of cells/: whose text decides the result
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Timing(Step):
 
     name = "timing"
     inputs = {"gds": "library.gds", "areas": "library.areas", "functions": "library.liberty",
-              **{part: f"cells.{part}" for part in ("characterize", "spice", "netlist", "liberty", "extract")}}
+              **{part: f"cells.{part}" for part in MEASURES}}
     Parameters = TimingParameters
     metrics = {"cells": "", "simulations": "", "failed": ""}
     shared = True
