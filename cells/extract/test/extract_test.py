@@ -123,27 +123,48 @@ def test_contacts_in_parallel():
     assert 195 < value["VPWR", "VPWR_r1"] < 195 + 60 and 92.5 < value["VGND", "VGND_r1"] < 92.5 + 60
 
 
-def test_a_bar_of_li_counts_squares(tmp_path):
-    """Two gates 10 um apart on a bar of li, 0.17 um wide: 58.8 squares of 12.8 ohm, and a contact at each end."""
+@needs_wheel
+@pytest.mark.parametrize("cell", ["xor2_2", "edfxtp_1"])
+def test_every_terminal_hangs_on_its_net(cell):
+    """In both KLayout counts more ohms than there are somewhere: drawn so, a wire has a piece without a height."""
+    netlist = spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, strays=False))
+    joined = {end for r in netlist.resistors for end in (r.a, r.b)}
+    ends = {n for t in netlist.transistors for n in (t.drain, t.gate, t.source)}
+    assert any("_r" in n for n in ends) and {n for n in ends if "_r" in n} <= joined
+
+
+def bar(folder, length):
+    """Layout of two gates ``length`` um apart on a bar of li, 0.17 um wide, with a contact at each end."""
     layout = db.Layout()
     cell = layout.create_cell("bar")
 
     def box(layer, *corners):
         cell.shapes(layout.layer(*layer)).insert(db.DBox(*corners))
 
-    box((67, 20), 0, 0, 10.17, 0.17)
-    box((235, 4), -2, -2, 13, 3)
-    for x in (0.0, 10.0):
+    box((67, 20), 0, 0, length + 0.17, 0.17)
+    box((235, 4), -2, -2, length + 3, 3)
+    for x in (0.0, length):
         box((66, 44), x, 0, x + 0.17, 0.17)                     # contact
         box((66, 20), x, -0.1, x + 0.17, 1.5)                   # poly, a gate from 0.5 to 1.0
         box((65, 20), x - 0.3, 0.5, x + 0.47, 1.0)
         box((93, 44), x - 0.4, 0.4, x + 0.57, 1.1)
-    for layer, text, x, y in (((67, 5), "a", 5.0, 0.08), ((64, 59), "sub", -1, -1)):
+    for layer, text, x, y in (((67, 5), "a", length / 2, 0.08), ((64, 59), "sub", -1, -1)):
         cell.shapes(layout.layer(*layer)).insert(db.DText(text, x, y))
-    layout.write(str(tmp_path / "bar.gds"))
-    found = resistances(find(tmp_path / "bar.gds", "bar", process.PROCESS), process.PROCESS)
+    layout.write(str(folder / "bar.gds"))
+    return find(folder / "bar.gds", "bar", process.PROCESS)
+
+
+def test_a_bar_of_li_counts_squares(tmp_path):
+    """10 um are 58.8 squares of 12.8 ohm, between two contacts."""
+    found = resistances(bar(tmp_path, 10.0), process.PROCESS)
     gates = {found.terminals[i]["gate"] for i in (0, 1)}
     ohms = {b: value for a, b, value in found.resistors if a == "a"}
     poly = 48.2 * (0.75 - 0.085) / 0.17                        # to the middle of the gate
     assert set(ohms) == gates
     assert sum(ohms.values()) == pytest.approx(12.8 * 10 / 0.17 + 2 * (152 + poly), rel=0.01)
+
+
+def test_terminals_that_nothing_joins_are_an_error(tmp_path):
+    """30 mm of li are 2.3 million ohm."""
+    with pytest.raises(ParameterError, match="net = a: no resistance below 1e.06 ohm joins its 3 terminals"):
+        resistances(bar(tmp_path, 30000.0), process.PROCESS)
