@@ -62,7 +62,7 @@ def source(library, name, netlist="extracted"):
     if netlist not in NETLISTS:
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
     if library not in LIBRARIES:
-        return Source(name, spice.subcircuit(_file(library).read_text(), name), None)
+        return Source(name, spice.subcircuit(spice.source(_file(library)), name), None)
     strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
     if library == "flexcell":
         if netlist == "schematic":

@@ -5,13 +5,15 @@ import time
 
 import numpy as np
 
-from cells.characterize import delay, grid
+from cells.characterize import delay, grid, tristate
 from cells.characterize.bench import Bench
 from cells.characterize.capacitance import capacitance
 from cells.characterize.constraint import constraints
 from cells.characterize.leakage import leakage
 from cells.characterize.power import quiet_energy
 from cells.spice.engine import SimulationError
+
+LETS_GO = "three_state_disable"
 
 
 def characterize(cell, process, conditions):
@@ -32,7 +34,7 @@ def characterize(cell, process, conditions):
         out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
         out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,
                              *axes[arc.output][:2])
-                       for arc in cell.arcs if axes[arc.output]]
+                       for arc in cell.arcs if axes[arc.output] and arc.type != LETS_GO]
         out["arcs"] = [arc for arc in out["arcs"] if arc]
         out["capacitance"] = {pin: tried(f"{pin}: capacitance", capacitance, bench, pin)
                               for pin in cell.machine.inputs}
@@ -40,7 +42,7 @@ def characterize(cell, process, conditions):
                                for pin in cell.machine.inputs}
         _without_clock(out, cell)
         out["constraints"] = constraints(bench, tried) if cell.storage else []
-        runs, repeated = bench.simulator.runs, bench.simulator.repeated
+        runs, repeated = _let_go(out, bench, process, axes, tried)
     with Bench(cell, process, conditions, leakage=True) as bench:
         out["leakage"] = tried("leakage", leakage, bench) or []
     out["simulations"], out["repeated"] = runs + bench.simulator.runs, repeated + bench.simulator.repeated
@@ -90,9 +92,28 @@ def _between(loads, share):
 def _arc(bench, arc, slews, loads):
     change = delay.slowest(bench, arc, loads[len(loads) // 2])
     table = delay.table(bench, change, arc.output, loads, slews)
-    return {"pin": arc.pin, "pin_edge": arc.pin_edge, "output": arc.output, "edge": arc.edge, "type": arc.type,
-            "sense": arc.sense, "slews": table.slews, "loads": table.loads,
-            "state": list(change.before.inputs), **_lists(table.values)}
+    return {**_named(arc), "slews": table.slews, "loads": table.loads, "state": list(change.before.inputs),
+            **_lists(table.values)}
+
+
+def _named(arc):
+    return {name: getattr(arc, name) for name in ("pin", "pin_edge", "output", "edge", "type", "sense")}
+
+
+def _let_go(out, bench, process, axes, tried):
+    """Add to ``out`` what is measured of outputs that are let go: (transients, repeated ones) of the cell so far."""
+    runs, repeated = bench.simulator.runs, bench.simulator.repeated
+    for output, axis in axes.items():
+        arcs = [arc for arc in bench.cell.arcs if arc.output == output and arc.type == LETS_GO]
+        if not arcs or not axis:
+            continue
+        with tristate.Held(bench, output, process) as held:
+            out["capacitance"][output] = tried(f"{output}: capacitance", held.capacitance)
+            for arc in arcs:
+                found = tried(f"{arc.pin} {arc.pin_edge} lets {arc.output} go", tristate.disable, held, arc, *axis[:2])
+                out["arcs"] += [{**_named(arc), **found}] if found else []
+            runs, repeated = runs + held.simulator.runs, repeated + held.simulator.repeated
+    return runs, repeated
 
 
 def _without_clock(out, cell):

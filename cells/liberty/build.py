@@ -99,7 +99,7 @@ def _leakage(group, machine, states):
 
 
 def _when(names, levels):
-    return " & ".join(("" if level else "!") + name for name, level in zip(names, levels, strict=True))
+    return "&".join(("" if level else "!") + name for name, level in zip(names, levels, strict=True))
 
 
 def _storage(group, cell):
@@ -137,9 +137,7 @@ def _input(group, cell, measured, name):
     if storage and storage.kind == "gate":
         pin.attributes["clock_gate_clock_pin" if name == storage.clock else "clock_gate_enable_pin"
                        if name == storage.data_pins[0] else "clock_gate_test_pin"] = True
-    if rise_fall:
-        pin.attributes |= {"capacitance": PF * sum(rise_fall) / 2, "rise_capacitance": PF * rise_fall[0],
-                           "fall_capacitance": PF * rise_fall[1]}
+    _capacitance(pin, rise_fall)
     _rails(pin, cell)
     energy = measured["quiet_energy"].get(name)
     if energy:
@@ -150,6 +148,12 @@ def _input(group, cell, measured, name):
     for constraint in measured["constraints"]:
         if constraint["pin"] == name:
             _constraint(pin, constraint)
+
+
+def _capacitance(pin, rise_fall):
+    if rise_fall:
+        pin.attributes |= {"capacitance": PF * sum(rise_fall) / 2, "rise_capacitance": PF * rise_fall[0],
+                           "fall_capacitance": PF * rise_fall[1]}
 
 
 def _rails(pin, cell):
@@ -175,6 +179,7 @@ def _output(group, cell, measured, name):
     pin = group.add("pin", name, direction="output", function=cell.functions[name])
     if cell.three_state[name]:
         pin.attributes["three_state"] = cell.three_state[name]
+        _capacitance(pin, measured["capacitance"].get(name))
     if cell.storage and cell.storage.kind == "gate":
         pin.attributes["clock_gate_out_pin"] = True
     if name in measured["largest_load"]:
@@ -190,19 +195,20 @@ def _output(group, cell, measured, name):
         for edge, arc in sorted(edges.items()):
             for field, table in TABLES.items():
                 _table(timing, table.format(edge), "delay", arc, NS * np.array(arc[field]))
-    for related in sorted({pin_ for pin_, kind, _ in arcs if not kind.startswith("three_state")}):
-        _power(pin, related, [a for a in measured["arcs"] if (a["pin"], a["output"]) == (related, name)])
+    powered = [arc for arc in measured["arcs"] if arc["output"] == name and "energy" in arc]
+    for related in sorted({arc["pin"] for arc in powered}):
+        _power(pin, related, [arc for arc in powered if arc["pin"] == related])
 
 
 def _power(pin, related, arcs):
     """Energy by output edge: of the arcs that cause it, the mean."""
     power = pin.add("internal_power", related_pin=related, related_pg_pin=pin.attributes["related_power_pin"])
     for edge in ("fall", "rise"):
-        same = [a for a in arcs if a["edge"] == edge and not a["type"].startswith("three_state")]
+        same = [a for a in arcs if a["edge"] == edge]
         if same:
             _table(power, f"{edge}_power", "power", same[0], PJ * np.mean([a["energy"] for a in same], axis=0))
 
 
 def _table(group, kind, template, arc, values):
-    group.add(kind, f"{template}_{_size(arc)}", index_1=NS * np.array(arc["slews"]), index_2=PF * np.array(arc["loads"]),
-              values=values)
+    group.add(kind, f"{template}_{_size(arc)}", index_1=NS * np.array(arc["slews"]),
+              index_2=PF * np.array(arc["loads"]), values=values)

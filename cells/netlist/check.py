@@ -27,6 +27,9 @@ def check(netlist, models, rails):
             fail(f"transistor {t.name} must have w and l above 0")
         if names.count(t.name) > 1:
             fail(f"two transistors have the name {t.name}")
+    for passive in (*netlist.capacitors, *netlist.resistors):
+        if passive.value < 0:
+            fail(f"{passive.name} must be 0 or more")
     _connected(netlist, fail)
 
 

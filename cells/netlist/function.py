@@ -29,9 +29,10 @@ class Storage:
 
 @dataclass(frozen=True)
 class Arc:
-    """``pin`` makes ``output`` go to ``edge`` (rise or fall), from the other level or high impedance.
+    """``pin`` makes ``output`` go to ``edge`` (rise or fall), from the other level or high impedance; or lets it go,
 
-    pin_edge: rise or fall. type: Liberty's timing_type. changes: every way in which it happens, shortest path first.
+    from low (rise) or high (fall). pin_edge: rise or fall. type: Liberty's timing_type. changes: every way in which it
+    happens, shortest path first.
     """
 
     pin: str
@@ -43,9 +44,11 @@ class Arc:
 
     @property
     def sense(self):
-        """Liberty's timing_sense of this edge alone."""
+        """Liberty's timing_sense of this edge alone; of tri-states it tells which edge of the pin it is."""
         if self.type in ("rising_edge", "falling_edge"):
             return "non_unate"
+        if self.type.startswith("three_state"):
+            return "positive_unate" if self.pin_edge == "rise" else "negative_unate"
         return "positive_unate" if self.pin_edge == self.edge else "negative_unate"
 
 
@@ -193,15 +196,13 @@ def _both_active(machine, storage, state):
 
 
 def _combinational_type(pin, pin_edge, before, after):
-    """None for an output let go: nothing that a capacitor as load shows."""
-    return None if after == "Z" else "three_state_enable" if before == "Z" else "combinational"
+    return "three_state_disable" if after == "Z" else "three_state_enable" if before == "Z" else "combinational"
 
 
 def _sequential_type(storage):
     def kind(pin, pin_edge, before, after):
-        for name, hit in (("clear", storage.clear), ("preset", storage.preset)):
-            if hit and pin == hit[0]:
-                return name if LEVEL[hit[1]] == pin_edge else None
+        if any(hit and pin == hit[0] for hit in (storage.clear, storage.preset)):
+            return "preset" if after else "clear"     # Liberty's words for an output that rises, or falls
         if storage.kind == "gate":
             return "combinational" if pin == storage.clock else None
         if pin == storage.clock:
@@ -220,8 +221,9 @@ def _arcs(machine, kind):
             if before == after:
                 continue
             type_ = kind(pin, pin_edge, before, after)
-            if type_ is None or change.before.kept[k] != 1 - after:
+            to = 1 - before if after == "Z" else after
+            if type_ is None or change.before.kept[k] != 1 - to:
                 continue
-            same = groups.setdefault((pin, pin_edge, output, LEVEL[after], type_), {})
+            same = groups.setdefault((pin, pin_edge, output, LEVEL[to], type_), {})
             same.setdefault((change.before.inputs, change.before.outputs), change)
     return [Arc(*key, tuple(changes.values())) for key, changes in sorted(groups.items())]

@@ -68,7 +68,7 @@ def number(text):
 
 def read(path, cell=None):
     """The subcircuit ``cell`` (None: the only or first one) of a SPICE file: Netlist."""
-    return parse(Path(path).read_text(), cell, str(path))
+    return parse(source(path), cell, str(path))
 
 
 def parse(text, cell=None, origin="netlist"):
@@ -83,7 +83,7 @@ def parse(text, cell=None, origin="netlist"):
 
 def read_all(path):
     """Every subcircuit of a SPICE file: name -> Netlist."""
-    return _subcircuits(Path(path).read_text(), str(path))
+    return _subcircuits(source(path), str(path))
 
 
 def subcircuit(text, name):
@@ -94,28 +94,43 @@ def subcircuit(text, name):
     return "\n".join([*lines[first:last + 1], ""])
 
 
+def source(path):
+    """Text of a SPICE file; bytes that are no text are kept as marks, for the parser to stumble over."""
+    return Path(path).read_text(errors="replace")
+
+
 def _subcircuits(text, origin):
-    found, current = {}, None
+    found, current, spelled = {}, None, {}
     for line in _joined(text):
         words = re.sub(r"\s*=\s*", "=", line).split()
         card = words[0].lower()
         if card == ".subckt":
-            ports = tuple(w for w in words[2:] if "=" not in w and w.lower() != "params:")
+            if current is not None or len(words) < 2 or words[1] in found:
+                raise ParameterError(f"netlist = {origin}: {line!r} must have a name of its own and lie in no other")
+            spelled = {}
+            ports = tuple(_node(w, spelled) for w in words[2:] if "=" not in w and w.lower() != "params:")
             current = found[words[1]] = Netlist(words[1], ports)
         elif card == ".ends":
             current = None
         elif current is not None:
-            _element(current, words, line, origin)
+            _element(current, words, line, origin, spelled)
     if not found:
         raise ParameterError(f"netlist = {origin}: has no .subckt")
+    if current is not None:
+        raise ParameterError(f"netlist = {origin}: .subckt {current.name} has no .ends")
     return found
+
+
+def _node(name, spelled):
+    """SPICE knows no case: a node is called as where it stands first."""
+    return spelled.setdefault(name.lower(), name)
 
 
 def _joined(text):
     """Lines with their '+' continuations, without comments and empty ones."""
     lines = []
     for line in text.splitlines():
-        line = line.split("$")[0].strip()
+        line = re.split(r"(?:^|\s)\$|;", line)[0].strip()
         if not line or line.startswith("*"):
             continue
         if line.startswith("+") and lines:
@@ -125,17 +140,22 @@ def _joined(text):
     return lines
 
 
-def _element(netlist, words, line, origin):
+def _element(netlist, words, line, origin, spelled):
     name, kind = words[0], words[0][0].lower()
     if kind in "xm":
-        nodes = [w for w in words[1:] if "=" not in w]
+        nodes = [w for w in words[1:] if "=" not in w and w != "/"]
         if len(nodes) != 5:
             raise ParameterError(f"netlist = {origin}: {line!r} must be a transistor: drain gate source bulk model")
-        pairs = (w.split("=") for w in words[1:] if "=" in w)
+        pairs = (w.split("=", 1) for w in words[1:] if "=" in w)
         size = {key.lower(): number(value) for key, value in pairs if key.lower() != "topography"}
-        netlist.transistors.append(Transistor(name, nodes[4], *nodes[:4], size))
+        many = size.pop("m", 1)
+        if many < 1 or many != int(many):
+            raise ParameterError(f"netlist = {origin}: {line!r} must have a whole number m of 1 or more")
+        ends = [_node(node, spelled) for node in nodes[:4]]
+        netlist.transistors += [Transistor(f"{name}_m{k}" if k else name, nodes[4].lower(), *ends, size)
+                                for k in range(int(many))]
     elif kind in "cr" and len(words) >= 4:
         (netlist.capacitors if kind == "c" else netlist.resistors).append(
-            Passive(name, words[1], words[2], number(words[3].split("=")[-1])))
+            Passive(name, *(_node(node, spelled) for node in words[1:3]), number(words[3].split("=")[-1])))
     else:
         raise ParameterError(f"netlist = {origin}: {line!r} is no transistor, capacitor or resistor")

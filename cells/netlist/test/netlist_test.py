@@ -64,7 +64,11 @@ def test_a_tri_state_buffer_is_found():
     lines = [*inverter("e", "E", "en"), "n1 Z A m", "n2 m E VSS", "p1 Z A k", "p2 k en VDD"]
     found = understand(cell(lines, "A E Z"), POLARITY, RAILS)
     assert found.functions == {"Z": "!A"} and found.three_state == {"Z": "!E"}
-    assert {a.type for a in found.arcs} == {"combinational", "three_state_enable"}
+    off = {(a.pin_edge, a.edge, a.sense) for a in found.arcs if a.type == "three_state_disable"}
+    on = {(a.pin_edge, a.edge, a.sense) for a in found.arcs if a.type == "three_state_enable"}
+    assert off == {("fall", "rise", "negative_unate"), ("fall", "fall", "negative_unate")}      # from low, from high
+    assert on == {("rise", "rise", "positive_unate"), ("rise", "fall", "positive_unate")}
+    assert {a.type for a in found.arcs} == {"combinational", "three_state_enable", "three_state_disable"}
 
 
 @pytest.mark.parametrize("lines, ports, why", [
@@ -85,6 +89,51 @@ def test_a_missing_model_a_missing_rail_and_a_wrong_port_are_named():
         check(netlist, POLARITY, {"VPB": 1, "VPWR": 1, "VSS": 0})
     with pytest.raises(ParameterError, match="two ports have the name A"):
         check(cell(NAND, "A B Y A"), POLARITY, RAILS)
+
+
+ODD = """* words in any case, lines that go on, comments of three kinds, quotes, spaces around =
+.include "models.spice"
+.GLOBAL vdd
+.SUBCKT Inv a Y Vdd VSS PARAMS: x=1
+* a comment in between
+MN0 y A VSS vss / N W = 0.65u L='0.15'
++ M=2 $ two of them
+XP0 Y A VDD Vdd p w={1.0} l=1.5E-1 ; one
+C0 Y VSS C=0.5f
+R$1 A a$b 1.5k
+.Ends Inv
+"""
+
+
+def test_spice_as_people_write_it():
+    netlist = parse(ODD)
+    assert (netlist.name, netlist.ports) == ("Inv", ("a", "Y", "Vdd", "VSS"))
+    assert [(t.name, t.model, t.drain, t.gate, t.source, t.bulk) for t in netlist.transistors] == [
+        ("MN0", "n", "Y", "a", "VSS", "VSS"), ("MN0_m1", "n", "Y", "a", "VSS", "VSS"),
+        ("XP0", "p", "Y", "a", "Vdd", "Vdd")]
+    assert [(t.size["w"], t.size["l"]) for t in netlist.transistors] == [(pytest.approx(0.65e-6), 0.15),
+                                                                         (pytest.approx(0.65e-6), 0.15), (1.0, 0.15)]
+    assert (netlist.capacitors[0].value, netlist.resistors[0].value) == (pytest.approx(0.5e-15), 1500.0)
+    assert (netlist.resistors[0].name, netlist.resistors[0].b) == ("R$1", "a$b")
+
+
+@pytest.mark.parametrize("old, new, why", [
+    ("M=2", "M=1.5", "must have a whole number m of 1 or more"),
+    ("M=2", "M=two", "netlist = 'two': must be a number"),
+    (".Ends Inv", "", ".subckt Inv has no .ends"),
+    (".SUBCKT Inv a Y Vdd VSS PARAMS: x=1", ".SUBCKT", "must have a name of its own and lie in no other"),
+    (".Ends Inv", ".subckt Inv a Y\n.ends\n", "must have a name of its own and lie in no other"),
+    ("XP0 Y A VDD Vdd p", "XP0 Y A VDD p", "must be a transistor: drain gate source bulk model")])
+def test_lines_that_are_not_understood_are_named(old, new, why):
+    with pytest.raises(ParameterError, match=why):
+        parse(ODD.replace(old, new))
+
+
+def test_a_negative_resistor_is_refused():
+    with pytest.raises(ParameterError, match=r"netlist = cell: R0 must be 0 or more"):
+        netlist = parse("\n".join([".subckt cell A Y VDD VSS", "X0 Y A VSS VSS n w=1 l=1", "X1 Y A VDD VDD p w=1 l=1",
+                                   "R0 A Y -5", ".ends"]))
+        check(netlist, POLARITY, RAILS)
 
 
 @pytest.mark.parametrize("text, value", [("650000u", 0.65), ("1e+06u", 1.0), ("0.42", 0.42), ("10meg", 1e7),
