@@ -1,10 +1,12 @@
-"""Two Liberty descriptions of one cell, table by table."""
+"""Two Liberty descriptions of one cell, table by table; what only one of them has is told by name."""
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
 
 from cells.characterize.table import bilinear
+from cells.liberty.group import Group
 
 KINDS = {"cell_rise": "delay", "cell_fall": "delay", "rise_transition": "slew", "fall_transition": "slew",
          "rise_power": "energy", "fall_power": "energy"}
@@ -13,11 +15,16 @@ CONSTRAINTS = {"setup_rising": "setup", "setup_falling": "setup", "hold_rising":
                "removal_falling": "removal", "min_pulse_width": "width"}
 
 
+# What makes two groups mean the same, the narrowest first: characterizers differ in whether a release is a 'preset' or
+# belongs to 'clear', and in the sense of an edge that each has alone.
+KEYS = (("related_pin", "timing_type", "timing_sense"), ("related_pin", "timing_type"), ("related_pin",))
+
+
 @dataclass(frozen=True)
 class Difference:
     """One table of ``cell``. kind: delay, slew, energy, capacitance, leakage, setup, hold, ...; what: where it stands.
 
-    ours, theirs: arrays of one shape at their points (ns, pJ, pF, nW); missing: whether ours is not there.
+    ours, theirs: arrays of one shape at their points (ns, pJ, pF, nW), NaN where one of the two has no such table.
     """
 
     cell: str
@@ -46,34 +53,75 @@ def library(tree, known):
 
 
 def differences(name, ours, theirs):
-    """Differences of one cell: list; a table that ours lacks has NaN."""
-    found = [Difference(name, "leakage", "mean", np.array([ours.attributes["cell_leakage_power"]]),
+    """Differences of one cell: list. A table that one of the two lacks has NaN there."""
+    found = [Difference(name, "leakage", "mean", np.array([ours.attributes.get("cell_leakage_power", np.nan)]),
                         np.array([theirs.attributes["cell_leakage_power"]]))]
+    found += [Difference(name, "leakage by state", state.attributes["when"], np.array([_leakage(ours, state)]),
+                         np.array([state.attributes["value"]]))
+              for state in theirs.all("leakage_power") if "when" in state.attributes]
     for pin in theirs.all("pin"):
-        own = ours.one("pin", pin.name)
+        own, used = ours.one("pin", pin.name) or Group("pin", (pin.name,)), set()
         for attribute in ("rise_capacitance", "fall_capacitance"):
             if attribute in pin.attributes:
                 found.append(Difference(name, "capacitance", f"{pin.name} {attribute}",
-                                        np.array([own.attributes[attribute]]), np.array([pin.attributes[attribute]])))
+                                        np.array([own.attributes.get(attribute, np.nan)]),
+                                        np.array([pin.attributes[attribute]])))
         for kind in ("timing", "internal_power"):
             for group in pin.all(kind):
-                found += _tables(name, pin, own, group)
+                found += _tables(name, pin, own, group, used)
+            found += [Difference(name, _kind(group, table), _what(pin, group, table), table.array("values"),
+                                 np.full(np.shape(table.array("values")), np.nan))
+                      for group in own.all(kind) for table in group.groups if id(table) not in used]
     return found
 
 
-def _tables(name, pin, own, group):
-    keys = ("related_pin", "timing_type", "timing_sense")
-    wanted = {k: group.attributes[k] for k in keys if k in group.attributes}
-    same = own.all(group.kind, **wanted)
+def _kind(group, table):
+    return CONSTRAINTS.get(group.attributes.get("timing_type")) or KINDS.get(table.kind)
+
+
+def _what(pin, group, table):
+    """'Y A positive_unate cell_rise', 'D setup_rising rise_constraint': unique in a cell without conditions."""
+    at = group.attributes
+    words = ([at["timing_type"]] if _kind(group, table) in CONSTRAINTS.values() else
+             [at.get("related_pin"), at.get("timing_type"), at.get("timing_sense"), at.get("when")])
+    return " ".join([pin.name, *(w for w in words if w and w != "combinational"), table.kind])
+
+
+def _leakage(ours, state):
+    """nW: mean over our states in which the condition of ``state`` holds, as far as both name the same pins."""
+    wanted, values = _literals(state.attributes["when"]), []
+    for own in ours.all("leakage_power"):
+        literals = _literals(own.attributes["when"])
+        if all(literals.get(pin, level) == level for pin, level in wanted.items()):
+            values.append(own.attributes["value"])
+    return np.mean(values) if values else np.nan
+
+
+def _literals(product):
+    """{pin: level} of a product like 'CLK&D&!Q'."""
+    return {pin: not inverted for inverted, pin in re.findall(r"(!?)\s*(\w+)", product)}
+
+
+def _tables(name, pin, own, group, used):
     for table in group.groups:
-        kind = CONSTRAINTS.get(group.attributes.get("timing_type")) or KINDS.get(table.kind)
+        kind = _kind(group, table)
         if kind is None:
             continue
         values = table.array("values")
-        mine = next((t for g in same for t in g.groups if t.kind == table.kind), None)
-        cause = wanted.get("timing_type") if kind in CONSTRAINTS.values() else wanted.get("related_pin", "")
-        what = f"{pin.name} {cause} {table.kind}"
-        yield Difference(name, kind, what, np.full(values.shape, np.nan) if mine is None else _at(mine, table), values)
+        mine = _same(own, group, table.kind, kind)
+        used.add(id(mine))
+        yield Difference(name, kind, _what(pin, group, table),
+                         np.full(values.shape, np.nan) if mine is None else _at(mine, table), values)
+
+
+def _same(own, group, table, kind):
+    """Our table that means what ``table`` (its kind) of ``group`` does, or None."""
+    for keys in KEYS[:2] if kind in CONSTRAINTS.values() else KEYS:
+        wanted = {k: group.attributes[k] for k in keys if k in group.attributes}
+        for mine in own.all(group.kind, **wanted):
+            if mine.one(table) and _kind(mine, mine.one(table)) == kind:
+                return mine.one(table)
+    return None
 
 
 def _at(mine, theirs):
@@ -87,13 +135,14 @@ def _at(mine, theirs):
 
 
 def summary(found):
-    """{'error': kind -> median and 95th percentile of the absolute error, ...} over all entries.
+    """{'error': kind -> median and 95th percentile of the absolute error, ...} over all entries; 'only_theirs' and
 
-    Relative errors in per cent; constraints (setup ...) in ps.
+    'only_ours': the tables that the other does not have, by name. Relative errors in per cent; constraints in ps.
     """
     out = {}
-    for kind in dict.fromkeys(d.kind for d in found):
-        same = [d for d in found if d.kind == kind]
+    both = [d for d in found if not np.isnan(d.theirs).all()]
+    for kind in dict.fromkeys(d.kind for d in both):
+        same = [d for d in both if d.kind == kind]
         if kind in CONSTRAINTS.values():
             errors, unit = np.concatenate([np.ravel(d.ours - d.theirs) * 1e3 for d in same]), "ps"
         else:
@@ -103,4 +152,5 @@ def summary(found):
         if there.size:
             out[kind] |= {"median": round(float(np.median(there)), 3),
                           "p95": round(float(np.percentile(there, 95)), 3), "worst": round(float(there.max()), 3)}
-    return {"error": out}
+    return {"error": out, "only_theirs": [f"{d.cell}: {d.what}" for d in both if np.isnan(d.ours).all()],
+            "only_ours": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.theirs).all()]}

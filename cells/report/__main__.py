@@ -44,13 +44,14 @@ def main(argv=None):
             template = Path(__file__).with_name("index.html").read_text()
             (part / "index.html").write_text(jinja2.Template(template).render(page))
             (part / "report.json").write_text(json.dumps(
-                {"kinds": page["kinds"], "curve": found, "variants": page.get("variants")}, indent=1) + "\n")
+                {name: page.get(name) for name in ("kinds", "curve", "variants", "alone")}, indent=1) + "\n")
     except (ParameterError, ToolError, SimulationError, OSError) as error:
         print(f"cells.report: {error}", file=sys.stderr)
         return 2
     for kind, e in page["kinds"].items():
-        print(f"{kind:12} median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, "
-              f"{e['entries']} entries")
+        errors = (f"median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, " if "median" in e else
+                  "nothing to compare, ")
+        print(f"{kind:16} {errors}{e['entries']} entries")
     print(options.out / "index.html")
     return 0
 
@@ -65,7 +66,8 @@ def against(conditions, options):
             time.monotonic())
     tree = read.read(options.out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
     differences = compare.library(tree, known)
-    kinds = compare.summary(differences)["error"]
+    told = compare.summary(differences)
+    kinds = told["error"]
     for kind, e in kinds.items():
         e["bound"] = BOUNDS.get(kind)
     cells = {}
@@ -73,7 +75,8 @@ def against(conditions, options):
         same = [d for d in differences if d.cell == name]
         cells[name] = {**compare.summary(same), "picture": pictures.heat_maps(same)}
     found = separate.separate("sky130_hd", names, conditions, options.reference, options.out / "jobs", options.workers)
-    return {"kinds": kinds, "cells": cells, "variants": separate.table(found)}
+    alone = {name: told[name] for name in ("only_theirs", "only_ours")}
+    return {"kinds": kinds, "cells": cells, "variants": separate.table(found), "alone": alone}
 
 
 if __name__ == "__main__":

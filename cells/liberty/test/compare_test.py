@@ -1,0 +1,73 @@
+"""Two descriptions of a cell: what belongs together is found, what is alone is named."""
+
+import numpy as np
+import pytest
+
+from cells.liberty.compare import differences, summary
+from cells.liberty.group import Group
+
+AXES = {"index_1": [0.01, 1.0], "index_2": [0.001, 0.1]}
+
+
+def cell(*timings, leakage=(), pin="Q"):
+    """A cell with leakage (when, nW) and an output ``pin`` with timings (attributes, {table: value everywhere})."""
+    group = Group("cell", ("c",), {"cell_leakage_power": 1.0})
+    for when, value in leakage:
+        group.add("leakage_power", when=when, value=value)
+    output = group.add("pin", pin, direction="output")
+    for attributes, tables in timings:
+        timing = output.add("timing", **attributes)
+        for kind, value in tables.items():
+            timing.add(kind, "t", **AXES, values=np.full((2, 2), float(value)))
+    return group
+
+
+def clear(sense, **tables):
+    return {"related_pin": "R", "timing_type": "clear", "timing_sense": sense}, tables
+
+
+def found(ours, theirs):
+    return {d.what: (float(np.mean(d.ours)), float(np.mean(d.theirs))) for d in differences("c", ours, theirs)
+            if d.kind != "leakage"}
+
+
+def test_the_same_sense_goes_first():
+    """Both senses of an arc, in another order: a mux's select."""
+    both = [({"related_pin": "S", "timing_sense": sense}, {"cell_rise": value})
+            for sense, value in (("positive_unate", 1), ("negative_unate", 2))]
+    assert found(cell(*both), cell(*reversed(both))) == {"Q S negative_unate cell_rise": (2, 2),
+                                                         "Q S positive_unate cell_rise": (1, 1)}
+
+
+def test_a_release_is_paired_across_types():
+    """Theirs has a latch's release among 'clear', ours as 'preset', as Liberty names an output that rises."""
+    ours = cell(clear("positive_unate", cell_fall=1),
+                ({"related_pin": "R", "timing_type": "preset", "timing_sense": "positive_unate"}, {"cell_rise": 3}))
+    theirs = cell(clear("positive_unate", cell_fall=1, cell_rise=4))
+    assert found(ours, theirs)["Q R clear positive_unate cell_rise"] == (3, 4)
+    assert summary(differences("c", ours, theirs))["only_ours"] == []
+
+
+def test_states_of_theirs_are_each_held_against_our_one_table():
+    theirs = cell(*(({"related_pin": "A", "timing_sense": "positive_unate", "when": when}, {"cell_rise": value})
+                    for when, value in (("B", 2), ("!B", 4))))
+    ours = cell(({"related_pin": "A", "timing_sense": "positive_unate"}, {"cell_rise": 4}))
+    assert found(ours, theirs) == {"Q A positive_unate B cell_rise": (4, 2), "Q A positive_unate !B cell_rise": (4, 4)}
+
+
+def test_what_is_alone_is_named_and_not_dropped():
+    ours, theirs = cell(clear("positive_unate", cell_fall=1)), cell(clear("positive_unate", fall_transition=1))
+    told = summary(differences("c", ours, theirs))
+    assert told["only_theirs"] == ["c: Q R clear positive_unate fall_transition"]
+    assert told["only_ours"] == ["c: Q R clear positive_unate cell_fall"]
+    assert told["error"]["slew"]["missing"] == 4 and "delay" not in told["error"]
+    other = summary(differences("c", cell(clear("positive_unate", cell_fall=1), pin="X"), theirs))
+    assert other["only_theirs"] == ["c: Q R clear positive_unate fall_transition"]
+
+
+def test_leakage_is_paired_by_what_the_conditions_mean():
+    """In another order, with blanks, and with an output that ours does not name."""
+    ours = cell(leakage=(("A&!B", 2.0), ("A&B", 4.0), ("!A&B", 8.0), ("!A&!B", 16.0)))
+    theirs = cell(leakage=(("!B & A & !Q", 2.0), ("A", 6.0), ("!A", 12.0)))
+    assert found(ours, theirs) == {"!B & A & !Q": (2.0, 2.0), "A": (3.0, 6.0), "!A": (12.0, 12.0)}
+    assert summary(differences("c", ours, theirs))["error"]["leakage by state"]["worst"] == pytest.approx(50)
