@@ -8,7 +8,7 @@ import numpy as np
 from tqdm import tqdm
 
 from cells import run, sources
-from cells.characterize import delay
+from cells.characterize import delay, tristate
 from cells.characterize.bench import Bench
 from cells.characterize.conditions import Conditions
 from cells.characterize.constraint import PATIENCE, bisect, outcome
@@ -19,12 +19,14 @@ from flow.stability import table
 from models.parameters import ParameterError
 from models.stability import Case
 
-TYPICAL = Conditions(Corner("tt", 25, 1.8))
+TYPICAL = Conditions(Corner("tt", 25, 1.8), "fitted")
+FOUNDRY = (Corner("ss", 100, 1.6), Corner("ff", -40, 1.95))     # corners that SkyWater publishes tables for
 
 
 def cases():
     """All cases: list of Case; shows a progress bar."""
-    todo = [(loads_and_slews, ()), (hundred_times_the_load, ()), (metastable, ())]
+    todo = [(loads_and_slews, ()), (hundred_times_the_load, ()), (metastable, ()), (let_go, ())]
+    todo += [(fit_at_corner, (corner,)) for corner in FOUNDRY]
     todo += [(corner_case, (Corner(process, temperature, supply),)) for process in PROCESSES
              for temperature, supply in ((-40, 1.2), (150, 1.2), (-40, 1.95), (150, 1.95))]
     found = []
@@ -89,6 +91,38 @@ def metastable():
     return [Case("flip-flop, 1 fs from its metastable edge", f"lost 2 fs later, each run under {PATIENCE + 1:.0f} s",
                  f"edge at {at * 1e12:.3f} ps, longest run {longest:.2f} s",
                  lost is None and longest < PATIENCE + 1)]
+
+
+def let_go():
+    """A tri-state output let go, at slews of 1 ps and 10 ns: no earlier or later than half the ramp."""
+    buffer, out = cell("ebufn_1"), []
+    process = sources.process("sky130_hd")
+    with Bench(buffer, process, TYPICAL) as bench, tristate.Held(bench, "Z", process) as held:
+        for arc in (a for a in buffer.arcs if a.type == "three_state_disable"):
+            fast, slow = (held.let_go(arc.changes[0], slew) for slew in (1e-12, 10e-9))
+            out.append(_case(f"tri-state let go from {'low' if arc.edge == 'rise' else 'high'}, slew 10 ns",
+                             "0 < time at 1 ps < 0.5 ns; at 10 ns within half the ramp of it", slow,
+                             0 < fast < 0.5e-9 and abs(slow - fast) < TYPICAL.ramp(10e-9) / 2))
+    return out
+
+
+def fit_at_corner(corner):
+    """How much slower or faster than typical a corner is, with the fitted models and those they were fitted from."""
+    out, process = [], sources.process("sky130_hd")
+    for name, output in (("nand2_1", "Y"), ("dfxtp_1", "Q")):
+        tested, ratio = cell(name), {}
+        for models in ("binned", "fitted"):
+            seconds = []
+            for at in (TYPICAL.corner, corner):
+                with Bench(tested, process, replace(TYPICAL, corner=at, models=models)) as bench:
+                    seconds.append(sum(bench.edge(arc.changes[0], output, 0.12e-9, 10e-15).delay
+                                       for arc in tested.arcs))
+            ratio[models] = seconds[1] / seconds[0]
+        slow = corner.process == "ss"
+        out.append(Case(f"{name}, {corner.name} over {TYPICAL.corner.name}", "that of the binned models, within 3 %",
+                        f"{ratio['fitted']:.3f}, binned {ratio['binned']:.3f}",
+                        (ratio["fitted"] > 1) == slow and abs(ratio["fitted"] / ratio["binned"] - 1) < 0.03))
+    return out
 
 
 def corner_case(corner):

@@ -19,7 +19,6 @@ from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
-DEFAULT = "reltol 0.0001, 50 steps"
 # per cent, constraints in ps: median and 95th percentile that are asked for at the typical corner
 BOUNDS = {"delay": (5, 12), "slew": (5, 12), "capacitance": (5, None), "leakage": (20, None), "energy": (20, None),
           "setup": (15, None), "hold": (15, None)}
@@ -35,16 +34,18 @@ def main(argv=None):
     options = parser.parse_args(argv)
     try:
         conditions = Conditions(Corner.parse(options.corner), options.models)
-        page = {"corner": options.corner, "default": DEFAULT, "points": curve.OFF_GRID, "kinds": {}}
+        page = {"corner": options.corner, "default": curve.DEFAULT, "points": curve.OFF_GRID, "kinds": {}}
         if options.reference:
             page |= against(conditions, options)
-        found = curve.table(curve.measure("sky130_hd", conditions, options.out / "jobs"))
-        page |= {"curve": found, "curve_picture": pictures.error_against_time(found, DEFAULT)}
+        measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
+        found = curve.table(measured)
+        page |= {"curve": found, "curve_picture": pictures.error_against_time(found, curve.DEFAULT),
+                 "off_grid": curve.by_cell(measured)}
         with staged(options.out) as part:
             template = Path(__file__).with_name("index.html").read_text()
             (part / "index.html").write_text(jinja2.Template(template).render(page))
-            (part / "report.json").write_text(json.dumps(
-                {name: page.get(name) for name in ("kinds", "curve", "variants", "alone")}, indent=1) + "\n")
+            figures = {name: page.get(name) for name in ("kinds", "curve", "off_grid", "variants", "alone")}
+            (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
     except (ParameterError, ToolError, SimulationError, OSError) as error:
         print(f"cells.report: {error}", file=sys.stderr)
         return 2
