@@ -42,6 +42,8 @@ class Machine:
         self.netlist = netlist
         self.switches = Switches(netlist, polarity, rails)
         self.inputs, self.outputs = directions(netlist, rails)
+        if not self.outputs:
+            raise ParameterError(f"netlist = {netlist.name}: has no output, a port that it drives to both levels")
         self._explore()
         seen = {}
         for state in self.states:

@@ -138,12 +138,23 @@ def test_a_netlist_of_ones_own_becomes_a_library(tmp_path):
     ("VPWR", "POWER", "netlist = myinv: port VPWR or VPB or vdd is missing; it has A, Y, POWER, VGND"),
     ("w=0.65", "w=0.65u", "netlist = myinv: model = sky130_fd_pr__nfet_01v8: has no model for w and l"),
     ("X0 Y A VGND VGND sky", "D0 Y A sky", "is no transistor, capacitor or resistor"),
+    ("X1 Y A VPWR", "X1 Z A VPWR", "netlist = myinv: has no output, a port that it drives to both levels"),
+    ("w=0.65", "", "netlist = myinv: transistor X0 must have w and l above 0"),
+    (" VPWR VPWR sky", " VPWR VPWR m2 sky", "must be a transistor: drain gate source bulk model"),
+    (".ends", "", ".subckt myinv has no .ends"),
     (".subckt", "*", "has no .subckt")])
 def test_a_wrong_netlist_is_refused_before_anything_runs(tmp_path, capsys, old, new, why):
     (tmp_path / "mine.sp").write_text(OWN[:OWN.index(".subckt other")].replace(old, new))
     assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
     assert why in capsys.readouterr().err
     assert not (tmp_path / "mine").exists()
+
+
+@ready
+def test_a_file_that_is_no_text_is_refused(tmp_path, capsys):
+    (tmp_path / "mine.sp").write_bytes(bytes(range(256)))
+    assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
+    assert "mine.sp: has no .subckt" in capsys.readouterr().err
 
 
 @ready
