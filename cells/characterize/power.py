@@ -26,11 +26,11 @@ def quiet_energy(bench, pin):
 
 
 def _quiet_changes(machine, pin, level):
-    """Changes of ``pin`` to ``level`` that move no output, one for every pair of inputs and outputs."""
+    """Changes of ``pin`` to ``level`` that move no output, driven or not, one for every pair of inputs and outputs."""
     found = {}
     for change in sorted(machine.changes, key=lambda c: len(c.before.path)):
         if (machine.inputs[change.pin] == pin and change.after.inputs[change.pin] == level
-                and change.before.outputs == change.after.outputs):
+                and change.before.kept == change.after.kept):
             found.setdefault((change.before.inputs, change.before.outputs), change)
     return list(found.values())
 
