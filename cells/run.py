@@ -53,7 +53,8 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
-        summary |= {"names": [s.name for s in found], "read_by": accept.readers(part / f"{name}.lib")}
+        summary |= {"names": [s.name for s in found], "left_out": {} if wanted else sources.left_out(library),
+                    "read_by": accept.readers(part / f"{name}.lib")}
         summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items()
                                 if said not in accept.GOOD]
         corners = _corners(folder) | {name: dict(summary)}

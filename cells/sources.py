@@ -48,6 +48,15 @@ def names(library):
     return sorted(spice.read_all(_file(library)))
 
 
+def left_out(library):
+    """{cell: why} of the cells of ``library`` that are not characterized, for want of a function."""
+    if library == "sky130_hd":
+        return sky130_hd.left_out()
+    if library == "flexcell":
+        return {name: "has no input, or no logic" for name in sorted(_flexcell_areas()) if name.startswith(_NOT_LOGIC)}
+    return {}
+
+
 def title(library):
     """What its folder and files are called."""
     return library if library in LIBRARIES else _file(library).stem

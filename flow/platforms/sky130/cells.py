@@ -5,8 +5,10 @@ from models.parameters import ParameterError
 
 LIBRARY = "sky130_fd_sc_hd"
 SITE = ("unithd", 0.46, 2.72)              # of placement: name, um, um
-# Not for synthesis: fillers, taps, ties (no input), probes, power gating, spare cells
-UNUSED = ("conb", "decap", "diode", "fill", "lpflow", "macro", "probe", "tap")
+# Cells that synthesis does not get: beginning of the name -> why
+UNUSED = {"conb": "holds a constant: no input, nothing to time", "decap": "a capacitor", "diode": "an antenna diode",
+          "fill": "fills a gap in a row", "lpflow": "for power gating: a second supply, or a level between two",
+          "macro_sparecell": "unconnected gates for repairs", "probe": "a pad for a probe", "tap": "ties a well"}
 
 
 def file(cell, suffix):
@@ -21,6 +23,14 @@ def file(cell, suffix):
 
 
 def names():
-    """Cells that synthesis may use ('a21o_1', ...), sorted: no fillers, taps, diodes, probes or power-gating cells."""
-    out = [path.stem.removeprefix(f"{LIBRARY}__") for path in (wheel() / LIBRARY / "cells").glob("*/*.gds")]
-    return sorted(name for name in out if not name.startswith(UNUSED) and name.rpartition("_")[2].isdigit())
+    """Cells that synthesis may use ('a21o_1', ...), sorted: all but those `left_out`."""
+    return sorted(set(_all()) - set(left_out()))
+
+
+def left_out():
+    """{cell: why} of the library's other cells, sorted."""
+    return {name: why for name in sorted(_all()) for start, why in UNUSED.items() if name.startswith(start)}
+
+
+def _all():
+    return [path.stem.removeprefix(f"{LIBRARY}__") for path in (wheel() / LIBRARY / "cells").glob("*/*.gds")]
