@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import shutil
 import time
 from dataclasses import asdict
 from pathlib import Path
@@ -61,12 +62,18 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
         for suffix, text in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
             (part / f"{title}.{suffix}").write_text(text)
         (part / "summary.json").write_text(json.dumps({"corner": name, **summary, "corners": corners}, indent=1) + "\n")
+    _keep_failed(folder / "failed" / name, measured)
+    return summary
+
+
+def _keep_failed(folder, measured):
+    """Netlists of the simulations that failed, in place of those of an earlier run."""
+    shutil.rmtree(folder, ignore_errors=True)
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
-            file = folder / "failed" / f"{measure['name']}.{k}.sp"
-            file.parent.mkdir(exist_ok=True)
-            file.write_text(f"* {failure['what']}: {failure['why']}\n{failure['deck']}")
-    return summary
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / f"{measure['name']}.{k}.sp").write_text(
+                f"* {failure['what']}: {failure['why']}\n{failure['deck']}")
 
 
 def cell_of(source, process):

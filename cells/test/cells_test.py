@@ -22,6 +22,11 @@ ready = pytest.mark.skipif(not shutil.which("ngspice") or importlib.util.find_sp
 
 
 CONDITION_SLEWS = 1e9 * np.array(Conditions(Corner("tt", 25, 1.8)).slews)
+SWAPPED = """.subckt myinv A Y VPWR VGND
+X0 Y A VGND VPWR sky130_fd_pr__pfet_01v8_hvt w=1.0 l=0.15
+X1 Y A VPWR VGND sky130_fd_pr__nfet_01v8 w=0.65 l=0.15
+.ends
+"""
 
 
 def make(folder, *arguments):
@@ -158,6 +163,17 @@ def test_a_wrong_netlist_is_refused_before_anything_runs(tmp_path, capsys, old, 
     assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
     assert why in capsys.readouterr().err
     assert not (tmp_path / "mine").exists()
+
+
+@ready
+def test_a_cell_that_never_reaches_its_level_is_reported_with_its_netlist(tmp_path, capsys):
+    """An n transistor pulls up and a p transistor down: a buffer as switches, and short of both levels."""
+    (tmp_path / "mine.sp").write_text(SWAPPED)
+    assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 1
+    summary = json.loads((tmp_path / "mine" / "summary.json").read_text())
+    assert summary["failed"] == ["myinv: Y: axes: myinv: Y does not reach its level after A changes"]
+    assert "myinv: Y has no arc from A" in summary["problems"]
+    assert ".tran" in (tmp_path / "mine" / "failed" / "tt_025C_1v80" / "myinv.0.sp").read_text()
 
 
 @ready
