@@ -41,6 +41,10 @@ def _arcs(cell, pin, inputs):
     there = {t.attributes["related_pin"] for t in pin.all("timing")}
     for name in sorted(needed - there):
         yield f"{pin.name} has no arc from {name}"
+    for name in sorted(set(re.findall(r"\w+", pin.attributes.get("three_state", ""))) & set(inputs)):
+        for kind in ("three_state_enable", "three_state_disable"):
+            if not pin.all("timing", related_pin=name, timing_type=kind):
+                yield f"{pin.name} has no {kind} from {name}"
     for edge in ("rise", "fall") if inputs else ():
         if not any(t.one(f"cell_{edge}") for t in pin.all("timing")):
             yield f"{pin.name} never has cell_{edge}"
@@ -60,12 +64,14 @@ def _rises(name, timing, table):
 
 
 def _constraints(cell, inputs):
-    """A flip-flop or latch has setup and hold for what it stores, and they do not exclude each other."""
+    """A flip-flop or latch has setup and hold for what it stores, recovery and removal for its set and reset."""
     storage = cell.one("ff") or cell.one("latch")
     if not storage:
         return
     data = storage.attributes.get("next_state") or storage.attributes.get("data_in")
-    for name in sorted(set(re.findall(r"\w+", data)) & set(inputs)):
-        kinds = {t.attributes["timing_type"].split("_")[0] for t in inputs[name].all("timing")}
-        for kind in sorted({"setup", "hold"} - kinds):
-            yield f"{name} has no {kind} time"
+    asyncs = " ".join(storage.attributes.get(name, "") for name in ("clear", "preset"))
+    for text, needed in ((data, {"setup", "hold"}), (asyncs, {"recovery", "removal", "min"})):
+        for name in sorted(set(re.findall(r"\w+", text)) & set(inputs)):
+            kinds = {t.attributes["timing_type"].split("_")[0] for t in inputs[name].all("timing")}
+            for kind in sorted(needed - kinds):
+                yield f"{name} has no {'shortest pulse' if kind == 'min' else kind + ' time'}"
