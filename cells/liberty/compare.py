@@ -35,11 +35,14 @@ class Difference:
 
     @property
     def relative(self):
-        """Error of every entry in shares of theirs, of energies in shares of the mean of |theirs| along the row."""
-        scale = np.abs(self.theirs)
+        """Error of every entry in shares of theirs, of energies in shares of the mean of |theirs| where that is more;
+
+        0 where both are 0 (the slew of an output let go), NaN where theirs alone is.
+        """
+        scale, error = np.abs(self.theirs), self.ours - self.theirs
         if self.kind == "energy":
             scale = np.maximum(scale, scale.mean())
-        return (self.ours - self.theirs) / scale
+        return np.where(scale > 0, error / np.where(scale > 0, scale, 1.0), np.where(error == 0, 0.0, np.nan))
 
 
 def library(tree, known):
@@ -55,7 +58,7 @@ def library(tree, known):
 def differences(name, ours, theirs):
     """Differences of one cell: list. A table that one of the two lacks has NaN there."""
     found = [Difference(name, "leakage", "mean", np.array([ours.attributes.get("cell_leakage_power", np.nan)]),
-                        np.array([theirs.attributes["cell_leakage_power"]]))]
+                        np.array([theirs.attributes.get("cell_leakage_power", np.nan)]))]
     found += [Difference(name, "leakage by state", state.attributes["when"], np.array([_leakage(ours, state)]),
                          np.array([state.attributes["value"]]))
               for state in theirs.all("leakage_power") if "when" in state.attributes]
@@ -125,7 +128,9 @@ def _same(own, group, table, kind):
 
 
 def _at(mine, theirs):
-    """Table ``mine`` at the points of ``theirs``, bilinear."""
+    """Table ``mine`` at the points of ``theirs``, bilinear; at its own first point where theirs is one number."""
+    if "index_1" not in theirs.attributes:
+        return np.full(theirs.array("values").shape, mine.array("values").flat[0])
     rows = theirs.array("index_1")
     if "index_2" not in theirs.attributes:
         return np.interp(rows, mine.array("index_1"), np.ravel(mine.array("values")))

@@ -24,7 +24,7 @@ def heat_maps(differences):
     """One row of maps: relative error in per cent of every two-dimensional table of one cell, grid by grid."""
     tables = [d for d in differences if np.ndim(d.theirs) == 2 and np.isfinite(d.ours - d.theirs).all()]
     columns = 6
-    rows = -(-len(tables) // columns)
+    rows = max(1, -(-len(tables) // columns))
     figure, axes = plt.subplots(rows, columns, figsize=(2.3 * columns, 2.2 * rows), squeeze=False,
                                 layout="constrained")
     for axis in axes.flat:

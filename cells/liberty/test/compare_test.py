@@ -71,3 +71,14 @@ def test_leakage_is_paired_by_what_the_conditions_mean():
     theirs = cell(leakage=(("!B & A & !Q", 2.0), ("A", 6.0), ("!A", 12.0)))
     assert found(ours, theirs) == {"!B & A & !Q": (2.0, 2.0), "A": (3.0, 6.0), "!A": (12.0, 12.0)}
     assert summary(differences("c", ours, theirs))["error"]["leakage by state"]["worst"] == pytest.approx(50)
+
+
+def test_numbers_without_axes_and_zeros_are_compared():
+    """As a foundry may write when an output is let go: one number for every slew and load, and no slew."""
+    attributes = {"related_pin": "E", "timing_type": "three_state_disable", "timing_sense": "positive_unate"}
+    ours = cell((attributes, {"cell_rise": 3, "rise_transition": 0}))
+    theirs = cell((attributes, {"rise_transition": 0}))
+    theirs.one("pin", "Q").one("timing").add("cell_rise", "scalar", values=[2.0])
+    error = summary(differences("c", ours, theirs))["error"]
+    assert error["delay"]["worst"] == pytest.approx(50) and error["slew"] == {
+        "unit": "%", "entries": 4, "missing": 0, "median": 0.0, "p95": 0.0, "worst": 0.0}
