@@ -75,7 +75,7 @@ def hundred_times_the_load():
 def metastable():
     """A flip-flop ever closer to the edge between keeping and losing a bit, down to 1 fs: no run takes too long."""
     flip_flop = cell("dfxtp_1")
-    scenario, longest = Scenarios(flip_flop).setup("D", 1), 0.0
+    (scenario,), longest = Scenarios(flip_flop).setup("D", 1), 0.0
     with Bench(flip_flop, sources.process("sky130_hd"), TYPICAL) as bench:
         def run_at(offset):
             nonlocal longest

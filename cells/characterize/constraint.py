@@ -47,14 +47,19 @@ def constraints(bench, tried):
 
 def _searched(bench, tried, pin, related, kind, by_edge):
     found = {"pin": pin, "related": related, "type": kind, "slews": bench.conditions.constraint_slews}
-    for name, scenario in by_edge.items():
-        if scenario:
-            found[name] = tried(f"{pin} {name}: {kind}", _times, bench, scenario)
+    for name, scenarios in by_edge.items():
+        if scenarios:
+            found[name] = tried(f"{pin} {name}: {kind}", _longest, bench, scenarios)
     return found
 
 
+def _longest(bench, scenarios):
+    """What every one of ``scenarios`` needs: the longest time for each pair of slews."""
+    return np.max([_times(bench, scenario) for scenario in scenarios], axis=0).tolist()
+
+
 def _times(bench, scenario):
-    """(slews of the clock, slews of the data) of least times between the two edges, s, as lists."""
+    """(slews of the clock, slews of the data) of least times between the two edges, s."""
     slews, table = bench.conditions.constraint_slews, []
     for i, clock in enumerate(slews):
         row = []

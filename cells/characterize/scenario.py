@@ -42,18 +42,21 @@ class Scenarios:
                 and all(s.inputs[p] == level for p, level in self.idle.items() if p != but)]
 
     def setup(self, pin, to):
-        """Scenario of ``pin`` (name) going ``to`` 0 or 1 before the clock's edge, or None."""
+        """Scenarios of ``pin`` (name) going ``to`` 0 or 1 before the clock's edge: one for each level that it can bring
+
+        (a scan enable either, data one).
+        """
         return self._data(pin, to, early=True)
 
     def hold(self, pin, to):
-        """Scenario of ``pin`` going ``to`` 0 or 1 after the clock's edge, or None."""
+        """Scenarios of ``pin`` going ``to`` 0 or 1 after the clock's edge: one for each level that must stay."""
         return self._data(pin, to, early=False)
 
     def _data(self, pin, to, early):
         data, active = self.machine.inputs.index(pin), self.storage.active
         latch = self.storage.kind == "latch"
         clock_to = 1 - active if latch else active
-        found = []
+        found = {}
         for s in self._quiet(1 - clock_to):
             moved = self.after.get((s, data))
             if s.inputs[data] == to or moved is None:
@@ -63,12 +66,15 @@ class Scenarios:
                 continue
             expected = (taken if early else kept).outputs[0]
             trigger = data if latch else self.clock
-            found.append(Scenario(s, data, to, self.clock, clock_to, expected, expected != s.outputs[0], early,
-                                  trigger))
-        return next((f for f in found if f.moves), found[0] if found else None)
+            found.setdefault(expected, []).append(Scenario(s, data, to, self.clock, clock_to, expected,
+                                                           expected != s.outputs[0], early, trigger))
+        return [next((f for f in same if f.moves), same[0]) for _, same in sorted(found.items())]
 
     def release(self, pin, early):
-        """Scenario of an asynchronous ``pin`` let go before (recovery) or after (removal) the clock's edge, or None."""
+        """Scenario of an asynchronous ``pin`` let go before (recovery) or after (removal) the clock's edge: a list of
+
+        one, or none.
+        """
         data, active = self.machine.inputs.index(pin), self.storage.active
         latch = self.storage.kind == "latch"
         clock_to = 1 - active if latch else active
@@ -83,9 +89,9 @@ class Scenarios:
             if kept.outputs[0] == taken.outputs[0]:
                 continue
             expected = (taken if early else kept).outputs[0]
-            return Scenario(s, data, self.idle[data], self.clock, clock_to, expected, expected != s.outputs[0], early,
-                            data if latch else self.clock)
-        return None
+            return [Scenario(s, data, self.idle[data], self.clock, clock_to, expected, expected != s.outputs[0], early,
+                             data if latch else self.clock)]
+        return []
 
     def pulses(self, pin, level):
         """[(state, expected output)], one for each level that a pulse to ``level`` on ``pin`` (clock, set or reset) can

@@ -5,7 +5,7 @@ import pytest
 from cells.characterize.cell import _between
 from cells.characterize.scenario import Scenarios
 from cells.netlist.function import understand
-from cells.netlist.test.netlist_test import FLIP_FLOP, LATCH, POLARITY, RAILS, cell
+from cells.netlist.test.netlist_test import FLIP_FLOP, LATCH, POLARITY, RAILS, cell, gate, inverter
 
 
 def scenarios(lines, ports):
@@ -29,8 +29,18 @@ def test_a_latch_is_set_and_cleared_by_a_pulse_of_its_gate():
 @pytest.mark.parametrize("to", [0, 1])
 def test_setup_and_hold_expect_what_each_keeps(early, kind, to):
     """This flip-flop stores !D: with setup kept it takes the new value, with hold kept the old."""
-    found = getattr(scenarios(FLIP_FLOP, "C D Q"), kind)("D", to)
+    found, = getattr(scenarios(FLIP_FLOP, "C D Q"), kind)("D", to)
     assert (found.early, found.data_to, found.expected) == (early, to, 1 - to if early else to)
+
+
+@pytest.mark.parametrize("kind", ["setup", "hold"])
+def test_a_select_is_tried_with_both_levels(kind):
+    """E chooses which of two inputs is stored: its setup time must do for a 0 and for a 1."""
+    select = [*inverter("e", "E", "en"), *gate("a", "A", "D", "en", "E"), *gate("b", "B", "D", "E", "en")]
+    found = scenarios([*select, *FLIP_FLOP], "A B C E Q")
+    assert [s.expected for s in getattr(found, kind)("E", 1)] == [0, 1]
+    assert all(s.moves and s.early == (kind == "setup") for s in getattr(found, kind)("E", 1))
+    assert [s.expected for s in getattr(found, kind)("A", 1)] == [0 if kind == "setup" else 1]
 
 
 def test_a_share_of_an_axis_does_not_depend_on_points_added_to_it():
