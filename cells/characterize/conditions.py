@@ -31,7 +31,7 @@ class Conditions:
     degrade: float = 0.1
     states: int = 4
     bend: float = 0.015
-    extra: int = 2
+    extra: int = 6
     settings: Settings = field(default_factory=lambda: Settings(reltol=1e-4, method="gear", steps=50))
 
     def __post_init__(self):

@@ -13,7 +13,7 @@ from cells.spice.settings import Settings
 from flow import jobs
 
 CELLS = ("inv_1", "nand2_1", "buf_2")
-SLOW = ("dfxtp_1",)        # with the default setting alone
+SLOW = ("inv_8", "nor2_4", "xor2_1", "dfxtp_1")      # with the default setting alone
 DEFAULT = "reltol 0.0001, 50 steps"
 OFF_GRID = 16              # random points of a table, the same for every setting
 DENSE = Settings(reltol=1e-6, trtol=1.0, steps=1000, method="gear")
@@ -30,7 +30,7 @@ def settings(conditions):
     for count in (4, 5, 7, 9, 13):
         slews = tuple(float(s) for s in np.geomspace(base.slews[0], base.slews[-1], count))
         found[f"grid {count} x {count}, not refined"] = replace(base, slews=slews, loads=count, extra=0)
-    for extra in (1, 2, 4):
+    for extra in (1, 2, 4, 12):
         found[f"grid 7 x 7, up to {extra} more"] = replace(base, extra=extra)
     return found
 

@@ -34,7 +34,7 @@ def heat_maps(differences):
         values = (d.ours - d.theirs) * 1e3 if time else 100 * d.relative
         axis.imshow(values, cmap="RdBu_r", vmin=-SCALE, vmax=SCALE)
         for (i, j), value in np.ndenumerate(values):
-            axis.text(j, i, f"{value:.0f}", ha="center", va="center", fontsize=6,
+            axis.text(j, i, str(round(value)), ha="center", va="center", fontsize=6,
                       color="white" if abs(value) > 0.7 * SCALE else "black")
         axis.set_title(f"{d.what}{' (ps)' if time else ' (%)'}", fontsize=6)
     return embedded(figure)
