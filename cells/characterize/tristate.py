@@ -17,7 +17,7 @@ END = 0.9              # of a ramp at the output, over which charge counts as fo
 
 
 class Held:
-    """A context manager: the cell of ``bench`` with a source at ``output``, which lends its levels to none."""
+    """A context manager: the cell of ``bench`` with a source at ``output`` (a name) in place of a load."""
 
     def __init__(self, bench, output, process):
         self.bench, self.output = bench, output
