@@ -3,20 +3,23 @@
 That is the negotiation of PathFinder (McMurchie and Ebeling, FPGA 1995), begun from a layout that is nearly routed.
 """
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 from .board import nanometres
 from .nets import routed
 
 PATIENCE = 20           # nets that lose their places for every one that is asked for, at most
+HOPS = 3                # times that a net is routed with hops; then it goes without, and keeps its antenna
 
 
 @dataclass
 class Bargain:
-    """made: dict net -> Shapes of the nets routed anew. open: nets that are not."""
+    """made: dict net -> Shapes of the nets routed anew. open: nets that are not. turns: of every net."""
 
     made: dict = field(default_factory=dict)
     open: list = field(default_factory=list)
+    turns: Counter = field(default_factory=Counter)
 
 
 def bargain(board, pins, wanted, hopping=(), held=None):
@@ -33,8 +36,9 @@ def bargain(board, pins, wanted, hopping=(), held=None):
     while waiting:
         net = waiting.pop(0)
         boxes = [[(board.levels[name], *nanometres(box)) for name, *box in pin] for pin in pins[net]]
-        shapes, losers, places = (net in hopping and routed(board, boxes, hops=True)) or routed(board, boxes) or (
-            None, (), ())
+        state.turns[net] += 1
+        hops = net in hopping and state.turns[net] <= HOPS
+        shapes, losers, places = (hops and routed(board, boxes, hops)) or routed(board, boxes) or (None, (), ())
         patience -= len(losers)
         if shapes is None or patience < 0:
             state.open.append(net)

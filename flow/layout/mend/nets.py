@@ -128,7 +128,7 @@ def _hop(window, accesses):
     shapes, end = Shapes(), places[way[-1]]
     _join(shapes, accesses[way[0]])
     _draw(shapes, window, way)
-    if not enlarged(window.site, shapes):
+    if not enlarged(window.site, shapes, alone=True):
         return {}
     below = {level: list(boxes) for level, boxes in shapes.wires.items() if level != highest}
     _draw(shapes, window, [way[-1], end])
@@ -190,8 +190,9 @@ def _draw(shapes, window, way):
             shapes.wire(level, _around(left, bottom, right, top, half), right - left + top - bottom)
 
 
-def enlarged(site, shapes):
-    """Whether every piece of wire has, or could be given, the least area; gaps within the net are closed."""
+def enlarged(site, shapes, alone=False):
+    """Whether every piece of wire has, or could be given, the least area; gaps within the net are closed. alone: no
+    other net is to make room for that."""
     import klayout.db as db
     for level, boxes in shapes.wires.items():
         layer = site.wiring.layers[level]
@@ -203,19 +204,21 @@ def enlarged(site, shapes):
         for polygon in db.Region([db.Box(*box) for box in boxes]).merged().each():
             lack = layer.area - polygon.area()
             if lack > 0:
-                more = _longer(site, level, polygon.bbox(), lack)
+                more = _longer(site, level, polygon.bbox(), lack, alone)
                 if more is None:
                     return False
                 boxes.append(more)
     return True
 
 
-def _longer(site, level, box, lack):
-    """A box that makes the piece of wire ``box`` larger by ``lack`` nm2 and is clear, of all if it can be, or None."""
+def _longer(site, level, box, lack, alone):
+    """A box that makes the piece of wire ``box`` larger by ``lack`` nm2 and is clear, of all if it can be or, with
+    ``alone``, must; else None."""
     wide = -(-lack // box.height()) // 10 * 10 + 10
     high = -(-lack // box.width()) // 10 * 10 + 10
     tries = [(wide, 0, 0, 0), (0, 0, wide, 0), (wide // 2, 0, wide // 2, 0),
              (0, high, 0, 0), (0, 0, 0, high), (0, high // 2, 0, high // 2)]
     made = [(box.left - left, box.bottom - bottom, box.right + right, box.top + top)
             for left, bottom, right, top in tries]
-    return next((one for others in (True, False) for one in made if site.clear(level, one, others)), None)
+    return next((one for others in ([True] if alone else [True, False]) for one in made
+                 if site.clear(level, one, others)), None)
