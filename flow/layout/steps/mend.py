@@ -39,7 +39,7 @@ class MendParameters:
 class Mend(Step):
     """open_nets: left open. mended: nets routed anew because they were open, hopped: because of an antenna, each gate
     behind a piece of the highest wire, parted: because another was nearer than the rules allow, moved: because they were
-    in the way. The clock's wires are left alone."""
+    in the way. Wires of the clock's tree are left alone, but for the one from the port to its root."""
 
     name = "mend"
     inputs = {"gds": "place_route.gds", "placement": "place_route.placement", "shapes": "place_route.shapes",
@@ -60,7 +60,7 @@ class Mend(Step):
         layout.read(str(inputs["gds"]))
         shapes = json.loads(inputs["shapes"].read_text())
         # Of a shape that two nets have drawn, the open one's is the short: it claims last
-        order = [net for net in shapes if net in names and names[net] != p.clock and net not in left] + left
+        order = [net for net in shapes if net in names and net not in left] + left
         board = Board(layout, Wiring.of(known, json.loads(inputs["rules"].read_text())),
                       {net: shapes[net] for net in order})
         pins, hopping = {net: shapes[net]["pins"] for net in order}, set()
