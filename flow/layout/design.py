@@ -32,11 +32,22 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
+class Hard:
+    """A block in a design that is laid out by itself before. instance: its path in the Verilog. design: its name here.
+    at: shares of the width and of the height that are left free to its west and its south.
+    """
+
+    instance: str
+    design: str
+    at: tuple = (0.5, 0.0)
+
+
+@dataclass(frozen=True)
 class Design:
     """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
     block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
     smallest area begins. A block whose tests have a size of their own is laid out in that size. divider, n_frac: of the
-    chip in whose frame the block is watched.
+    chip in whose frame the block is watched. macros: tuple of Hard.
     """
 
     name: str
@@ -47,6 +58,7 @@ class Design:
     utilization: float = 0.88
     divider: str = "radix4"
     n_frac: int = 8
+    macros: tuple = ()
     clock: Clock = Clock()
     surroundings: Surroundings = Surroundings()
 
@@ -69,9 +81,14 @@ DESIGNS = {made.name: made for made in (
     divider("quad_divider_pipelined", "pipelined"),
     divider("cordic", "cordic"),
     Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
+    Design("phase_path_macros", "PhasePath", "phase_path", ("PhasePath_8_radix4",),
+           macros=(Hard("divider", "quad_divider"),)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
-    Design("asp_chip", "AspChip", "asp_chip", utilization=0.6))}
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.6),
+    # of the thesis (B.3.2): both blocks hardened, the rest around them
+    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.6,
+           macros=(Hard("phase.divider", "quad_divider", (0.2, 0.0)), Hard("amp", "amp_ctrl", (0.8, 0.0)))))}
 
 
 def design(name):

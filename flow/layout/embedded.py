@@ -12,7 +12,9 @@ from flow.steps.versions import version
 from models.parameters import ParameterError, check_real
 
 from .constraints import sdc
+from .design import DESIGNS
 from .steps.antenna import Antenna, AntennaParameters
+from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
@@ -38,6 +40,9 @@ from .steps.timing import MEASURES, Timing, TimingParameters
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
 CHIP_FRAME = {"rows": 4, "cols": 6}      # pixels: its netlist with delays runs a thousand times slower than a block's
+# What steps look at where there are blocks laid out before: these and the rest put together
+ASSEMBLED = {"place_route.netlist": "assemble.netlist", "place_route.placement": "assemble.placement",
+             "mend.placement": "assemble.placement"}
 STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
 
 
@@ -64,7 +69,8 @@ class Options:
     def __post_init__(self):
         for path in self.liberty:
             if not path.is_file():
-                raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
+                raise ParameterError(f"liberty = {path}: no such file; without LIBERTY the cells are measured, "
+                                     "once, into build/layout/shared/timing.*/<corner>.lib")
             if not re.match(r"\s*(/\*.*?\*/\s*)*library\s*\(", path.read_text(errors="replace")[:10_000], re.S):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
         if len({path.stem for path in self.liberty}) != len(self.liberty):
@@ -87,37 +93,45 @@ def files(design, options, folder):
     return given | measure | {f"timing.{path.stem}": path for path in options.liberty}
 
 
+def modules(design):
+    """Names of the modules of a design that are laid out before it: tuple."""
+    return tuple(dict.fromkeys(DESIGNS[hard.design].top for hard in design.macros))
+
+
 def front(design, options):
     """The steps ahead of a floorplan."""
-    library = Library(LibraryParameters(options.pdk))
+    library, hard = Library(LibraryParameters(options.pdk)), modules(design)
     if not options.corners:
-        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, hard))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
-    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT),
+    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT, hard),
                                              options.corners[0])]
 
 
 def tries(design, options):
     """Pairs (floorplan, place and route), the smallest area first."""
-    known, _ = process(options.pdk)
+    places = tuple((hard.instance, DESIGNS[hard.design].top, *hard.at) for hard in design.macros)
     for k in range(int((options.utilization - LEAST) / STEP + 1e-9) + 1):
-        yield (Floorplan(FloorplanParameters(round(options.utilization - STEP * k, 4), row_um=known.row_um,
-                                             site_um=known.site_um)),
-               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port)))
+        yield (Floorplan(FloorplanParameters(options.pdk, round(options.utilization - STEP * k, 4), macros=places)),
+               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port, macros=modules(design))))
 
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    clock = design.clock.port
-    return [Mend(MendParameters(options.pdk, clock)), StreamOut(StreamOutParameters(options.pdk, clock)),
-            Fill(FillParameters(options.pdk)), Drc(), Antenna(AntennaParameters(options.pdk))]
+    clock, hard = design.clock.port, modules(design)
+    return [Mend(MendParameters(options.pdk, clock)), *([Assemble(AssembleParameters(options.pdk, hard))] if hard else []),
+            StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))), Fill(FillParameters(options.pdk)), Drc(),
+            Antenna(AntennaParameters(options.pdk))]
 
 
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
-    return [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
-            Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
-            Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+    steps = [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
+             Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
+             Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+    for step in steps if design.macros else ():
+        step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
+    return steps
 
 
 def simulations(design):
