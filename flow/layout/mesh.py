@@ -27,11 +27,12 @@ def metal(known):
     return Metal(low.ohm / known.rail_um, high.ohm / known.strap_um, stack)
 
 
-def drops(rails, straps, height, taps, metal):
+def drops(rails, straps, height, taps, metal, breaks=()):
     """Volts by which each tap lies from the pads: array (taps,), and the largest share of current lost in the solution.
 
     rails: y of each, um. straps: x of each; their ends at 0 and ``height`` are the pads. taps: (rail's index, x, A)
-    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap.
+    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap. breaks: boxes (left, bottom,
+    right, top) in which there are no rails.
     """
     rails, straps = np.asarray(rails, float), np.asarray(straps, float)
     crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))     # nodes of the straps
@@ -51,7 +52,8 @@ def drops(rails, straps, height, taps, metal):
             else:
                 where.append((k, nodes))
                 currents.append((nodes, taps[k][2]))
-            if before is not None:
+            if before is not None and not any(bottom <= rails[r] <= top and before <= left and right <= x
+                                              for left, bottom, right, top in breaks):
                 edges.append((nodes - 1, nodes, edge * metal.rail * max(x - before, 1e-3)))
             before, nodes = x, nodes + 1
     matrix = _laplacian(nodes, edges, pads)

@@ -86,6 +86,20 @@ class Netlist:
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 
+    def apart(self, macros, buffer):
+        """The Netlist with a buffer (cell, input, output) between its inputs and blocks, whose cells are ``macros``: else
+        a wire from outside would end in a block alone, with nothing here that keeps it from being an antenna. Clocks
+        stay."""
+        inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
+        inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
+        shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
+        behind = {net: f"{net}_inside" for net in shared}
+        instances = [Instance(i.name, i.cell, {pin: behind.get(net, net) for pin, net in i.pins.items()})
+                     if i.cell in macros else i for i in self.instances]
+        instances += [Instance(f"inside{k}", buffer[0], {buffer[1]: net, buffer[2]: behind[net]})
+                      for k, net in enumerate(shared)]
+        return Netlist(self.name, self.ports, tuple(instances))
+
     def verilog(self):
         """Structural Verilog with the ports of the RTL."""
         declared = {net for port in self.ports for net in port.bits()}

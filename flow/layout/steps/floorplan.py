@@ -98,7 +98,7 @@ def _with_halo(macro, known):
 
 
 def placed(macros, width, height, known):
-    """List of dicts: instance, cell, x_um, y_um of the block, outer: box (um) with the rows left free.
+    """List of dicts: instance, cell, x_um, y_um, width_um, height_um of the block, outer: box (um) with what is left free.
 
     Raises ParameterError where blocks meet, or lie above one another: their straps go on through the whole core.
     """
@@ -114,7 +114,7 @@ def placed(macros, width, height, known):
         beside, above = (rows * row for rows in HALO_ROWS)
         outer = left, max(0, bottom - above), left + wide, min(height, top + above)
         made.append({"instance": name, "cell": macro.name, "x_um": round(left + beside, 4), "y_um": round(bottom, 4),
-                     "outer": [round(value, 4) for value in outer]})
+                     "width_um": macro.width_um, "height_um": macro.height_um, "outer": [round(value, 4) for value in outer]})
     ends = sorted((block["outer"][0], block["outer"][2], block["instance"]) for block in made)
     for (_, end, name), (begin, _, other) in zip([(0, 0, "the west edge"), *ends], [*ends, (width, 0, "the east edge")]):
         if begin - end < BESIDE_UM:

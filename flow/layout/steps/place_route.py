@@ -127,8 +127,8 @@ class PlaceRoute(Step):
         ends = Counter(net for instance in netlist.instances for net in instance.pins.values())
         ends.update(net for port in netlist.ports for net in port.bits())
         nets = next(instance.pins for instance in netlist.instances if instance.name == block["instance"])
-        return {"name": name, **{key: block[key] for key in ("x_um", "y_um", "outer")},
-                "width_um": macro.width_um, "height_um": macro.height_um, "straps": macro.straps,
+        return {"name": name, "straps": macro.straps,
+                **{key: block[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
                 "pins": [[pins[pin], ends[nets[pin]] > 1, *piece] for pin, piece in macro.pins.items()]}
 
 

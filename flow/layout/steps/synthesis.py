@@ -64,7 +64,8 @@ class Synthesis(Step):
             rtl=inputs["rtl"], top=p.top, blocks="\n".join(f"blackbox {name}" for name in p.macros), liberty=inputs["liberty"],
             timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
         run(["yosys", "-q", "-s", files["script"]])
-        netlist = Netlist.from_yosys(files["json"], p.top, ("buf_x1", "i", "q"), p.macros)
+        buffer = "buf_x1", "i", "q"
+        netlist = Netlist.from_yosys(files["json"], p.top, buffer, p.macros).apart(p.macros, buffer)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
         area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
