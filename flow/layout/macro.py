@@ -1,11 +1,10 @@
 """A block that was laid out before, as one that holds it sees it: size, pins and straps, from its LEF."""
 
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from flow import lef
 from flow.platforms import openroad
-from models.parameters import ParameterError
 
 from .abstract import EDGE_UM
 from .netlist import SUPPLIES
@@ -32,21 +31,15 @@ class Macro:
     def read(cls, path, known, names):
         """From a LEF as the step `lef` writes it. known: Embedded; names: see `layer_names`. Raises ParameterError."""
         text = Path(path).read_text()
-        size = re.search(r"(?m)^MACRO (\S+)$.*?^ +SIZE (\S+) BY (\S+) ;", text, re.S | re.M)
-        if not size:
-            raise ParameterError(f"lef = {path}: must have a MACRO with a SIZE")
         wires = {names.get((wire.layer, wire.datatype), wire.name): wire.name for wire in known.wires}
-        pieces, straps = {}, []
-        for name, body in re.findall(r"(?ms)^  PIN (\S+)$(.*?)^  END \1$", text):
-            boxes = [(wires[layer], tuple(map(float, corners.split()))) for layer, corners in
-                     re.findall(r"LAYER (\S+) ;\s+RECT ([-\d. ]+) ;", body)]
-            if name in SUPPLIES:
-                straps += [((box[0] + box[2]) / 2, name) for _, box in boxes]
-            else:
-                pieces[name] = re.search(r"DIRECTION (\w+) ;", body)[1].lower(), boxes
-        pins = {name: (direction, *_best(boxes, [box for other, (_, more) in pieces.items() if other != name
-                                                 for _, box in more])) for name, (direction, boxes) in pieces.items()}
-        return cls(size[1], float(size[2]), float(size[3]), pins, tuple((net, x) for x, net in sorted(straps)))
+        found = {pin.name: pin for pin in lef.pins(text)}
+        straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found[net].boxes)
+        pieces = {pin: [(wires[layer], box) for layer, box in made.boxes] for pin, made in found.items()
+                  if pin not in SUPPLIES}
+        pins = {pin: (found[pin].direction.lower(),
+                      *_best(boxes, [box for other in pieces if other != pin for _, box in pieces[other]]))
+                for pin, boxes in pieces.items()}
+        return cls(lef.name(text), *lef.size(text), pins, tuple((net, round(x, 4)) for x, net in straps))
 
 
 def _best(boxes, others):

@@ -32,8 +32,8 @@ class Straps:
         return found
 
     def positions(self, pins):
-        """(supply, x) of every strap (um), as near to `even` as what runs there and the pins at x in ``pins`` allow:
-        list."""
+        """(supply, x, gaps) of every strap (um), as near to `even` as what runs there and the pins at x in ``pins`` allow:
+        list. gaps: (bottom, top) where that of a block, which stays where it is, leaves room for the clock's trunk."""
         half = self.request["strap_um"] / 2
         taken = [(a - CLEARANCE_UM - half, b + CLEARANCE_UM + half) for a, _, b, _ in self._signals(self.names[-1])]
         taken += [(x - PIN_CLEARANCE_UM, x + PIN_CLEARANCE_UM) for x in pins]
@@ -42,11 +42,12 @@ class Straps:
             x = next((ideal + move for move in moves if not any(a < ideal + move < b for a, b in taken)), None)
             if x is None:
                 raise SystemExit(f"coriolis: no place for a strap near x = {ideal:.1f} um")
-            self.x.append((net, round(self._on_grid(x), 3)))
+            self.x.append((net, round(self._on_grid(x), 3), []))
         for net, x in self.through:
-            if any(a < x < b for a, b in taken):
-                raise SystemExit(f"coriolis: the clock's trunk is in the way of a block's strap at x = {x:.1f} um")
-        self.x = sorted(self.x + self.through, key=lambda strap: strap[1])
+            self.x.append((net, x, _merged((bottom - CLEARANCE_UM, top + CLEARANCE_UM) for left, bottom, right, top
+                                           in self._signals(self.names[-1])
+                                           if left - CLEARANCE_UM < x + half and x - half < right + CLEARANCE_UM)))
+        self.x.sort(key=lambda strap: strap[1])
         return self.x
 
     def create(self):
@@ -56,9 +57,13 @@ class Straps:
         height, width = self.request["height_um"], self.request["strap_um"]
         rows = round(height / self.request["row_um"])
         there = {name: self._signals(name) for name in self.names[1:]}
-        for supply, x in self.x:
+        for supply, x, gaps in self.x:
             net, odd = self.cell.getNet(supply), SUPPLIES.index(supply)
-            Vertical.create(net, self.layer(self.names[-1]), u(x), u(width), u(0.0), u(height))
+            ends = [0.0, *(y for gap in gaps for y in gap), height]
+            for low, high in zip(ends[::2], ends[1::2], strict=True):
+                if high > low:
+                    Vertical.create(net, self.layer(self.names[-1]), u(x), u(width), u(self._on_grid(low)),
+                                    u(self._on_grid(high)))
             for row in range(odd, rows + 1, 2):
                 y, overlap = row * self.request["row_um"], self.request["rail_overlap_um"]
                 if any(left < x < right and bottom - 1e-6 <= y <= top + 1e-6 for left, bottom, right, top in self.inner):
@@ -108,3 +113,14 @@ class Straps:
 def _meet(a, b):
     return (a[0] - CLEARANCE_UM < b[2] and b[0] < a[2] + CLEARANCE_UM
             and a[1] - CLEARANCE_UM < b[3] and b[1] < a[3] + CLEARANCE_UM)
+
+
+def _merged(intervals):
+    """Sorted list of (low, high), none meeting another."""
+    made = []
+    for low, high in sorted(intervals):
+        if made and low <= made[-1][1]:
+            made[-1] = made[-1][0], max(high, made[-1][1])
+        else:
+            made.append((low, high))
+    return made

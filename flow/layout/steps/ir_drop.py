@@ -53,10 +53,11 @@ class IrDrop(Step):
         found, lost = [], []
         for net, odd in (("vdd", 1), ("vss", 0)):       # rails of even rows are ground
             rails = list(range(odd, rows + 1, 2))
-            straps = [x for supply, x in placed["straps"] if supply == net]
+            straps = [x for supply, x, _ in placed["straps"] if supply == net]
+            gaps = [(x, *gap) for supply, x, cut in placed["straps"] if supply == net for gap in cut]
             taps = [(rails.index(row if row % 2 == odd else row + 1), x, current) for row, x, current in cells]
             drop, share = drops([row * known.row_um for row in rails], straps, plan["height_um"], taps, metal(known),
-                                breaks(plan["macros"]))
+                                breaks(plan["macros"]), gaps)
             found.append(drop * 1000)
             lost.append(share)
         total = found[0] + found[1]
@@ -95,7 +96,7 @@ def picture(path, at, drop, straps, plan):
     figure = Figure(figsize=(7, 6), layout="constrained")
     axes = figure.subplots()
     x, y = np.transpose(at)
-    for _, place in straps:
+    for _, place, _ in straps:
         axes.axvline(place, color="0.8", linewidth=1, zorder=0)
     shown = axes.scatter(x, y, c=drop, s=max(1.0, 20000 / len(at)), cmap="inferno", marker="s")
     figure.colorbar(shown, label="supply's drop and ground's rise, mV")

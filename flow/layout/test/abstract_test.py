@@ -2,7 +2,7 @@
 
 import pytest
 
-from flow.handoff.lef import pins, size
+from flow.lef import pins, size
 from flow.layout.abstract import abstract, ports, read_back
 from flow.platforms.embedded import process
 from models.parameters import ParameterError
