@@ -169,8 +169,8 @@ def layout(design, options, runner, behind=back):
     (design, options) -> the steps behind it.
 
     A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken.
-    Returns the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without
-    a layout)}.
+    Returns the tries: list of {utilization, open_segments (None where the router gave up, or blocks found no place),
+    rules_broken (None without a layout)}. Raises ParameterError where blocks never find a place.
     """
     version(f"python {process(options.pdk)[0].wheel}")
     for step in chain(design, options, behind):
@@ -180,10 +180,15 @@ def layout(design, options, runner, behind=back):
         runner.run(step)
     tried = []
     for floorplan, place_route in tries(design, options):
-        runner.run(floorplan)
+        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": None, "rules_broken": None})
+        try:
+            runner.run(floorplan)
+        except ParameterError:
+            if floorplan.parameters.utilization - STEP < LEAST:
+                raise
+            continue
         found = runner.run(place_route)["metrics"]
-        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
-                      "rules_broken": None})
+        tried[-1]["open_segments"] = found["open_segments"]
         mend, *others = judged(design, options)
         if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
             broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)

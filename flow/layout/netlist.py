@@ -58,7 +58,8 @@ class Netlist:
         buffer: (cell, input, output) put in where two ports are one signal. A flip-flop is named after its register,
         a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>.
         """
-        module = json.loads(Path(path).read_text())["modules"][top]
+        modules = json.loads(Path(path).read_text())["modules"]
+        module = modules[top]
         names, ports, extra = {}, [], []
         for name, port in module["ports"].items():
             made = Port(name, port["direction"], len(port["bits"]))
@@ -81,6 +82,9 @@ class Netlist:
                     if not isinstance(bit, int):
                         raise StepError(f"netlist of {top}: pin {net} of a {cell['type']} is constant {bit}")
                     pins[net] = names.setdefault(bit, f"n{bit}")
+            for pin, port in modules[cell["type"]]["ports"].items() if cell["type"] in macros else ():
+                for net in Port(pin, "", len(port["bits"])).bits():
+                    pins.setdefault(net, f"{called}.{net}")          # an output that nothing takes
             name = (registers[cell["connections"]["q"][0]] + REGISTER if is_register(cell["type"])
                     else called if cell["type"] in macros else f"u{number}")
             instances.append(Instance(name, cell["type"], pins))

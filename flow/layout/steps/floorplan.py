@@ -69,6 +69,10 @@ class Floorplan(Step):
         if unknown:
             raise StepError(f"floorplan: no layout of the cells {', '.join(unknown[:5])}: LIBERTY must be of the cells "
                             "that are laid out")
+        lost = {i.name for i in netlist.instances if i.cell in modules} ^ {name for name, *_ in macros}
+        if lost:
+            raise StepError(f"floorplan: the places given for blocks and the blocks in the Verilog differ by "
+                            f"{', '.join(sorted(lost))}")
         blocks = sum(_with_halo(macro, known) * (macro.height_um + HALO_ROWS[1] * known.row_um) for _, macro, _ in macros)
         area = blocks + (sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE)
                          / p.utilization)
