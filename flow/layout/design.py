@@ -98,6 +98,15 @@ def design(name):
     return DESIGNS[name]
 
 
+def flat_design(name):
+    """The same, of those that are laid out whole. Raises ParameterError for one with blocks of its own."""
+    found = design(name)
+    if found.macros:
+        raise ParameterError(f"DESIGN = {name!r}: must be without blocks laid out before it: only the embedded backend's "
+                             "make layout has these")
+    return found
+
+
 def folder_name(design, pdk):
     """Of a design's results: its own name, that of the process behind it where it is not the usual one."""
     return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"

@@ -25,13 +25,14 @@ def summarize(design, options, runner, tried):
 
     area, first = metric("floorplan", "core_area_um2"), next(iter(options.corners), "")
     slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9        # the chip's clock by that of the layout
+    cells = "assemble" if design.macros else "synthesis"        # with those of its blocks and all buffers, or alone
     tools = {}
     for record in records.values():
         tools |= record["tools"]
     return {
         "design": design.name, "top": design.top, "backend": "coriolis", "pdk": options.pdk,
-        "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
-        "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
+        "cells": metric(cells, "cells"), "flip_flops": metric(cells, "flip_flops"),
+        "cell_area_um2": metric(cells, "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
         "utilization": tried[-1]["utilization"], "tried": tried,
         "macros": {hard.instance: hard.design for hard in design.macros} or None,
         "wire_um": metric("assemble", "wire_um") or metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"),

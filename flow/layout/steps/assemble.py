@@ -10,7 +10,7 @@ from flow.steps import Step
 from .. import assembly as assembly_module
 from .. import netlist as netlist_module
 from ..assembly import flat, together
-from ..netlist import Netlist
+from ..netlist import Netlist, is_register
 from .place_route import BLOCK, OVER_UM
 
 PARTS = "netlist", "placement", "spice", "gds"         # of a block
@@ -26,14 +26,14 @@ class AssembleParameters:
 
 class Assemble(Step):
     """The blocks' GDS in place of what stood for them; netlist and placement without hierarchy; netlists of transistors,
-    a block's as it was compared itself."""
+    a block's as it was compared itself. The cells are all that are not there to fill gaps, clocks' buffers too."""
 
     name = "assemble"
     inputs = {"netlist": "place_route.netlist", "placement": "mend.placement", "floorplan": "floorplan.floorplan",
-              "cells": "library.spice", "gds": "mend.gds"}
+              "cells": "library.spice", "gds": "mend.gds", "areas": "library.areas"}
     outputs = {"gds": "assembled.gds", "netlist": "netlist.json", "placement": "placement.json", "spice": "parts.spi"}
     Parameters = AssembleParameters
-    metrics = {"instances": "", "wire_um": "um"}
+    metrics = {"cells": "", "flip_flops": "", "cell_area_um2": "um2", "wire_um": "um"}
     uses = (assembly_module, netlist_module)
     tools = ("python klayout",)
 
@@ -58,7 +58,10 @@ class Assemble(Step):
         cells = inputs["cells"].read_text()
         own = [inputs[f"{module}.spice"].read_text().removesuffix(cells) for module in self.parameters.macros]
         outputs["spice"].write_text("\n".join([*own, cells]))
-        return {"instances": len(made.instances),
+        areas = json.loads(inputs["areas"].read_text())
+        logic = [instance.cell for instance in made.instances if instance.pins]
+        return {"cells": len(logic), "flip_flops": sum(map(is_register, logic)),
+                "cell_area_um2": round(sum(areas[cell] for cell in logic), 2),
                 "wire_um": round(sum(wire[1] for net in whole["wires"].values() for wire in net), 1)}
 
 
