@@ -46,8 +46,8 @@ class Hard:
 class Design:
     """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
     block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
-    smallest area begins. A block whose tests have a size of their own is laid out in that size. divider, n_frac: of the
-    chip in whose frame the block is watched. macros: tuple of Hard.
+    smallest area begins; density_variation: of the placer. A block whose tests have a size of their own is laid out in
+    that size. divider, n_frac: of the chip in whose frame the block is watched. macros: tuple of Hard.
     """
 
     name: str
@@ -56,6 +56,7 @@ class Design:
     netlist_names: tuple = ()
     options: tuple = ()
     utilization: float = 0.88
+    density_variation: float = 0.05
     divider: str = "radix4"
     n_frac: int = 8
     macros: tuple = ()

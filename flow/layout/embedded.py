@@ -113,7 +113,8 @@ def tries(design, options):
     places = tuple((hard.instance, DESIGNS[hard.design].top, *hard.at) for hard in design.macros)
     for k in range(int((options.utilization - LEAST) / STEP + 1e-9) + 1):
         yield (Floorplan(FloorplanParameters(options.pdk, round(options.utilization - STEP * k, 4), macros=places)),
-               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port, macros=modules(design))))
+               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port, macros=modules(design),
+                                               density_variation=design.density_variation)))
 
 
 def judged(design, options):

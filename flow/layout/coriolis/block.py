@@ -13,6 +13,9 @@ from .session import CLOCK
 from .straps import PIN_CLEARANCE_UM, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
+# Tracks (horizontal, vertical) of a cell of the global router that it leaves to what ends there: most, least; around
+# blocks, where wires from far away gather, twice as many
+RESERVED = {False: ((6, 3), (3, 1)), True: ((11, 9), (6, 4))}
 SPARE_ROWS = 8          # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
 
 
@@ -33,8 +36,9 @@ def make_block(cell, request, framework):
                                          default=0) / request["row_um"])
     cfg.anabatic.globalIterations = 20
     cfg.anabatic.topRoutingLayer = request["wires"][-1]["name"]
-    cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = 6, 3
-    cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = 3, 1
+    local, least = RESERVED[bool(request["macros"])]
+    cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = local
+    cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = least
     cfg.katana.eventsLimit = request["events"]
     cfg.block.spareSide = u(request["row_um"] * SPARE_ROWS)
     conf.useSpares = conf.useClockTree = request["clock_tree"]
