@@ -4,7 +4,7 @@ from .netlist import Instance, Netlist
 
 
 def flat(netlist, blocks):
-    """The Netlist ``netlist`` with each block in place of its instance; its names are behind the instance's, with a dot.
+    """The Netlist ``netlist`` with each block in place of its instance; its names are behind the instance's and a dot.
 
     blocks: dict instance -> Netlist of the block.
     """

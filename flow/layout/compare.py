@@ -19,7 +19,8 @@ ROOT = Path(__file__).parents[2]
 PAIR = "asp_chip", "asp_chip_macros"        # of the thesis (B.3.2): flat, and around its two blocks
 ROWS = (("area_um2", "area, um2"), ("cells", "cells, clock's buffers too"), ("flip_flops", "flip-flops"),
         ("utilization", "utilization beside blocks"), ("wire_um", "wire, um"),
-        ("wire_pf", "wire, pF"), ("f_max_mhz", "MHz at most"), ("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"),
+        ("wire_pf", "wire, pF"), ("f_max_mhz", "MHz at most"), ("wns_ns", "setup slack, ns"),
+        ("whs_ns", "hold slack, ns"),
         ("power_uw", "power, uW"), ("ir_drop_percent", "voltage drop, %"), ("open_nets", "open nets"),
         ("mended", "nets mended"), ("hopped", "nets with an antenna, routed anew"),
         ("drc_violations", "rules broken"), ("antenna_violations", "antennas"), ("lvs_match", "layout = netlist"),

@@ -103,8 +103,8 @@ def flat_design(name):
     """The same, of those that are laid out whole. Raises ParameterError for one with blocks of its own."""
     found = design(name)
     if found.macros:
-        raise ParameterError(f"DESIGN = {name!r}: must be without blocks laid out before it: only the embedded backend's "
-                             "make layout has these")
+        raise ParameterError(f"DESIGN = {name!r}: must be without blocks laid out before it: only make layout of "
+                             "the embedded backend has these")
     return found
 
 

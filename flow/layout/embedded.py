@@ -120,7 +120,8 @@ def tries(design, options):
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
     clock, hard = design.clock.port, modules(design)
-    return [Mend(MendParameters(options.pdk, clock)), *([Assemble(AssembleParameters(options.pdk, hard))] if hard else []),
+    assemble = [Assemble(AssembleParameters(options.pdk, hard))] if hard else []
+    return [Mend(MendParameters(options.pdk, clock)), *assemble,
             StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))), Fill(FillParameters(options.pdk)), Drc(),
             Antenna(AntennaParameters(options.pdk))]
 

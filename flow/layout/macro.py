@@ -18,8 +18,9 @@ def layer_names(pdk):
 
 @dataclass(frozen=True)
 class Macro:
-    """name: of module and cell. pins: dict pin -> (direction in lower case, wire, (left, bottom, right, top)), of
-    its pieces on the west or the east edge the one that is farthest from other pins. straps: pairs (supply, x), from the west on. All in um."""
+    """name: of module and cell. pins: dict pin -> (direction in lower case, wire, (left, bottom, right, top)), of its
+    pieces on the west or the east edge the one that is farthest from other pins. straps: pairs (supply, x), from the
+    west on. All in um."""
 
     name: str
     width_um: float

@@ -31,8 +31,8 @@ def drops(rails, straps, height, taps, metal, breaks=(), gaps=()):
     """Volts by which each tap lies from the pads: array (taps,), and the largest share of current lost in the solution.
 
     rails: y of each, um. straps: x of each; their ends at 0 and ``height`` are the pads. taps: (rail's index, x, A)
-    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap. breaks: boxes (left, bottom,
-    right, top) in which there are no rails. gaps: (x, bottom, top) in which a strap is cut.
+    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap. breaks: boxes (left,
+    bottom, right, top) in which there are no rails. gaps: (x, bottom, top) in which a strap is cut.
     """
     rails, straps = np.asarray(rails, float), np.asarray(straps, float)
     crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))     # nodes of the straps

@@ -91,9 +91,9 @@ class Netlist:
         return cls(top, tuple(ports), (*instances, *extra))
 
     def apart(self, macros, buffer):
-        """The Netlist with a buffer (cell, input, output) between its inputs and blocks, whose cells are ``macros``: else
-        a wire from outside would end in a block alone, with nothing here that keeps it from being an antenna. Clocks
-        stay."""
+        """The Netlist with a buffer (cell, input, output) between its inputs and blocks, whose cells are ``macros``:
+        else a wire from outside would end in a block alone, with nothing here that keeps it from being an antenna.
+        Clocks stay."""
         inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
         inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
         shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)

@@ -6,8 +6,8 @@ from pathlib import Path
 from models.parameters import ChipParameters, EnergyParameters
 
 CHIP = "AspChip"
-# Parts of the power in [Jayasuriya2017, Table 6.1] and the blocks of AspChip that do their digital work; pixels and
-# amplifiers themselves, and the converters' comparators, are analog. What Table 6.1's sensor did not have is no part of it
+# Parts of the power in [Jayasuriya2017, Table 6.1] and the blocks of AspChip that do their digital work; pixels,
+# amplifiers and the converters' comparators are analog. What Table 6.1's sensor did not have is no part of it
 TABLE_6_1 = {"pixel_array": (), "amplifiers": ("amp",), "timing": ("seq", "regs", "balancer"), "adcs": ("bank",)}
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
@@ -67,8 +67,8 @@ def at_chip_clock(energies):
 
 
 def table_6_1(by_block, slowed):
-    """dict part -> (uW in the thesis, uW here), None without a power. by_block: dict block -> uW; slowed: factor to the
-    clock of the thesis's chip. Its own parts are first, then what is here besides: the clock's tree and other blocks."""
+    """dict part -> [uW in the thesis, uW here], None without a power. by_block: dict block -> uW; slowed: factor to
+    the clock of the thesis's chip. Its parts are first, then what is here besides: the clock's tree, other blocks."""
     if by_block is None:
         return None
     found = {part: [round(getattr(EnergyParameters(), part) * 1e6, 3),

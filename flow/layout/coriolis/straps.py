@@ -32,8 +32,9 @@ class Straps:
         return found
 
     def positions(self, pins):
-        """(supply, x, gaps) of every strap (um), as near to `even` as what runs there and the pins at x in ``pins`` allow:
-        list. gaps: (bottom, top) where that of a block, which stays where it is, leaves room for the clock's trunk."""
+        """(supply, x, gaps) of every strap (um), as near to `even` as what runs there and the pins at x in ``pins``
+        allow: list. gaps: (bottom, top) where one of a block, which stays at its x, leaves room for the clock's trunk.
+        """
         half = self.request["strap_um"] / 2
         taken = [(a - CLEARANCE_UM - half, b + CLEARANCE_UM + half) for a, _, b, _ in self._signals(self.names[-1])]
         taken += [(x - PIN_CLEARANCE_UM, x + PIN_CLEARANCE_UM) for x in pins]
@@ -66,7 +67,7 @@ class Straps:
                                     u(self._on_grid(high)))
             for row in range(odd, rows + 1, 2):
                 y, overlap = row * self.request["row_um"], self.request["rail_overlap_um"]
-                if any(left < x < right and bottom - 1e-6 <= y <= top + 1e-6 for left, bottom, right, top in self.inner):
+                if any(left < x < right and low - 1e-6 <= y <= high + 1e-6 for left, low, right, high in self.inner):
                     continue
                 if row in (0, rows):            # half a rail at the edge
                     overlap *= 2 / 3

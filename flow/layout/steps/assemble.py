@@ -25,8 +25,9 @@ class AssembleParameters:
 
 
 class Assemble(Step):
-    """The blocks' GDS in place of what stood for them; netlist and placement without hierarchy; netlists of transistors,
-    a block's as it was compared itself. The cells are all that are not there to fill gaps, clocks' buffers too."""
+    """The blocks' GDS in place of what stood for them; netlist and placement without hierarchy; netlists of
+    transistors, a block's as it was compared itself. The cells are all but those that fill gaps, clocks' buffers too.
+    """
 
     name = "assemble"
     inputs = {"netlist": "place_route.netlist", "placement": "mend.placement", "floorplan": "floorplan.floorplan",

@@ -2,7 +2,8 @@
 
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from itertools import pairwise
 
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
@@ -42,8 +43,8 @@ class FloorplanParameters:
 class Floorplan(Step):
     """As square as ``aspect`` says; the pins in the order of the ports, on the west and the east, buses together.
 
-    Around a block there are no cells, HALO_ROWS wide. tree: the largest box without blocks, in which the clock's tree is
-    built.
+    Around a block there are no cells, HALO_ROWS wide. tree: the largest box without blocks, in which the clock's tree
+    is built.
     """
 
     name = "floorplan"
@@ -73,7 +74,8 @@ class Floorplan(Step):
         if lost:
             raise StepError(f"floorplan: the places given for blocks and the blocks in the Verilog differ by "
                             f"{', '.join(sorted(lost))}")
-        blocks = sum(_with_halo(macro, known) * (macro.height_um + HALO_ROWS[1] * known.row_um) for _, macro, _ in macros)
+        above = HALO_ROWS[1] * known.row_um
+        blocks = sum(_with_halo(macro, known) * (macro.height_um + above) for _, macro, _ in macros)
         area = blocks + (sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE)
                          / p.utilization)
         rows = max(4, 2 * round(math.sqrt(area / p.aspect) / known.row_um / 2))     # even: the top rail is ground too
@@ -102,7 +104,7 @@ def _with_halo(macro, known):
 
 
 def placed(macros, width, height, known):
-    """List of dicts: instance, cell, x_um, y_um, width_um, height_um of the block, outer: box (um) with what is left free.
+    """List of dicts: instance, cell, x_um, y_um, width_um, height_um, and outer, the box (um) with what is left free.
 
     Raises ParameterError where blocks meet, or lie above one another: their straps go on through the whole core.
     """
@@ -118,9 +120,11 @@ def placed(macros, width, height, known):
         beside, above = (rows * row for rows in HALO_ROWS)
         outer = left, max(0, bottom - above), left + wide, min(height, top + above)
         made.append({"instance": name, "cell": macro.name, "x_um": round(left + beside, 4), "y_um": round(bottom, 4),
-                     "width_um": macro.width_um, "height_um": macro.height_um, "outer": [round(value, 4) for value in outer]})
+                     "width_um": macro.width_um, "height_um": macro.height_um,
+                     "outer": [round(value, 4) for value in outer]})
     ends = sorted((block["outer"][0], block["outer"][2], block["instance"]) for block in made)
-    for (_, end, name), (begin, _, other) in zip([(0, 0, "the west edge"), *ends], [*ends, (width, 0, "the east edge")]):
+    edges = [(0, 0, "the west edge"), *ends, (width, 0, "the east edge")]
+    for (_, end, name), (begin, _, other) in pairwise(edges):
         if begin - end < BESIDE_UM:
             raise ParameterError(f"macros = {name}: must be {BESIDE_UM:g} um west of {other}, not {begin - end:.1f} um")
     return made

@@ -61,7 +61,8 @@ class Synthesis(Step):
         files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
                                                *limit, "print_stats"]) + "\n")
         files["script"].write_text(SCRIPT.format(
-            rtl=inputs["rtl"], top=p.top, blocks="\n".join(f"blackbox {name}" for name in p.macros), liberty=inputs["liberty"],
+            rtl=inputs["rtl"], top=p.top, blocks="\n".join(f"blackbox {name}" for name in p.macros),
+            liberty=inputs["liberty"],
             timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
         run(["yosys", "-q", "-s", files["script"]])
         buffer = "buf_x1", "i", "q"
