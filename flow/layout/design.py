@@ -73,7 +73,7 @@ def divider(name, variant, n_frac=8):
 
 
 DESIGNS = {made.name: made for made in (
-    Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",)),
+    Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
     Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_13_75_8",), ("--rows=13", "--cols=75")),
     Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
     Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
@@ -88,8 +88,8 @@ DESIGNS = {made.name: made for made in (
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
     Design("asp_chip", "AspChip", "asp_chip", utilization=0.6),
     # of the thesis (B.3.2): both blocks hardened, the rest around them
-    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.6,
-           macros=(Hard("phase.divider", "quad_divider", (0.2, 0.0)), Hard("amp", "amp_ctrl", (0.8, 0.0)))))}
+    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.52, density_variation=0.3,
+           macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.5, 0.0)))))}
 
 
 def design(name):

@@ -43,6 +43,7 @@ CHIP_FRAME = {"rows": 4, "cols": 6}      # pixels: its netlist with delays runs 
 # What steps look at where there are blocks laid out before: these and the rest put together
 ASSEMBLED = {"place_route.netlist": "assemble.netlist", "place_route.placement": "assemble.placement",
              "mend.placement": "assemble.placement"}
+MOST_OPEN = {False: 60, True: 200}      # nets that are routed anew behind the router; around blocks it leaves more open
 STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
 
 
@@ -121,7 +122,7 @@ def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
     clock, hard = design.clock.port, modules(design)
     assemble = [Assemble(AssembleParameters(options.pdk, hard))] if hard else []
-    return [Mend(MendParameters(options.pdk, clock)), *assemble,
+    return [Mend(MendParameters(options.pdk, clock, MOST_OPEN[bool(hard)])), *assemble,
             StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))), Fill(FillParameters(options.pdk)), Drc(),
             Antenna(AntennaParameters(options.pdk))]
 

@@ -18,7 +18,7 @@ SIDES = ("west", "east")          # the router gives up on some pins on the othe
 CLOCK_CELLS_SHARE = 0.06        # of the cells' area, for the clock tree's buffers to come
 BESIDE_UM = 15.0            # least width of rows beside a block: a strap of either supply must find a place there
 TREE_ASPECT = 1.8           # Coriolis cuts a longer box in two halves, whose wires then lie on one another
-HALO_ROWS = 2, 1            # heights of a row that are left free beside a block, where its pins are met, and above it
+HALO_ROWS = 3, 2            # heights of a row that are left free beside a block, where its pins are met, and above it
 
 
 @dataclass(frozen=True)

@@ -81,9 +81,9 @@ def test_blocks_stand_on_rows_of_their_own_parity(block, known):
         assert place["y_um"] / (2 * known.row_um) == pytest.approx(round(place["y_um"] / (2 * known.row_um)))
         left, bottom, right, top = place["outer"]
         assert left / known.row_um == pytest.approx(round(left / known.row_um))
-        assert left + 11.2 == pytest.approx(place["x_um"]) and right >= place["x_um"] + 40.0 + 11.2
-        assert top == pytest.approx(place["y_um"] + 56.0 + 5.6)
-        assert bottom == pytest.approx(max(0, place["y_um"] - 5.6))
+        assert left + 16.8 == pytest.approx(place["x_um"]) and right >= place["x_um"] + 40.0 + 16.8
+        assert top == pytest.approx(place["y_um"] + 56.0 + 11.2)
+        assert bottom == pytest.approx(max(0, place["y_um"] - 11.2))
     assert breaks(places[:1]) == [(places[0]["outer"][0], 0.0, places[0]["x_um"], 56.0),
                                   (places[0]["x_um"] + 40.0, 0.0, places[0]["outer"][2], 56.0)]
 
