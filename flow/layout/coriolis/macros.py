@@ -10,10 +10,9 @@ from coriolis.Hurricane import (Box, Cell, DataBase, Horizontal, Instance, Libra
                                 Transformation, UpdateSession)
 
 GAUGE = "StdCellLib"
-HOP_UM = 0.7, 2.5       # from the edge of the block: where the wire goes up, where it comes down
-PAD_UM = 0.66, 0.38     # of a wire between two cuts: as large as the least area asks
+HOP_PADS = 2.0, 6.5     # from the edge of the block, in pads: where the wire goes up, where it comes down
+PAD_LENGTH = 2.0        # of a pad between two cuts by its width: what the least area of a wire asks
 MEET_UM = 0.8, 2.4      # beyond what the block keeps free: the piece that the router meets
-OVER_UM = 0.4           # that wires of a block may lie over its edge
 
 
 def make_macros(request):
@@ -37,9 +36,9 @@ def _make(cell, macro, request):
     edges = x, x + macro["width_um"]
     cell.setAbutmentBox(Box(0, 0, u(right - left), u(top - bottom)))
     obstacles = Net.create(cell, "*")
+    low, high = y - request["over_um"], y + macro["height_um"] + request["over_um"]
     for wire in request["wires"]:
-        Pad.create(obstacles, layer(f"{wire['name']}.block"),
-                   _box(edges[0] - row, y - OVER_UM, edges[1] + row, y + macro["height_um"] + OVER_UM))
+        Pad.create(obstacles, layer(f"{wire['name']}.block"), _box(edges[0] - row, low, edges[1] + row, high))
     for name, leads, direction, wire, (low, down, high, up) in macro["pins"]:
         net = Net.create(cell, name)
         net.setExternal(True)
@@ -49,37 +48,38 @@ def _make(cell, macro, request):
             _lead(net, layer, request, wire, up - down, direction == "input", edges[0 if west else 1],
                   -1 if west else 1, middle, _track(layer(wire), bottom + middle) - bottom)
         else:                   # every pin must have a piece to be met; this one stays inside
-            NetExternalComponents.setExternal(
-                Horizontal.create(net, layer(wire), u(middle), u(up - down), u(x + low), u(x + high)))
+            NetExternalComponents.setExternal(_bar(net, layer(wire), middle, up - down, x + low, x + high))
     cell.setTerminalNetlist(True)
 
 
 def _lead(net, layer, request, wire, width, hop, edge, way, y, track):
     """From a pin at ``y`` on the edge at x = ``edge`` out of the block, which is ``way`` (-1 or 1), on to the track."""
     def bar(at, begin, end):
-        return Horizontal.create(net, layer(wire), u(at), u(width), *sorted(u(edge + way * v) for v in (begin, end)))
+        return _bar(net, layer(wire), at, width, *sorted(edge + way * value for value in (begin, end)))
 
-    half, bend, free = PAD_UM[0] / 2, 0.0, request["row_um"]
+    pad = max(cut["size_um"] + 2 * cut["enclosure_um"] for cut in request["cuts"])
+    up, down = (pads * pad for pads in HOP_PADS)
+    bend, free = 0.0, request["row_um"]
     if hop:
-        bar(y, 0, HOP_UM[0] + half)
-        bend = HOP_UM[1] - half
-        _hop(net, layer, request, wire, y, [edge + way * at for at in HOP_UM])
-    bar(y, bend, bend + PAD_UM[0])
+        bar(y, 0, up + pad)
+        bend = down - pad
+        _hop(net, layer, request, wire, y, [edge + way * up, edge + way * down], pad)
+    bar(y, bend, bend + PAD_LENGTH * pad)
     bar(track, bend, free + MEET_UM[1])
     NetExternalComponents.setExternal(bar(track, free + MEET_UM[0], free + MEET_UM[1]))
 
 
-def _hop(net, layer, request, wire, y, ends):
+def _hop(net, layer, request, wire, y, ends, pad):
     """From ``wire`` up to the highest at both ``ends`` (x), and that wire between them."""
     names = [made["name"] for made in request["wires"]]
     first = names.index(wire)
     for x in ends:
         for name in names[first + 1:-1]:
-            Pad.create(net, layer(name), _around(x, y, *PAD_UM))
+            Pad.create(net, layer(name), _around(x, y, PAD_LENGTH * pad, pad))
         for cut in request["cuts"][first:]:
             Pad.create(net, layer(cut["name"]), _around(x, y, cut["size_um"], cut["size_um"]))
-    half = PAD_UM[0] / 2
-    Horizontal.create(net, layer(names[-1]), u(y), u(PAD_UM[1]), u(min(ends) - half), u(max(ends) + half))
+    half = PAD_LENGTH * pad / 2
+    _bar(net, layer(names[-1]), y, pad, min(ends) - half, max(ends) + half)
 
 
 def _around(x, y, width, height):
@@ -87,7 +87,16 @@ def _around(x, y, width, height):
 
 
 def _box(left, bottom, right, top):
-    return Box(*(u(round(value, 4)) for value in (left, bottom, right, top)))
+    return Box(*map(_units, (left, bottom, right, top)))
+
+
+def _bar(net, layer, y, width, begin, end):
+    return Horizontal.create(net, layer, *map(_units, (y, width, begin, end)))
+
+
+def _units(um):
+    """u() cuts off: what is a hair less than a number on the grid would be off it."""
+    return u(round(um, 4) + 1e-6)
 
 
 def _track(layer, y):

@@ -11,7 +11,7 @@ from .. import assembly as assembly_module
 from .. import netlist as netlist_module
 from ..assembly import flat, together
 from ..netlist import Netlist, is_register
-from .place_route import BLOCK, OVER_UM
+from .place_route import BLOCK
 
 PARTS = "netlist", "placement", "spice", "gds"         # of a block
 

@@ -21,7 +21,7 @@ from ..macro import Macro, layer_names
 from ..netlist import SUPPLIES, Instance, Netlist
 
 ROOT = Path(__file__).parents[3]
-OVER_UM = 0.4                   # that wires of a block may lie over its edge, as in coriolis.macros
+OVER_UM = 0.4                   # that wires of a block may lie over its edge: half a wire on a track there
 MODEL = "talbot_block"          # Coriolis works in lower case
 BLOCK = "macro"                 # and a number: a block's cell in Coriolis
 PHASES = ("clock_tree", "placement", "power", "routing")
@@ -117,7 +117,7 @@ class PlaceRoute(Step):
                 "wires": [asdict(wire) for wire in known.wires], "cuts": [asdict(cut) for cut in known.cuts],
                 **{name: getattr(known, name) for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um",
                                                            "pin_pitch_um")},
-                **{name: getattr(p, name) for name in ("effort", "density_variation",
+                "over_um": OVER_UM, **{name: getattr(p, name) for name in ("effort", "density_variation",
                                                        "strap_pitch_um", "events")}}
 
     def macro(self, inputs, block, netlist, name, pins, known):
