@@ -194,10 +194,10 @@ def layout(design, options, runner, behind=back):
         tried[-1]["open_segments"] = found["open_segments"]
         mend, *others = judged(design, options)
         if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
-            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
+            broken = sum(record["metrics"].get(f"{step.name}_violations", 0)
+                         for step, record in zip(others, runner.run_all(others), strict=True))
             tried[-1]["rules_broken"] = broken
             if not broken:
-                for step in behind(design, options):
-                    runner.run(step)
+                runner.run_all(behind(design, options))
                 return tried
     return tried
