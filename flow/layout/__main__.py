@@ -70,7 +70,7 @@ def laid_out(chosen, settings, out, note):
     folder = out / folder_name(chosen, settings.pdk)
     provided = files(chosen, settings, folder)
     check_same(chosen, provided["rtl"], runners)
-    runner = Runner(folder / "steps", provided | given(chosen, runners), note, out / "shared")
+    runner = Runner(folder / "steps", provided | given(chosen, runners, settings.corners), note, out / "shared")
     summary = summarize(chosen, settings, runner, layout(chosen, settings, runner))
     publish(folder, chosen.name, settings, runner, summary)
     return runner, summary

@@ -15,10 +15,12 @@ def inner(design):
     return [DESIGNS[name] for name in dict.fromkeys(hard.design for hard in design.macros)]
 
 
-def given(design, runners):
-    """dict file name -> Path for the design's Runner. runners: dict name of a block's Design -> Runner of its run."""
+def given(design, runners, corners=()):
+    """dict file name -> Path for the design's Runner. runners: dict name of a block's Design -> Runner of its run.
+    corners: of timing, where there is one."""
+    parts = PARTS | {corner: f"block_liberty_{corner}.liberty" for corner in corners}
     return {f"macro.{block.top}.{part}": runners[block.name].paths[source]
-            for block in inner(design) for part, source in PARTS.items()}
+            for block in inner(design) for part, source in parts.items()}
 
 
 def check_same(design, rtl, runners):

@@ -32,6 +32,7 @@ from .steps.mend import Mend, MendParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.power import Power, PowerParameters
 from .steps.sta import Sta, StaParameters
+from .steps.sta_blocks import StaBlocks, StaBlocksParameters
 from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
@@ -134,7 +135,8 @@ def back(design, options):
              Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
     for step in steps if design.macros else ():
         step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
-    return steps
+    return steps + [StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, modules(design)))
+                    for corner in options.corners if design.macros]
 
 
 def simulations(design):

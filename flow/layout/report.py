@@ -9,7 +9,8 @@ from .picture import PALETTE
 PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1")
 PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control", "timing": "timing, addressing",
          "adcs": "converters; here: their logic"}
-BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("setup_margin_ns", "least seen, setup, ns"),
+BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
+             ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"), ("setup_margin_ns", "least seen, setup, ns"),
              ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
              ("energy_pj_cycle", "pJ a cycle"),
              ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),

@@ -43,6 +43,7 @@ def summarize(design, options, runner, tried):
         "density_violations": metric("fill", "density_violations"), "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing(options), **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
+        **{name: by_corner(name, "sta_blocks") for name in ("blocks_wns_ns", "blocks_whs_ns")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
         "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
