@@ -82,7 +82,7 @@ DESIGNS = {made.name: made for made in (
     divider("quad_divider_pipelined", "pipelined"),
     divider("cordic", "cordic"),
     Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
-    Design("phase_path_macros", "PhasePath", "phase_path", ("PhasePath_8_radix4",),
+    Design("phase_path_macros", "PhasePath", "phase_path", ("PhasePath_8_radix4",), utilization=0.8,
            macros=(Hard("divider", "quad_divider"),)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
