@@ -139,7 +139,7 @@ def _hop(window, accesses):
 
 
 def _accesses(window, pin):
-    """dict place -> Shapes from there into the pin, for every place from which it can be met."""
+    """dict place -> Shapes from there into the pin, for every place from which it can be met with the least strife."""
     found = {}
     for level, left, bottom, right, top in pin:
         middle = (left + right) // 2
@@ -153,8 +153,9 @@ def _accesses(window, pin):
                 place = max(level, CELL_PINS + 1), i, j
                 access = window.inside(place) and _access(window, level, (x, y), window.at(i, j))
                 if access:
-                    found[place] = access
-    return found
+                    strife = sum(window.site.strife(at, box) for at, boxes in access.wires.items() for box in boxes)
+                    found.setdefault(strife, {})[place] = access
+    return found[min(found)] if found else {}
 
 
 def _access(window, level, point, place):

@@ -30,6 +30,11 @@ class Site:
         reach = self._reach(level, box)
         return not len(near(self.fixed[level], reach)) and not (others and len(near(self.board.there[level], reach)))
 
+    def strife(self, level, box):
+        """How many wires of others are nearer to ``box`` (nm) than wires must be, and places that were fought over."""
+        reach = self._reach(level, box)
+        return len(near(self.board.there[level], reach)) + len(near(self.board.scars[level], reach))
+
     def fought_over(self, shapes):
         """(nets, places): names of the board's nets that are nearer to the Shapes ``shapes`` than wires must be, and
         [(level, box), ...] of where."""
