@@ -105,6 +105,13 @@ layout-effort: $(LAYOUT_READY)  ## a layout's quality against the placer's effor
 	@$(PY) -m flow.layout.sweep effort --design $(or $(DESIGN),quad_divider) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
+.PHONY: layout-hierarchy
+layout-hierarchy: $(LAYOUT_READY)  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
+	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
+		$(PY) -m flow.layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
+	done
+	@$(PY) -m flow.layout.compare $(DESIGNS)
+
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
 	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))

@@ -1,6 +1,6 @@
 """The pages for people: pinout and datasheet, in Markdown."""
 
-from .lef import pins, size
+from flow.lef import pins, size
 
 
 WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}

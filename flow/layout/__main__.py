@@ -13,6 +13,7 @@ from flow.steps import Runner, StepError
 from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
+from .blocks import check_same, given, inner
 from .design import DESIGNS, design, folder_name
 from .embedded import Options, chain, files, layout
 from .energy import blocks
@@ -46,15 +47,51 @@ def arguments():
 def figures(folder, name, runner, options):
     """Draw the cells by block where they are placed; (file, words) of this and of the voltage drop: list."""
     found, first = [], next(iter(options.corners), "")
-    if "place_route.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
-        read = {key: json.loads(runner.paths[key].read_text())
-                for key in ("place_route.placement", "library.areas", "floorplan.floorplan")}
-        netlist = Netlist.read(runner.paths["place_route.netlist"])
-        by_block(folder / f"{name}.blocks.png", netlist, read["place_route.placement"]["instances"],
-                 read["library.areas"], process(options.pdk)[0], blocks(netlist),
-                 read["floorplan.floorplan"])
+    whole = "assemble" if "assemble.netlist" in runner.paths else "place_route"
+    if f"{whole}.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
+        placement, areas, plan = (json.loads(runner.paths[key].read_text())
+                                  for key in (f"{whole}.placement", "library.areas", "floorplan.floorplan"))
+        netlist = Netlist.read(runner.paths[f"{whole}.netlist"])
+        by_block(folder / f"{name}.blocks.png", netlist, placement["instances"], areas, process(options.pdk)[0],
+                 blocks(netlist), plan)
         found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
     return found
+
+
+def laid_out(chosen, settings, out, note):
+    """Lay out ``chosen``, and before it the blocks that are hardened in it: (Runner, summary); what came of each lies
+    in its folder in ``out``. Raises StepError for a block that breaks a limit."""
+    runners = {}
+    for block in inner(chosen):
+        own = Options(settings.pdk, block.utilization, settings.liberty, settings.untimed)
+        runners[block.name], summary = laid_out(block, own, out, lambda text, name=block.name: note(f"{name}: {text}"))
+        if wrong := broken(summary):
+            raise StepError(f"{chosen.name}: its block {block.name} is not whole: {wrong[0]}")
+    folder = out / folder_name(chosen, settings.pdk)
+    provided = files(chosen, settings, folder)
+    check_same(chosen, provided["rtl"], runners)
+    runner = Runner(folder / "steps", provided | given(chosen, runners, settings.corners), note, out / "shared")
+    summary = summarize(chosen, settings, runner, layout(chosen, settings, runner))
+    publish(folder, chosen.name, settings, runner, summary)
+    return runner, summary
+
+
+def publish(folder, name, settings, runner, summary):
+    """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
+    results = RESULTS | {f"{corner}.{suffix}": source.format(corner) for corner in settings.corners
+                         for suffix, source in BY_CORNER.items()}
+    for suffix in FIRST if settings.corners else ():
+        results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
+    with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:
+        for suffix, source in results.items():       # an earlier run's go where this one has none
+            if source in runner.paths:
+                shutil.copyfile(runner.paths[source], part / f"{name}.{suffix}")
+        if "fill.gds" in runner.paths:
+            render(runner.paths["fill.gds"], part / f"{name}.png", process(settings.pdk)[0])
+        pictures = figures(part, name, runner, settings)
+        picture = f"{name}.png" if (part / f"{name}.png").exists() else None
+        (part / "report.html").write_text(page(summary, broken(summary), process(settings.pdk)[0], picture, pictures))
+        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
 
 
 def one_line(error):
@@ -71,33 +108,15 @@ def main(argv=None):
         check_choice("backend", options.backend, ("coriolis",))
         settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
                            tuple(options.liberty), options.untimed)
-        folder = options.out / folder_name(chosen, options.pdk)
-        with Steps(step.name for step in chain(chosen, settings)) as bar:
-            runner = Runner(folder / "steps", files(chosen, settings, folder), bar.note, options.out / "shared")
-            tried = layout(chosen, settings, runner)
-        summary = summarize(chosen, settings, runner, tried)
-        results = RESULTS | {f"{corner}.{suffix}": source.format(corner) for corner in settings.corners
-                             for suffix, source in BY_CORNER.items()}
-        for suffix in FIRST if settings.corners else ():
-            results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
-        made = [f"{chosen.name}.{suffix}" for suffix in (*results, "png", "blocks.png")]
-        with staged(folder, made) as part:       # an earlier run's go where this one has none
-            for suffix, source in results.items():
-                if source in runner.paths:
-                    shutil.copyfile(runner.paths[source], part / f"{chosen.name}.{suffix}")
-            if "fill.gds" in runner.paths:
-                render(runner.paths["fill.gds"], part / f"{chosen.name}.png", process(options.pdk)[0])
-            pictures = figures(part, chosen.name, runner, settings)
-            picture = f"{chosen.name}.png" if (part / f"{chosen.name}.png").exists() else None
-            (part / "report.html").write_text(page(summary, broken(summary), process(options.pdk)[0], picture,
-                                                     pictures))
-            (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+        steps = [f"{block.name}: {step.name}" for block in inner(chosen) for step in chain(block, settings)]
+        with Steps([*steps, *(step.name for step in chain(chosen, settings))]) as bar:
+            _, summary = laid_out(chosen, settings, options.out, bar.note)
     except (ParameterError, ToolError, StepError, OSError) as error:
         print(f"flow.layout: {one_line(error)}", file=sys.stderr)
         return 2
     for line in broken(summary):
         print(f"flow.layout: {chosen.name}: {line}", file=sys.stderr)
-    print(f"{folder / 'summary.json'}")
+    print(options.out / folder_name(chosen, options.pdk) / "summary.json")
     return 1 if broken(summary) else 0
 
 

@@ -32,11 +32,22 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
+class Hard:
+    """A block in a design that is laid out by itself before. instance: its path in the Verilog. design: its name here.
+    at: shares of the width and of the height that are left free to its west and its south.
+    """
+
+    instance: str
+    design: str
+    at: tuple = (0.5, 0.0)
+
+
+@dataclass(frozen=True)
 class Design:
     """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
     block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
-    smallest area begins. A block whose tests have a size of their own is laid out in that size. divider, n_frac: of the
-    chip in whose frame the block is watched.
+    smallest area begins; density_variation: of the placer. A block whose tests have a size of their own is laid out in
+    that size. divider, n_frac: of the chip in whose frame the block is watched. macros: tuple of Hard.
     """
 
     name: str
@@ -45,8 +56,10 @@ class Design:
     netlist_names: tuple = ()
     options: tuple = ()
     utilization: float = 0.88
+    density_variation: float = 0.05
     divider: str = "radix4"
     n_frac: int = 8
+    macros: tuple = ()
     clock: Clock = Clock()
     surroundings: Surroundings = Surroundings()
 
@@ -60,7 +73,7 @@ def divider(name, variant, n_frac=8):
 
 
 DESIGNS = {made.name: made for made in (
-    Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",)),
+    Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
     Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_13_75_8",), ("--rows=13", "--cols=75")),
     Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
     Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
@@ -69,9 +82,14 @@ DESIGNS = {made.name: made for made in (
     divider("quad_divider_pipelined", "pipelined"),
     divider("cordic", "cordic"),
     Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
+    Design("phase_path_macros", "PhasePath", "phase_path", ("PhasePath_8_radix4",), utilization=0.8,
+           macros=(Hard("divider", "quad_divider"),)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
-    Design("asp_chip", "AspChip", "asp_chip", utilization=0.6))}
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.6),
+    # of the thesis (B.3.2): both blocks hardened, the rest around them
+    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.52, density_variation=0.3,
+           macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.5, 0.0)))))}
 
 
 def design(name):
@@ -79,6 +97,15 @@ def design(name):
     if name not in DESIGNS:
         raise ParameterError(f"DESIGN = {name!r}: must be one of {', '.join(DESIGNS)}")
     return DESIGNS[name]
+
+
+def flat_design(name):
+    """The same, of those that are laid out whole. Raises ParameterError for one with blocks of its own."""
+    found = design(name)
+    if found.macros:
+        raise ParameterError(f"DESIGN = {name!r}: must be without blocks laid out before it: only make layout of "
+                             "the embedded backend has these")
+    return found
 
 
 def folder_name(design, pdk):

@@ -12,7 +12,9 @@ from flow.steps.versions import version
 from models.parameters import ParameterError, check_real
 
 from .constraints import sdc
+from .design import DESIGNS
 from .steps.antenna import Antenna, AntennaParameters
+from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
@@ -30,6 +32,7 @@ from .steps.mend import Mend, MendParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.power import Power, PowerParameters
 from .steps.sta import Sta, StaParameters
+from .steps.sta_blocks import StaBlocks, StaBlocksParameters
 from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
@@ -38,6 +41,10 @@ from .steps.timing import MEASURES, Timing, TimingParameters
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
 CHIP_FRAME = {"rows": 4, "cols": 6}      # pixels: its netlist with delays runs a thousand times slower than a block's
+# What steps look at where there are blocks laid out before: these and the rest put together
+ASSEMBLED = {"place_route.netlist": "assemble.netlist", "place_route.placement": "assemble.placement",
+             "mend.placement": "assemble.placement"}
+MOST_OPEN = {False: 60, True: 200}      # nets that are routed anew behind the router; around blocks it leaves more open
 STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
 
 
@@ -64,7 +71,8 @@ class Options:
     def __post_init__(self):
         for path in self.liberty:
             if not path.is_file():
-                raise ParameterError(f"liberty = {path}: no such file; make cells LIB=flexcell writes one a corner")
+                raise ParameterError(f"liberty = {path}: no such file; without LIBERTY the cells are measured, "
+                                     "once, into build/layout/shared/timing.*/<corner>.lib")
             if not re.match(r"\s*(/\*.*?\*/\s*)*library\s*\(", path.read_text(errors="replace")[:10_000], re.S):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
         if len({path.stem for path in self.liberty}) != len(self.liberty):
@@ -87,37 +95,48 @@ def files(design, options, folder):
     return given | measure | {f"timing.{path.stem}": path for path in options.liberty}
 
 
+def modules(design):
+    """Names of the modules of a design that are laid out before it: tuple."""
+    return tuple(dict.fromkeys(DESIGNS[hard.design].top for hard in design.macros))
+
+
 def front(design, options):
     """The steps ahead of a floorplan."""
-    library = Library(LibraryParameters(options.pdk))
+    library, hard = Library(LibraryParameters(options.pdk)), modules(design)
     if not options.corners:
-        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0))]
+        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, hard))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
-    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT),
+    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT, hard),
                                              options.corners[0])]
 
 
 def tries(design, options):
     """Pairs (floorplan, place and route), the smallest area first."""
-    known, _ = process(options.pdk)
+    places = tuple((hard.instance, DESIGNS[hard.design].top, *hard.at) for hard in design.macros)
     for k in range(int((options.utilization - LEAST) / STEP + 1e-9) + 1):
-        yield (Floorplan(FloorplanParameters(round(options.utilization - STEP * k, 4), row_um=known.row_um,
-                                             site_um=known.site_um)),
-               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port)))
+        yield (Floorplan(FloorplanParameters(options.pdk, round(options.utilization - STEP * k, 4), macros=places)),
+               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port, macros=modules(design),
+                                               density_variation=design.density_variation)))
 
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    clock = design.clock.port
-    return [Mend(MendParameters(options.pdk, clock)), StreamOut(StreamOutParameters(options.pdk, clock)),
-            Fill(FillParameters(options.pdk)), Drc(), Antenna(AntennaParameters(options.pdk))]
+    clock, hard = design.clock.port, modules(design)
+    assemble = [Assemble(AssembleParameters(options.pdk, hard))] if hard else []
+    return [Mend(MendParameters(options.pdk, clock, MOST_OPEN[bool(hard)])), *assemble,
+            StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))), Fill(FillParameters(options.pdk)), Drc(),
+            Antenna(AntennaParameters(options.pdk))]
 
 
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
-    return [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
-            Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
-            Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+    steps = [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
+             Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
+             Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+    for step in steps if design.macros else ():
+        step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
+    return steps + [StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, modules(design)))
+                    for corner in options.corners if design.macros]
 
 
 def simulations(design):
@@ -155,8 +174,8 @@ def layout(design, options, runner, behind=back):
     (design, options) -> the steps behind it.
 
     A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken.
-    Returns the tries: list of {utilization, open_segments (None where the router gave up), rules_broken (None without
-    a layout)}.
+    Returns the tries: list of {utilization, open_segments (None where the router gave up, or blocks found no place),
+    rules_broken (None without a layout)}. Raises ParameterError where blocks never find a place.
     """
     version(f"python {process(options.pdk)[0].wheel}")
     for step in chain(design, options, behind):
@@ -166,16 +185,21 @@ def layout(design, options, runner, behind=back):
         runner.run(step)
     tried = []
     for floorplan, place_route in tries(design, options):
-        runner.run(floorplan)
+        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": None, "rules_broken": None})
+        try:
+            runner.run(floorplan)
+        except ParameterError:
+            if floorplan.parameters.utilization - STEP < LEAST:
+                raise
+            continue
         found = runner.run(place_route)["metrics"]
-        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": found["open_segments"],
-                      "rules_broken": None})
+        tried[-1]["open_segments"] = found["open_segments"]
         mend, *others = judged(design, options)
         if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
-            broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
+            broken = sum(record["metrics"].get(f"{step.name}_violations", 0)
+                         for step, record in zip(others, runner.run_all(others), strict=True))
             tried[-1]["rules_broken"] = broken
             if not broken:
-                for step in behind(design, options):
-                    runner.run(step)
+                runner.run_all(behind(design, options))
                 return tried
     return tried

@@ -27,18 +27,20 @@ def metal(known):
     return Metal(low.ohm / known.rail_um, high.ohm / known.strap_um, stack)
 
 
-def drops(rails, straps, height, taps, metal):
+def drops(rails, straps, height, taps, metal, breaks=(), gaps=()):
     """Volts by which each tap lies from the pads: array (taps,), and the largest share of current lost in the solution.
 
     rails: y of each, um. straps: x of each; their ends at 0 and ``height`` are the pads. taps: (rail's index, x, A)
-    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap.
+    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap. breaks: boxes (left,
+    bottom, right, top) in which there are no rails. gaps: (x, bottom, top) in which a strap is cut.
     """
     rails, straps = np.asarray(rails, float), np.asarray(straps, float)
     crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))     # nodes of the straps
     nodes, edges, currents, where = crossing.size, [], [], []
     for k in range(len(straps)):            # up a strap; half a um of it, at least, to a pad at its end
-        for a, b in zip(crossing[k], crossing[k][1:]):
-            edges.append((a, b, metal.strap * float(rails[b % len(rails)] - rails[a % len(rails)])))
+        for r, (a, b) in enumerate(zip(crossing[k], crossing[k][1:])):
+            if not any(x == straps[k] and rails[r] < top and bottom < rails[r + 1] for x, bottom, top in gaps):
+                edges.append((a, b, metal.strap * float(rails[r + 1] - rails[r])))
     pads = [(crossing[k][end], metal.strap * max(0.5, gap)) for k in range(len(straps))
             for end, gap in ((0, rails[0]), (-1, height - rails[-1]))]
     for r in range(len(rails)):             # along a rail: its taps, and where straps meet it
@@ -51,7 +53,8 @@ def drops(rails, straps, height, taps, metal):
             else:
                 where.append((k, nodes))
                 currents.append((nodes, taps[k][2]))
-            if before is not None:
+            if before is not None and not any(bottom <= rails[r] <= top and before <= left and right <= x
+                                              for left, bottom, right, top in breaks):
                 edges.append((nodes - 1, nodes, edge * metal.rail * max(x - before, 1e-3)))
             before, nodes = x, nodes + 1
     matrix = _laplacian(nodes, edges, pads)

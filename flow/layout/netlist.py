@@ -27,7 +27,7 @@ class Port:
 
 @dataclass(frozen=True)
 class Instance:
-    """pins: dict pin -> net, supplies left out."""
+    """pins: dict pin -> net, supplies left out; of a block's buses bit by bit, name[bit]."""
 
     name: str
     cell: str
@@ -52,13 +52,14 @@ class Netlist:
         Path(path).write_text(json.dumps(asdict(self), indent=0) + "\n")
 
     @classmethod
-    def from_yosys(cls, path, top, buffer):
+    def from_yosys(cls, path, top, buffer, macros=()):
         """The module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
 
         buffer: (cell, input, output) put in where two ports are one signal. A flip-flop is named after its register,
-        any other cell u<number>.
+        a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>.
         """
-        module = json.loads(Path(path).read_text())["modules"][top]
+        modules = json.loads(Path(path).read_text())["modules"]
+        module = modules[top]
         names, ports, extra = {}, [], []
         for name, port in module["ports"].items():
             made = Port(name, port["direction"], len(port["bits"]))
@@ -74,15 +75,34 @@ class Netlist:
                 full = name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
                 registers.setdefault(bit, full)
         instances = []
-        for number, cell in enumerate(module["cells"].values()):
+        for number, (called, cell) in enumerate(module["cells"].items()):
             pins = {}
-            for pin, (bit,) in cell["connections"].items():
-                if not isinstance(bit, int):
-                    raise StepError(f"netlist of {top}: pin {pin} of a {cell['type']} is constant {bit}")
-                pins[pin] = names.setdefault(bit, f"n{bit}")
-            name = registers[cell["connections"]["q"][0]] + REGISTER if is_register(cell["type"]) else f"u{number}"
+            for pin, bits in cell["connections"].items():
+                for net, bit in zip(Port(pin, "", len(bits)).bits(), bits, strict=True):
+                    if not isinstance(bit, int):
+                        raise StepError(f"netlist of {top}: pin {net} of a {cell['type']} is constant {bit}")
+                    pins[net] = names.setdefault(bit, f"n{bit}")
+            for pin, port in modules[cell["type"]]["ports"].items() if cell["type"] in macros else ():
+                for net in Port(pin, "", len(port["bits"])).bits():
+                    pins.setdefault(net, f"{called}.{net}")          # an output that nothing takes
+            name = (registers[cell["connections"]["q"][0]] + REGISTER if is_register(cell["type"])
+                    else called if cell["type"] in macros else f"u{number}")
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
+
+    def apart(self, macros, buffer):
+        """The Netlist with a buffer (cell, input, output) between its inputs and blocks, whose cells are ``macros``:
+        else a wire from outside would end in a block alone, with nothing here that keeps it from being an antenna.
+        Clocks stay."""
+        inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
+        inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
+        shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
+        behind = {net: f"{net}_inside" for net in shared}
+        instances = [Instance(i.name, i.cell, {pin: behind.get(net, net) for pin, net in i.pins.items()})
+                     if i.cell in macros else i for i in self.instances]
+        instances += [Instance(f"inside{k}", buffer[0], {buffer[1]: net, buffer[2]: behind[net]})
+                      for k, net in enumerate(shared)]
+        return Netlist(self.name, self.ports, tuple(instances))
 
     def verilog(self):
         """Structural Verilog with the ports of the RTL."""
@@ -94,9 +114,9 @@ class Netlist:
             lines.append(f"  {port.direction} {bus}{port.name};")
         lines += [f"  wire {_escaped(net)};" for net in nets]
         for i in filter(lambda instance: instance.pins, self.instances):      # what only fills gaps has none
-            pins = ", ".join(f".{pin}({net if net in declared else _escaped(net)})"
-                             for pin, net in sorted(i.pins.items()))
-            lines.append(f"  {i.cell} {_escaped(i.name)} ({pins});")
+            pins = {pin: net if net in declared else _escaped(net) for pin, net in i.pins.items()}
+            joined = ", ".join(f".{pin}({net})" for pin, net in sorted(_buses(pins).items()))
+            lines.append(f"  {i.cell} {_escaped(i.name)} ({joined});")
         return "\n".join([*lines, "endmodule", ""])
 
     def spice(self, cells):
@@ -109,15 +129,33 @@ class Netlist:
             lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
         return "\n".join([*lines, ".ends", cells])
 
-    def blif(self, model, net_names):
-        """For Coriolis: model ``model``, nets by ``net_names`` (dict net -> name), instances in their order."""
+    def blif(self, model, net_names, blocks=None):
+        """For Coriolis: model ``model``, nets by ``net_names`` (dict net -> name), instances in their order.
+
+        blocks: dict instance -> (cell, dict pin -> name), where both have other names than here.
+        """
         lines = [f".model {model}"]
         for word, direction in ((".inputs", "input"), (".outputs", "output")):
             nets = [net_names[net] for port in self.ports if port.direction == direction for net in port.bits()]
             lines.append(f"{word} {' '.join(nets)}")
         for i in self.instances:
-            lines.append(f".gate {i.cell} " + " ".join(f"{pin}={net_names[net]}" for pin, net in i.pins.items()))
+            cell, pins = (blocks or {}).get(i.name, (i.cell, {}))
+            lines.append(f".gate {cell} " + " ".join(f"{pins.get(pin, pin)}={net_names[net]}"
+                                                     for pin, net in i.pins.items()))
         return "\n".join([*lines, ".end", ""])
+
+
+def _buses(pins):
+    """dict port -> Verilog of what is on it, from that of its bits, which are named port[bit]."""
+    made, buses = {}, {}
+    for pin, net in pins.items():
+        name, bit = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", pin).groups()
+        if bit is None:
+            made[name] = net
+        else:
+            buses.setdefault(name, {})[int(bit)] = net
+    return made | {name: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}"
+                   for name, bits in buses.items()}
 
 
 def is_register(cell):

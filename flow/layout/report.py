@@ -6,8 +6,11 @@ from jinja2 import Environment, FileSystemLoader
 
 from .picture import PALETTE
 
-PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on")
-BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("setup_margin_ns", "least seen, setup, ns"),
+PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1")
+PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control", "timing": "timing, addressing",
+         "adcs": "converters; here: their logic"}
+BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
+             ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"), ("setup_margin_ns", "least seen, setup, ns"),
              ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
              ("energy_pj_cycle", "pJ a cycle"),
              ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
@@ -22,7 +25,8 @@ def page(summary, broken, known, picture=None, pictures=()):
     key = [(wire.name, f"#{color:06x}") for wire, color in zip(known.wires, PALETTE)]
     return environment.get_template("report.html").render(
         s=summary, broken=broken, tiles=_tiles(summary, broken), figures=_figures(summary), picture=picture, key=key,
-        pictures=pictures, corners=_corners(summary), blocks=_blocks(summary))
+        pictures=pictures, corners=_corners(summary), blocks=_blocks(summary),
+        table=_table(summary))
 
 
 def _tiles(s, broken):
@@ -52,6 +56,12 @@ def _blocks(s):
     """(block, uW, share) by power, the largest first."""
     found = s.get("power_by_block_uw") or {}
     return [(name, value, value / (sum(found.values()) or 1)) for name, value in found.items()]
+
+
+def _table(s):
+    """(part, uW in Table 6.1, uW here), '-' where there is none."""
+    return [(PARTS.get(part, part), *("-" if uw is None else f"{uw:,.1f}" for uw in pair))
+            for part, pair in (s.get("table_6_1") or {}).items()]
 
 
 def _figures(s):

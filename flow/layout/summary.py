@@ -6,6 +6,9 @@ from pathlib import Path
 from models.parameters import ChipParameters, EnergyParameters
 
 CHIP = "AspChip"
+# Parts of the power in [Jayasuriya2017, Table 6.1] and the blocks of AspChip that do their digital work; pixels,
+# amplifiers and the converters' comparators are analog. What Table 6.1's sensor did not have is no part of it
+TABLE_6_1 = {"pixel_array": (), "amplifiers": ("amp",), "timing": ("seq", "regs", "balancer"), "adcs": ("bank",)}
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
 
@@ -21,15 +24,18 @@ def summarize(design, options, runner, tried):
                 if f"{step}_{corner}" in records} or None
 
     area, first = metric("floorplan", "core_area_um2"), next(iter(options.corners), "")
+    slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9        # the chip's clock by that of the layout
+    cells = "assemble" if design.macros else "synthesis"        # with those of its blocks and all buffers, or alone
     tools = {}
     for record in records.values():
         tools |= record["tools"]
     return {
         "design": design.name, "top": design.top, "backend": "coriolis", "pdk": options.pdk,
-        "cells": metric("synthesis", "cells"), "flip_flops": metric("synthesis", "flip_flops"),
-        "cell_area_um2": metric("synthesis", "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
+        "cells": metric(cells, "cells"), "flip_flops": metric(cells, "flip_flops"),
+        "cell_area_um2": metric(cells, "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
         "utilization": tried[-1]["utilization"], "tried": tried,
-        "wire_um": metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"),
+        "macros": {hard.instance: hard.design for hard in design.macros} or None,
+        "wire_um": metric("assemble", "wire_um") or metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"),
         "mended": metric("mend", "mended"), "hopped": metric("mend", "hopped"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
@@ -37,10 +43,11 @@ def summarize(design, options, runner, tried):
         "density_violations": metric("fill", "density_violations"), "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),
         "timing_rests_on": timing(options), **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
+        **{name: by_corner(name, "sta_blocks") for name in ("blocks_wns_ns", "blocks_whs_ns")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
         "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),
-        "thesis_timing_uw": round(EnergyParameters().timing * 1e6, 3) if design.top == CHIP else None,
+        "table_6_1": table_6_1(metric(f"power_{first}", "by_block"), slowed) if design.top == CHIP else None,
         "power_by_block_uw": metric(f"power_{first}", "by_block"),
         "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
         **{name: by_corner(name, "ir_drop") for name in ("supply_drop_mv", "ground_rise_mv", "ir_drop_percent")},
@@ -56,9 +63,20 @@ def summarize(design, options, runner, tried):
 
 
 def at_chip_clock(energies):
-    """uW by corner at the clock of the thesis's chip, from pJ a cycle. Of the whole chip it stands beside Table 6.1's
-    timing and addressing (thesis_timing_uw): the digital part, without the pins' loads."""
+    """uW by corner at the clock of the thesis's chip, from pJ a cycle; the digital part, without the pins' loads."""
     return energies and {corner: round(pj * ChipParameters().f_clk / 1e6, 3) for corner, pj in energies.items()}
+
+
+def table_6_1(by_block, slowed):
+    """dict part -> [uW in the thesis, uW here], None without a power. by_block: dict block -> uW; slowed: factor to
+    the clock of the thesis's chip. Its parts are first, then what is here besides: the clock's tree, other blocks."""
+    if by_block is None:
+        return None
+    found = {part: [round(getattr(EnergyParameters(), part) * 1e6, 3),
+                    round(slowed * sum(by_block.get(block, 0.0) for block in blocks), 3) if blocks else None]
+             for part, blocks in TABLE_6_1.items()}
+    counted = {block for blocks in TABLE_6_1.values() for block in blocks}
+    return found | {block: [None, round(slowed * uw, 3)] for block, uw in by_block.items() if block not in counted}
 
 
 def gate_tests(records):

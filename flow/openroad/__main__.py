@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from flow.files import check_folder, staged
-from flow.layout.design import DESIGNS, design
+from flow.layout.design import DESIGNS, flat_design
 from flow.platforms.openroad import process
 from flow.simulate.process import ToolError
 from models.parameters import ParameterError
@@ -33,7 +33,7 @@ def arguments():
 def main(argv=None):
     options = arguments().parse_args(argv)
     try:
-        chosen, known = design(options.design), process(options.pdk)
+        chosen, known = flat_design(options.design), process(options.pdk)
         folder = options.out / f"{chosen.name}-openroad"
         check_folder("out", folder)
         written = write(chosen, known, folder)

@@ -7,9 +7,11 @@ import os
 import resource
 import signal
 import sys
+import threading
 
 from .step import StepError
 
+ONE_AT_A_TIME = threading.Lock()
 PR_SET_PDEATHSIG = 1        # linux/prctl.h: the signal that a process gets when its parent ends
 
 
@@ -38,14 +40,15 @@ def alone(call, *arguments):
 
 def _start(child):
     """With fixed hashes of texts: sets have the same order each time, and what is written from them is the same file."""
-    before = os.environ.get("PYTHONHASHSEED")
-    os.environ["PYTHONHASHSEED"] = "0"
-    try:
-        child.start()
-    finally:
-        del os.environ["PYTHONHASHSEED"]
-        if before is not None:
-            os.environ["PYTHONHASHSEED"] = before
+    with ONE_AT_A_TIME:
+        before = os.environ.get("PYTHONHASHSEED")
+        os.environ["PYTHONHASHSEED"] = "0"
+        try:
+            child.start()
+        finally:
+            del os.environ["PYTHONHASHSEED"]
+            if before is not None:
+                os.environ["PYTHONHASHSEED"] = before
 
 
 def _measured(sender, call, arguments):

@@ -2,9 +2,12 @@
 
 import hashlib
 import json
+import multiprocessing
 import time
 from dataclasses import asdict
 from pathlib import Path
+
+import joblib
 
 from flow.simulate.cache import cached, digest
 
@@ -54,6 +57,22 @@ class Runner:
             self.paths[f"{step.name}.{name}"] = made / file
         self.records[step.name] = json.loads((made / RECORD).read_text())
         return self.records[step.name]
+
+
+    def run_all(self, steps):
+        """The records of ``steps``, in their order; those that do not need each other run at the same time."""
+        left = list(steps)
+        while left:
+            made_later = {f"{step.name}.{name}" for step in left for name in step.outputs}
+            ready = [step for step in left if not made_later & set(step.inputs.values())] or left[:1]
+            try:
+                joblib.Parallel(n_jobs=-1, backend="threading")(joblib.delayed(self.run)(step) for step in ready)
+            except BaseException:
+                for child in multiprocessing.active_children():     # else their threads wait for them to the end
+                    child.terminate()
+                raise
+            left = [step for step in left if step not in ready]
+        return [self.records[step.name] for step in steps]
 
 
 def _hash(path):

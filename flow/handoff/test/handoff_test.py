@@ -10,7 +10,7 @@ import pytest
 
 from flow.handoff import __main__ as command
 from flow.handoff import contents
-from flow.handoff.lef import pins, size
+from flow.lef import pins, size
 from flow.handoff.power import powered
 from flow.layout.design import design
 from flow.layout.summary import RULES

@@ -15,10 +15,12 @@ def main(request):
     request = json.loads(Path(request).read_text())
     begin = time.perf_counter()
     database = configure(request)
-    cell = load(request["cell"])
     from .block import make_block
     from .dump import instances, shapes, wires
+    from .macros import make_macros
     from .short import draw_short
+    make_macros(request)
+    cell = load(request["cell"])
     block = make_block(cell, request, database)
     times = {"load": time.perf_counter() - begin}
     routed = block.doPnR()

@@ -1,15 +1,21 @@
 """A block of Coriolis with power straps: pins, then the clock's trunk, then straps beside both, then the cells."""
 
 import time
+from math import ceil
 
 from coriolis.helpers import u
+from coriolis.Hurricane import Box
 from coriolis.plugins.block.block import Block
 from coriolis.plugins.block.configuration import BlockConf, IoPin
 
+from .macros import fix_macros
 from .session import CLOCK
 from .straps import PIN_CLEARANCE_UM, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
+# Tracks (horizontal, vertical) of a cell of the global router that it leaves to what ends there: most, least; around
+# blocks, where wires from far away gather, twice as many
+RESERVED = {False: ((6, 3), (3, 1)), True: ((11, 9), (6, 4))}
 SPARE_ROWS = 8          # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
 
 
@@ -25,11 +31,14 @@ def make_block(cell, request, framework):
     # One of the diodes that Coriolis adds against antennas stays open; the antenna step checks the result
     cfg.etesian.antennaGateMaxWL = u(40000.0)
     cfg.etesian.antennaDiodeMaxWL = u(80000.0)
-    cfg.anabatic.searchHalo = 2
+    # of the global router around a net's pins, in heights of a row: there must be a way around a block
+    cfg.katana.searchHalo = 1 + ceil(max((max(macro["width_um"], macro["height_um"]) for macro in request["macros"]),
+                                         default=0) / request["row_um"])
     cfg.anabatic.globalIterations = 20
     cfg.anabatic.topRoutingLayer = request["wires"][-1]["name"]
-    cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = 6, 3
-    cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = 3, 1
+    local, least = RESERVED[bool(request["macros"])]
+    cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = local
+    cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = least
     cfg.katana.eventsLimit = request["events"]
     cfg.block.spareSide = u(request["row_um"] * SPARE_ROWS)
     conf.useSpares = conf.useClockTree = request["clock_tree"]
@@ -37,6 +46,7 @@ def make_block(cell, request, framework):
     conf.bColumns = conf.bRows = 2
     if request["clock_tree"]:
         conf.useHTree(CLOCK)
+    fix_macros(cell, request)
     return TalbotBlock(conf, request)
 
 
@@ -57,11 +67,19 @@ class TalbotBlock(Block):
 
     def placeIoPins(self):
         for side, nets in self.request["pins"].items():
-            self.pins += spread(side, nets, self.request, self.power.even())
+            self.pins += spread(side, nets, self.request, [x for _, x, _ in self.power.even()])
         self.conf.ioPins = [IoPin(SIDES[side], net, u(at), 0, 1) for side, net, at in self.pins]
         super().placeIoPins()
+        self.conf.placeArea = Box(*map(u, self.request["tree"]))        # of the clock's tree, which is built next
 
     def addHTrees(self):
+        """Sinks beyond the tree's area hang from its nearest leaf too, but not blocks laid out before: these have a
+        tree of their own and hang from the root."""
+        self.conf.placeArea = None
+        blocks = {macro["name"] for macro in self.request["macros"]}
+        tree = self.spares.quadTree
+        if tree:
+            tree.isUnderArea = lambda plug: plug.getEntity().getInstance().getMasterCell().getName() not in blocks
         self._timed("clock_tree", super().addHTrees)
         self.straps = self.power.positions([at for side, _, at in self.pins if side in ("north", "south")])
 

@@ -5,47 +5,70 @@ from coriolis.Hurricane import Box, DataBase, DbU, Horizontal, Pad, UpdateSessio
 
 CLEARANCE_UM = 0.8
 PIN_CLEARANCE_UM = 1.6  # of a strap's axis from a pin beneath it
+SUPPLIES = "vss", "vdd"
 
 
 class Straps:
-    """Of ``cell``, in pairs (ground, supply) every ``strap_pitch_um``; the rails of even rows are ground."""
+    """Of ``cell``, in pairs (ground, supply) every ``strap_pitch_um``; the rails of even rows are ground. The straps of
+    a block laid out before go on through the whole core, and between its outer box's sides there are no others."""
 
     def __init__(self, cell, request):
         self.cell, self.request, self.x = cell, request, []
         self.layer = DataBase.getDB().getTechnology().getLayer
         self.names = [wire["name"] for wire in request["wires"]]
+        self.outer = sorted(macro["outer"] for macro in request["macros"])
+        self.inner = [(m["x_um"], m["y_um"], m["x_um"] + m["width_um"], m["y_um"] + m["height_um"])
+                      for m in request["macros"]]
+        self.through = [(net, macro["x_um"] + x) for macro in request["macros"] for net, x in macro["straps"]]
 
     def even(self):
-        """x of every strap (um) in an even pitch: list."""
-        width = self.request["width_um"]
-        count = 2 * max(1, round(width / self.request["strap_pitch_um"]))
-        return [width * (k + 0.5) / count for k in range(count)]
+        """(supply, x, pitch) of every strap (um) in an even pitch, between the blocks: list."""
+        edges = [0.0, *(x for box in self.outer for x in (box[0], box[2])), self.request["width_um"]]
+        found = []
+        for left, right in zip(edges[::2], edges[1::2], strict=True):
+            count = 2 * max(1, round((right - left) / self.request["strap_pitch_um"]))
+            found += [(SUPPLIES[k % 2], left + (right - left) * (k + 0.5) / count, (right - left) / count)
+                      for k in range(count)]
+        return found
 
     def positions(self, pins):
-        """x of every strap (um), as near to `even` as what runs there and the pins at x in ``pins`` allow: list."""
+        """(supply, x, gaps) of every strap (um), as near to `even` as what runs there and the pins at x in ``pins``
+        allow: list. gaps: (bottom, top) where one of a block, which stays at its x, leaves room for the clock's trunk.
+        """
         half = self.request["strap_um"] / 2
         taken = [(a - CLEARANCE_UM - half, b + CLEARANCE_UM + half) for a, _, b, _ in self._signals(self.names[-1])]
         taken += [(x - PIN_CLEARANCE_UM, x + PIN_CLEARANCE_UM) for x in pins]
-        even = self.even()
-        for ideal in even:
-            moves = (step * 0.5 * sign for step in range(int(self.request["width_um"] / len(even))) for sign in (1, -1))
+        for net, ideal, pitch in self.even():
+            moves = (step * 0.5 * sign for step in range(int(pitch)) for sign in (1, -1))
             x = next((ideal + move for move in moves if not any(a < ideal + move < b for a, b in taken)), None)
             if x is None:
                 raise SystemExit(f"coriolis: no place for a strap near x = {ideal:.1f} um")
-            self.x.append(round(self._on_grid(x), 3))
+            self.x.append((net, round(self._on_grid(x), 3), []))
+        for net, x in self.through:
+            self.x.append((net, x, _merged((bottom - CLEARANCE_UM, top + CLEARANCE_UM) for left, bottom, right, top
+                                           in self._signals(self.names[-1])
+                                           if left - CLEARANCE_UM < x + half and x - half < right + CLEARANCE_UM)))
+        self.x.sort(key=lambda strap: strap[1])
         return self.x
 
     def create(self):
-        """Draw the straps and stacks; a stack that would meet a wire already there is left out."""
+        """Draw the straps and stacks; a stack that would meet a wire already there is left out, and so are those of a
+        block, which has its own."""
         UpdateSession.open()
         height, width = self.request["height_um"], self.request["strap_um"]
         rows = round(height / self.request["row_um"])
         there = {name: self._signals(name) for name in self.names[1:]}
-        for k, x in enumerate(self.x):
-            net = self.cell.getNet("vdd" if k % 2 else "vss")
-            Vertical.create(net, self.layer(self.names[-1]), u(x), u(width), u(0.0), u(height))
-            for row in range(k % 2, rows + 1, 2):
+        for supply, x, gaps in self.x:
+            net, odd = self.cell.getNet(supply), SUPPLIES.index(supply)
+            ends = [0.0, *(y for gap in gaps for y in gap), height]
+            for low, high in zip(ends[::2], ends[1::2], strict=True):
+                if high > low:
+                    Vertical.create(net, self.layer(self.names[-1]), u(x), u(width), u(self._on_grid(low)),
+                                    u(self._on_grid(high)))
+            for row in range(odd, rows + 1, 2):
                 y, overlap = row * self.request["row_um"], self.request["rail_overlap_um"]
+                if any(left < x < right and low - 1e-6 <= y <= high + 1e-6 for left, low, right, high in self.inner):
+                    continue
                 if row in (0, rows):            # half a rail at the edge
                     overlap *= 2 / 3
                     y += overlap / 2 if row == 0 else -overlap / 2
@@ -91,3 +114,14 @@ class Straps:
 def _meet(a, b):
     return (a[0] - CLEARANCE_UM < b[2] and b[0] < a[2] + CLEARANCE_UM
             and a[1] - CLEARANCE_UM < b[3] and b[1] < a[3] + CLEARANCE_UM)
+
+
+def _merged(intervals):
+    """Sorted list of (low, high), none meeting another."""
+    made = []
+    for low, high in sorted(intervals):
+        if made and low <= made[-1][1]:
+            made[-1] = made[-1][0], max(high, made[-1][1])
+        else:
+            made.append((low, high))
+    return made

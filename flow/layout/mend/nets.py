@@ -3,10 +3,13 @@
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from .search import search
-from .window import Window
+import numpy as np
 
-MARGINS_NM = (20_000, 60_000, 200_000)      # of the window around the pins: of the first try, of the next
+from .search import search
+from .window import Site, Window
+
+MARGINS_NM = (10_000, 40_000, 120_000)      # of the window around two places to be joined: of a try, of the next
+AROUND_PIN_NM = 12_000                      # of that around a pin
 HIGHEST = 8                                 # price of the highest wire where it is to be short
 HOP_NM, REACH = 1500, 40                    # length of a piece of it; its distance from a pin, in steps of the grid
 CELL_PINS = 0                               # level of the layer of the cells' pins, on which nothing is routed
@@ -32,81 +35,111 @@ class Shapes:
                 self.wire(at, _around(x, y, x, y, half))
 
 
-def routed(layout, top, wiring, pins, hops=False):
-    """Shapes of a net whose pins are ``pins``: lists of (level, left, bottom, right, top), of which any is to be met.
+def routed(board, pins, hops=False):
+    """(Shapes, names of the nets in their way, [(level, box), ...] of where) of a net that is not on the ``board``.
 
-    hops: whether every cell that has room for it is joined over a piece of the highest wire, against antennas: until
-    that is there, what is joined to a gate is short. None when there is no way, or no room for what a rule asks.
+    pins: lists of (level, left, bottom, right, top), of which any is to be met. hops: whether every cell that has room
+    for it is joined over a piece of the highest wire, against antennas: until that is there, what is joined to a gate
+    is short. None when there is no way past what is fixed, or no room for what a rule asks.
     """
     own = {}
-    for box in (box for pin in pins for box in pin if box[0] != CELL_PINS):
-        own.setdefault(box[0], []).append(box[1:])
-    around = [f(box[k] for pin in pins for box in pin) for f, k in ((min, 1), (min, 2), (max, 3), (max, 4))]
-    die = top.bbox()
+    for level, *box in (box for pin in pins for box in pin if box[0] != CELL_PINS):
+        own.setdefault(level, []).append(box)
+    found = []
     for margin in MARGINS_NM:
-        box = (max(around[0] - margin, die.left), max(around[1] - margin, die.bottom),
-               min(around[2] + margin, die.right), min(around[3] + margin, die.top))
-        window = Window(layout, top, wiring, box, own)
-        accesses = [_accesses(window, pin) for pin in pins]
-        if hops:
-            accesses = [_hop(window, access) or access if pin[0][0] == CELL_PINS else access
-                        for pin, access in zip(pins, accesses, strict=True)]
-        prices = {len(wiring.layers) - 1: HIGHEST} if hops else None
-        shapes = _connected(window, accesses, prices) if all(accesses) else None
-        if shapes and enlarged(window, shapes):
-            return shapes
-    return None
+        site = Site(board, own)
+        shapes = _connected(site, pins, margin, hops)
+        if shapes and enlarged(site, shapes):
+            found.append((shapes, *site.fought_over(shapes)))
+            if not found[-1][1]:
+                break
+    return min(found, key=lambda one: len(one[1]), default=None)
 
 
-def _connected(window, pins, prices):
-    """Shapes that join ``pins``: dicts place -> Shapes that lead from there into the pin; None without a way."""
-    shapes, tree = Shapes(), set()
-    first, *left = pins
+def _connected(site, pins, margin, hops):
+    """Shapes that join ``pins``, always the one next to what is joined; None without a way."""
+    dear = {len(site.wiring.layers) - 1: HIGHEST} if hops else None
+    accesses = [_met(site, pin, hops) for pin in pins]
+    if not all(accesses):
+        return None
+    shapes, tree = Shapes(), {}
+    waiting = [list(access) for access in accesses]
+    joined = np.array(waiting[0])
+    left = list(range(1, len(pins)))
+    nearest = {k: _nearest(site, waiting[k], joined) for k in left}
     while left:
-        targets = {place: (k, access) for k, pin in enumerate(left) for place, access in pin.items()}
-        way = search(window, tree or set(first), set(targets), prices)
+        k = min(left, key=lambda k: nearest[k][0])
+        left.remove(k)
+        window = Window(site, _box(nearest[k][1], margin))
+        way = search(window, tree or accesses[0], accesses[k], dear)
         if way is None:
             return None
         if not tree:
-            _join(shapes, first[way[0]])
-        k, access = targets[way[-1]]
-        _join(shapes, access)
+            _join(shapes, accesses[0][way[0]])
+        _join(shapes, accesses[k][way[-1]])
         _draw(shapes, window, way)
-        tree |= set(way)
-        del left[k]
+        tree |= dict.fromkeys(way)
+        for other in left:
+            nearest[other] = min(nearest[other], _nearest(site, waiting[other], np.array(way)), key=lambda found: found[0])
     return shapes
+
+
+def _nearest(site, places, joined):
+    """(distance, ((x, y), (x, y)), nm) between the first of ``places`` and the nearest of the array ``joined``."""
+    step = np.array(site.wiring.step)
+    here, there = np.array(places[0])[1:] * step, joined[:, 1:] * step
+    distances = np.abs(there - here).sum(1)
+    return int(distances.min()), (tuple(map(int, here)), tuple(map(int, there[distances.argmin()])))
+
+
+def _box(points, margin):
+    (a, b), (c, d) = points
+    return min(a, c) - margin, min(b, d) - margin, max(a, c) + margin, max(b, d) + margin
+
+
+def _met(site, pin, hops):
+    """dict place -> Shapes that lead from there into the ``pin``, over a hop if it is asked for and there is room."""
+    around = [f(box[k] for box in pin) for f, k in ((min, 1), (min, 2), (max, 3), (max, 4))]
+    window = Window(site, _box((around[:2], around[2:]), AROUND_PIN_NM))
+    accesses = _accesses(window, pin)
+    return hops and pin[0][0] == CELL_PINS and _hop(window, accesses) or accesses
 
 
 def _hop(window, accesses):
     """The same pin met on the highest wire alone, HOP_NM from the cut that leads down: dict place -> Shapes; {} where
     there is no room. What lies below is an obstacle from then on."""
     highest = len(window.wiring.layers) - 1
-    free, cuts = window.wires[highest], window.cuts[highest - 1]
+    free, cuts = window.wires[highest] == 0, window.cuts[highest - 1] == 0
     right, up = (-(-HOP_NM // window.dx), 0) if window.wiring.layers[highest].across else (0, -(-HOP_NM // window.dy))
     places = {}
     for _, i, j in list(accesses)[:1]:
-        for column in range(max(right, i - REACH), min(window.columns - right, i + REACH)):
-            for row in range(max(up, j - REACH), min(window.rows - up, j + REACH)):
+        i, j = i - window.first[0], j - window.first[1]
+        for column in range(max(right, i - REACH), min(window.shape[0] - right, i + REACH)):
+            for row in range(max(up, j - REACH), min(window.shape[1] - up, j + REACH)):
                 if cuts[column, row]:
                     for x, y in ((column + right, row + up), (column - right, row - up)):
                         if cuts[x, y] and free[min(x, column):max(x, column) + 1, min(y, row):max(y, row) + 1].all():
-                            places[highest, column, row] = highest, x, y
-    way = search(window, set(accesses), set(places)) if places else None
+                            here, end = ((highest, a + window.first[0], b + window.first[1])
+                                         for a, b in ((column, row), (x, y)))
+                            places[here] = end
+    way = search(window, accesses, places) if places else None
     if way is None:
         return {}
     shapes, end = Shapes(), places[way[-1]]
     _join(shapes, accesses[way[0]])
     _draw(shapes, window, way)
+    if not enlarged(window.site, shapes, alone=True):
+        return {}
     below = {level: list(boxes) for level, boxes in shapes.wires.items() if level != highest}
     _draw(shapes, window, [way[-1], end])
     for level, boxes in below.items():
         for box in boxes:
-            window.block(level, box)
+            window.site.block(level, box)
     return {end: shapes}
 
 
 def _accesses(window, pin):
-    """dict place -> Shapes from there into the pin, for every place from which it can be met."""
+    """dict place -> Shapes from there into the pin, for every place from which it can be met with the least strife."""
     found = {}
     for level, left, bottom, right, top in pin:
         middle = (left + right) // 2
@@ -114,14 +147,15 @@ def _accesses(window, pin):
             points = [(middle, (bottom + top) // 2)]
         else:
             _, high = window.wiring.cuts[CELL_PINS].below
-            first, last = (-(-(bottom + high - window.bottom) // window.dy), (top - high - window.bottom) // window.dy)
-            points = [(middle, window.bottom + j * window.dy) for j in range(first, last + 1)]
+            points = [(middle, j * window.dy) for j in range(-(-(bottom + high) // window.dy), (top - high) // window.dy + 1)]
         for x, y in points:
             for i, j in window.near(x, y):
-                access = _access(window, level, (x, y), window.at(i, j))
+                place = max(level, CELL_PINS + 1), i, j
+                access = window.inside(place) and _access(window, level, (x, y), window.at(i, j))
                 if access:
-                    found[max(level, CELL_PINS + 1), i, j] = access
-    return found
+                    strife = sum(window.site.strife(at, box) for at, boxes in access.wires.items() for box in boxes)
+                    found.setdefault(strife, {})[place] = access
+    return found[min(found)] if found else {}
 
 
 def _access(window, level, point, place):
@@ -131,7 +165,7 @@ def _access(window, level, point, place):
         shapes.cut(window.wiring, level, *point)
     half = (window.wiring.layers[above].width // 2,) * 2
     shapes.wire(above, _around(*(f(a, b) for f in (min, max) for a, b in zip(point, place, strict=True)), half))
-    return shapes if all(window.clear(above, box) for box in shapes.wires[above]) else None
+    return shapes if all(window.site.clear(above, box) for box in shapes.wires[above]) else None
 
 
 def _around(left, bottom, right, top, half):
@@ -142,6 +176,8 @@ def _join(shapes, more):
     for name in ("wires", "cuts"):
         for level, made in getattr(more, name).items():
             getattr(shapes, name).setdefault(level, []).extend(made)
+    for level, length in more.lengths.items():
+        shapes.lengths[level] = shapes.lengths.get(level, 0) + length
 
 
 def _draw(shapes, window, way):
@@ -155,11 +191,12 @@ def _draw(shapes, window, way):
             shapes.wire(level, _around(left, bottom, right, top, half), right - left + top - bottom)
 
 
-def enlarged(window, shapes):
-    """Whether every piece of wire has, or could be given, the least area; gaps within the net are closed."""
+def enlarged(site, shapes, alone=False):
+    """Whether every piece of wire has, or could be given, the least area; gaps within the net are closed. alone: no
+    other net is to make room for that."""
     import klayout.db as db
     for level, boxes in shapes.wires.items():
-        layer = window.wiring.layers[level]
+        layer = site.wiring.layers[level]
         region = db.Region([db.Box(*box) for box in boxes]).merged()
         gap = layer.space // 2
         for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():
@@ -168,21 +205,21 @@ def enlarged(window, shapes):
         for polygon in db.Region([db.Box(*box) for box in boxes]).merged().each():
             lack = layer.area - polygon.area()
             if lack > 0:
-                more = _longer(window, level, polygon.bbox(), lack)
+                more = _longer(site, level, polygon.bbox(), lack, alone)
                 if more is None:
                     return False
                 boxes.append(more)
     return True
 
 
-def _longer(window, level, box, lack):
-    """A box that makes the piece of wire ``box`` larger by ``lack`` nm2 and is clear, or None."""
+def _longer(site, level, box, lack, alone):
+    """A box that makes the piece of wire ``box`` larger by ``lack`` nm2 and is clear, of all if it can be or, with
+    ``alone``, must; else None."""
     wide = -(-lack // box.height()) // 10 * 10 + 10
     high = -(-lack // box.width()) // 10 * 10 + 10
     tries = [(wide, 0, 0, 0), (0, 0, wide, 0), (wide // 2, 0, wide // 2, 0),
              (0, high, 0, 0), (0, 0, 0, high), (0, high // 2, 0, high // 2)]
-    for left, bottom, right, top in tries:
-        made = (box.left - left, box.bottom - bottom, box.right + right, box.top + top)
-        if window.clear(level, made):
-            return made
-    return None
+    made = [(box.left - left, box.bottom - bottom, box.right + right, box.top + top)
+            for left, bottom, right, top in tries]
+    return next((one for others in ([True] if alone else [True, False]) for one in made
+                 if site.clear(level, one, others)), None)

@@ -10,12 +10,12 @@ CUT_NM = 2000       # cost of a cut, as that of so long a wire
 
 
 def search(window, sources, targets, prices=None):
-    """[(level, i, j), ...] from one of ``sources`` to one of ``targets`` (both sets of the same), or None.
+    """[(level, i, j), ...] from one of ``sources`` to one of ``targets`` (iterables of the same), or None.
 
     prices: dict level -> by how much its wires are dearer than others.
     """
     levels = sorted(window.wires)
-    first, shape = levels[0], (len(levels), window.columns, window.rows)
+    first, shape = levels[0], (len(levels), *window.shape)
     wires = np.stack([window.wires[level] for level in levels])
     cuts = np.stack([window.cuts[level] for level in levels[:-1]])
     steps = np.empty((len(levels), 2), np.int64)
@@ -23,18 +23,17 @@ def search(window, sources, targets, prices=None):
         across, price = window.wiring.layers[level].across, (prices or {}).get(level, 1)
         x, y = (1, AGAINST) if across else (AGAINST, 1)
         steps[level - first] = window.dx * price * x, window.dy * price * y
-
-    def numbers(places):
-        level, i, j = np.array(sorted(places)).T
-        return np.ravel_multi_index((level - first, i, j), shape)
-
-    ends = np.zeros(wires.size, np.bool_)
-    ends[numbers(targets)] = True
-    _, i, j = np.array(sorted(targets)).T
-    way = _search(wires.ravel(), cuts.ravel(), np.array(shape), numbers(sources), ends,
-                  np.array((i.min(), i.max(), j.min(), j.max())), steps, np.array((window.dx, window.dy)))
-    places = zip(*np.unravel_index(way[::-1], shape), strict=True) if len(way) else None
-    return places and [(int(level) + first, int(i), int(j)) for level, i, j in places]
+    corner = np.array((first, *window.first))
+    begins, ends = (np.array(sorted(filter(window.inside, places))) - corner if places else np.empty((0, 3), int)
+                    for places in (sources, targets))
+    if not len(begins) or not len(ends):
+        return None
+    wanted = np.zeros(wires.size, np.bool_)
+    wanted[np.ravel_multi_index(ends.T, shape)] = True
+    box = np.array((ends[:, 1].min(), ends[:, 1].max(), ends[:, 2].min(), ends[:, 2].max()))
+    way = _search(wires.ravel(), cuts.ravel(), np.array(shape), np.ravel_multi_index(begins.T, shape), wanted, box,
+                  steps, np.array((window.dx, window.dy)))
+    return [tuple(map(int, place)) for place in np.transpose(np.unravel_index(way[::-1], shape)) + corner] or None
 
 
 @njit(cache=True)
@@ -42,7 +41,7 @@ def _search(wires, cuts, shape, sources, ends, box, steps, pitch):
     """Numbers of the places of the way, from its end to its begin; none without one."""
     levels, columns, rows = shape
     layer = columns * rows
-    cost = np.full(wires.size, 1 << 30, np.int32)
+    cost = np.full(wires.size, 1 << 60, np.int64)
     came = np.full(wires.size, -1, np.int32)
     done = np.zeros(wires.size, np.bool_)
     heap = [(np.int64(0), np.int64(0))]
@@ -64,11 +63,16 @@ def _search(wires, cuts, shape, sources, ends, box, steps, pitch):
         for move in range(6):
             if move < 4:
                 there = here + (rows, -rows, 1, -1)[move]
-                free, price = wires[there], steps[level, move // 2]
+                price = steps[level, move // 2]
             else:
                 there, below = (here + layer, level) if move == 4 else (here - layer, level - 1)
-                free, price = 0 <= below < levels - 1 and cuts[max(below, 0) * layer + at], CUT_NM
-            if free and cost[here] + price < cost[there]:
+                if not 0 <= below < levels - 1 or cuts[below * layer + at] < 0:
+                    continue
+                price = CUT_NM + cuts[below * layer + at]
+            if wires[there] < 0:
+                continue
+            price += wires[there]
+            if cost[here] + price < cost[there]:
                 cost[there], came[there] = cost[here] + price, here
                 heapq.heappush(heap, (cost[there] + _least(there % layer, rows, box, pitch), np.int64(there)))
     return np.empty(0, np.int64)

@@ -1,83 +1,122 @@
-"""A part of the layout as a grid: where the middle of a wire, and a cut, may lie."""
+"""A part of a board as a grid: what it costs to have the middle of a wire, or a cut, at a place."""
 
 import numpy as np
 from numba import njit
 
+from .board import near
+
+BLOCKED = -1
+PRICE_NM = 1500         # of a place that a net has, or that was fought over, as that of so long a wire
+DEAREST = 1 << 24
+
+
+class Site:
+    """The board as one net sees it. own: dict level -> boxes that are no obstacles, the net's own pins."""
+
+    def __init__(self, board, own):
+        self.board, self.wiring, self.fixed = board, board.wiring, dict(board.fixed)
+        for level, boxes in own.items():
+            for left, bottom, right, top in boxes:
+                there = self.fixed[level]
+                self.fixed[level] = there[(there[:, 0] >= right) | (there[:, 2] <= left)
+                                          | (there[:, 1] >= top) | (there[:, 3] <= bottom)]
+
+    def block(self, level, box):
+        """From now on the net's other wires come nowhere near ``box`` (nm) of its own."""
+        self.fixed[level] = np.vstack([self.fixed[level], box])
+
+    def clear(self, level, box, others=False):
+        """Whether nothing fixed, or nothing at all with ``others``, is nearer to ``box`` (nm) than wires must be."""
+        reach = self._reach(level, box)
+        return not len(near(self.fixed[level], reach)) and not (others and len(near(self.board.there[level], reach)))
+
+    def strife(self, level, box):
+        """How many wires of others are nearer to ``box`` (nm) than wires must be, and places that were fought over."""
+        reach = self._reach(level, box)
+        return len(near(self.board.there[level], reach)) + len(near(self.board.scars[level], reach))
+
+    def fought_over(self, shapes):
+        """(nets, places): names of the board's nets that are nearer to the Shapes ``shapes`` than wires must be, and
+        [(level, box), ...] of where."""
+        nets, places = set(), []
+        for level, boxes in shapes.wires.items():
+            for box in boxes:
+                reach = self._reach(level, box)
+                for left, bottom, right, top, number in near(self.board.there[level], reach).tolist():
+                    nets.add(self.board.nets[number])
+                    places.append((level, (max(left, reach[0]), max(bottom, reach[1]),
+                                           min(right, reach[2]), min(top, reach[3]))))
+        return nets, places
+
+    def _reach(self, level, box):
+        space = self.wiring.layers[level].space - 1
+        return box[0] - space, box[1] - space, box[2] + space, box[3] + space
+
 
 class Window:
-    """layout, top: KLayout's. wiring: Wiring. box: (left, bottom, right, top) in nm. own: dict level -> boxes that are
-    no obstacles. wires[level], cuts[level]: arrays of bool, [column, row]; a cut's level is that of the layer below."""
+    """site: Site. box: (left, bottom, right, top) in nm, of which the part on the die is meant.
 
-    def __init__(self, layout, top, wiring, box, own):
-        self.wiring, (self.dx, self.dy) = wiring, wiring.step
-        self.left, self.bottom = box[0] // self.dx * self.dx, box[1] // self.dy * self.dy
-        self.columns, self.rows = (box[2] - self.left) // self.dx + 1, (box[3] - self.bottom) // self.dy + 1
-        reach = (self.left - 1000, self.bottom - 1000, box[2] + 1000, box[3] + 1000)
-        self.obstacles = {level: _boxes(layout, top, layer, reach, own.get(level, ()))
-                          for level, layer in enumerate(wiring.layers) if level}
-        self.wires = {level: self._free(level, self._half(level)) for level in self.obstacles}
-        self.cuts = {level: self._free(level, cut.below) & self._free(level + 1, cut.above)
-                     for level, cut in enumerate(wiring.cuts) if level}
+    Places are (level, i, j) at (i dx, j dy); first: of the window's lower left corner. wires[level], cuts[level]: int32
+    arrays [column, row], BLOCKED where there is no place, else PRICE_NM for every net that is in the way and every time that the
+    place was fought over; a cut's level is that of the layer below.
+    """
+
+    def __init__(self, site, box):
+        self.site, self.wiring, (self.dx, self.dy) = site, site.wiring, site.wiring.step
+        die = site.board.top.bbox().enlarged(self.dx, self.dy)          # so that no port is at the window's edge
+        left, bottom = max(box[0], die.left), max(box[1], die.bottom)
+        right, top = min(box[2], die.right), min(box[3], die.top)
+        self.first = left // self.dx, bottom // self.dy
+        self.shape = right // self.dx - self.first[0] + 1, top // self.dy - self.first[1] + 1
+        reach = left - 1000, bottom - 1000, right + 1000, top + 1000
+        levels = range(1, len(self.wiring.layers))
+        self._fixed = {level: near(site.fixed[level], reach) for level in levels}
+        self._others = {level: near(np.vstack([site.board.there[level][:, :4], site.board.scars[level]]), reach)
+                        for level in levels}
+        self.wires = {level: self._prices([(level, self._half(level))]) for level in levels}
+        self.cuts = {level: self._prices([(level, cut.below), (level + 1, cut.above)])
+                     for level, cut in enumerate(self.wiring.cuts) if level}
+
+    def inside(self, place):
+        """Whether a place is in the window and not at its edge."""
+        return all(0 < at - first < size - 1 for at, first, size in zip(place[1:], self.first, self.shape, strict=True))
 
     def at(self, i, j):
         """(x, y) in nm of a place."""
-        return self.left + i * self.dx, self.bottom + j * self.dy
+        return i * self.dx, j * self.dy
 
     def near(self, x, y):
         """Places (i, j) around a point: at most four."""
-        i, j = (x - self.left) // self.dx, (y - self.bottom) // self.dy
-        right, up = bool((x - self.left) % self.dx), bool((y - self.bottom) % self.dy)
-        return [(i + a, j + b) for a in range(1 + right) for b in range(1 + up)
-                if 0 < i + a < self.columns - 1 and 0 < j + b < self.rows - 1]
-
-    def clear(self, level, box):
-        """Whether nothing of others is nearer to ``box`` (nm) than wires must be."""
-        space, there = self.wiring.layers[level].space, self.obstacles[level]
-        return not np.any((there[:, 0] < box[2] + space) & (there[:, 2] > box[0] - space)
-                          & (there[:, 1] < box[3] + space) & (there[:, 3] > box[1] - space))
-
-    def block(self, level, box):
-        """From now on nothing comes near ``box`` (nm) of the same net."""
-        self.obstacles[level] = np.vstack([self.obstacles[level], box])
-        self._keep_off(self.wires[level], level, self._half(level), box)
-        for below, pad in ((level, "below"), (level - 1, "above")):
-            if below in self.cuts:
-                self._keep_off(self.cuts[below], level, getattr(self.wiring.cuts[below], pad), box)
+        return [(x // self.dx + a, y // self.dy + b) for a in range(1 + bool(x % self.dx))
+                for b in range(1 + bool(y % self.dy))]
 
     def _half(self, level):
         return (self.wiring.layers[level].width // 2,) * 2
 
-    def _free(self, level, half):
-        """Where a box of half the size ``half`` keeps its distance; never at the window's edge."""
-        free = np.zeros((self.columns, self.rows), bool)
-        free[1:-1, 1:-1] = True
-        self._keep_off(free, level, half, self.obstacles[level])
-        return free
+    def _prices(self, parts):
+        """What each place costs for boxes of half the size ``half`` there, ``parts``: list of (level, half)."""
+        made = np.zeros(self.shape, np.int32)
+        for level, half in parts:
+            self._fill(made, level, half, self._others[level], PRICE_NM)
+        for level, half in parts:
+            self._fill(made, level, half, self._fixed[level], BLOCKED)
+        made[[0, -1], :] = BLOCKED
+        made[:, [0, -1]] = BLOCKED
+        return made
 
-    def _keep_off(self, free, level, half, boxes):
-        reach = np.array(half) + self.wiring.layers[level].space
-        boxes = np.reshape(boxes, (-1, 4)) - (self.left, self.bottom) * 2
+    def _fill(self, made, level, half, boxes, price):
+        """Where a box of half the size ``half`` is too near to one of ``boxes``, ``price`` is added."""
         step = np.array((self.dx, self.dy))
-        first, last = (boxes[:, :2] - reach) // step + 1, -((-boxes[:, 2:] - reach) // step)
-        _clear(free, np.maximum(0, first), np.maximum(0, last))
+        reach = np.array(half) + self.wiring.layers[level].space
+        first = (boxes[:, :2] - reach) // step + 1 - self.first
+        last = -((-boxes[:, 2:] - reach) // step) - self.first
+        _fill(made, np.maximum(0, first), np.maximum(0, last), price)
 
 
 @njit(cache=True)
-def _clear(free, first, last):
-    """Set ``free`` to False from the places ``first`` to before ``last``, arrays (n, 2)."""
+def _fill(made, first, last, price):
+    """Add ``price``, or put BLOCKED, at the places from first[k] to before last[k], arrays (n, 2)."""
     for k in range(len(first)):
-        free[first[k, 0]:last[k, 0], first[k, 1]:last[k, 1]] = False
-
-
-def _boxes(layout, top, layer, reach, own):
-    """Boxes (n, 4) of what lies on ``layer`` in ``reach`` and does not meet a box of ``own``."""
-    import klayout.db as db
-    area = db.Region(top.begin_shapes_rec_touching(layout.layer(layer.layer, layer.datatype), db.Box(*reach)))
-    found = []
-    for polygon in area.each():
-        parts = [polygon.bbox()] if polygon.is_box() else [part.bbox() for part in polygon.decompose_trapezoids()]
-        found += [(p.left, p.bottom, p.right, p.top) for p in parts]
-    found = np.array(found, int).reshape(-1, 4)
-    for a in own:
-        found = found[~np.all((found[:, :2] < a[2:]) & (found[:, 2:] > a[:2]), axis=1)]
-    return found
+        for i in range(first[k, 0], min(last[k, 0], made.shape[0])):
+            for j in range(first[k, 1], min(last[k, 1], made.shape[1])):
+                made[i, j] = BLOCKED if price < 0 else min(made[i, j] + price, DEAREST)

@@ -33,16 +33,15 @@ class Antenna(Step):
         known, _ = process(self.parameters.pdk)
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
-        top = layout.top_cell()
-        found = {wire.name: sorted({str(polygon.bbox().to_dtype(layout.dbu))
-                                    for polygon in violations(layout, top, known, level).each()})
-                 for level, wire in enumerate(known.wires)}
+        found = {wire.name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+                 for wire, bad in zip(known.wires, violations(layout, layout.top_cell(), known), strict=True)}
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
 
 
-def connected(layout, top, known, level):
-    """(LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]), all below that wire joined."""
+def connected(layout, top, known, first=0):
+    """Yields (LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]) of every level from
+    ``first``, all up to that wire joined. What an earlier one told of is gone with the next."""
     import klayout.db as db
 
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
@@ -51,37 +50,35 @@ def connected(layout, top, known, level):
     gate, diffusion = layers["poly"] & layers["active"], layers["active"] - layers["poly"]
     for name, made in (("gate", gate), ("diffusion", diffusion)):
         l2n.register(made, name)
-    l2n.connect(layers["poly"])
-    l2n.connect(layers["contact"])
-    l2n.connect(gate)
-    l2n.connect(diffusion)
-    l2n.connect(layers["poly"], gate)
-    l2n.connect(layers["poly"], layers["contact"])
-    l2n.connect(diffusion, layers["contact"])
+    for a, b in (("poly", "poly"), ("contact", "contact"), ("poly", "contact")):
+        l2n.connect(layers[a], layers[b])
+    for a, b in ((gate, gate), (diffusion, diffusion), (layers["poly"], gate), (diffusion, layers["contact"])):
+        l2n.connect(a, b)
     below, wires = layers["contact"], []
-    for k, wire in enumerate(known.wires[:level + 1]):
-        metal = l2n.make_polygon_layer(layout.layer(wire.layer, wire.datatype), wire.name)
-        wires.append(metal)
-        l2n.connect(metal)
-        l2n.connect(below, metal)
-        if k < level:
-            cut = known.cuts[k]
+    for level, wire in enumerate(known.wires):
+        wires.append(l2n.make_polygon_layer(layout.layer(wire.layer, wire.datatype), wire.name))
+        l2n.connect(wires[-1])
+        l2n.connect(below, wires[-1])
+        if level >= first:
+            l2n.extract_netlist()
+            yield l2n, gate, diffusion, list(wires)
+            l2n.reset_extracted()
+        if level < len(known.cuts):
+            cut = known.cuts[level]
             below = l2n.make_polygon_layer(layout.layer(cut.layer, cut.datatype), cut.name)
             l2n.connect(below)
-            l2n.connect(metal, below)
-    l2n.extract_netlist()
-    return l2n, gate, diffusion, wires
+            l2n.connect(wires[-1], below)
 
 
-def violations(layout, top, known, level):
-    """klayout.db.Region: known.wires[level] of the nets on which it is too large for their gates."""
+def violations(layout, top, known):
+    """klayout.db.Regions, one a level: known.wires[level] of the nets on which it is too large for their gates."""
     import klayout.db as db
-    l2n, gate, diffusion, wires = connected(layout, top, known, level)
-    wire = known.wires[level]
-    safe = 1e9          # for what has a diffusion, in the check of what has none
-    base, more = wire.antenna_diffusion
-    factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)       # of the metal's area, its edges
-    bad = db.Region()
-    for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
-        bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], *factors, ratio, [[diffusion, by_diffusion]])
-    return db.Region(list(bad.each()))          # no longer of the extraction, which ends here
+    found, safe = [], 1e9           # for what has a diffusion, in the check of what has none
+    for wire, (l2n, gate, diffusion, wires) in zip(known.wires, connected(layout, top, known), strict=True):
+        base, more = wire.antenna_diffusion
+        factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)       # of the metal's area, its edges
+        bad = db.Region()
+        for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
+            bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], *factors, ratio, [[diffusion, by_diffusion]])
+        found.append(db.Region(list(bad.each())))           # no longer of the extraction, which goes on
+    return found

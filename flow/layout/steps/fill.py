@@ -3,9 +3,13 @@
 import json
 from dataclasses import dataclass
 
+import numpy as np
+
 from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step
+
+GRID = 200          # nm, of what is free
 
 
 @dataclass(frozen=True)
@@ -52,28 +56,53 @@ def fill(layout, top, wire, rules):
     layer, die = layout.layer(wire.layer, wire.datatype), top.bbox()
     metal = db.Region(top.begin_shapes_rec(layer)).merged()
     wanted = rules.density * die.area() - metal.area()
-    space, drawn = round(rules.space_um / layout.dbu), 0
+    space, clearance = (round(value / layout.dbu) for value in (rules.space_um, rules.clearance_um))
+    room, drawn = Room((die.left, die.bottom, die.right, die.top)), 0
+    boxes = [part.bbox() for polygon in metal.each() for part in
+             ([polygon] if polygon.is_box() else polygon.decompose_trapezoids())]
+    room.take(np.array([(b.left, b.bottom, b.right, b.top) for b in boxes]).reshape(-1, 4), clearance)
     for side in (round(side / layout.dbu) for side in rules.sides_um):
-        free = db.Region(die.enlarged(-space)) - metal.sized(round(rules.clearance_um / layout.dbu))
-        places = list(squares(die, side, side + space).inside(free).each())
+        places = room.squares(side, side + space, space)
         count = min(len(places), max(0, -(-round(wanted) // side ** 2)))
-        chosen = db.Region([places[k * len(places) // count] for k in range(count)])      # evenly over the layer
-        top.shapes(layer).insert(chosen)
-        metal += chosen.sized(space - round(rules.clearance_um / layout.dbu))     # squares keep their own space
+        chosen = places[np.arange(count) * len(places) // max(1, count)]        # evenly over the layer
+        for box in chosen.tolist():
+            top.shapes(layer).insert(db.Box(*box))
+        room.take(chosen, space)
         wanted -= count * side ** 2
         drawn += count
     return drawn
 
 
-def squares(box, side, pitch):
-    """Region of squares on a grid over ``box``, in rows from the lower left."""
-    import klayout.db as db
-    made = db.Region()
-    made.merged_semantics = False
-    for y in range(box.bottom, box.top - side, pitch):
-        for x in range(box.left, box.right - side, pitch):
-            made.insert(db.Box(x, y, x + side, y + side))
-    return made
+class Room:
+    """Where nothing is yet in ``box`` (left, bottom, right, top): as pixels of GRID, a pixel taken as soon as anything
+    reaches into it."""
+
+    def __init__(self, box):
+        self.box, self.corner = box, np.array(box[:2])
+        self.taken = np.zeros([-(-(end - begin) // GRID) for begin, end in ((box[0], box[2]), (box[1], box[3]))], bool)
+
+    def _pixels(self, boxes):
+        """First pixels of boxes (n, 4), and those behind the last: two arrays (n, 2)."""
+        return (boxes[:, :2] - self.corner) // GRID, -((self.corner - boxes[:, 2:]) // GRID)
+
+    def take(self, boxes, around):
+        """Take the ``boxes`` (n, 4) and what is nearer to them than ``around``."""
+        first, last = (np.clip(at, 0, self.taken.shape) for at in
+                       self._pixels(boxes + np.array((-around, -around, around, around))))
+        change = np.zeros(np.array(self.taken.shape) + 1, np.int32)
+        for (x, y), sign in (((first, first), 1), ((last, first), -1), ((first, last), -1), ((last, last), 1)):
+            np.add.at(change, (x[:, 0], y[:, 1]), sign)
+        self.taken |= change.cumsum(0, np.int32).cumsum(1, np.int32)[:-1, :-1] > 0
+
+    def squares(self, side, pitch, margin):
+        """Boxes (n, 4) of the free squares on a grid of ``pitch``, ``margin`` from the edge, in rows from below."""
+        sums = np.pad(self.taken.cumsum(0, np.int32).cumsum(1, np.int32), ((1, 0), (1, 0)))
+        x, y = (np.arange(-(-margin // pitch) * pitch, end - begin - side - margin + 1, pitch) + begin
+                for begin, end in ((self.box[0], self.box[2]), (self.box[1], self.box[3])))
+        x, y = (at.ravel() for at in np.meshgrid(x, y))
+        boxes = np.stack((x, y, x + side, y + side), 1)
+        (left, bottom), (right, top) = (at.T for at in self._pixels(boxes))
+        return boxes[sums[right, top] - sums[left, top] - sums[right, bottom] + sums[left, bottom] == 0]
 
 
 def densest(layout, top, wire, rules):

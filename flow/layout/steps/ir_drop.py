@@ -51,11 +51,13 @@ class IrDrop(Step):
                         json.loads(inputs["power"].read_text()), known)
         rows = round(plan["height_um"] / known.row_um)
         found, lost = [], []
-        for odd in (1, 0):              # rails of even rows are ground, and so are even straps
+        for net, odd in (("vdd", 1), ("vss", 0)):       # rails of even rows are ground
             rails = list(range(odd, rows + 1, 2))
+            straps = [x for supply, x, _ in placed["straps"] if supply == net]
+            gaps = [(x, *gap) for supply, x, cut in placed["straps"] if supply == net for gap in cut]
             taps = [(rails.index(row if row % 2 == odd else row + 1), x, current) for row, x, current in cells]
-            drop, share = drops([row * known.row_um for row in rails], placed["straps"][odd::2], plan["height_um"],
-                                taps, metal(known))
+            drop, share = drops([row * known.row_um for row in rails], straps, plan["height_um"], taps, metal(known),
+                                breaks(plan["macros"]), gaps)
             found.append(drop * 1000)
             lost.append(share)
         total = found[0] + found[1]
@@ -82,13 +84,19 @@ def drawing(netlist, placed, areas, power, known):
     return found
 
 
+def breaks(macros):
+    """Boxes in which there are no rails: on the west and the east of the floorplan's blocks."""
+    return [(left, m["y_um"], right, m["y_um"] + m["height_um"]) for m in macros
+            for left, right in ((m["outer"][0], m["x_um"]), (m["x_um"] + m["width_um"], m["outer"][2]))]
+
+
 def picture(path, at, drop, straps, plan):
     """Cells by the sum of their drops, mV; straps as lines."""
     from matplotlib.figure import Figure
     figure = Figure(figsize=(7, 6), layout="constrained")
     axes = figure.subplots()
     x, y = np.transpose(at)
-    for place in straps:
+    for _, place, _ in straps:
         axes.axvline(place, color="0.8", linewidth=1, zorder=0)
     shown = axes.scatter(x, y, c=drop, s=max(1.0, 20000 / len(at)), cmap="inferno", marker="s")
     figure.colorbar(shown, label="supply's drop and ground's rise, mV")

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 
-from flow.platforms import openroad
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
 from .. import abstract as abstract_module
+from .. import macro
 from ..abstract import abstract, ports, read_back
+from ..macro import layer_names
 
 
 @dataclass(frozen=True)
@@ -25,14 +26,13 @@ class Lef(Step):
     outputs = {"lef": "block.lef"}
     Parameters = LefParameters
     metrics = {"pins": ""}
-    uses = (abstract_module,)
+    uses = (abstract_module, macro)
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
         pdk = self.parameters.pdk
         known, directions = process(pdk)[0], ports(inputs["verilog"].read_text())
-        names = ({numbers: name for name, numbers in openroad.process(pdk).gds.items()}
-                 if pdk in openroad.PROCESSES else {})
+        names = layer_names(pdk)
         outputs["lef"].write_text(abstract(inputs["gds"], directions, known, names))
         if wrong := read_back(outputs["lef"], inputs["gds"], directions, known, names):
             raise StepError(f"lef: read back, it differs from the GDS: {'; '.join(wrong)}")

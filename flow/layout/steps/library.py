@@ -2,6 +2,7 @@
 
 import importlib
 import json
+import math
 import re
 from dataclasses import asdict, dataclass, field
 
@@ -13,6 +14,7 @@ from flow.steps import Step, StepError
 from .. import liberty
 from ..netlist import SUPPLIES
 
+GRID_UM = 0.005     # on which pads are drawn
 UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")      # by synthesis
 DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground", "q": "out", "nq": "out",
               "one": "out", "zero": "out", "co": "out", "s": "out"}
@@ -121,9 +123,25 @@ def narrowed(text, known, primitives):
                                 gauge, count=1)
     gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge,
                             count=1)
-    if not enclosures or not tracks:
+    head, pads = with_short_pads(head, known.wires[-2].name, known.wires[-1].name, cut,
+                                  float(primitives[known.wires[-2].name].min_area or 0))
+    if not enclosures or not tracks or not pads:
         raise StepError(f"library: PDKMaster's export has no gauge of {wire.name} that could be narrowed")
     return head + gauge
+
+
+def with_short_pads(text, below, above, cut, area):
+    """(the export, whether it has them) with the pads of the wire ``below`` at cuts to the highest, ``above``, only as
+    long as the least ``area`` (um2) asks: PDKMaster's are 1.18 um long in SKY130, and two of them on one track are too
+    near where they lie two tracks of the highest wire apart."""
+    def shorter(match):
+        long, wide = float(match[2]), float(match[3])
+        least = area / (cut.size_um + 2 * wide) - cut.size_um
+        needed = max(cut.enclosure_um, math.ceil(least / 2 / GRID_UM - 1e-9) * GRID_UM)
+        return f"{match[1]}u({min(long, needed):g}), u({wide:g})"
+    pattern = (rf"(via = tech\.getLayer\('{below}_{cut.name}_{above}'\)\n\s+setEnclosures\(via, metal, \()"
+               r"u\(([\d.]+)\), u\(([\d.]+)\)")
+    return re.subn(pattern, shorter, text, count=1)
 
 
 def _klayout(outputs, description, package, library):

@@ -4,20 +4,26 @@ import json
 import re
 import sys
 import tempfile
+from collections import Counter
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
+from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.simulate.process import finish
 from flow.steps import Step, StepError
 from models.parameters import check_int, check_real
 
 from ..coriolis.session import CLOCK
+from .. import macro as macro_module
 from .. import netlist as netlist_module
+from ..macro import Macro, layer_names
 from ..netlist import SUPPLIES, Instance, Netlist
 
 ROOT = Path(__file__).parents[3]
+OVER_UM = 0.4                   # that wires of a block may lie over its edge: half a wire on a track there
 MODEL = "talbot_block"          # Coriolis works in lower case
+BLOCK = "macro"                 # and a number: a block's cell in Coriolis
 PHASES = ("clock_tree", "placement", "power", "routing")
 
 
@@ -26,7 +32,7 @@ class PlaceRouteParameters:
     """pdk: process. clock: name of the clock port, '' without one. effort: of the placer, 1..3.
 
     density_variation: how unevenly the placer may spread the empty sites; what is packed does not route.
-    strap_pitch_um: of a pair of power straps. events: most moves of the router.
+    strap_pitch_um: of a pair of power straps. events: most moves of the router. macros: modules laid out before.
     """
 
     pdk: str = "sky130"
@@ -35,6 +41,7 @@ class PlaceRouteParameters:
     density_variation: float = 0.05
     strap_pitch_um: float = field(default=45.0, metadata={"unit": "um"})
     events: int = 4_000_000
+    macros: tuple = ()
 
     def __post_init__(self):
         check_int("effort", self.effort, 1, 3)
@@ -49,24 +56,32 @@ class PlaceRoute(Step):
     name = "place_route"
     inputs = {"netlist": "synthesis.netlist", "floorplan": "floorplan.floorplan", "coriolis": "library.coriolis",
               "geometry": "library.geometry", "scripts": "coriolis_scripts"}
-    uses = (netlist_module,)
+    uses = (macro_module, netlist_module)
     outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json",
                "shapes": "shapes.json", "log": "coriolis.log"}
     Parameters = PlaceRouteParameters
     metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "vias": "", "clock_buffers": "",
                **{f"{name}_s": "s" for name in PHASES}}
-    tools = ("python coriolis-eda",)
+    tools = ("python coriolis-eda", "python klayout")
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.inputs = self.inputs | {module: f"macro.{module}.lef" for module in parameters.macros}
 
     def run(self, inputs, outputs):
         netlist = Netlist.read(inputs["netlist"])
         names = plain_names(netlist, self.parameters.clock)
+        plan = json.loads(inputs["floorplan"].read_text())
+        blocks = plain_blocks(netlist, plan["macros"])
+        request = self.request(inputs, plan, names, netlist, blocks)
         with tempfile.TemporaryDirectory(dir=outputs["log"].parent) as work:
-            result = self.coriolis(Path(work), netlist.blif(MODEL, names), self.request(inputs, names), outputs)
+            result = self.coriolis(Path(work), netlist.blif(MODEL, names, blocks), request, outputs)
         if "stopped" in result:
             for name in ("gds", "netlist", "placement", "shapes"):
                 outputs[name].write_text("")
             return dict.fromkeys(self.metrics) | {"routed": False, "stopped": result["stopped"]}
-        final = routed_netlist(netlist, names, result["instances"])
+        make_solid(outputs["gds"], request["macros"], process(self.parameters.pdk)[0])
+        final = routed_netlist(netlist, names, result["instances"], blocks)
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
         wires = [wire for net in result["wires"].values() for wire in net]
@@ -90,19 +105,31 @@ class PlaceRoute(Step):
         (work / "shapes.json").replace(outputs["shapes"])
         return json.loads((work / "result.json").read_text())
 
-    def request(self, inputs, names):
+    def request(self, inputs, plan, names, netlist, blocks):
         """What Coriolis is asked for."""
         p = self.parameters
         known, _ = process(p.pdk)
-        plan = json.loads(inputs["floorplan"].read_text())
         return {"cell": MODEL, "library": str(inputs["coriolis"].resolve()), "clock_tree": bool(p.clock),
-                **{name: plan[name] for name in ("width_um", "height_um")},
+                **{name: plan[name] for name in ("width_um", "height_um", "tree")},
+                "macros": [self.macro(inputs, block, netlist, *blocks[block["instance"]], known)
+                           for block in plan["macros"]],
                 "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
                 "wires": [asdict(wire) for wire in known.wires], "cuts": [asdict(cut) for cut in known.cuts],
                 **{name: getattr(known, name) for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um",
                                                            "pin_pitch_um")},
-                **{name: getattr(p, name) for name in ("effort", "density_variation",
+                "over_um": OVER_UM, **{name: getattr(p, name) for name in ("effort", "density_variation",
                                                        "strap_pitch_um", "events")}}
+
+    def macro(self, inputs, block, netlist, name, pins, known):
+        """A block laid out before, by its LEF, as Coriolis is told of it; its pins as [pin, whether it leads anywhere,
+        direction, wire, box]."""
+        macro = Macro.read(inputs[block["cell"]], known, layer_names(self.parameters.pdk))
+        ends = Counter(net for instance in netlist.instances for net in instance.pins.values())
+        ends.update(net for port in netlist.ports for net in port.bits())
+        nets = next(instance.pins for instance in netlist.instances if instance.name == block["instance"])
+        return {"name": name, "straps": macro.straps,
+                **{key: block[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
+                "pins": [[pins[pin], ends[nets[pin]] > 1, *piece] for pin, piece in macro.pins.items()]}
 
 
 def plain_names(netlist, clock):
@@ -112,10 +139,39 @@ def plain_names(netlist, clock):
     return {net: CLOCK if net == clock else f"w{number}" for number, net in enumerate(nets)}
 
 
-def routed_netlist(netlist, names, placed):
+def plain_blocks(netlist, placed):
+    """dict instance -> (cell, dict pin -> name) as Coriolis knows a block of the floorplan's list ``placed``."""
+    found = {instance.name: instance for instance in netlist.instances}
+    return {block["instance"]: (f"{BLOCK}{k}", {pin: f"p{j}" for j, pin in enumerate(found[block["instance"]].pins)})
+            for k, block in enumerate(placed)}
+
+
+def make_solid(gds, blocks, known):
+    """In the file ``gds``, make the cells of ``blocks`` (their entries for Coriolis) solid on all wires but the lowest,
+    but for the wires at their pins: for who routes after Coriolis, there is no way through a block."""
+    import klayout.db as db
+    if not blocks:
+        return
+    layout = db.Layout()
+    layout.read(str(gds))
+    for block in blocks:
+        cell, (left, bottom, *_) = layout.cell(block["name"]), block["outer"]
+        x, y = block["x_um"] - left, block["y_um"] - bottom
+        solid = db.DBox(x - OVER_UM, y - OVER_UM, x + block["width_um"] + OVER_UM, y + block["height_um"] + OVER_UM)
+        inside, keep_off = layout.create_cell(f"{block['name']}_solid"), max(known.pin_pitch_um.values())
+        cell.insert(db.CellInstArray(inside.cell_index(), db.Trans()))
+        for wire in known.wires[1:]:
+            layer = layout.layer(wire.layer, wire.datatype)
+            pins = db.Region(cell.shapes(layer)).sized(round(keep_off / layout.dbu))
+            inside.shapes(layer).insert(db.Region(solid.to_itype(layout.dbu)) - pins)
+    write_gds(layout, gds)
+
+
+def routed_netlist(netlist, names, placed, blocks):
     """The netlist with what Coriolis added: the clock tree's buffers, and the cells that fill gaps.
 
-    placed: [name, cell, x, y, orientation, {pin: net}] of every instance. Raises StepError if an instance went lost.
+    placed: [name, cell, x, y, orientation, {pin: net}] of every instance. blocks: see `plain_blocks`. Raises StepError
+    if an instance went lost.
     """
     nets, instances, seen = {plain: net for net, plain in names.items()}, [], set()
     for name, cell, *_, pins in placed:
@@ -123,7 +179,10 @@ def routed_netlist(netlist, names, placed):
         number = _number(name)
         if number is not None:
             seen.add(number)
-            name = netlist.instances[number].name
+            was = netlist.instances[number]
+            name = was.name
+            if name in blocks:
+                cell, pins = was.cell, {pin: pins[plain] for pin, plain in blocks[name][1].items()}
         instances.append(Instance(name, cell, pins))
     if len(seen) != len(netlist.instances):
         raise StepError(f"place_route: {len(netlist.instances) - len(seen)} instances are not in the layout")

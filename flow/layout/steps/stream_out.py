@@ -14,14 +14,16 @@ from .place_route import plain_names
 
 @dataclass(frozen=True)
 class StreamOutParameters:
-    """pdk: process. clock: name of the clock port."""
+    """pdk: process. clock: name of the clock port. assembled: whether there are blocks laid out before in it."""
 
     pdk: str = "sky130"
     clock: str = "clk"
+    assembled: bool = False
 
 
 class StreamOut(Step):
-    """Labels get the names of the ports, on the layers that the process's decks read."""
+    """Labels get the names of the ports, on the layers that the process's decks read. The Verilog has no hierarchy; in
+    the SPICE a block is a subcircuit."""
 
     name = "stream_out"
     inputs = {"gds": "mend.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
@@ -32,6 +34,11 @@ class StreamOut(Step):
     uses = (area, netlist_module, trim)
     tools = ("python klayout",)
 
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        if parameters.assembled:
+            self.inputs = self.inputs | {"gds": "assemble.gds", "cells": "assemble.spice", "flat": "assemble.netlist"}
+
     def run(self, inputs, outputs):
         p = self.parameters
         known, _ = process(p.pdk)
@@ -40,10 +47,11 @@ class StreamOut(Step):
         ports = {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES)
         rules = json.loads(inputs["rules"].read_text())
         box, trimmed, grown = relabel(inputs["gds"], outputs["gds"], netlist.name, names, ports, known, rules)
-        outputs["verilog"].write_text(netlist.verilog())
+        flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
+        outputs["verilog"].write_text(flat.verilog())
         outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
         return {"width_um": round(box.width(), 3), "height_um": round(box.height(), 3),
-                "area_um2": round(box.width() * box.height(), 2), "instances": len(netlist.instances),
+                "area_um2": round(box.width() * box.height(), 2), "instances": len(flat.instances),
                 "trimmed": trimmed, "grown": grown}
 
 

@@ -11,6 +11,7 @@ from ..netlist import Netlist, is_register
 
 SCRIPT = """
 read_verilog -sv {rtl}
+{blocks}
 synth -flatten -nofsm -top {top}
 dfflibmap -liberty {liberty}
 abc -D {period_ps:.0f} -liberty {timing} -script {mapping}
@@ -24,11 +25,13 @@ write_json {json}
 
 @dataclass(frozen=True)
 class SynthesisParameters:
-    """top: module. period_ns: what the mapper aims at. fan_out: most cells behind one signal, 0 for no limit."""
+    """top: module. period_ns: what the mapper aims at. fan_out: most cells behind one signal, 0 for no limit. macros:
+    modules that were laid out before and stay what they are."""
 
     top: str = ""
     period_ns: float = field(default=10.0, metadata={"unit": "ns"})
     fan_out: int = 16
+    macros: tuple = ()
 
     def __post_init__(self):
         check_real("period_ns", self.period_ns, 0.1, 10_000)
@@ -46,6 +49,10 @@ class Synthesis(Step):
     uses = (netlist_module,)
     tools = ("yosys",)
 
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        self.inputs = self.inputs | {name: f"macro.{name}.verilog" for name in parameters.macros}
+
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["netlist"].parent
         files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "script")}
@@ -54,12 +61,14 @@ class Synthesis(Step):
         files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
                                                *limit, "print_stats"]) + "\n")
         files["script"].write_text(SCRIPT.format(
-            rtl=inputs["rtl"], top=p.top, liberty=inputs["liberty"],
+            rtl=inputs["rtl"], top=p.top, blocks="\n".join(f"blackbox {name}" for name in p.macros),
+            liberty=inputs["liberty"],
             timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
         run(["yosys", "-q", "-s", files["script"]])
-        netlist = Netlist.from_yosys(files["json"], p.top, ("buf_x1", "i", "q"))
+        buffer = "buf_x1", "i", "q"
+        netlist = Netlist.from_yosys(files["json"], p.top, buffer, p.macros).apart(p.macros, buffer)
         netlist.write(outputs["netlist"])
-        outputs["verilog"].write_text(netlist.verilog())
+        outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
         area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
         files["json"].unlink()
         return {"cells": len(netlist.instances), "cell_area_um2": float(area),

@@ -9,7 +9,7 @@ from pathlib import Path
 from flow.charts import save
 from flow.files import check_folder, staged
 from flow.jobs import Job, run
-from flow.layout.design import design
+from flow.layout.design import flat_design
 from flow.simulate.process import ToolError
 from flow.steps import StepError
 from models.parameters import ParameterError
@@ -40,7 +40,7 @@ def jobs(options):
     code = sorted((ROOT / "flow" / "layout").rglob("*.py"))
     inputs = (*options.liberty, *(path for path in code if "test" not in path.parts))
     if options.what == "effort":
-        chosen = design(options.design)
+        chosen = flat_design(options.design)
         return [Job(f"effort_{chosen.name}_{effort}_{variation:g}_{options.utilization:g}", effort_point,
                     (chosen, liberty, str(options.out), effort, variation, options.utilization), inputs)
                 for effort in EFFORTS for variation in VARIATIONS]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from flow.handoff.lef import pins, size
+from flow.lef import pins, size
 from flow.layout.abstract import abstract, ports, read_back
 from flow.platforms.embedded import process
 from models.parameters import ParameterError
@@ -46,6 +46,17 @@ def test_size_and_pins(gds, known):
     assert (found["a"].x_um, found["a"].y_um, found["a"].layer, found["a"].direction) == (0.15, 1.15, "met1", "INPUT")
     assert (found["q[1]"].x_um, found["q[1]"].y_um, found["q[1]"].direction) == (7.85, 4.15, "OUTPUT")
     assert (found["vdd"].x_um, found["vdd"].y_um, found["vdd"].layer, found["vdd"].use) == (1.6, 5.6, "met4", "POWER")
+
+
+def test_a_pin_that_is_an_l_has_a_box_for_each_arm(gds, known, tmp_path):
+    layout, wire = db.Layout(), known.wires[1]
+    layout.read(str(gds))
+    layout.top_cell().shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(-0.1, 1.0, 0.2, 2.0))
+    layout.write(str(tmp_path / "bent.gds"))
+    (tmp_path / "bent.lef").write_text(abstract(tmp_path / "bent.gds", ports(NETLIST), known, {}))
+    assert read_back(tmp_path / "bent.lef", tmp_path / "bent.gds", ports(NETLIST), known, {}) == []
+    pin = next(pin for pin in pins((tmp_path / "bent.lef").read_text()) if pin.name == "a")
+    assert sorted(box for _, box in pin.boxes) == [(0.0, 1.0, 0.3, 1.3), (0.0, 1.3, 0.2, 2.0)]
 
 
 def test_obstructions_cover_all_but_the_pins(gds, known, tmp_path):

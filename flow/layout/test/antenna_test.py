@@ -18,7 +18,7 @@ def test_where_areas_count_thickness_does_not(length_um, bad):
                         (known.contact, 0.4, -0.9, 0.53, -0.8), ((m1.layer, 0), 0.3, -1, 0.7, -0.5),
                         ((via.layer, 0), 0.4, -0.7, 0.59, -0.51), ((m2.layer, 0), 0.3, -0.8, 0.3 + length_um, -0.5)):
         top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
-    assert violations(layout, top, known, 1).count() == bad                                    # 0.3 um2 a um by 200
+    assert violations(layout, top, known)[1].count() == bad                                    # 0.3 um2 a um by 200
 
 
 @pytest.mark.parametrize("length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0),
@@ -42,8 +42,8 @@ def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
         draw(known.active, 0, -3, 1, -2)
         draw(known.contact, 0.4, -2.5, 0.5, -2.4)
         draw((li.layer, li.datatype), 0.3, -2.6, 0.7, -0.5)
-    assert violations(layout, top, known, 1).count() == bad
-    assert violations(layout, top, known, 0).is_empty()
+    assert violations(layout, top, known)[1].count() == bad
+    assert violations(layout, top, known)[0].is_empty()
 
 
 @pytest.mark.parametrize("cells", [1, 3])
@@ -61,7 +61,7 @@ def test_gates_in_cells_and_the_wire_above(cells):
     for i in range(cells):
         top.insert(db.DCellInstArray(gate.cell_index(), db.DTrans(db.DVector(10 * i, 0))))
     top.shapes(layout.layer(m1.layer, m1.datatype)).insert(db.DBox(0.3, -0.8, 60.3, -0.5))
-    hierarchical = violations(layout, top, known, 1).merged()
+    hierarchical = violations(layout, top, known)[1].merged()
     layout.flatten(top.cell_index(), -1, True)
-    flat = violations(layout, top, known, 1).merged()
+    flat = violations(layout, top, known)[1].merged()
     assert (hierarchical ^ flat).is_empty() and flat.count() == (cells == 1)

@@ -4,9 +4,11 @@ import random
 
 import pytest
 
+from flow.layout.mend.bargain import bargain
+from flow.layout.mend.board import Board
 from flow.layout.mend.nets import routed
 from flow.layout.mend.wiring import Wiring
-from flow.layout.steps.mend import again, open_nets, put_in
+from flow.layout.steps.mend import antennas, open_nets
 from flow.platforms.embedded import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
@@ -70,14 +72,29 @@ def broken(layout, top):
     return {rule: number for rule, number in found.items() if number}
 
 
+def um(boxes):
+    """A pin's boxes as coriolis.dump has them."""
+    return [[WIRING.layers[level].name, *(value / 1000 for value in box)] for level, *box in boxes]
+
+
+def alone(pins, hops=False, layout=None):
+    """The layout with one net routed between ``pins``; None without a way."""
+    board = Board(layout, WIRING, {"w1": {"wires": [], "cuts": [], "pins": list(map(um, pins))}})
+    found = routed(board, pins, hops)
+    if found is None:
+        return None, None
+    board.put("w1", found[0])
+    return board.drawn(), found[0]
+
+
 def test_two_pins_with_nothing_between():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
     assert len(set(nets(layout, top, [(0, 5_000, 5_000), (0, 30_015, 20_000)]))) == 2
-    put_in(layout, top, WIRING, routed(layout, top, WIRING, pins))
-    first, second = nets(layout, top, [(0, 5_000, 5_000), (0, 30_015, 20_000)])
+    layout, _ = alone(pins, layout=layout)
+    first, second = nets(layout, layout.top_cell(), [(0, 5_000, 5_000), (0, 30_015, 20_000)])
     assert first == second
-    assert broken(layout, top) == {}
+    assert broken(layout, layout.top_cell()) == {}
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -94,36 +111,84 @@ def test_through_a_crowd_of_other_wires(seed, hops):
                 box = (ends[0], track - half, ends[1], track + half)
                 draw(layout, top, level, *(box if WIRING.layers[level].across else (box[1], box[0], box[3], box[2])))
     before = broken(layout, top)
-    shapes = routed(layout, top, WIRING, pins, hops)
+    layout, shapes = alone(pins, hops, layout)
     if shapes is None:
         assert hops                 # room for a piece of the highest wire may lack
         return
-    put_in(layout, top, WIRING, shapes)
-    assert len(set(nets(layout, top, [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]))) == 1
-    assert broken(layout, top) == before
+    points = [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]
+    assert len(set(nets(layout, layout.top_cell(), points))) == 1
+    assert broken(layout, layout.top_cell()) == before
     if hops:
         assert shapes.lengths[4] >= 1_500
+
+
+def walls(layout, top, *xs):
+    """Walls through all layers, of nobody."""
+    for level in (1, 2, 3, 4):
+        for x in xs:
+            draw(layout, top, level, x, 0, x + 400, SIDE)
 
 
 def test_a_pin_behind_a_wall_is_given_up():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
-    for level in (1, 2, 3, 4):
-        draw(layout, top, level, 20_000, 0, 20_400, SIDE)
-    assert routed(layout, top, WIRING, pins) is None
+    walls(layout, top, 20_000)
+    assert alone(pins, layout=layout) == (None, None)
 
 
-def test_a_net_that_has_no_way_is_put_back():
+def test_a_net_that_has_no_way_is_taken_out():
     layout, top = empty()
     boxes = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
-    for level in (1, 2, 3, 4):
-        draw(layout, top, level, 20_000, 0, 20_400, SIDE)
+    walls(layout, top, 20_000)
     draw(layout, top, 1, 4_930, 4_930, 6_000, 5_070)
-    pins = [[["li", *(value / 1000 for value in box[1:])] for box in made] for made in boxes]
-    found = {"w1": {"wires": [["m1", 4.93, 4.93, 6.0, 5.07]], "cuts": [], "pins": pins}}
-    before = db.Region(top.begin_shapes_rec(layout.layer(68, 20))).area()
-    assert again(layout, WIRING, found) == {}
-    assert db.Region(top.begin_shapes_rec(layout.layer(68, 20))).area() == before
+    shapes = {"w1": {"wires": [["m1", 4.93, 4.93, 6.0, 5.07]], "cuts": [], "pins": list(map(um, boxes))}}
+    board = Board(layout, WIRING, shapes)
+    assert board.boxes["w1"] == [("m1", (4_930, 4_930, 6_000, 5_070))]
+    found = bargain(board, {"w1": shapes["w1"]["pins"]}, ["w1"])
+    assert (found.open, found.made, board.boxes["w1"]) == (["w1"], {}, [])
+
+
+def test_who_is_in_the_way_moves():
+    """A hall of two walls with a gap, which another net has filled with wires on all layers; it has room elsewhere."""
+    layout, top = empty()
+    pins = {"w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)],
+            "w2": [pin(layout, top, 18_020, 30_000), pin(layout, top, 22_015, 10_000)]}
+    for level in (1, 2, 3, 4):
+        draw(layout, top, level, 20_000, 0, 20_400, 18_000)
+        draw(layout, top, level, 20_000, 21_500, 20_400, SIDE)
+    rows = range(17_000, 23_000, 680)
+    wires = [[WIRING.layers[level].name, 19.0, (y - 150) / 1000, 21.0, (y + 150) / 1000]
+             for level in (1, 2, 3, 4) for y in rows if 18_300 < y < 21_200]
+    for name, *box in wires:
+        draw(layout, top, [layer.name for layer in WIRING.layers].index(name), *(round(1000 * v) for v in box))
+    shapes = {net: {"wires": wires if net == "w2" else [], "cuts": [], "pins": list(map(um, made))}
+              for net, made in pins.items()}
+    board = Board(layout, WIRING, shapes)
+    found = bargain(board, {net: made["pins"] for net, made in shapes.items()}, ["w1"])
+    assert found.open == [] and set(found.made) == {"w1", "w2"}
+    drawn = board.drawn()
+    assert broken(drawn, drawn.top_cell()) == {}
+    first, second, third, fourth = nets(drawn, drawn.top_cell(), [(0, 5_000, 20_000), (0, 35_020, 20_000),
+                                                                  (0, 18_020, 30_000), (0, 22_015, 10_000)])
+    assert first == second != third == fourth
+
+
+def test_a_board_draws_what_it_lifted():
+    layout, top = empty()
+    pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
+    layout, shapes = alone(pins, layout=layout)
+    wires = [[WIRING.layers[level].name, *(v / 1000 for v in box)] for level, made in shapes.wires.items() for box in made]
+    cuts = [["_".join((WIRING.layers[level].name, WIRING.cuts[level].name, WIRING.layers[level + 1].name)),
+             x / 1000, y / 1000] for level, made in shapes.cuts.items() for x, y in made]
+    area = {layer.name: db.Region(layout.top_cell().begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).area()
+            for layer in WIRING.layers}
+    assert area["m1"] > 0 and area["m2"] > 0
+    board = Board(layout, WIRING, {"w1": {"wires": wires, "cuts": cuts, "pins": list(map(um, pins))}})
+    assert board.top.shapes(board.layers["m2"]).size() == 0
+    drawn = board.drawn()
+    assert area == {layer.name: db.Region(drawn.top_cell().begin_shapes_rec(
+        drawn.layer(layer.layer, layer.datatype))).area() for layer in WIRING.layers}
+    assert antennas(board, KNOWN) == []
 
 
 def test_open_nets_are_read_from_the_routers_list():

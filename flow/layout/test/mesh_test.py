@@ -27,6 +27,18 @@ def test_a_rail_at_the_edge_is_half_as_wide():
     assert drop[0] == pytest.approx(1e-3 * (4 * 2.0 * 2 + 3.0 + pads))
 
 
+def test_a_rail_ends_at_a_block():
+    taps = [(0, 10.0, 1e-3)]
+    whole, _ = drops([10.0], [0.0, 40.0], 20.0, taps, METAL, [(20.0, 11.0, 30.0, 50.0)])        # the block is higher up
+    broken, _ = drops([10.0], [0.0, 40.0], 20.0, taps, METAL, [(20.0, 0.0, 30.0, 10.0)])
+    assert whole[0] < broken[0] == pytest.approx(1e-3 * (10 * 2.0 + 3.0 + 2.5))     # all of it through the near strap
+
+
+def test_a_cut_strap_feeds_from_one_end():
+    drop, _ = drops([10.0, 30.0], [5.0], 40.0, [(0, 9.0, 1e-3)], METAL, gaps=[(5.0, 12.0, 20.0)])
+    assert drop[0] == pytest.approx(1e-3 * (4 * 2.0 + 3.0 + 0.5 * 10))
+
+
 @pytest.mark.parametrize("scale", [1e-15, 1e-6, 1.0, 1e6])
 def test_drops_follow_the_current_at_every_scale(scale):
     rng = np.random.default_rng(1)

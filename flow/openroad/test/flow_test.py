@@ -192,9 +192,10 @@ def test_without_leaves_the_other_cells_as_they_were():
 def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
     assert command.main(["divider", "--out", str(tmp_path)]) == 2
     assert command.main(["quad_divider", "--pdk", "tsmc", "--out", str(tmp_path)]) == 2
+    assert command.main(["asp_chip_macros", "--out", str(tmp_path)]) == 2
     assert list(tmp_path.iterdir()) == []
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 2 and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
+    assert len(lines) == 3 and "without blocks" in lines[2] and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
 
 
 def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path, monkeypatch, capsys):

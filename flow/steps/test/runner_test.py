@@ -73,6 +73,44 @@ def test_a_chain_runs_once_and_again_when_its_input_changed(tmp_path, text):
     assert path.exists()
 
 
+class Meet(Repeat):
+    """Waits for the other of two to be there, too."""
+
+    name = "meet"
+
+    def run(self, inputs, outputs):
+        here = inputs["text"].parent / self.name
+        here.write_text("")
+        other = here.with_name({"meet": "greet", "greet": "meet"}[self.name])
+        outputs["text"].write_text(str(waited(other.exists)))
+        return {"length": 0}
+
+
+class Greet(Meet):
+    name = "greet"
+
+
+class Both(Repeat):
+    name = "both"
+    inputs = {"text": "meet.text", "more": "greet.text"}
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(inputs["text"].read_text() + inputs["more"].read_text())
+        return {"length": 8}
+
+
+def test_steps_that_do_not_need_each_other_run_together(tmp_path, text):
+    runner = Runner(tmp_path / "steps", {"text": text})
+    records = runner.run_all([Meet(), Both(), Greet()])
+    assert [record["step"] for record in records] == ["meet", "both", "greet"]
+    assert runner.paths["both.text"].read_text() == "TrueTrue"
+
+
+def test_of_steps_that_run_together_the_failed_one_is_told(tmp_path, text):
+    with pytest.raises(StepError, match="ended without a word"):
+        Runner(tmp_path / "steps", {"text": text}).run_all([Crash(), Repeat()])
+
+
 def test_a_step_that_breaks_its_declaration_leaves_nothing(tmp_path, text):
     with pytest.raises(StepError, match=r"did not write \['out.txt'\], wrote undeclared \['more.txt'\]"):
         Runner(tmp_path / "steps", {"text": text}).run(Careless())
@@ -123,13 +161,15 @@ class Tool(Repeat):
 # Ctrl-C counts also where the tests run behind a shell that ignores it
 RUN_TOOL = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); " \
            "from flow.steps.test.runner_test import *; from pathlib import Path; " \
-           "Runner(Path({folder!r}), {{'text': Path({text!r})}}).run(Tool())"
+           "Runner(Path({folder!r}), {{'text': Path({text!r})}}).{call}"
 
 
+@pytest.mark.parametrize("call", ["run(Tool())", "run_all([Tool()])"])
 @pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
-def test_a_killed_run_leaves_no_tool(tmp_path, text, sent):
+def test_a_killed_run_leaves_no_tool(tmp_path, text, sent, call):
     text.write_text("")
-    run = subprocess.Popen([sys.executable, "-c", RUN_TOOL.format(folder=str(tmp_path / "steps"), text=str(text))],
+    run = subprocess.Popen([sys.executable, "-c", RUN_TOOL.format(folder=str(tmp_path / "steps"), text=str(text),
+                                                             call=call)],
                            stderr=subprocess.DEVNULL, start_new_session=True)
     assert waited(lambda: text.read_text().endswith("\n"))
     tool = int(text.read_text())

@@ -1,0 +1,147 @@
+"""A routed layout whose wires can be taken out and drawn anew, net by net."""
+
+import numpy as np
+
+
+class Board:
+    """layout: KLayout's; lifted from it, into ``boxes``, is what belongs to the nets ``shapes``, and what is left stands
+    for good: cells, straps, ports.
+
+    shapes: dict net -> as coriolis.dump has them; the shapes of a short are the former net's. boxes: dict net -> [(name
+    of a layer of ``wiring``, (left, bottom, right, top) in nm), ...]. there[level]: array (n, 5) of the same on a wire's
+    level, the last column the net's place in ``nets``. fixed[level]: array (n, 4) of what stands.
+    scars[level]: array (n, 4) of the places that nets have fought over, as often as they did.
+    """
+
+    def __init__(self, layout, wiring, shapes):
+        self.layout, self.wiring, self.top = layout, wiring, layout.top_cell()
+        self.nets, self.boxes = list(shapes), {net: [] for net in shapes}
+        self.numbers = {net: number for number, net in enumerate(self.nets)}
+        self.levels = {layer.name: level for level, layer in enumerate(wiring.layers)}
+        self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*wiring.layers, *wiring.cuts)}
+        self.there = {level: np.empty((0, 5), int) for level in self.levels.values()}
+        self._lift(shapes)
+        self.fixed = {level: self._standing(layer.name) for level, layer in enumerate(wiring.layers) if level}
+        self.scars = {level: np.empty((0, 4), int) for level in self.fixed}
+
+    def _lift(self, shapes):
+        exact, middles, ports = _claims(shapes)
+        for name, layer in self.layers.items():
+            for shape in list(self.top.shapes(layer).each()):
+                box = shape.bbox()
+                ends = box.left, box.bottom, box.right, box.top
+                net = exact.get((name, ends)) or middles.get((name, middle(ends)))
+                if net and not shape.is_text() and (name, ends) not in ports:
+                    self.boxes[net].append((name, ends))
+                    shape.delete()
+        for level, name in enumerate(layer.name for layer in self.wiring.layers):
+            found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
+            self.there[level] = np.array(found, int).reshape(-1, 5)
+
+    def fought(self, places):
+        """Remember that nets fought over ``places``, [(level, box), ...]."""
+        for level, box in places:
+            self.scars[level] = np.vstack([self.scars[level], box])
+
+    def _standing(self, name):
+        """Boxes (n, 4) of what is left on a layer, in the cells, too."""
+        import klayout.db as db
+        found = []
+        for polygon in db.Region(self.top.begin_shapes_rec(self.layers[name])).merged().each():
+            parts = [polygon.bbox()] if polygon.is_box() else [part.bbox() for part in polygon.decompose_trapezoids()]
+            found += [(p.left, p.bottom, p.right, p.top) for p in parts]
+        return np.array(found, int).reshape(-1, 4)
+
+    def take(self, net):
+        """Take the wires of ``net`` out of what is there."""
+        self.boxes[net] = []
+        for level, boxes in self.there.items():
+            self.there[level] = boxes[boxes[:, 4] != self.numbers[net]]
+
+    def put(self, net, shapes):
+        """Let the wires of ``net`` be the Shapes ``shapes``."""
+        self.take(net)
+        for level, boxes in shapes.wires.items():
+            self.boxes[net] += [(self.wiring.layers[level].name, box) for box in boxes]
+            owned = np.array([(*box, self.numbers[net]) for box in boxes], int)
+            self.there[level] = np.vstack([self.there[level], owned])
+        for level, points in shapes.cuts.items():
+            cut = self.wiring.cuts[level]
+            half = cut.size // 2
+            self.boxes[net] += [(cut.name, (x - half, y - half, x + half, y + half)) for x, y in sorted(set(points))]
+
+    def near(self, level, reach):
+        """Of ``there[level]`` what meets the box ``reach``."""
+        return near(self.there[level], reach)
+
+    def drawn(self, nets=None):
+        """A layout of its own with the wires of ``nets``, of all nets without, in it."""
+        import klayout.db as db
+        layout = self.layout.dup()
+        shapes = {name: layout.top_cell().shapes(layer) for name, layer in self.layers.items()}
+        for net in self.nets if nets is None else nets:
+            for name, box in self.boxes[net]:
+                shapes[name].insert(db.Box(*box))
+        return layout
+
+    def at(self, level, polygons):
+        """Names of the nets with a box whose middle lies in one of ``polygons`` (KLayout's)."""
+        import klayout.db as db
+        found = set()
+        for polygon in polygons:
+            box = polygon.bbox()
+            for *ends, number in self.near(level, (box.left, box.bottom, box.right, box.top)):
+                if polygon.inside(db.Point(*map(int, middle(ends)))):
+                    found.add(self.nets[number])
+        return sorted(found)
+
+
+def crowded(board):
+    """Names of nets that are nearer to others, or to themselves, than the rules allow: of two the first in the list."""
+    import klayout.db as db
+    layout, found = board.drawn(), set()
+    for level, wire in enumerate(board.wiring.layers[1:], 1):
+        metal = db.Region(layout.top_cell().begin_shapes_rec(board.layers[wire.name]))
+        for pair in metal.space_check(wire.space).each():
+            owners = {int(number) for edge in (pair.first, pair.second) for box in (edge.bbox(),)
+                      for number in board.near(level, (box.left, box.bottom, box.right, box.top))[:, 4]}
+            found |= {board.nets[min(owners)]} if owners else set()
+    return sorted(found)
+
+
+def near(boxes, reach):
+    """Rows of the array ``boxes``, (left, bottom, right, top, ...), that meet the box ``reach``."""
+    return boxes[(boxes[:, 0] <= reach[2]) & (boxes[:, 2] >= reach[0])
+                 & (boxes[:, 1] <= reach[3]) & (boxes[:, 3] >= reach[1])]
+
+
+def _claims(shapes):
+    """dict (layer, box) -> net of the wires, dict (layer, middle) -> net of the pads and cuts (in the middles of cuts
+    and at wires' ends), set of (layer, box) of the pins."""
+    exact, middles, ports = {}, {}, set()
+    for net, made in shapes.items():
+        for name, *box in made["wires"]:
+            box = nanometres(box)
+            for key in ((name, box), (name, middle(box))):
+                (exact if key[1] is box else middles).setdefault(key, net)
+            for end in _ends(box):
+                middles.setdefault((name, end), net)
+        for name, x, y in made["cuts"]:
+            for part in name.split("_"):
+                middles.setdefault((part, nanometres((x, y))), net)
+        ports |= {(name, nanometres(box)) for pin in made["pins"] for name, *box in pin}
+    return exact, middles, ports
+
+
+def middle(box):
+    return (box[0] + box[2]) // 2, (box[1] + box[3]) // 2
+
+
+def _ends(box):
+    """Middles of the two ends of a wire."""
+    (left, bottom, right, top), (x, y) = box, middle(box)
+    return ((left, y), (right, y)) if right - left > top - bottom else ((x, bottom), (x, top))
+
+
+def nanometres(values):
+    return tuple(round(1000 * value) for value in values)

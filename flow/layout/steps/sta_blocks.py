@@ -1,0 +1,62 @@
+"""Static timing at one corner with the blocks laid out before as their Liberty has them, as who has nothing else of
+them would see it: beside `sta`, which sees all of their cells and wires."""
+
+import json
+import re
+from dataclasses import dataclass
+
+from flow.platforms.embedded import process
+from flow.steps import Step, StepError
+
+from .. import netlist as netlist_module
+from .. import opensta as opensta_module
+from ..netlist import Netlist
+from ..opensta import opensta
+from . import extraction, sta
+from .extraction import parasitics, spef
+from .sta import SCRIPT
+
+
+@dataclass(frozen=True)
+class StaBlocksParameters:
+    """pdk: process. top: module. corner: its name. macros: modules laid out before."""
+
+    pdk: str = "sky130"
+    top: str = ""
+    corner: str = ""
+    macros: tuple = ()
+
+
+class StaBlocks(Step):
+    """blocks_wns_ns, blocks_whs_ns: worst slack of setup and hold."""
+
+    inputs = {"netlist": "place_route.netlist", "placement": "mend.placement", "platform": "platform", "sdc": "sdc"}
+    outputs = {"report": "sta.txt"}
+    Parameters = StaBlocksParameters
+    metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}
+    uses = (extraction, netlist_module, opensta_module, sta)
+    tools = ("sta",)
+
+    def __init__(self, parameters):
+        super().__init__(parameters)
+        corner = parameters.corner
+        self.name = f"sta_blocks_{corner}"
+        self.inputs = self.inputs | {"liberty": f"timing.{corner}"} | {module: f"macro.{module}.{corner}"
+                                                                       for module in parameters.macros}
+
+    def run(self, inputs, outputs):
+        p, folder = self.parameters, outputs["report"].parent
+        known, netlist = process(p.pdk)[0], Netlist.read(inputs["netlist"])
+        wires = json.loads(inputs["placement"].read_text())["wires"]
+        there = {net for instance in netlist.instances for net in instance.pins.values()}
+        files = {name: folder / f"{name}.log" for name in ("verilog", "spef", "sdf")}
+        files["verilog"].write_text(netlist.verilog())
+        files["spef"].write_text(spef(netlist, {net: parasitics(parts, known) for net, parts in wires.items()
+                                                if net in there}))
+        libraries = "\nread_liberty ".join(str(inputs[name]) for name in ("liberty", *p.macros))
+        said = opensta(folder / "sta.log", SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files))
+        outputs["report"].write_text(said)
+        worst = {kind: round(float(value), 4) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
+        if set(worst) != {"setup", "hold"}:
+            raise StepError(f"{self.name}: OpenSTA: no slack")
+        return {"blocks_wns_ns": worst["setup"], "blocks_whs_ns": worst["hold"]}

