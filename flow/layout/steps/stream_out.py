@@ -58,15 +58,16 @@ class StreamOut(Step):
 def relabel(source, target, top_name, names, ports, known, rules):
     """Write ``source`` as ``target``; returns (the top cell's box in um, wires' ends trimmed, pads grown).
 
-    rules: the library's, of wires. names: dict Coriolis's name -> net. Labels of ports stay (one a port and
-    layer), with their names; Coriolis's blockages go. Raises StepError when a port has no label.
+    rules: the library's, of wires. names: dict Coriolis's name -> net. Of a port's labels that at the west or the
+    east edge stays, with its name, and all of the supplies: where a net was routed anew, the others lie where its wires
+    were, and fill may come there. Coriolis's blockages go. Raises StepError when a port has no label.
     """
     import klayout.db as db
     layout = db.Layout()
     layout.read(str(source))
     top, = layout.top_cells()
     top.name = top_name
-    seen = set()
+    found, edges = {}, top.bbox()
     for wire in known.wires:
         label = layout.layer(wire.layer, known.label_datatype)
         pin = layout.layer(wire.layer, known.pin_datatype)
@@ -75,18 +76,24 @@ def relabel(source, target, top_name, names, ports, known, rules):
         for shape in labels:
             net = names.get(shape.text.string, shape.text.string)
             if net in ports:
-                for layer in (label, pin):
-                    top.shapes(layer).insert(db.Text(net, shape.text.trans))
-                seen.add(net)
+                found.setdefault(net, []).append((_from_edge(edges, shape.text), (label, pin), shape.text.trans))
         for shape in labels:
             shape.delete()
         if wire.datatype:           # else it is where the wires themselves are
             texts.clear()
-    if ports - seen:
-        raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - seen)[:5])}")
+    if ports - set(found):
+        raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - set(found))[:5])}")
+    for net, texts in found.items():
+        for _, layers, place in texts if net in SUPPLIES else [min(texts, key=lambda text: text[0])]:
+            for layer in layers:
+                top.shapes(layer).insert(db.Text(net, place))
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
         layout.clear_layer(layout.layer(info))
     trimmed = trim.trim(layout, top, known.wires, rules["space_um"])
     grown = area.grow(layout, top, known.wires, rules["wires"])
     write_gds(layout, target)
     return top.dbbox(), trimmed, grown
+
+
+def _from_edge(edges, text):
+    return min(text.x - edges.left, edges.right - text.x)
