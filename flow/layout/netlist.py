@@ -12,6 +12,19 @@ OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")       # of the library'
 REGISTER = "_reg"           # behind a register's name: its flip-flop
 
 
+def register_names(path, top):
+    """Every name of every register of the module ``top`` of Yosys's JSON, one of simple flip-flops: set."""
+    module = json.loads(Path(path).read_text())["modules"][top]
+    bits = {cell["connections"]["Q"][0] for cell in module["cells"].values() if "DFF" in cell["type"]}
+    return {full for name, wire in module["netnames"].items() for bit, full in _bits(name, wire) if bit in bits}
+
+
+def _bits(name, wire):
+    """(bit, its full name) of a wire of Yosys's JSON."""
+    for index, bit in enumerate(wire["bits"]):
+        yield bit, name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
+
+
 @dataclass(frozen=True)
 class Port:
     """direction: 'input' or 'output'. width: bits; one of a bus of one bit is named as the port itself."""
@@ -52,11 +65,12 @@ class Netlist:
         Path(path).write_text(json.dumps(asdict(self), indent=0) + "\n")
 
     @classmethod
-    def from_yosys(cls, path, top, buffer, macros=()):
+    def from_yosys(cls, path, top, buffer, macros=(), known=frozenset()):
         """The module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
 
         buffer: (cell, input, output) put in where two ports are one signal. A flip-flop is named after its register,
-        a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>.
+        a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>. known: names of registers,
+        which count before others that a flip-flop's output has, too.
         """
         modules = json.loads(Path(path).read_text())["modules"]
         module = modules[top]
@@ -71,8 +85,9 @@ class Netlist:
                     names[bit] = net
         registers = {}
         for name, wire in sorted(module["netnames"].items(), key=lambda item: (item[1]["hide_name"], item[0])):
-            for index, bit in enumerate(wire["bits"]):
-                full = name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
+            for bit, full in _bits(name, wire):
+                if full in known and registers.get(bit) not in known:
+                    registers[bit] = full
                 registers.setdefault(bit, full)
         instances = []
         for number, (called, cell) in enumerate(module["cells"].items()):

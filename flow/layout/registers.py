@@ -6,7 +6,7 @@ Two designs whose cut forms are equal, and that agree in what their registers ho
 import json
 import random
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 from flow.steps import StepError
@@ -21,10 +21,12 @@ GATES = {
     "$_MUX_": ("ABS", ["1-0 1", "-11 1"], lambda a, b, s: (a & ~s) | (b & s)),
 }
 REGISTER = "$_DFF_P_"
-LANES, RESET_CYCLES, CYCLES = 256, 4, 24     # of the simulation that looks for constant registers
+LANES, RESET_CYCLES = 1 << 16, 4            # of the simulation that looks for constant registers, and for doubles
+TURNS, SURE = 60, 5                         # at most; without a change, the last
+ALL = (1 << LANES) - 1
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cut:
     """module: of Yosys's JSON. clock: name of the clock port."""
 
@@ -121,27 +123,64 @@ class Cut:
                     if bit in self.registers else []
         return seen & set(self.registers)
 
-    def constants(self, bits, reset):
-        """What registers ``bits`` (Q) always held in a random simulation behind a reset: dict bit -> '0' or '1'."""
-        rng, full = random.Random(1), (1 << LANES) - 1
-        values = {bit: rng.getrandbits(LANES) for bit in self.registers} | {"0": 0, "1": full}
-        was = dict.fromkeys(bits, None)
-        for cycle in range(RESET_CYCLES + CYCLES):
-            for bit, name in self.inputs.items():
-                values[bit] = rng.getrandbits(LANES) if name != reset else full * (cycle < RESET_CYCLES)
-            for bit in self.order:
-                kind, pins = self.gates[bit]
-                values[bit] = GATES[kind][2](*(values.get(pin, 0) for pin in pins)) & full
-            values |= {q: values.get(d, 0) for q, d in self.registers.items()}
-            if cycle >= RESET_CYCLES:
-                for bit in was:
-                    was[bit] = values[bit] if was[bit] in (None, values[bit]) else -1
-        return {bit: "1" if value else "0" for bit, value in was.items() if value in (0, full)}
+    def substitutes(self, missing, present, reset):
+        """What the registers ``missing`` (Q bits) seem to hold whenever reset was once given: dict bit -> '0', '1' or one
+        of the registers ``present``, of those for which there is such a thing.
+
+        A guess from random states: a constant is a register whose next state is what it holds, a double has the same
+        next state as the other wherever both hold the same; of several the one whose next state comes from most of the
+        same gates. What one is held to be, others see: in turns, therefore.
+        """
+        rng, levels = random.Random(1), {"0": 0, "1": ALL}
+        behind = {bit: rng.getrandbits(LANES) for bit in (*self.registers, *self.inputs)}
+        behind |= {bit: ALL for bit, name in self.inputs.items() if name == reset}
+        for _ in range(RESET_CYCLES):
+            behind |= self._next(behind)
+        guess = {bit: "1" if behind[bit] else "0" for bit in missing if behind[bit] in (0, ALL)}
+        wrong, kept = {bit: set() for bit in guess}, 0
+        for _ in range(TURNS):
+            now = {bit: rng.getrandbits(LANES) for bit in behind}
+            now |= {bit: levels[held] if held in levels else now[held] for bit, held in guess.items() if held}
+            then = self._next(now)
+            better = {}
+            for bit, held in guess.items():
+                if held and then[bit] != levels.get(held, then.get(held)):
+                    wrong[bit].add(held)
+                    held = None
+                better[bit] = held or min(
+                    (other for other in present if other not in wrong[bit] and behind[bit] == behind[other]
+                     and not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other])), default=None,
+                    key=lambda other, bit=bit: len(self._cone(bit) ^ self._cone(other)))
+            kept = kept + 1 if better == guess and None not in guess.values() else 0
+            guess = better
+            if kept == SURE:
+                break
+        return {bit: held for bit, held in guess.items() if held}
+
+    @cache
+    def _cone(self, bit):
+        """Bits that the next state of a register (Q bit) comes from."""
+        seen, stack = set(), [self.registers[bit]]
+        while stack:
+            here = stack.pop()
+            if here not in seen:
+                seen.add(here)
+                stack += self.gates[here][1] if here in self.gates else []
+        return frozenset(seen)
+
+    def _next(self, values):
+        """dict Q bit -> next state, ALL lanes of numbers, from the dict bit -> value of inputs and states."""
+        values = values | {"0": 0, "1": ALL}
+        for bit in self.order:
+            kind, pins = self.gates[bit]
+            values[bit] = GATES[kind][2](*(values.get(pin, 0) for pin in pins)) & ALL
+        return {q: values.get(d, 0) for q, d in self.registers.items()}
 
     def blif(self, states, given, checked, fixed=None, unknown=0):
         """The cut design as BLIF: its inputs are those of the design, ``states`` and ``unknown`` further ones.
 
-        states: dict Q bit -> name. given: dict Q bit -> '0' or '1', what a register is taken to hold. checked: dict
+        states: dict Q bit -> name. given: dict Q bit -> '0', '1' or a Q bit,
+        what a register is taken to hold. checked: dict
         name -> bit or constant, the outputs. fixed: dict input name -> '0' or '1'. An x stands for a new input each
         time, 'any<number>': what is equal for all of their values does not depend on them.
         """

@@ -33,8 +33,8 @@ class EquivalenceParameters:
 class Equivalence(Step):
     """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
 
-    A register of the RTL that the netlist lacks and that reaches an output must be a constant: it is shown to be so
-    behind a reset, and to stay so (induction); that is then used in the proof.
+    A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the double of one that
+    is there: it is shown to be so behind a reset, and to stay so (induction); that is then used in the proof.
     """
 
     name = "equivalence"
@@ -42,7 +42,7 @@ class Equivalence(Step):
               "liberty": "library.liberty"}
     outputs = {"summary": "equivalence.json"}
     Parameters = EquivalenceParameters
-    metrics = {"equivalence": "", "registers": "", "constant_registers": ""}
+    metrics = {"equivalence": "", "registers": "", "constant_registers": "", "double_registers": ""}
     uses = (registers, netlist_module)
     tools = ("yosys",)
 
@@ -55,27 +55,26 @@ class Equivalence(Step):
         gold = self.cut(GOLD, folder / "gold.json", rtl=inputs["rtl"])
         gate = self.cut(GATE, folder / "gate.json", netlist=inputs["verilog"], liberty=inputs["liberty"])
         states, gate_states, missing = match(gold, gate, Netlist.read(inputs["netlist"]))
-        constants = gold.constants(missing, p.reset)
+        held = gold.substitutes(missing, states, p.reset)
+        gate_bits = {name: bit for bit, name in gate_states.items()}
         verdicts = {}
-        if set(missing) == set(constants):
-            nexts = {f"next({name})": bit for bit, name in states.items()}
-            kept = {f"kept({k})": (gold.registers[bit], value) for k, (bit, value) in enumerate(constants.items())}
-            verdicts["same"] = self.proof(
-                folder, gold.outputs | {name: gold.registers[bit] for name, bit in nexts.items()}
-                | {name: bit for name, (bit, _) in kept.items()},
-                gate.outputs | {f"next({name})": gate.registers[bit] for bit, name in gate_states.items()}
-                | {name: value for name, (_, value) in kept.items()}, gold, gate, states, gate_states, constants)
+        if set(missing) == set(held):
+            kept = {f"kept({k})": gold.registers[bit] for k, bit in enumerate(held)}
+            as_held = {f"kept({k})": value if value in ("0", "1") else gate.registers[gate_bits[states[value]]]
+                       for k, value in enumerate(held.values())}
+            wanted = gold.outputs | {f"next({name})": gold.registers[bit] for bit, name in states.items()}
+            made = gate.outputs | {f"next({name})": gate.registers[bit] for bit, name in gate_states.items()}
+            verdicts["same"] = self.proof(folder, wanted | kept, made | as_held, gold, gate, states, gate_states, held)
             verdicts["reset"] = not kept or self.proof(
-                folder, {name: bit for name, (bit, _) in kept.items()},
-                {name: value for name, (_, value) in kept.items()}, gold, gate,
-                states | {bit: f"c{k}" for k, bit in enumerate(constants)},
-                gate_states | {f"c{k}": f"c{k}" for k in range(len(constants))}, {}, {p.reset: "1"})
+                folder, kept, as_held, gold, gate, states | {bit: f"c{k}" for k, bit in enumerate(held)},
+                gate_states | {f"c{k}": f"c{k}" for k in range(len(held))}, {}, {p.reset: "1"})
         outputs["summary"].write_text(json.dumps({
-            "proofs": verdicts, "missing": [gold.names[bit][0] for bit in missing],
-            "not_constant": [gold.names[bit][0] for bit in missing if bit not in constants]}, indent=1) + "\n")
+            "proofs": verdicts, "missing": {gold.names[bit][0]: gold.names.get(held.get(bit), [held.get(bit)])[0]
+                                            for bit in missing}}, indent=1) + "\n")
         proven = bool(verdicts) and all(verdicts.values())
+        constants = sum(value in ("0", "1") for value in held.values())
         return {"equivalence": "proven" if proven else "failed", "registers": len(states),
-                "constant_registers": len(constants)}
+                "constant_registers": constants, "double_registers": len(held) - constants}
 
     def cut(self, script, path, **names):
         """The design as a Cut, made by the Yosys commands ``script``."""

@@ -7,11 +7,21 @@ from flow.steps import Step
 from models.parameters import check_int, check_real
 
 from .. import netlist as netlist_module
-from ..netlist import Netlist, is_register
+from ..netlist import Netlist, is_register, register_names
 
 SCRIPT = """
 read_verilog -sv {rtl}
 {blocks}
+design -save read
+hierarchy -top {top}
+proc
+flatten
+memory
+techmap
+simplemap
+opt_clean
+write_json {registers}
+design -load read
 synth -flatten -nofsm -top {top}
 dfflibmap -liberty {liberty}
 abc -D {period_ps:.0f} -liberty {timing} -script {mapping}
@@ -55,7 +65,7 @@ class Synthesis(Step):
 
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["netlist"].parent
-        files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "script")}
+        files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "registers", "script")}
         limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {p.period_ns * 1000:.0f}",
                  f"dnsize -D {p.period_ns * 1000:.0f}"] if p.fan_out else []
         files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
@@ -66,11 +76,13 @@ class Synthesis(Step):
             timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
         run(["yosys", "-q", "-s", files["script"]])
         buffer = "buf_x1", "i", "q"
-        netlist = Netlist.from_yosys(files["json"], p.top, buffer, p.macros).apart(p.macros, buffer)
+        netlist = Netlist.from_yosys(files["json"], p.top, buffer, p.macros,
+                                     register_names(files["registers"], p.top)).apart(p.macros, buffer)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
         area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
-        files["json"].unlink()
+        for name in ("json", "registers"):
+            files[name].unlink()
         return {"cells": len(netlist.instances), "cell_area_um2": float(area),
                 "flip_flops": sum(is_register(i.cell) for i in netlist.instances)}
 
