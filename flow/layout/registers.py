@@ -160,7 +160,11 @@ class Cut:
     @cache
     def _cone(self, bit):
         """Bits that the next state of a register (Q bit) comes from."""
-        seen, stack = set(), [self.registers[bit]]
+        return self._behind_all(self.registers[bit])
+
+    def _behind_all(self, bit):
+        """Bits that ``bit`` comes from through gates, itself among them."""
+        seen, stack = set(), [bit]
         while stack:
             here = stack.pop()
             if here not in seen:
@@ -176,35 +180,53 @@ class Cut:
             values[bit] = GATES[kind][2](*(values.get(pin, 0) for pin in pins)) & ALL
         return {q: values.get(d, 0) for q, d in self.registers.items()}
 
-    def blif(self, states, given, checked, fixed=None, unknown=0):
-        """The cut design as BLIF: its inputs are those of the design, ``states`` and ``unknown`` further ones.
+    def open_outputs(self):
+        """Names of the outputs that an x may reach: set."""
+        found = set()
+        for name, bit in self.outputs.items():
+            cone = self._behind_all(bit)
+            if any(not isinstance(pin, int) and pin not in ("0", "1") for here in cone & set(self.gates)
+                   for pin in self.gates[here][1]):
+                found.add(name)
+        return found
 
-        states: dict Q bit -> name. given: dict Q bit -> '0', '1' or a Q bit,
-        what a register is taken to hold. checked: dict
-        name -> bit or constant, the outputs. fixed: dict input name -> '0' or '1'. An x stands for a new input each
-        time, 'any<number>': what is equal for all of their values does not depend on them.
+    def network(self, states, given, fixed=None, prefix="", x=None):
+        """(lines of BLIF, function bit -> net, number of x) of the cut design; parameters as of `blif`.
+
+        prefix: of the nets within. x: '0' or '1', what an x is; without, a new input each time, 'any<number>': what is
+        equal for all of their values does not depend on them.
         """
-        wire, anything = self.inputs | states, iter(range(10**9))
+        wire, anything = self.inputs | states, []
         wire |= {bit: f"const{(fixed or {})[name]}" for bit, name in self.inputs.items() if name in (fixed or {})}
-        used = 0
 
         def net(bit):
-            nonlocal used
             bit = given.get(bit, bit)
-            if bit in ("0", "1"):
-                return f"const{bit}"
+            if not isinstance(bit, int) and bit not in ("0", "1") and x is None:
+                anything.append(f"any{len(anything)}")
+                return anything[-1]
             if not isinstance(bit, int):
-                used += 1
-                return f"any{next(anything)}"
-            return wire.get(bit, f"b{bit}")
+                return f"const{bit if bit in ('0', '1') else x}"
+            return wire.get(bit, f"{prefix}b{bit}")
 
-        lines = [".names const0", ".names const1", "1"]
+        lines = []
         for bit, (kind, pins) in self.gates.items():
             lines += [f".names {' '.join(map(net, pins))} {net(bit)}", *GATES[kind][1]]
+        return lines, net, len(anything)
+
+    def blif(self, states, given, checked, fixed=None, unknown=0, more=()):
+        """(number of its x, the cut design as BLIF): its inputs are those of the design, ``states`` and ``unknown`` x.
+
+        states: dict Q bit -> name. given: dict Q bit -> '0', '1' or a Q bit, what a register is taken to hold. checked:
+        dict name -> bit or constant, the outputs. fixed: dict input name -> '0' or '1'. more: pairs (name of a further
+        output, lines that make it).
+        """
+        lines, net, used = self.network(states, given, fixed)
         for name, bit in checked.items():
             lines += [f".names {net(bit)} {name}", "1 1"]
         inputs = [*self.inputs.values(), *states.values(), *(f"any{k}" for k in range(max(used, unknown)))]
-        return used, "\n".join([".model cut", ".inputs " + " ".join(inputs), ".outputs " + " ".join(checked), *lines,
+        outputs = [*checked, *(name for name, _ in more)]
+        return used, "\n".join([".model cut", ".inputs " + " ".join(inputs), ".outputs " + " ".join(outputs),
+                                ".names const0", ".names const1", "1", *lines, *(line for _, made in more for line in made),
                                 ".end", ""])
 
 

@@ -202,6 +202,11 @@ def enlarged(site, shapes, alone=False):
         for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():
             box = polygon.bbox()
             boxes.append((box.left, box.bottom, box.right, box.top))
+        for pair in db.Region([db.Box(*box) for box in boxes]).merged().width_check(layer.width).each():
+            wider = _at_least(pair.bbox(), layer.width)         # where two pieces overlap by less than a wire's width
+            if not site.clear(level, wider):
+                return False
+            boxes.append(wider)
         for polygon in db.Region([db.Box(*box) for box in boxes]).merged().each():
             lack = layer.area - polygon.area()
             if lack > 0:
@@ -210,6 +215,12 @@ def enlarged(site, shapes, alone=False):
                     return False
                 boxes.append(more)
     return True
+
+
+def _at_least(box, width):
+    """(left, bottom, right, top) of ``box`` with sides of at least ``width``, on a grid of 5 nm."""
+    x, y = (max(0, -(-(width - side) // 10) * 5) for side in (box.width(), box.height()))
+    return box.left - x, box.bottom - y, box.right + x, box.top + y
 
 
 def _longer(site, level, box, lack, alone):

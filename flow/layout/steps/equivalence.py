@@ -34,7 +34,9 @@ class Equivalence(Step):
     """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
 
     A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the double of one that
-    is there: it is shown to be so behind a reset, and to stay so (induction); that is then used in the proof.
+    is there: it is shown to be so behind a reset, and to stay so (induction); that is then used in the proof. Where the
+    Verilog leaves an output open (an array read beyond its end is x), so that it is another with all x at 0 than at 1,
+    the netlist may have either; the next states of registers must not hang on an x.
     """
 
     name = "equivalence"
@@ -62,9 +64,11 @@ class Equivalence(Step):
             kept = {f"kept({k})": gold.registers[bit] for k, bit in enumerate(held)}
             as_held = {f"kept({k})": value if value in ("0", "1") else gate.registers[gate_bits[states[value]]]
                        for k, value in enumerate(held.values())}
-            wanted = gold.outputs | {f"next({name})": gold.registers[bit] for bit, name in states.items()}
-            made = gate.outputs | {f"next({name})": gate.registers[bit] for bit, name in gate_states.items()}
+            loose = gold.open_outputs()
+            wanted = {name: bit for name, bit in gold.outputs.items() if name not in loose} | {f"next({name})": gold.registers[bit] for bit, name in states.items()}
+            made = {name: bit for name, bit in gate.outputs.items() if name not in loose} | {f"next({name})": gate.registers[bit] for bit, name in gate_states.items()}
             verdicts["same"] = self.proof(folder, wanted | kept, made | as_held, gold, gate, states, gate_states, held)
+            verdicts["open"] = self.loose(folder, sorted(loose), gold, gate, states, gate_states, held)
             verdicts["reset"] = not kept or self.proof(
                 folder, kept, as_held, gold, gate, states | {bit: f"c{k}" for k, bit in enumerate(held)},
                 gate_states | {f"c{k}": f"c{k}" for k in range(len(held))}, {}, {p.reset: "1"})
@@ -86,6 +90,26 @@ class Equivalence(Step):
         """
         unknown, text = gold.blif(states, given, {_net(name): bit for name, bit in checked.items()}, fixed)
         _, other = gate.blif(gate_states, {}, {_net(name): bit for name, bit in expected.items()}, fixed, unknown)
+        return self.equal(folder, text, other)
+
+    def loose(self, folder, names, gold, gate, states, gate_states, given):
+        """Whether the outputs ``names`` of ``gate`` are those of ``gold`` wherever these are the same with all x at 0
+        and at 1."""
+        low, of_low, _ = gold.network(states, given, prefix="low_", x="0")
+        high, of_high, _ = gold.network(states, given, prefix="high_", x="1")
+        gates, of_gate, _ = gate.network(gate_states, {}, prefix="gate_")
+        gold_lines, gate_lines = [("", low)], [("", low), ("", high), ("", gates)]
+        for name in names:
+            bit = gold.outputs[name]
+            gold_lines.append((_net(name), [f".names {of_low(bit)} {_net(name)}", "1 1"]))
+            gate_lines.append((_net(name), [
+                f".names {of_low(bit)} {of_high(bit)} {of_gate(gate.outputs[name])} {_net(name)}",
+                "10- 1", "111 1", "001 1"]))                                    # of the gates where the two agree
+        return not names or self.equal(folder, *(gold.blif(states, given, {}, more=lines)[1]
+                                                 for lines in (gold_lines, gate_lines)))
+
+    def equal(self, folder, text, other):
+        """Whether two networks in BLIF are. Raises StepError without a verdict."""
         files = folder / "gold.blif", folder / "gate.blif"
         for path, blif in zip(files, (text, other), strict=True):
             path.write_text(blif)

@@ -92,3 +92,46 @@ def test_a_flip_flop_that_is_no_register_is_named(made):
     renamed = [replace(i, name="other_reg") if i.name == "count[0]_reg" else i for i in netlist.instances]
     with pytest.raises(StepError, match="the RTL has no register other"):
         verdict(made, replace(netlist, instances=tuple(renamed)))
+
+
+# A table that is read beyond its end (x), and two registers that are always equal, of which Yosys keeps one
+TABLE = """
+module Counter(input clk, input reset, input [1:0] step, output [3:0] count, output high);
+  reg [3:0] kept [0:2];
+  reg [1:0] row, tile;
+  assign count = kept[step];
+  assign high = (row > step) ^ (tile == 2'd2);
+  always @(posedge clk) begin
+    if (reset) begin
+      kept[0] <= 4'd1; kept[1] <= 4'd5; kept[2] <= 4'd8; row <= 2'd0; tile <= 2'd0;
+    end else begin
+      if (step != 2'd3) kept[step] <= kept[step] + 4'd3;
+      if (step[0]) begin row <= tile + step; tile <= tile + step; end
+    end
+  end
+endmodule
+"""
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("table")
+    (folder / "rtl.v").write_text(TABLE)
+    (folder / "cells.lib").write_text(LIBERTY)
+    step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
+    step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
+             {name: folder / file for name, file in step.outputs.items()})
+    return folder
+
+
+def test_a_double_is_shown_to_be_one_and_what_the_verilog_leaves_open_is_open(table):
+    found = verdict(table, Netlist.read(table / "netlist.json"), TABLE)
+    assert (found["equivalence"], found["constant_registers"], found["double_registers"]) == ("proven", 0, 2)
+
+
+@pytest.mark.parametrize("old, new", [("count = kept[step]", "count = kept[step ^ 2'd1]"),
+                                      ("count = kept[step]", "count = kept[step] ^ {3'd0, step == 2'd2}"),
+                                      ("row <= tile + step", "row <= tile - step"),
+                                      ("row <= 2'd0", "row <= 2'd1"), ("tile == 2'd2", "tile == 2'd1")])
+def test_a_change_beside_what_is_open_or_double_is_found(table, old, new):
+    assert verdict(table, Netlist.read(table / "netlist.json"), TABLE.replace(old, new))["equivalence"] == "failed"
