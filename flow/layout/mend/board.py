@@ -2,6 +2,8 @@
 
 import numpy as np
 
+BOX_AND_NET = 5         # columns
+
 
 class Board:
     """layout: KLayout's; lifted from it, into ``boxes``, is what belongs to the nets ``shapes``, and what is left stands
@@ -19,7 +21,7 @@ class Board:
         self.numbers = {net: number for number, net in enumerate(self.nets)}
         self.levels = {layer.name: level for level, layer in enumerate(wiring.layers)}
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*wiring.layers, *wiring.cuts)}
-        self.there = {level: np.empty((0, 5), int) for level in self.levels.values()}
+        self.there = {level: np.empty((0, BOX_AND_NET), int) for level in self.levels.values()}
         self._lift(shapes)
         self.fixed = {level: self._standing(layer.name) for level, layer in enumerate(wiring.layers) if level}
         self.scars = {level: np.empty((0, 4), int) for level in self.fixed}
@@ -36,7 +38,7 @@ class Board:
                     shape.delete()
         for level, name in enumerate(layer.name for layer in self.wiring.layers):
             found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
-            self.there[level] = np.array(found, int).reshape(-1, 5)
+            self.there[level] = np.array(found, int).reshape(-1, BOX_AND_NET)
 
     def fought(self, places):
         """Remember that nets fought over ``places``, [(level, box), ...]."""
