@@ -13,8 +13,8 @@ from .. import opensta as opensta_module
 from ..boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
 from ..netlist import Netlist, SUPPLIES
 
-SLEWS = 0.02, 0.2, 1.0              # ns
-LOADS = 0.001, 0.01, 0.05, 0.2      # pF
+SLEWS = 0.02, 0.07, 0.25, 1.0        # ns
+LOADS = 0.001, 0.006, 0.02, 0.06, 0.2        # pF
 EDGES = "rise", "fall"
 COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
 
