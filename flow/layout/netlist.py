@@ -16,10 +16,10 @@ def register_names(path, top):
     """Every name of every register of the module ``top`` of Yosys's JSON, one of simple flip-flops: set."""
     module = json.loads(Path(path).read_text())["modules"][top]
     bits = {cell["connections"]["Q"][0] for cell in module["cells"].values() if "DFF" in cell["type"]}
-    return {full for name, wire in module["netnames"].items() for bit, full in _bits(name, wire) if bit in bits}
+    return {full for name, wire in module["netnames"].items() for bit, full in named_bits(name, wire) if bit in bits}
 
 
-def _bits(name, wire):
+def named_bits(name, wire):
     """(bit, its full name) of a wire of Yosys's JSON."""
     for index, bit in enumerate(wire["bits"]):
         yield bit, name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
@@ -69,8 +69,8 @@ class Netlist:
         """The module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
 
         buffer: (cell, input, output) put in where two ports are one signal. A flip-flop is named after its register,
-        a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>. known: names of registers,
-        which count before others that a flip-flop's output has, too.
+        a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>. known: names of
+        registers, which count before others that a flip-flop's output has, too.
         """
         modules = json.loads(Path(path).read_text())["modules"]
         module = modules[top]
@@ -85,7 +85,7 @@ class Netlist:
                     names[bit] = net
         registers = {}
         for name, wire in sorted(module["netnames"].items(), key=lambda item: (item[1]["hide_name"], item[0])):
-            for bit, full in _bits(name, wire):
+            for bit, full in named_bits(name, wire):
                 if full in known and registers.get(bit) not in known:
                     registers[bit] = full
                 registers.setdefault(bit, full)

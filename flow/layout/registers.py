@@ -11,6 +11,8 @@ from pathlib import Path
 
 from flow.steps import StepError
 
+from .netlist import named_bits
+
 # Yosys's simple gates: their pins, rows of BLIF's .names, and what they compute with all lanes of a number at once
 GATES = {
     "$_BUF_": ("A", ["1 1"], lambda a: a), "$_NOT_": ("A", ["0 1"], lambda a: ~a),
@@ -47,8 +49,7 @@ class Cut:
         """All names of a bit: dict bit -> list."""
         names = {}
         for name, wire in self.module["netnames"].items():
-            for index, bit in enumerate(wire["bits"]):
-                full = name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
+            for bit, full in named_bits(name, wire):
                 names.setdefault(bit, []).append(full)
         return names
 
@@ -124,8 +125,8 @@ class Cut:
         return seen & set(self.registers)
 
     def substitutes(self, missing, present, reset):
-        """What the registers ``missing`` (Q bits) seem to hold whenever reset was once given: dict bit -> '0', '1' or one
-        of the registers ``present``, of those for which there is such a thing.
+        """What the registers ``missing`` (Q bits) seem to hold whenever reset was once given: dict bit -> '0', '1' or
+        one of the registers ``present``, of those for which there is such a thing.
 
         A guess from random states: a constant is a register whose next state is what it holds, a double has the same
         next state as the other wherever both hold the same; of several the one whose next state comes from most of the
@@ -226,8 +227,8 @@ class Cut:
         inputs = [*self.inputs.values(), *states.values(), *(f"any{k}" for k in range(max(used, unknown)))]
         outputs = [*checked, *(name for name, _ in more)]
         return used, "\n".join([".model cut", ".inputs " + " ".join(inputs), ".outputs " + " ".join(outputs),
-                                ".names const0", ".names const1", "1", *lines, *(line for _, made in more for line in made),
-                                ".end", ""])
+                                ".names const0", ".names const1", "1", *lines,
+                                *(line for _, made in more for line in made), ".end", ""])
 
 
 def _bit(name, index, port):

@@ -58,7 +58,6 @@ class Runner:
         self.records[step.name] = json.loads((made / RECORD).read_text())
         return self.records[step.name]
 
-
     def run_all(self, steps):
         """The records of ``steps``, in their order; those that do not need each other run at the same time."""
         left = list(steps)

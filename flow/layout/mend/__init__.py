@@ -1,7 +1,9 @@
-"""Nets that the router left open, taken out and routed anew by a search over the layout as it is.
+"""Nets of a routed layout taken out and routed anew, others that are in their way too.
 
     wiring   the process's rules for wires and cuts
-    window   a part of the layout as a grid: where a wire or a cut may lie
-    search   the cheapest way between two sets of its places
+    board    the layout, net by net
+    window   a part of it as a grid, as one net sees it: what a wire or a cut costs at a place
+    search   the cheapest way between two sets of places
     nets     a net from pin to pin, and its shapes
+    bargain  nets that contend for the same places
 """

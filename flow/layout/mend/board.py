@@ -2,15 +2,17 @@
 
 import numpy as np
 
+from ..boxes import boxes
+
 BOX_AND_NET = 5         # columns
 
 
 class Board:
-    """layout: KLayout's; lifted from it, into ``boxes``, is what belongs to the nets ``shapes``, and what is left stands
-    for good: cells, straps, ports.
+    """layout: KLayout's; lifted from it, into ``boxes``, is what belongs to the nets ``shapes``, and what is left
+    stands for good: cells, straps, ports.
 
-    shapes: dict net -> as coriolis.dump has them; the shapes of a short are the former net's. boxes: dict net -> [(name
-    of a layer of ``wiring``, (left, bottom, right, top) in nm), ...]. there[level]: array (n, 5) of the same on a wire's
+    shapes: dict net -> as coriolis.dump has them; the shapes of a short are the former net's. boxes: dict net ->
+    [(name of a layer of ``wiring``, (left, bottom, right, top) in nm), ...]. there[level]: array (n, 5) of the same on a wire's
     level, the last column the net's place in ``nets``. fixed[level]: array (n, 4) of what stands.
     scars[level]: array (n, 4) of the places that nets have fought over, as often as they did.
     """
@@ -21,9 +23,9 @@ class Board:
         self.numbers = {net: number for number, net in enumerate(self.nets)}
         self.levels = {layer.name: level for level, layer in enumerate(wiring.layers)}
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*wiring.layers, *wiring.cuts)}
-        self.there = {level: np.empty((0, BOX_AND_NET), int) for level in self.levels.values()}
         self._lift(shapes)
-        self.fixed = {level: self._standing(layer.name) for level, layer in enumerate(wiring.layers) if level}
+        self.there = {level: self._owned(name) for name, level in self.levels.items()}
+        self.fixed = {level: self._standing(name) for name, level in self.levels.items() if level}
         self.scars = {level: np.empty((0, 4), int) for level in self.fixed}
 
     def _lift(self, shapes):
@@ -36,9 +38,11 @@ class Board:
                 if net and not shape.is_text() and (name, ends) not in ports:
                     self.boxes[net].append((name, ends))
                     shape.delete()
-        for level, name in enumerate(layer.name for layer in self.wiring.layers):
-            found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
-            self.there[level] = np.array(found, int).reshape(-1, BOX_AND_NET)
+
+    def _owned(self, name):
+        """Boxes of all nets on a layer, each with the net's number: (n, 5)."""
+        found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
+        return np.array(found, int).reshape(-1, BOX_AND_NET)
 
     def fought(self, places):
         """Remember that nets fought over ``places``, [(level, box), ...]."""
@@ -48,33 +52,25 @@ class Board:
     def _standing(self, name):
         """Boxes (n, 4) of what is left on a layer, in the cells, too."""
         import klayout.db as db
-        found = []
-        for polygon in db.Region(self.top.begin_shapes_rec(self.layers[name])).merged().each():
-            parts = [polygon.bbox()] if polygon.is_box() else [part.bbox() for part in polygon.decompose_trapezoids()]
-            found += [(p.left, p.bottom, p.right, p.top) for p in parts]
-        return np.array(found, int).reshape(-1, 4)
+        return boxes(db.Region(self.top.begin_shapes_rec(self.layers[name])))
 
     def take(self, net):
         """Take the wires of ``net`` out of what is there."""
         self.boxes[net] = []
-        for level, boxes in self.there.items():
-            self.there[level] = boxes[boxes[:, 4] != self.numbers[net]]
+        for level, there in self.there.items():
+            self.there[level] = there[there[:, 4] != self.numbers[net]]
 
     def put(self, net, shapes):
         """Let the wires of ``net`` be the Shapes ``shapes``."""
         self.take(net)
-        for level, boxes in shapes.wires.items():
-            self.boxes[net] += [(self.wiring.layers[level].name, box) for box in boxes]
-            owned = np.array([(*box, self.numbers[net]) for box in boxes], int)
+        for level, made in shapes.wires.items():
+            self.boxes[net] += [(self.wiring.layers[level].name, box) for box in made]
+            owned = np.array([(*box, self.numbers[net]) for box in made], int)
             self.there[level] = np.vstack([self.there[level], owned])
         for level, points in shapes.cuts.items():
             cut = self.wiring.cuts[level]
             half = cut.size // 2
             self.boxes[net] += [(cut.name, (x - half, y - half, x + half, y + half)) for x, y in sorted(set(points))]
-
-    def near(self, level, reach):
-        """Of ``there[level]`` what meets the box ``reach``."""
-        return near(self.there[level], reach)
 
     def drawn(self, nets=None):
         """A layout of its own with the wires of ``nets``, of all nets without, in it."""
@@ -92,7 +88,7 @@ class Board:
         found = set()
         for polygon in polygons:
             box = polygon.bbox()
-            for *ends, number in self.near(level, (box.left, box.bottom, box.right, box.top)):
+            for *ends, number in near(self.there[level], (box.left, box.bottom, box.right, box.top)):
                 if polygon.inside(db.Point(*map(int, middle(ends)))):
                     found.add(self.nets[number])
         return sorted(found)
@@ -106,15 +102,15 @@ def crowded(board):
         metal = db.Region(layout.top_cell().begin_shapes_rec(board.layers[wire.name]))
         for pair in metal.space_check(wire.space).each():
             owners = {int(number) for edge in (pair.first, pair.second) for box in (edge.bbox(),)
-                      for number in board.near(level, (box.left, box.bottom, box.right, box.top))[:, 4]}
+                      for number in near(board.there[level], (box.left, box.bottom, box.right, box.top))[:, 4]}
             found |= {board.nets[min(owners)]} if owners else set()
     return sorted(found)
 
 
-def near(boxes, reach):
-    """Rows of the array ``boxes``, (left, bottom, right, top, ...), that meet the box ``reach``."""
-    return boxes[(boxes[:, 0] <= reach[2]) & (boxes[:, 2] >= reach[0])
-                 & (boxes[:, 1] <= reach[3]) & (boxes[:, 3] >= reach[1])]
+def near(there, reach):
+    """Rows of the array ``there``, (left, bottom, right, top, ...), that meet the box ``reach``."""
+    return there[(there[:, 0] <= reach[2]) & (there[:, 2] >= reach[0])
+                 & (there[:, 1] <= reach[3]) & (there[:, 3] >= reach[1])]
 
 
 def _claims(shapes):

@@ -45,10 +45,10 @@ def routed(board, pins, hops=False):
     own = {}
     for level, *box in (box for pin in pins for box in pin if box[0] != CELL_PINS):
         own.setdefault(level, []).append(box)
-    found = []
-    for margin in MARGINS_NM:
-        site = Site(board, own)
-        shapes = _connected(site, pins, margin, hops)
+    found, site = [], Site(board, own)
+    accesses = [_met(site, pin, hops) for pin in pins]
+    for margin in MARGINS_NM if all(accesses) else ():
+        shapes = _connected(site, accesses, margin, hops)
         if shapes and enlarged(site, shapes):
             found.append((shapes, *site.fought_over(shapes)))
             if not found[-1][1]:
@@ -56,16 +56,14 @@ def routed(board, pins, hops=False):
     return min(found, key=lambda one: len(one[1]), default=None)
 
 
-def _connected(site, pins, margin, hops):
-    """Shapes that join ``pins``, always the one next to what is joined; None without a way."""
+def _connected(site, accesses, margin, hops):
+    """Shapes that join the pins that are met by ``accesses``, always the one next to what is joined; None without a way.
+    """
     dear = {len(site.wiring.layers) - 1: HIGHEST} if hops else None
-    accesses = [_met(site, pin, hops) for pin in pins]
-    if not all(accesses):
-        return None
     shapes, tree = Shapes(), {}
     waiting = [list(access) for access in accesses]
     joined = np.array(waiting[0])
-    left = list(range(1, len(pins)))
+    left = list(range(1, len(accesses)))
     nearest = {k: _nearest(site, waiting[k], joined) for k in left}
     while left:
         k = min(left, key=lambda k: nearest[k][0])
@@ -80,7 +78,8 @@ def _connected(site, pins, margin, hops):
         _draw(shapes, window, way)
         tree |= dict.fromkeys(way)
         for other in left:
-            nearest[other] = min(nearest[other], _nearest(site, waiting[other], np.array(way)), key=lambda found: found[0])
+            nearest[other] = min(nearest[other], _nearest(site, waiting[other], np.array(way)),
+                                 key=lambda found: found[0])
     return shapes
 
 
@@ -147,7 +146,8 @@ def _accesses(window, pin):
             points = [(middle, (bottom + top) // 2)]
         else:
             _, high = window.wiring.cuts[CELL_PINS].below
-            points = [(middle, j * window.dy) for j in range(-(-(bottom + high) // window.dy), (top - high) // window.dy + 1)]
+            first, last = -(-(bottom + high) // window.dy), (top - high) // window.dy
+            points = [(middle, j * window.dy) for j in range(first, last + 1)]
         for x, y in points:
             for i, j in window.near(x, y):
                 place = max(level, CELL_PINS + 1), i, j

@@ -57,8 +57,8 @@ class Window:
     """site: Site. box: (left, bottom, right, top) in nm, of which the part on the die is meant.
 
     Places are (level, i, j) at (i dx, j dy); first: of the window's lower left corner. wires[level], cuts[level]: int32
-    arrays [column, row], BLOCKED where there is no place, else PRICE_NM for every net that is in the way and every time that the
-    place was fought over; a cut's level is that of the layer below.
+    arrays [column, row], BLOCKED where there is no place, else PRICE_NM for every net that is in the way and every time
+    that the place was fought over; a cut's level is that of the layer below.
     """
 
     def __init__(self, site, box):

@@ -33,9 +33,9 @@ class EquivalenceParameters:
 class Equivalence(Step):
     """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
 
-    A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the double of one that
-    is there: it is shown to be so behind a reset, and to stay so (induction); that is then used in the proof. Where the
-    Verilog leaves an output open (an array read beyond its end is x), so that it is another with all x at 0 than at 1,
+    A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the double of one
+    that is there: it is shown to be so behind a reset, and to stay so (induction); that is then used in the proof. Where
+    the Verilog leaves an output open (an array read beyond its end is x), so that it is another with all x at 0 than at 1,
     the netlist may have either; the next states of registers must not hang on an x.
     """
 
@@ -65,8 +65,10 @@ class Equivalence(Step):
             as_held = {f"kept({k})": value if value in ("0", "1") else gate.registers[gate_bits[states[value]]]
                        for k, value in enumerate(held.values())}
             loose = gold.open_outputs()
-            wanted = {name: bit for name, bit in gold.outputs.items() if name not in loose} | {f"next({name})": gold.registers[bit] for bit, name in states.items()}
-            made = {name: bit for name, bit in gate.outputs.items() if name not in loose} | {f"next({name})": gate.registers[bit] for bit, name in gate_states.items()}
+            wanted, made = (
+                {name: bit for name, bit in cut.outputs.items() if name not in loose}
+                | {f"next({name})": cut.registers[bit] for bit, name in own.items()}
+                for cut, own in ((gold, states), (gate, gate_states)))
             verdicts["same"] = self.proof(folder, wanted | kept, made | as_held, gold, gate, states, gate_states, held)
             verdicts["open"] = self.loose(folder, sorted(loose), gold, gate, states, gate_states, held)
             verdicts["reset"] = not kept or self.proof(

@@ -9,6 +9,9 @@ from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step
 
+from .. import boxes as boxes_module
+from ..boxes import boxes
+
 GRID = 200          # nm, of what is free
 
 
@@ -31,6 +34,7 @@ class Fill(Step):
     outputs = {"gds": "layout.gds", "summary": "fill.json"}
     Parameters = FillParameters
     metrics = {"squares": "", "before": "", "after": "", "density_violations": ""}
+    uses = (boxes_module,)
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
@@ -58,9 +62,7 @@ def fill(layout, top, wire, rules):
     wanted = rules.density * die.area() - metal.area()
     space, clearance = (round(value / layout.dbu) for value in (rules.space_um, rules.clearance_um))
     room, drawn = Room((die.left, die.bottom, die.right, die.top)), 0
-    boxes = [part.bbox() for polygon in metal.each() for part in
-             ([polygon] if polygon.is_box() else polygon.decompose_trapezoids())]
-    room.take(np.array([(b.left, b.bottom, b.right, b.top) for b in boxes]).reshape(-1, 4), clearance)
+    room.take(boxes(metal), clearance)
     for side in (round(side / layout.dbu) for side in rules.sides_um):
         places = room.squares(side, side + space, space)
         count = min(len(places), max(0, -(-round(wanted) // side ** 2)))
@@ -81,14 +83,14 @@ class Room:
         self.box, self.corner = box, np.array(box[:2])
         self.taken = np.zeros([-(-(end - begin) // GRID) for begin, end in ((box[0], box[2]), (box[1], box[3]))], bool)
 
-    def _pixels(self, boxes):
-        """First pixels of boxes (n, 4), and those behind the last: two arrays (n, 2)."""
-        return (boxes[:, :2] - self.corner) // GRID, -((self.corner - boxes[:, 2:]) // GRID)
+    def _pixels(self, places):
+        """First pixels of the boxes ``places`` (n, 4), and those behind the last: two arrays (n, 2)."""
+        return (places[:, :2] - self.corner) // GRID, -((self.corner - places[:, 2:]) // GRID)
 
-    def take(self, boxes, around):
-        """Take the ``boxes`` (n, 4) and what is nearer to them than ``around``."""
+    def take(self, places, around):
+        """Take the boxes ``places`` (n, 4) and what is nearer to them than ``around``."""
         first, last = (np.clip(at, 0, self.taken.shape) for at in
-                       self._pixels(boxes + np.array((-around, -around, around, around))))
+                       self._pixels(places + np.array((-around, -around, around, around))))
         change = np.zeros(np.array(self.taken.shape) + 1, np.int32)
         for (x, y), sign in (((first, first), 1), ((last, first), -1), ((first, last), -1), ((last, last), 1)):
             np.add.at(change, (x[:, 0], y[:, 1]), sign)
@@ -100,9 +102,9 @@ class Room:
         x, y = (np.arange(-(-margin // pitch) * pitch, end - begin - side - margin + 1, pitch) + begin
                 for begin, end in ((self.box[0], self.box[2]), (self.box[1], self.box[3])))
         x, y = (at.ravel() for at in np.meshgrid(x, y))
-        boxes = np.stack((x, y, x + side, y + side), 1)
-        (left, bottom), (right, top) = (at.T for at in self._pixels(boxes))
-        return boxes[sums[right, top] - sums[left, top] - sums[right, bottom] + sums[left, bottom] == 0]
+        places = np.stack((x, y, x + side, y + side), 1)
+        (left, bottom), (right, top) = (at.T for at in self._pixels(places))
+        return places[sums[right, top] - sums[left, top] - sums[right, bottom] + sums[left, bottom] == 0]
 
 
 def densest(layout, top, wire, rules):

@@ -9,6 +9,7 @@ from flow.platforms.embedded import process
 from flow.steps import Step
 from models.parameters import check_int
 
+from .. import boxes as boxes_module
 from .. import netlist as netlist_module
 from ..mend import bargain as bargain_module
 from ..mend import board as board_module
@@ -38,8 +39,8 @@ class MendParameters:
 
 class Mend(Step):
     """open_nets: left open. mended: nets routed anew because they were open, hopped: because of an antenna, each gate
-    behind a piece of the highest wire, parted: because another was nearer than the rules allow, moved: because they were
-    in the way. Wires of the clock's tree are left alone, but for the one from the port to its root."""
+    behind a piece of the highest wire, parted: because another was nearer than the rules allow, moved: because they
+    were in the way. Wires of the clock's tree are left alone, but for the one from the port to its root."""
 
     name = "mend"
     inputs = {"gds": "place_route.gds", "placement": "place_route.placement", "shapes": "place_route.shapes",
@@ -48,7 +49,7 @@ class Mend(Step):
     outputs = {"gds": "mended.gds", "placement": "placement.json"}
     Parameters = MendParameters
     metrics = {"open_nets": "", "mended": "", "hopped": "", "parted": "", "moved": "", "wire_um": "um"}
-    uses = (antenna, bargain_module, board_module, nets, search, window, wiring, netlist_module)
+    uses = (antenna, bargain_module, boxes_module, board_module, nets, search, window, wiring, netlist_module)
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
@@ -76,7 +77,8 @@ class Mend(Step):
             bargain(board, pins, asked, hopping, found)
             looked_at = found.made
         made = found.made if found else {}
-        placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(board.wiring, shapes) for net, shapes in made.items()}
+        placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(board.wiring, shapes)
+                               for net, shapes in made.items()}
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         mended, hopped = set(made) & set(left), set(made) & hopping

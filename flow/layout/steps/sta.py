@@ -52,8 +52,14 @@ class Sta(Step):
         p = self.parameters
         said = opensta(outputs["report"].with_name("sta.log"), SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
         outputs["report"].write_text(said)
-        if "WORST setup" not in said:
-            raise StepError("sta: OpenSTA: no slack")
-        worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
+        worst = worst_slacks(said, "sta")
         return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4),
                 "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2)}
+
+
+def worst_slacks(said, step):
+    """dict 'setup' and 'hold' -> ns, from what OpenSTA ``said`` of SCRIPT. Raises StepError in the name of ``step``."""
+    worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
+    if set(worst) != {"setup", "hold"}:
+        raise StepError(f"{step}: OpenSTA: no slack")
+    return worst

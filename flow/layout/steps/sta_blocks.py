@@ -2,11 +2,10 @@
 them would see it: beside `sta`, which sees all of their cells and wires."""
 
 import json
-import re
 from dataclasses import dataclass
 
 from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from flow.steps import Step
 
 from .. import netlist as netlist_module
 from .. import opensta as opensta_module
@@ -14,7 +13,7 @@ from ..netlist import Netlist
 from ..opensta import opensta
 from . import extraction, sta
 from .extraction import parasitics, spef
-from .sta import SCRIPT
+from .sta import SCRIPT, worst_slacks
 
 
 @dataclass(frozen=True)
@@ -56,7 +55,5 @@ class StaBlocks(Step):
         libraries = "\nread_liberty ".join(str(inputs[name]) for name in ("liberty", *p.macros))
         said = opensta(folder / "sta.log", SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files))
         outputs["report"].write_text(said)
-        worst = {kind: round(float(value), 4) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
-        if set(worst) != {"setup", "hold"}:
-            raise StepError(f"{self.name}: OpenSTA: no slack")
-        return {"blocks_wns_ns": worst["setup"], "blocks_whs_ns": worst["hold"]}
+        worst = worst_slacks(said, self.name)
+        return {"blocks_wns_ns": round(worst["setup"], 4), "blocks_whs_ns": round(worst["hold"], 4)}

