@@ -6,9 +6,14 @@ from flow.simulate.process import run
 from flow.steps import Step
 from models.parameters import check_int, check_real
 
+from .. import buffering as buffering_module
 from .. import netlist as netlist_module
+from ..buffering import buffered
 from ..netlist import Netlist, is_register, register_names
+from . import floorplan
+from .floorplan import pins
 
+BUFFER = "buf_x1", "i", "q"
 SCRIPT = """
 read_verilog -sv {rtl}
 {blocks}
@@ -45,7 +50,7 @@ class SynthesisParameters:
 
     def __post_init__(self):
         check_real("period_ns", self.period_ns, 0.1, 10_000)
-        check_int("fan_out", self.fan_out, 0, 1000)
+        check_int("fan_out", self.fan_out, 2 if self.fan_out else 0, 1000)
 
 
 class Synthesis(Step):
@@ -56,7 +61,7 @@ class Synthesis(Step):
     outputs = {"netlist": "netlist.json", "verilog": "netlist.v"}
     Parameters = SynthesisParameters
     metrics = {"cells": "", "flip_flops": "", "cell_area_um2": "um2"}
-    uses = (netlist_module,)
+    uses = (buffering_module, floorplan, netlist_module)
     tools = ("yosys",)
 
     def __init__(self, parameters):
@@ -75,9 +80,10 @@ class Synthesis(Step):
             liberty=inputs["liberty"],
             timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
         run(["yosys", "-q", "-s", files["script"]])
-        buffer = "buf_x1", "i", "q"
-        netlist = Netlist.from_yosys(files["json"], p.top, buffer, p.macros,
-                                     register_names(files["registers"], p.top)).apart(p.macros, buffer)
+        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros,
+                                     register_names(files["registers"], p.top)).apart(p.macros, BUFFER)
+        if p.fan_out:
+            netlist = buffered(netlist, pins(netlist.ports), BUFFER, p.fan_out)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
         area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
