@@ -45,7 +45,7 @@ def _tree(net, ends, places, buffer, most):
         groups, above = parted(places, most), []
         for group in groups:
             name = f"{net}_fan{len(made)}"
-            made.append(Instance(name, cell, {taken: net, given: name}))
+            made.append(Instance(f"{name}_buffer", cell, {taken: net, given: name}))     # OpenSTA mixes up equal names
             above.append((made[-1].pins, taken))
             for pins, pin in (ends[k] for k in group):
                 pins[pin] = name
