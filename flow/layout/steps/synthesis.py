@@ -14,6 +14,7 @@ from . import floorplan
 from .floorplan import pins
 
 BUFFER = "buf_x1", "i", "q"
+AIM = 0.25              # share of the period that the mapper is asked for: it knows one corner and no wires
 SCRIPT = """
 read_verilog -sv {rtl}
 {blocks}
@@ -29,7 +30,7 @@ write_json {registers}
 design -load read
 synth -flatten -nofsm -top {top}
 dfflibmap -liberty {liberty}
-abc -D {period_ps:.0f} -liberty {timing} -script {mapping}
+abc -D {aim:.0f} -liberty {timing} -script {mapping}
 setundef -zero
 hilomap -hicell one_x1 one -locell zero_x1 zero
 opt_clean -purge
@@ -40,7 +41,7 @@ write_json {json}
 
 @dataclass(frozen=True)
 class SynthesisParameters:
-    """top: module. period_ns: what the mapper aims at. fan_out: most cells behind one signal, 0 for no limit. macros:
+    """top: module. period_ns: of the clock. fan_out: most cells behind one signal, 0 for no limit. macros:
     modules that were laid out before and stay what they are."""
 
     top: str = ""
@@ -71,14 +72,15 @@ class Synthesis(Step):
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["netlist"].parent
         files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "registers", "script")}
-        limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {p.period_ns * 1000:.0f}",
-                 f"dnsize -D {p.period_ns * 1000:.0f}"] if p.fan_out else []
+        aim = AIM * p.period_ns * 1000
+        limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {aim:.0f}",
+                 f"dnsize -D {aim:.0f}"] if p.fan_out else []
         files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
                                                *limit, "print_stats"]) + "\n")
         files["script"].write_text(SCRIPT.format(
             rtl=inputs["rtl"], top=p.top, blocks="\n".join(f"blackbox {name}" for name in p.macros),
             liberty=inputs["liberty"],
-            timing=inputs.get("timing", inputs["liberty"]), period_ps=p.period_ns * 1000, **files))
+            timing=inputs.get("timing", inputs["liberty"]), aim=aim, **files))
         run(["yosys", "-q", "-s", files["script"]])
         netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros,
                                      register_names(files["registers"], p.top)).apart(p.macros, BUFFER)
