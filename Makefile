@@ -87,11 +87,12 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(LAYOUT_READY)  ## a block to GDS, checked: make layout DESIGN=quad_divider [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
+layout: $(LAYOUT_READY)  ## the chip, or DESIGN=quad_divider, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
+	@bash flow/setup/tools.sh --missing
 ifeq ($(BACKEND),openroad)
-	@$(PY) -m flow.openroad $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
+	@$(PY) -m flow.openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 else
-	@$(PY) -m flow.layout $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK)) \
+	@$(PY) -m flow.layout $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK)) \
 		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 endif
@@ -113,8 +114,8 @@ layout-hierarchy: $(LAYOUT_READY)  ## the chip laid out flat and around two bloc
 	@$(PY) -m flow.layout.compare $(DESIGNS)
 
 .PHONY: handoff
-handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte: make handoff DESIGN=quad_divider
-	@$(PY) -m flow.handoff --design $(or $(DESIGN),quad_divider) $(if $(PDK),--pdk $(PDK))
+handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte
+	@$(PY) -m flow.handoff --design $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)

@@ -1,8 +1,12 @@
 #!/usr/bin/env bash
 # Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
-# layouts ngspice, OpenSTA and KLayout.
+# layouts ngspice, OpenSTA and KLayout. With --missing only where one of them is missing.
 set -euo pipefail
 packages=(iverilog verilator yosys z3 ngspice opensta klayout)
+
+if [ "${1:-}" = --missing ] && command -v iverilog verilator yosys z3 ngspice sta klayout | wc -l | grep -qx 7; then
+    exit 0
+fi
 
 if ! command -v apt-get >/dev/null; then
     echo "tools: apt-get = not found: install ${packages[*]} with this system's own package manager" >&2
