@@ -76,19 +76,17 @@ foreach slew {{{slews}}} {{
 PORTS = """
 foreach port {{{inputs}}} {{ puts "PORT $port"; report_net -connections -verbose -digits 6 $port }}
 """
-LEAKAGE = "report_power -digits 6\n"       # ends OpenSTA 2.0.17 where a model has a path from input to output
 
 
 @dataclass(frozen=True)
 class Boundary:
     """capacitance: input -> pF. delays: (from, output, edge) -> {(slew ns, load pF): ns}. slews: (output, edge) -> the
-    same. checks: (input, 'max' or 'min', edge) -> {(clock's slew, input's slew): ns}: setup and hold. leakage_nw."""
+    same. checks: (input, 'max' or 'min', edge) -> {(clock's slew, input's slew): ns}: setup and hold."""
 
     capacitance: dict
     delays: dict
     slews: dict
     checks: dict
-    leakage_nw: float
 
 
 def reach(netlist, clock):
@@ -115,10 +113,10 @@ def reach(netlist, clock):
     return sorted(pairs), sorted(kept)
 
 
-def measure(netlist, clock, files, slews, loads, leakage=True):
+def measure(netlist, clock, files, slews, loads):
     """The Boundary of ``netlist`` (Netlist). files: paths liberty, verilog, folder (of scripts), spef where
-    there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. leakage: whether to
-    ask for it. Raises StepError, ToolError."""
+    there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. Raises
+    StepError, ToolError."""
     pairs, registered = reach(netlist, clock)
     nets = {way: [net for port in netlist.ports if port.direction == way for net in port.bits()]
             for way in ("input", "output")}
@@ -137,13 +135,13 @@ def measure(netlist, clock, files, slews, loads, leakage=True):
         ask(THROUGH, files["folder"], inputs=sorted({a for a, _ in pairs}))
     if registered:
         ask(CONSTRAINTS, files["folder"], inputs=registered)
-    ask(PORTS + LEAKAGE * leakage, files["folder"], inputs=nets["input"])
+    ask(PORTS, files["folder"], inputs=nets["input"])
     return _boundary("\n".join(said))
 
 
 def _boundary(said):
     """From what OpenSTA printed."""
-    capacitance, delays, slews, checks, at, leakage = {}, {}, {}, {}, None, 0.0
+    capacitance, delays, slews, checks, at = {}, {}, {}, {}, None
     for line in said.splitlines():
         word, *rest = line.split() or [""]
         if word == "DELAY" and rest[-1] != "none":
@@ -160,6 +158,4 @@ def _boundary(said):
                 slews.setdefault((found[1], edge), {})[at] = float(value)
         elif line.startswith(" Total capacitance:"):        # one number, a range, or these for rise and fall
             capacitance[at] = max(map(float, re.findall(r"\d+\.\d+", line)))
-        elif word == "Total" and len(rest) >= 4:
-            leakage = float(rest[2]) * 1e9
-    return Boundary(capacitance, delays, slews, checks, round(leakage, 4))
+    return Boundary(capacitance, delays, slews, checks)

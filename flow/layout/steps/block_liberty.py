@@ -9,8 +9,10 @@ from flow.simulate.process import run
 from flow.steps import Step, StepError
 
 from .. import boundary as boundary_module
+from .. import energy as energy_module
 from .. import opensta as opensta_module
 from ..boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
+from ..energy import Cells
 from ..netlist import Netlist, SUPPLIES
 
 SLEWS = 0.02, 0.07, 0.25, 1.0        # ns
@@ -36,7 +38,7 @@ class BlockLiberty(Step):
     outputs = {"liberty": "block.lib"}
     Parameters = BlockLibertyParameters
     metrics = {"model_error_ns": "ns", "arcs": ""}
-    uses = (boundary_module, opensta_module)
+    uses = (boundary_module, energy_module, opensta_module)
     tools = ("sta", "yosys")
 
     def __init__(self, parameters):
@@ -62,7 +64,7 @@ class BlockLiberty(Step):
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
         model = measure(netlist, self.parameters.clock, {"liberty": made, "verilog": wrapper, "folder": folder,
-                                                         "top": "Wrapper"}, *point, leakage=False)
+                                                         "top": "Wrapper"}, *point)
         differences = []
         for name in ("delays", "checks"):
             one, other = getattr(own, name), getattr(model, name)
@@ -91,6 +93,7 @@ def liberty(netlist, clock, found, corner, source, area):
         | {"voltage_map": list(zip(SUPPLIES, (cells.attributes["nom_voltage"], 0.0), strict=True))})
     if conditions := cells.one("operating_conditions"):
         library.groups.append(conditions)
+    leakage = round(sum(map(Cells(cells).leakage_nw, (i.cell for i in netlist.instances))), 4)
     slews, loads = np.array(SLEWS), np.array(LOADS)
     library.add("lu_table_template", "delay", variable_1="input_net_transition",
                 variable_2="total_output_net_capacitance", index_1=slews, index_2=loads)
@@ -99,7 +102,7 @@ def liberty(netlist, clock, found, corner, source, area):
     for width in sorted({port.width for port in netlist.ports if port.width > 1}):
         library.add("type", f"bus{width}", base_type="array", data_type="bit", bit_width=width, bit_from=width - 1,
                     bit_to=0, downto=True)
-    cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=found.leakage_nw,
+    cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=leakage,
                        dont_touch=True, dont_use=True, interface_timing=True)      # else OpenSTA sees latches
     for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
         cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
