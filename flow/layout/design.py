@@ -74,7 +74,8 @@ def divider(name, variant, n_frac=8):
 
 DESIGNS = {made.name: made for made in (
     Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
-    Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_13_75_8",), ("--rows=13", "--cols=75")),
+    Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",),
+           ("--rows=7", "--cols=31", "--lanes=2")),
     Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
     Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
     divider("quad_divider", "radix4"),

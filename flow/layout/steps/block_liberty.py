@@ -16,7 +16,7 @@ from ..energy import Cells
 from ..netlist import Netlist, SUPPLIES
 
 SLEWS = 0.02, 0.07, 0.25, 1.0        # ns
-LOADS = 0.001, 0.006, 0.02, 0.06, 0.2        # pF
+LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2        # pF
 EDGES = "rise", "fall"
 COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
 
