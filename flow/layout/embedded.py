@@ -40,7 +40,8 @@ from .steps.timing import MEASURES, Timing, TimingParameters
 
 ROOT = Path(__file__).parents[2]
 FAN_OUT = 12                    # most cells behind one signal, where the mapper knows how cells drive
-CHIP_FRAME = {"rows": 4, "cols": 6}      # pixels: its netlist with delays runs a thousand times slower than a block's
+# Of the whole chip, whose netlist with delays runs a thousand times slower than a block's
+CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 # What steps look at where there are blocks laid out before: these and the rest put together
 ASSEMBLED = {"place_route.netlist": "assemble.netlist", "place_route.placement": "assemble.placement",
              "mend.placement": "assemble.placement"}

@@ -5,6 +5,7 @@ import re
 import sys
 import tempfile
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from flow.simulate import icarus
@@ -36,13 +37,15 @@ SCENE, SIZE = "motorcycle", (12, 18)        # of `make sim`'s own scene; pixels 
 
 @dataclass(frozen=True)
 class StimulusParameters:
-    """top: module. rows, cols, divider, n_frac: of the chip in which the block is looked for."""
+    """top: module. rows, cols, divider, n_frac: of the chip in which the block is looked for. tiles: that are read, in
+    the middle of the array; None for all."""
 
     top: str = ""
     rows: int = SIZE[0]
     cols: int = SIZE[1]
     divider: str = "radix4"
     n_frac: int = 8
+    tiles: int | None = None
 
     @property
     def options(self):
@@ -52,7 +55,8 @@ class StimulusParameters:
 
 class Stimulus(Step):
     """The frame: time of flight with phases, so that every block works, of the scene of `make sim`, through a chip
-    with a small array. A block that is not in that chip with the same Verilog has the trace of its own tests."""
+    with a small array; through AspChip itself of a few tiles. A block that is not in that chip with the same Verilog
+    has the trace of its own tests."""
 
     name = "stimulus"
     inputs = {"rtl": "rtl", "tests": "tests", "bench": "frame_bench"}
@@ -69,8 +73,6 @@ class Stimulus(Step):
             run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options],
                 cwd=ROOT)
             chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
-            if top == CHIP:
-                own = chip
             if set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])
             else:
@@ -102,7 +104,8 @@ def in_frame(parameters, folder, trace):
     names = {out: ", ".join(".".join(("Clock.bench.chip", *path, port["path"]))
                             for port in reversed(ports) if port["output"] == out) for out in (False, True)}
     (folder / "tap.v").write_text(TAP.format(inputs=names[False], outputs=names[True]))
-    asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True)
+    window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
+    asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True, window=window)
     chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     scene, todo = see(asked)
@@ -117,6 +120,12 @@ def in_frame(parameters, folder, trace):
     trace.write_text("\n".join(lines) + "\n")
     return {"source": "frame", "scene": SCENE, "instance": ".".join(path), "ports": ports, "cycles": len(lines),
             "results": results(lines, ports)}
+
+
+def middle(full, tiles):
+    """``tiles`` of the middle row of the Window ``full``."""
+    row, col = (full.row0 + full.row1) // 2, (full.col0 + full.col1 + 1 - tiles) // 2
+    return replace(full, row0=row, row1=row, col0=col, col1=col + tiles - 1)
 
 
 def results(lines, ports):
