@@ -2,9 +2,13 @@
 
 import hashlib
 import os
+import platform
 import shutil
 import tempfile
 from pathlib import Path
+
+
+PART = f".part-{platform.node()}-"          # then its process, so that it is known whose it is, should it stay
 
 
 def digest(*parts):
@@ -17,12 +21,14 @@ def digest(*parts):
 
 
 def cached(folder, make):
-    """``folder`` as ``make(temporary folder)`` filled it, now or earlier; on any exception nothing is left of it."""
+    """``folder`` as ``make(temporary folder)`` filled it, now or earlier; on any exception nothing is left of it, and
+    what a process that was killed left beside it goes, too."""
     folder = Path(folder)
     if folder.exists():
         return folder
     folder.parent.mkdir(parents=True, exist_ok=True)
-    part = Path(tempfile.mkdtemp(prefix=f".part-{os.getpid()}-", dir=folder.parent))     # whose it is, should it stay
+    _sweep(folder.parent)
+    part = Path(tempfile.mkdtemp(prefix=f"{PART}{os.getpid()}-", dir=folder.parent))
     try:
         make(part)
         try:
@@ -33,3 +39,19 @@ def cached(folder, make):
     finally:
         shutil.rmtree(part, ignore_errors=True)
     return folder
+
+
+def _sweep(folder):
+    for part in folder.glob(f"{PART}*"):
+        if not _lives(int(part.name.rsplit("-", 2)[1])):
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _lives(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True

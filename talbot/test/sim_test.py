@@ -14,6 +14,7 @@ import pytest
 from PIL import Image
 
 from flow.frame.outputs import NAMES
+from flow.simulate.cache import PART
 from talbot.__main__ import main
 
 ROOT = Path(__file__).parents[2]
@@ -134,7 +135,7 @@ def started(tmp_path, rows):
 def test_interrupted_in_the_compiler(tmp_path, sent, status, rows):
     cache = ROOT / "build" / "simulator"
     child = started(tmp_path, rows)
-    part = f".part-{child.pid}-"                # other tests compile beside this one
+    part = f"{PART}{child.pid}-"                # other tests compile beside this one
     assert any("translating" in line for line in child.stderr)
     child.send_signal(sent)
     _, err = child.communicate(timeout=30)

@@ -1,0 +1,43 @@
+"""Folders kept whole: made once, gone when making fails, and what a killed process left is cleared away."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from flow.simulate.cache import PART, cached
+
+
+def test_it_is_made_once(tmp_path):
+    made = []
+
+    def make(part):
+        made.append(part)
+        (part / "file").write_text("whole")
+
+    for _ in range(2):
+        assert (cached(tmp_path / "kept", make) / "file").read_text() == "whole"
+    assert len(made) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["kept"]
+
+
+def test_nothing_is_left_of_what_fails(tmp_path):
+    def make(part):
+        (part / "file").write_text("half")
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        cached(tmp_path / "kept", make)
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_a_killed_process_left_goes_and_what_is_being_made_stays(tmp_path):
+    script = ("import os, signal, sys; from flow.simulate.cache import cached; "
+              "cached(sys.argv[1], lambda part: os.kill(os.getpid(), signal.SIGKILL))")
+    subprocess.run([sys.executable, "-c", script, tmp_path / "killed"], check=False)
+    assert [path.name.startswith(PART) for path in tmp_path.iterdir()] == [True]
+    other = tmp_path / f"{PART}{os.getppid()}-abc"          # of a process that lives
+    other.mkdir()
+    cached(tmp_path / "kept", lambda part: None)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(("kept", other.name))
