@@ -87,8 +87,7 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(LAYOUT_READY)  ## the chip, or DESIGN=quad_divider, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
-	@bash flow/setup/tools.sh --missing
+layout: $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, or DESIGN=quad_divider, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
 ifeq ($(BACKEND),openroad)
 	@$(PY) -m flow.openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 else
@@ -98,16 +97,16 @@ else
 endif
 
 .PHONY: layout-pareto
-layout-pareto: $(LAYOUT_READY)  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+layout-pareto: $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(PY) -m flow.layout.sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
 .PHONY: layout-effort
-layout-effort: $(LAYOUT_READY)  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+layout-effort: $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(PY) -m flow.layout.sweep effort --design $(or $(DESIGN),quad_divider) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
 .PHONY: layout-hierarchy
-layout-hierarchy: $(LAYOUT_READY)  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
+layout-hierarchy: $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
 	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
 		$(PY) -m flow.layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
 	done
@@ -125,20 +124,24 @@ CELLS_OPTIONS := LIB CORNER CELLS MODELS NETLIST REFERENCE WORKERS
 cells_arguments = $(foreach o,$(CELLS_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o)))))
 
 .PHONY: cells
-cells: $(LAYOUT_READY)  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib (needs ngspice: make tools)
+cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib
 	@$(PY) -m cells $(cells_arguments)
 
 .PHONY: cells-report
-cells-report: $(LAYOUT_READY)  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
+cells-report: $(LAYOUT_READY) have-tools  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
 	@$(PY) -m cells.report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER))
 
 .PHONY: cells-stability
-cells-stability: $(LAYOUT_READY)  ## stiff and extreme cases of the characterizer: bound against measured
+cells-stability: $(LAYOUT_READY) have-tools  ## stiff and extreme cases of the characterizer: bound against measured
 	@$(PY) -m cells.stability
 
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)
 	@bash flow/setup/tools.sh
+
+.PHONY: have-tools
+have-tools:  # `make cells` and `make layout` install what is missing themselves, where they may
+	@bash flow/setup/tools.sh --missing
 
 .PHONY: clean
 clean:  ## remove build/ (the simulators' cache too)
