@@ -8,7 +8,8 @@ import numpy as np
 from .search import search
 from .window import Site, Window
 
-MARGINS_NM = (10_000, 40_000, 120_000)      # of the window around two places to be joined: of a try, of the next
+# Of the window around two places to be joined: of a try, of the next; the last goes round a block
+MARGINS_NM = 10_000, 40_000, 120_000, 240_000
 AROUND_PIN_NM = 12_000                      # of that around a pin
 HIGHEST = 8                                 # price of the highest wire where it is to be short
 HOP_NM, REACH = 1500, 40                    # length of a piece of it; its distance from a pin, in steps of the grid
