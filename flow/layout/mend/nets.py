@@ -8,8 +8,8 @@ import numpy as np
 from .search import search
 from .window import Site, Window
 
-# Of the window around two places to be joined: of a try, of the next; the last goes round a block
-MARGINS_NM = 10_000, 40_000, 120_000, 240_000
+MARGINS_NM = (10_000, 40_000, 120_000)      # of the window around two places to be joined: of a try, of the next
+DETOUR_NM = 240_000                         # the same where there was no way at all: round a block
 AROUND_PIN_NM = 12_000                      # of that around a pin
 HIGHEST = 8                                 # price of the highest wire where it is to be short
 HOP_NM, REACH = 1500, 40                    # length of a piece of it; its distance from a pin, in steps of the grid
@@ -48,7 +48,9 @@ def routed(board, pins, hops=False):
         own.setdefault(level, []).append(box)
     found, site = [], Site(board, own)
     accesses = [_met(site, pin, hops) for pin in pins]
-    for margin in MARGINS_NM if all(accesses) else ():
+    for margin in (*MARGINS_NM, DETOUR_NM) if all(accesses) else ():
+        if found and margin == DETOUR_NM:
+            break
         shapes = _connected(site, accesses, margin, hops)
         if shapes and enlarged(site, shapes):
             found.append((shapes, *site.fought_over(shapes)))
