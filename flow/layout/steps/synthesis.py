@@ -1,5 +1,6 @@
 """Verilog -> a netlist of the library's cells, registers with the names that they have in the Verilog."""
 
+import re
 from dataclasses import dataclass, field
 
 from flow.simulate.process import run
@@ -34,7 +35,6 @@ abc -D {aim:.0f} -liberty {timing} -script {mapping}
 setundef -zero
 hilomap -hicell one_x1 one -locell zero_x1 zero
 opt_clean -purge
-tee -q -o {area} stat -liberty {liberty}
 write_json {json}
 """
 
@@ -71,7 +71,7 @@ class Synthesis(Step):
 
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["netlist"].parent
-        files = {name: folder / f"{name}.log" for name in ("mapping", "area", "json", "registers", "script")}
+        files = {name: folder / f"{name}.log" for name in ("mapping", "json", "registers", "script")}
         aim = AIM * p.period_ns * 1000
         limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {aim:.0f}",
                  f"dnsize -D {aim:.0f}"] if p.fan_out else []
@@ -88,10 +88,11 @@ class Synthesis(Step):
             netlist = buffered(netlist, pins(netlist.ports), BUFFER, p.fan_out)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
-        area = next(line.split()[-1] for line in files["area"].read_text().splitlines() if "Chip area" in line)
+        areas = dict(re.findall(r"cell\((\w+)\) \{ area : ([\d.]+)", inputs["liberty"].read_text()))
+        area = sum(float(areas[i.cell]) for i in netlist.instances if i.cell not in p.macros)
         for name in ("json", "registers"):
             files[name].unlink()
-        return {"cells": len(netlist.instances), "cell_area_um2": float(area),
+        return {"cells": len(netlist.instances), "cell_area_um2": round(area, 2),
                 "flip_flops": sum(is_register(i.cell) for i in netlist.instances)}
 
 

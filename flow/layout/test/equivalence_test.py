@@ -48,7 +48,8 @@ def synthesized(folder, verilog):
 def made(tmp_path_factory):
     """Folder with the synthesized Counter."""
     folder = tmp_path_factory.mktemp("counter")
-    assert synthesized(folder, RTL)["flip_flops"] == 5
+    found = synthesized(folder, RTL)
+    assert found["flip_flops"] == 5 and found["cell_area_um2"] == 10.0 * found["cells"]
     return folder
 
 
