@@ -83,16 +83,33 @@ def relabel(source, target, top_name, names, ports, known, rules):
             texts.clear()
     if ports - set(found):
         raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - set(found))[:5])}")
+    kept = {layout.layer(wire.layer, known.pin_datatype): [] for wire in known.wires}
     for net, texts in found.items():
         for _, layers, place in texts if net in SUPPLIES else [min(texts, key=lambda text: text[0])]:
+            kept[layers[-1]].append(place.disp)
             for layer in layers:
                 top.shapes(layer).insert(db.Text(net, place))
+    for layer, places in kept.items():
+        _clear_pins(top.shapes(layer), places)
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
         layout.clear_layer(layout.layer(info))
     trimmed = trim.trim(layout, top, known.wires, rules["space_um"])
     grown = area.grow(layout, top, known.wires, rules["wires"])
     write_gds(layout, target)
     return top.dbbox(), trimmed, grown
+
+
+def _clear_pins(shapes, places):
+    """Leave of the boxes ``shapes`` of a pins' layer, for each of ``places``, the least one around it. Coriolis marks all
+    wires of a port's net as pins, also where `mend` has moved them away, and decks take a pin for metal."""
+    import klayout.db as db
+    boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]
+    least = [min((box for box in boxes if box.contains(db.Point() + place)), key=db.Box.area, default=None)
+             for place in places]
+    for shape in list(shapes.each(db.Shapes.SAll - db.Shapes.STexts)):
+        shape.delete()
+    for box in filter(None, least):
+        shapes.insert(box)
 
 
 def _from_edge(edges, text):

@@ -23,6 +23,8 @@ def routed(tmp_path):
         top.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(*box))
         for net, x, y in texts:
             top.shapes(layout.layer(wire.layer, 0)).insert(db.DText(net, x, y))
+    for box in ((-0.1, 1.0, 3.0, 1.3), (-0.1, 1.0, 0.1, 1.3), (4.0, 7.9, 6.0, 8.1)):       # wires, the port's own, a moved one
+        top.shapes(layout.layer(68, known.pin_datatype)).insert(db.DBox(*box))
     layout.write(str(tmp_path / "routed.gds"))
     return known, tmp_path / "routed.gds"
 
@@ -42,6 +44,15 @@ def test_a_port_is_labelled_where_it_is(routed, tmp_path):
         assert texts(tmp_path / "out.gds", 69, datatype) == []
         assert texts(tmp_path / "out.gds", 71, datatype) == [("vdd", 1600, 0), ("vdd", 1600, 5000)]
     assert texts(tmp_path / "out.gds", 68, 0) == []
+
+
+def test_of_a_port_only_its_own_place_is_a_pin(routed, tmp_path):
+    known, path = routed
+    relabel(path, tmp_path / "out.gds", "Block", {"w0": "a", "w1": "n1"}, {"a", "vdd"}, known, RULES)
+    layout = db.Layout()
+    layout.read(str(tmp_path / "out.gds"))
+    pins = layout.top_cell().shapes(layout.layer(68, known.pin_datatype)).each(db.Shapes.SAll - db.Shapes.STexts)
+    assert [shape.dbbox() for shape in pins] == [db.DBox(-0.1, 1.0, 0.1, 1.3)]
 
 
 def test_a_port_without_a_label_is_told(routed, tmp_path):
