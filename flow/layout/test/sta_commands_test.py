@@ -18,7 +18,7 @@ from . import small
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 SCRIPTS = {"sta": sta.SCRIPT, "power": power.SLEWS, "load": boundary.LOAD, "outputs": boundary.OUTPUTS,
-           "through": boundary.THROUGH, "constraints": boundary.CONSTRAINTS, "ports": boundary.PORTS + boundary.LEAKAGE,
+           "through": boundary.THROUGH, "constraints": boundary.CONSTRAINTS, "ports": boundary.PORTS,
            "sdc": sdc(DESIGNS["quad_divider"])}
 
 
