@@ -86,7 +86,7 @@ DESIGNS = {made.name: made for made in (
     Design("phase_path_macros", "PhasePath", "phase_path", ("PhasePath_8_radix4",), utilization=0.8,
            macros=(Hard("divider", "quad_divider"),)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
-    Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18")),
+    Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
     Design("asp_chip", "AspChip", "asp_chip", utilization=0.56),
     # of the thesis (B.3.2): both blocks hardened, the rest around them
     Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.52, density_variation=0.3,
