@@ -7,7 +7,8 @@ from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
-from .. import area, netlist as netlist_module, trim
+from .. import area, notch, trim
+from .. import netlist as netlist_module
 from ..netlist import SUPPLIES, Netlist
 from .place_route import plain_names
 
@@ -30,8 +31,9 @@ class StreamOut(Step):
               "cells": "library.spice", "rules": "library.rules", "geometry": "library.geometry"}
     outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
     Parameters = StreamOutParameters
-    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": "", "grown": ""}
-    uses = (area, netlist_module, trim)
+    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": "", "grown": "",
+               "notches": ""}
+    uses = (area, netlist_module, notch, trim)
     tools = ("python klayout",)
 
     def __init__(self, parameters):
@@ -46,17 +48,17 @@ class StreamOut(Step):
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         ports = {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES)
         rules = json.loads(inputs["rules"].read_text())
-        box, trimmed, grown = relabel(inputs["gds"], outputs["gds"], netlist.name, names, ports, known, rules)
+        box, changed = relabel(inputs["gds"], outputs["gds"], netlist.name, names, ports, known, rules)
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
         outputs["verilog"].write_text(flat.verilog())
         outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
         return {"width_um": round(box.width(), 3), "height_um": round(box.height(), 3),
-                "area_um2": round(box.width() * box.height(), 2), "instances": len(flat.instances),
-                "trimmed": trimmed, "grown": grown}
+                "area_um2": round(box.width() * box.height(), 2), "instances": len(flat.instances)} | changed
 
 
 def relabel(source, target, top_name, names, ports, known, rules):
-    """Write ``source`` as ``target``; returns (the top cell's box in um, wires' ends trimmed, pads grown).
+    """Write ``source`` as ``target``; returns (the top cell's box in um, dict: wires' ends 'trimmed', pads 'grown',
+    'notches' filled).
 
     rules: the library's, of wires. names: dict Coriolis's name -> net. Of a port's labels that at the west or the
     east edge stays, with its name, and all of the supplies: where a net was routed anew, the others lie where its wires
@@ -93,10 +95,11 @@ def relabel(source, target, top_name, names, ports, known, rules):
         _clear_pins(top.shapes(layer), places)
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
         layout.clear_layer(layout.layer(info))
-    trimmed = trim.trim(layout, top, known.wires, rules["space_um"])
-    grown = area.grow(layout, top, known.wires, rules["wires"])
+    changed = {"notches": notch.fill(layout, top, known.wires, rules["space_um"]),
+               "trimmed": trim.trim(layout, top, known.wires, rules["space_um"]),
+               "grown": area.grow(layout, top, known.wires, rules["wires"])}
     write_gds(layout, target)
-    return top.dbbox(), trimmed, grown
+    return top.dbbox(), changed
 
 
 def _clear_pins(shapes, places):

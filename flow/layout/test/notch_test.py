@@ -1,0 +1,35 @@
+"""A slit in one shape is filled, a gap between two is left for the rules to find, and a wide slit stays."""
+
+import pytest
+
+from flow.layout import notch
+from flow.platforms.embedded import process
+
+db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+WIRE = process("sky130")[0].wires[1]
+
+
+def filled(*boxes):
+    """(how many slits were filled, the metal behind that) of boxes in nm."""
+    layout = db.Layout()
+    top = layout.create_cell("top")
+    shapes = top.shapes(layout.layer(WIRE.layer, WIRE.datatype))
+    for box in boxes:
+        shapes.insert(db.Box(*box))
+    return notch.fill(layout, top, (WIRE,), {WIRE.name: 0.14}), db.Region(shapes).merged()
+
+
+def test_the_slit_beside_a_pad_is_filled():
+    pad, pin, wire = (254_840, 92_790, 255_160, 93_050), (255_200, 92_760, 256_800, 93_080), (254_930, 92_850, 255_325, 92_990)
+    count, metal = filled(pad, pin, wire)
+    assert count == 2
+    assert metal.space_check(140, False, db.Region.Projection).is_empty()
+    assert metal.area() == sum(db.Region(db.Box(*box)).area() for box in (pad, pin)) + 40 * 260
+
+
+def test_two_shapes_stay_two():
+    assert filled((0, 0, 320, 320), (360, 0, 700, 320))[0] == 0
+
+
+def test_a_slit_as_wide_as_allowed_stays():
+    assert filled((0, 0, 320, 320), (460, 0, 800, 320), (0, 0, 800, 140))[0] == 0
