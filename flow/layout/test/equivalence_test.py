@@ -92,6 +92,15 @@ def test_a_cut_net_is_found(made):
     assert verdict(made, replace(netlist, instances=cut))["equivalence"] == "failed"
 
 
+@pytest.mark.parametrize("source, result", (("count[1]", "proven"), ("count[2]", "failed")))
+def test_a_register_that_nothing_reads_is_compared_where_it_is(made, source, result):
+    """A block that was laid out before has registers that its surroundings leave alone."""
+    netlist = Netlist.read(made / "netlist.json")
+    spare = Instance("spare_reg", "dff_x1", {"clk": "clk", "i": source, "q": "spare"})
+    rtl = RTL.replace("endmodule", "  reg spare;\n  always @(posedge clk) spare <= count[1];\nendmodule")
+    assert verdict(made, replace(netlist, instances=(*netlist.instances, spare)), rtl)["equivalence"] == result
+
+
 def test_a_flip_flop_that_is_no_register_is_named(made):
     netlist = Netlist.read(made / "netlist.json")
     renamed = [replace(i, name="other_reg") if i.name == "count[0]_reg" else i for i in netlist.instances]
