@@ -87,7 +87,7 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, or DESIGN=quad_divider, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
+layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, or DESIGN=quad_divider, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
 ifeq ($(BACKEND),openroad)
 	@$(PY) -m flow.openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 else
@@ -97,16 +97,16 @@ else
 endif
 
 .PHONY: layout-pareto
-layout-pareto: $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+layout-pareto: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(PY) -m flow.layout.sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
 .PHONY: layout-effort
-layout-effort: $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
+layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
 	@$(PY) -m flow.layout.sweep effort --design $(or $(DESIGN),quad_divider) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
 .PHONY: layout-hierarchy
-layout-hierarchy: $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
+layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
 	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
 		$(PY) -m flow.layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
 	done
