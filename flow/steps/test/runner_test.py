@@ -173,6 +173,7 @@ def test_a_killed_run_leaves_no_tool(tmp_path, text, sent, call):
                            stderr=subprocess.DEVNULL, start_new_session=True)
     assert waited(lambda: text.read_text().endswith("\n"))
     tool = int(text.read_text())
+    time.sleep(0.3)         # the tool speaks before Popen has returned: who is killed right there knows no tool to end
     run.send_signal(sent)
     run.wait(timeout=20)
     assert waited(lambda: not Path(f"/proc/{tool}").exists())
