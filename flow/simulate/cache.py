@@ -7,7 +7,6 @@ import shutil
 import tempfile
 from pathlib import Path
 
-
 PART = f".part-{platform.node()}-"          # then its process, so that it is known whose it is, should it stay
 
 

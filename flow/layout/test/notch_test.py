@@ -20,7 +20,8 @@ def filled(*boxes):
 
 
 def test_the_slit_beside_a_pad_is_filled():
-    pad, pin, wire = (254_840, 92_790, 255_160, 93_050), (255_200, 92_760, 256_800, 93_080), (254_930, 92_850, 255_325, 92_990)
+    pad, pin = (254_840, 92_790, 255_160, 93_050), (255_200, 92_760, 256_800, 93_080)
+    wire = (254_930, 92_850, 255_325, 92_990)
     count, metal = filled(pad, pin, wire)
     assert count == 2
     assert metal.space_check(140, False, db.Region.Projection).is_empty()

@@ -23,7 +23,8 @@ def routed(tmp_path):
         top.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(*box))
         for net, x, y in texts:
             top.shapes(layout.layer(wire.layer, 0)).insert(db.DText(net, x, y))
-    for box in ((-0.1, 1.0, 3.0, 1.3), (-0.1, 1.0, 0.1, 1.3), (4.0, 7.9, 6.0, 8.1)):       # wires, the port's own, a moved one
+    # a wire of the port's, the port itself, a wire that was moved away
+    for box in ((-0.1, 1.0, 3.0, 1.3), (-0.1, 1.0, 0.1, 1.3), (4.0, 7.9, 6.0, 8.1)):
         top.shapes(layout.layer(68, known.pin_datatype)).insert(db.DBox(*box))
     layout.write(str(tmp_path / "routed.gds"))
     return known, tmp_path / "routed.gds"
