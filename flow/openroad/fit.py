@@ -65,8 +65,8 @@ def fit(name, folder):
     run(["yosys", "-q", "-s", script])
     said = stat.read_text()
     return Fit(name, project.tiles, int(re.search(r"Number of cells:\s+(\d+)", said)[1]),
-               int(re.search(rf"{functional.FLIP_FLOP}\s+(\d+)", said)[1]), float(re.search(r"Chip area.*:\s+([\d.]+)", said)[1]),
-               core_um2(project.tiles)), netlist
+               int(re.search(rf"{functional.FLIP_FLOP}\s+(\d+)", said)[1]),
+               float(re.search(r"Chip area.*:\s+([\d.]+)", said)[1]), core_um2(project.tiles)), netlist
 
 
 def table(fits):

@@ -19,7 +19,9 @@ def orfs(design, known, verilog):
         "DESIGN_NAME": design.top, "DESIGN_NICKNAME": name, "PLATFORM": platform,
         "VERILOG_FILES": f"$(DESIGN_HOME)/src/{name}/{design.top}.v",
         "SDC_FILE": f"$(DESIGN_HOME)/{platform}/{name}/constraint.sdc",
-        "CORE_UTILIZATION": utilization, "CORE_ASPECT_RATIO": 1, "CORE_MARGIN": 10, "PLACE_DENSITY_LB_ADDON": 0.1}
+        "CORE_UTILIZATION": utilization, "CORE_ASPECT_RATIO": 1, "CORE_MARGIN": 10, "PLACE_DENSITY_LB_ADDON": 0.1,
+        # else it is the number that the SDC has, which is in ns
+        "ABC_CLOCK_PERIOD_IN_PS": round(1000 * design.clock.period_ns)}
     config = "".join(f"export {key} = {value}\n" for key, value in values.items())
     rules = {key: {"value": value, "compare": compare} for key, (value, compare) in RULES.items()}
     return {f"orfs/{platform}/{name}/config.mk": config,

@@ -30,7 +30,7 @@ class Stage:
 
     def command(self):
         return ["yosys", "-q", "-c", "synth.tcl"] if self.name == "synth" else \
-            ["openroad", "-no_init", "-no_splash", "-exit", f"{self.name}.tcl"]
+            ["openroad", "-no_init", "-no_splash", "-threads", "max", "-exit", f"{self.name}.tcl"]
 
 
 def stages(top):
@@ -46,10 +46,10 @@ def pdk_root(known, environment=os.environ):
     if not root:
         raise ParameterError("PDK_ROOT = '': must be the folder of an installed PDK "
                              f"(pip install ciel; ciel enable --pdk-family {known.name} <version>)")
-    needed = [*known.liberty.values(), known.tech_lef, known.cell_lef, known.cell_gds, known.rcx_rules]
-    lacking = [path for path in needed if not (Path(root) / path).is_file()]
-    if lacking:
-        raise ParameterError(f"PDK_ROOT = {root}: must hold {lacking[0]}")
+    needed = [(path,) for path in (*known.liberty.values(), known.tech_lef, known.cell_lef, known.cell_gds)]
+    for paths in (*needed, known.rcx_rules):
+        if not any((Path(root) / path).is_file() for path in paths):
+            raise ParameterError(f"PDK_ROOT = {root}: must hold {' or '.join(paths)}")
     return Path(root)
 
 

@@ -13,14 +13,14 @@ def variables(design, known):
         "period_ps": round(1000 * design.clock.period_ns), "utilization": utilization, "aspect": 1.0,
         "core_space": CORE_SPACE_UM, "density": round(min(0.95, utilization * 0.015), 3), "site": known.site,
         "synthesis_liberty": "synthesis.lib", "tap": known.tap, "tap_distance": known.tap_um,
-        "supply": known.supply[0], "ground": known.ground[0], "clock_buffer": known.clock_buffer,
+        "supply": known.supply[0], "ground": known.ground[0], "clock_buffer": known.clock_buffer, "diode": known.diode,
         "pin_horizontal": known.pins[0], "pin_vertical": known.pins[1], "signal_layers": "-".join(known.signal),
         "clock_layers": "-".join(known.clock), "signal_rc": known.signal_rc, "clock_rc": known.clock_rc}
     lists = {
         "supply_pins": known.supply[1], "ground_pins": known.ground[1], "high": known.high.split("/"),
-        "low": known.low.split("/"), "fill": known.fill, "dont_use": known.dont_use,
+        "low": known.low.split("/"), "fill": known.fill, "dont_use": known.dont_use, "rcx_rules": known.rcx_rules,
         "straps": [f"{{{s.layer} {s.width_um} {s.pitch_um or 0} {s.offset_um}}}" for s in known.straps]}
-    files = {"tech_lef": known.tech_lef, "cell_lef": known.cell_lef, "rcx_rules": known.rcx_rules,
+    files = {"tech_lef": known.tech_lef, "cell_lef": known.cell_lef,
              **{f"liberty({corner})": known.liberty[corner] for corner in CORNERS}}
     return "\n".join([f"# {design.name} with {known.library}: written by flow.openroad",
                       "set pdk_root $::env(PDK_ROOT)",

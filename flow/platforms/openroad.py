@@ -27,10 +27,11 @@ class OpenRoad:
     """name: of the process; library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane.
 
     liberty: dict of CORNERS -> path. tech_lef, cell_lef, cell_gds, cell_models, rcx_rules: paths; cell_models: tuple of
-    Verilog. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. tap: cell, every
-    tap_um. straps: tuple of Strap, joined in their order. pins: layers of (horizontal, vertical) pins. signal, clock:
-    (lowest, highest) routing layers. signal_rc, clock_rc: layers whose wires stand for all before routing.
-    fill, dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype). outline: (layer, datatype)
+    Verilog; rcx_rules: tuple, of which the PDK has one. supply, ground: (net, pins of cells). high, low: cell and pin
+    of a constant, 'cell/pin'. diode: cell against antennas. tap: cell, every tap_um. straps: tuple of Strap, joined in
+    their order. pins: layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. signal_rc, clock_rc: layers whose wires stand for all before routing.
+    fill: cells by their whole names: OpenROAD took patterns for regular expressions once, for globs later.
+    dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype). outline: (layer, datatype)
     of the die. pin_datatype, label_datatype: of GDS.
     utilization_share: of what a design asks for, which is meant for cells packed without padding or timing repair.
     """
@@ -44,7 +45,7 @@ class OpenRoad:
     cell_lef: str
     cell_gds: str
     cell_models: tuple
-    rcx_rules: str
+    rcx_rules: tuple
     site: str
     site_um: float
     row_um: float
@@ -52,6 +53,7 @@ class OpenRoad:
     ground: tuple
     high: str
     low: str
+    diode: str
     tap: str
     tap_um: float
     clock_buffer: str

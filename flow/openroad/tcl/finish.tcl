@@ -1,12 +1,15 @@
 # Extracted wires and what leaves: DEF, LEF, netlists.
 source common.tcl
 open_stage route typical
+foreach path $rcx_rules {
+  if {[file isfile $pdk_root/$path]} { set rules $pdk_root/$path }
+}
 define_process_corner -ext_model_index 0 X
 if {[llength [info commands set_extraction_rules_file]]} {
-  set_extraction_rules_file $rcx_rules
+  set_extraction_rules_file $rules
   extract_parasitics
 } else {
-  extract_parasitics -ext_model_file $rcx_rules
+  extract_parasitics -ext_model_file $rules
 }
 write_spef $top.spef
 write_def $top.def

@@ -9,7 +9,7 @@ foreach pin $ground_pins {
 }
 global_connect
 set_voltage_domain -name CORE -power $supply -ground $ground
-define_pdn_grid -name grid -pins [lindex [lindex $straps end] 0]
+define_pdn_grid -name grid -voltage_domains CORE -pins [lindex [lindex $straps end] 0]
 set below {}
 foreach strap $straps {
   lassign $strap layer width pitch offset

@@ -1,14 +1,20 @@
-# Routes, with diodes where a gate's wire is too long an antenna.
+# Routes, with diodes where a gate's wire is too long an antenna; fillers last, since a diode wants a free site.
 source common.tcl
 open_stage hold typical
+set_propagated_clock [all_clocks]
 set_routing_layers -signal $signal_layers -clock $clock_layers
 pin_access
 global_route -guide_file route.guide -congestion_iterations 100
-repair_antennas -iterations 5
+repair_antennas $diode -iterations 5
+check_placement -verbose
+detailed_route -output_drc route_drc.rpt -verbose 1
+for {set turn 0} {$turn < 3 && [check_antennas] > 0} {incr turn} {
+  if {[repair_antennas $diode] == 0} { break }
+  detailed_route -output_drc route_drc.rpt -verbose 1
+}
 filler_placement $fill
 global_connect
 check_placement -verbose
-detailed_route -output_drc route_drc.rpt -verbose 1
 measured drc_violations [detailed_route_num_drvs]
 measured antenna_violations [check_antennas]
 write_db route.odb

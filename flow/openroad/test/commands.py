@@ -1,7 +1,8 @@
 """Commands of OpenROAD that the stages may use: their keys, flags and arguments, as its documentation has them.
 
 README: src/<module>/README.md of The-OpenROAD-Project/OpenROAD. Tcl: a command's sta::define_cmd_args there. STA: the
-OpenSTA manual. Flow: test/flow.tcl and test/sky130hd/sky130hd.pdn.tcl there, which its own regressions run.
+OpenSTA manual. Flow: test/flow.tcl and test/sky130hd/sky130hd.pdn.tcl there, which its own regressions run. LL: the
+scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily.
 """
 
 from dataclasses import dataclass, replace
@@ -42,7 +43,7 @@ COMMANDS = {
     "make_tracks": Command("ifp README", _words("-x_pitch -y_pitch -x_offset -y_offset"), (), 0, 1),
     "tapcell": Command("tap README", _words(
         "-tapcell_master -endcap_master -distance -halo_width_x -halo_width_y -tap_prefix -endcap_prefix")),
-    "remove_buffers": Command("rsz README", (), (), 0, 1),
+    "remove_buffers": Command("rsz README; SC", (), (), 0, 1),
     "add_global_connection": Command("Tcl, OpenRoad; Flow", _words("-net -inst_pattern -pin_pattern -region"),
                                      _words("-power -ground -defer_connection")),
     "global_connect": Command("Tcl, OpenRoad; Flow"),
@@ -75,12 +76,12 @@ COMMANDS = {
         "-setup_margin -hold_margin -slack_margin -repair_tns -max_utilization -max_buffer_percent -recover_power"),
         _words("-setup -hold -allow_setup_violations -skip_pin_swap -skip_gate_cloning -skip_buffering -verbose")),
     "repair_clock_inverters": Command("rsz README"),
-    "repair_clock_nets": Command("rsz README", _words("-max_wire_length")),
+    "repair_clock_nets": Command("rsz README; LL, SC", _words("-max_wire_length")),
     "detailed_placement": Command("dpl README", _words("-max_displacement -report_file_name"),
                                   _words("-disallow_one_site_gaps")),
     "check_placement": Command("dpl README", _words("-report_file_name"), _words("-verbose -disallow_one_site_gaps"),
                                says="0"),
-    "filler_placement": Command("dpl README", _words("-prefix"), _words("-verbose"), 1, 1),
+    "filler_placement": Command("dpl README; LL, SC", _words("-prefix"), _words("-verbose"), 1, 1),
     "clock_tree_synthesis": Command("cts README", _words(
         "-buf_list -root_buf -wire_unit -clk_nets -sink_clustering_size -sink_clustering_max_diameter"),
         _words("-sink_clustering_enable")),
@@ -88,7 +89,8 @@ COMMANDS = {
     "global_route": Command("grt README", _words(
         "-guide_file -congestion_iterations -congestion_report_file -grid_origin -critical_nets_percentage"),
         _words("-allow_congestion -verbose"), writes="-guide_file"),
-    "repair_antennas": Command("grt README", _words("-iterations -ratio_margin"), (), 0, 1),
+    "repair_antennas": Command("grt README; LL, SC", _words("-iterations -ratio_margin"),
+                               _words("-jumper_only -diode_only -allow_congestion"), 0, 1, says="0"),
     "detailed_route": Command("drt README", _words(
         "-output_maze -output_drc -output_cmap -droute_end_iter -or_seed -or_k -verbose -min_access_points"),
         _words("-disable_via_gen -clean_patches -no_pin_access -save_guide_updates"), writes="-output_drc"),
@@ -96,7 +98,7 @@ COMMANDS = {
     "check_antennas": Command("Tcl, ant; Flow", _words("-report_file -net"), _words("-report_violating_nets -verbose"),
                               says="0"),
     "define_process_corner": Command("Tcl, rcx; Flow", _words("-ext_model_index"), (), 1, 1),
-    "set_extraction_rules_file": Command("flow-scripts, final_report.tcl", (), (), 1, 1),
+    "set_extraction_rules_file": Command("flow-scripts, final_report.tcl; SC", (), (), 1, 1),
     "extract_parasitics": Command("rcx README", _words(
         "-corner_cnt -max_res -coupling_threshold -cc_model -context_depth"), _words("-lef_res -no_merge_via_res")),
     "write_spef": Command("rcx README", _words("-net_id"), (), 1, 1, "argument"),

