@@ -112,6 +112,17 @@ layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid ou
 	done
 	@$(PY) -m flow.layout.compare $(DESIGNS)
 
+LIBRELANE := build/librelane
+$(LIBRELANE)/.ready: requirements-librelane.lock | $(READY)
+	@rm -rf '$(LIBRELANE)'
+	@$(PY) -m venv --without-pip '$(LIBRELANE)'
+	@$(PY) -m pip --python '$(LIBRELANE)' install --quiet --disable-pip-version-check --require-hashes -r $<
+	@touch $@
+
+.PHONY: librelane
+librelane: $(TESTS_READY) $(LAYOUT_READY) have-tools $(LIBRELANE)/.ready  ## LibreLane itself, in build/librelane, loads the designs and synthesizes the blocks
+	@$(PY) -m pytest --all flow/openroad/test/librelane_test.py
+
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte
 	@$(PY) -m flow.handoff --design $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))

@@ -15,7 +15,8 @@ def variables(design, known):
         "synthesis_liberty": "synthesis.lib", "tap": known.tap, "tap_distance": known.tap_um,
         "supply": known.supply[0], "ground": known.ground[0], "clock_buffer": known.clock_buffer, "diode": known.diode,
         "pin_horizontal": known.pins[0], "pin_vertical": known.pins[1], "signal_layers": "-".join(known.signal),
-        "clock_layers": "-".join(known.clock), "signal_rc": known.signal_rc, "clock_rc": known.clock_rc}
+        "clock_layers": "-".join(known.clock), "kept_free": known.kept_free,
+        "signal_rc": known.signal_rc, "clock_rc": known.clock_rc}
     lists = {
         "supply_pins": known.supply[1], "ground_pins": known.ground[1], "high": known.high.split("/"),
         "low": known.low.split("/"), "fill": known.fill, "dont_use": known.dont_use, "rcx_rules": known.rcx_rules,

@@ -29,10 +29,11 @@ class OpenRoad:
     liberty: dict of CORNERS -> path. tech_lef, cell_lef, cell_gds, cell_models, rcx_rules: paths; cell_models: tuple of
     Verilog; rcx_rules: tuple, of which the PDK has one. supply, ground: (net, pins of cells). high, low: cell and pin
     of a constant, 'cell/pin'. diode: cell against antennas. tap: cell, every tap_um. straps: tuple of Strap, joined in
-    their order. pins: layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. signal_rc, clock_rc: layers whose wires stand for all before routing.
-    fill: cells by their whole names: OpenROAD took patterns for regular expressions once, for globs later.
-    dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype). outline: (layer, datatype)
-    of the die. pin_datatype, label_datatype: of GDS.
+    their order. pins: layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers.
+    kept_free: share of their tracks that global routing leaves to the detailed router. signal_rc, clock_rc: layers
+    whose wires stand for all before routing. fill: cells by their whole names, since OpenROAD took patterns for regular
+    expressions once, for globs later. dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype).
+    outline: (layer, datatype) of the die. pin_datatype, label_datatype: of GDS.
     utilization_share: of what a design asks for, which is meant for cells packed without padding or timing repair.
     """
 
@@ -70,6 +71,7 @@ class OpenRoad:
     pin_datatype: int
     label_datatype: int
     utilization_share: float = 0.6
+    kept_free: float = 0.5
 
 
 def process(pdk):

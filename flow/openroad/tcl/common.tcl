@@ -11,6 +11,12 @@ proc open_stage {before corner} {
   set_dont_use $dont_use
 }
 
+proc routing_layers {} {
+  global signal_layers clock_layers kept_free
+  set_routing_layers -signal $signal_layers -clock $clock_layers
+  set_global_routing_layer_adjustment $signal_layers $kept_free
+}
+
 # One line a figure, in a form that is ours: no report of the tool has to be understood.
 proc measured {name value} {
   puts "TALBOT $name $value"

@@ -1,7 +1,7 @@
 # Pins and cells, at the slow corner, where slews are worst.
 source common.tcl
 open_stage power slow
-set_routing_layers -signal $signal_layers -clock $clock_layers
+routing_layers
 global_placement -density $density -pad_left 1 -pad_right 1 -skip_io
 place_pins -hor_layers $pin_horizontal -ver_layers $pin_vertical
 global_placement -routability_driven -density $density -pad_left 1 -pad_right 1

@@ -2,7 +2,7 @@
 source common.tcl
 open_stage hold typical
 set_propagated_clock [all_clocks]
-set_routing_layers -signal $signal_layers -clock $clock_layers
+routing_layers
 pin_access
 global_route -guide_file route.guide -congestion_iterations 100
 repair_antennas $diode -iterations 5

@@ -60,6 +60,7 @@ COMMANDS = {
     "pdngen": Command("pdn README", _words("-failed_via_report"),
                       _words("-skip_trim -dont_add_pins -reset -ripup -report_only")),
     "set_routing_layers": Command("grt README", _words("-signal -clock")),
+    "set_global_routing_layer_adjustment": Command("grt README; Flow, LL, SC", (), (), 2, 2),
     "global_placement": Command("gpl README", _words("-density -pad_left -pad_right -overflow -bin_grid_count"), _words(
         "-skip_io -routability_driven -timing_driven -incremental -skip_initial_place")),
     "place_pins": Command("ppl README", _words(
