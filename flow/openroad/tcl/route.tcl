@@ -3,7 +3,6 @@ source common.tcl
 open_stage hold typical
 set_propagated_clock [all_clocks]
 routing_layers
-pin_access
 global_route -guide_file route.guide -congestion_iterations 100
 repair_antennas $diode -iterations 5
 check_placement -verbose

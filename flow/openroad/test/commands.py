@@ -86,7 +86,6 @@ COMMANDS = {
     "clock_tree_synthesis": Command("cts README", _words(
         "-buf_list -root_buf -wire_unit -clk_nets -sink_clustering_size -sink_clustering_max_diameter"),
         _words("-sink_clustering_enable")),
-    "pin_access": Command("drt README", _words("-min_access_points -verbose")),
     "global_route": Command("grt README", _words(
         "-guide_file -congestion_iterations -congestion_report_file -grid_origin -critical_nets_percentage"),
         _words("-allow_congestion -verbose"), writes="-guide_file"),
