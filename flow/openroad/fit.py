@@ -17,6 +17,7 @@ from flow.platforms.sky130.tinytapeout import FULL, core_um2
 from flow.simulate.process import ToolError, run
 from models.parameters import ParameterError
 
+from .stat import counted
 from .tinytapeout import BUS, PROJECTS, TOPS, sources
 from .write import rtl
 
@@ -63,10 +64,9 @@ def fit(name, folder):
                                     constant=f"{functional.LIBRARY}__{functional.CONSTANT}",
                                     sources=" ".join(str(folder / file) for file in sources(project, chosen))))
     run(["yosys", "-q", "-s", script])
-    said = stat.read_text()
-    return Fit(name, project.tiles, int(re.search(r"Number of cells:\s+(\d+)", said)[1]),
-               int(re.search(rf"{functional.FLIP_FLOP}\s+(\d+)", said)[1]),
-               float(re.search(r"Chip area.*:\s+([\d.]+)", said)[1]), core_um2(project.tiles)), netlist
+    cells, area = counted(stat.read_text())
+    flip_flops = len(re.findall(rf"(?m)^\s+{functional.LIBRARY}__{functional.FLIP_FLOP} ", netlist.read_text()))
+    return Fit(name, project.tiles, cells, flip_flops, area, core_um2(project.tiles)), netlist
 
 
 def table(fits):

@@ -1,9 +1,9 @@
 """summary.json of a run, as far as these stages measure what the contract of flow.layout asks for."""
 
-import re
-
 from flow.layout.summary import broken as breaks
 from flow.platforms.openroad import CORNERS
+
+from .stat import counted
 
 RULES = {"drc_violations": {"is": 0}, "antenna_violations": {"is": 0},
          **{f"{slack}.{corner}": {"least": 0} for slack in ("wns_ns", "whs_ns") for corner in CORNERS}}
@@ -14,12 +14,11 @@ def summarize(design, known, found, folder, box):
     in um.
     """
     by_corner = {name: {corner: found.get(f"{name}.{corner}") for corner in CORNERS} for name in ("wns_ns", "whs_ns")}
-    stat = (folder / "synth.stat").read_text()
-    cells, area = re.search(r"Number of cells:\s+(\d+)", stat), re.search(r"Chip area[^:]*:\s+([\d.]+)", stat)
+    cells, area = counted((folder / "synth.stat").read_text())
     period = design.clock.period_ns
     slack = by_corner["wns_ns"]["slow"]
     return {"design": design.name, "top": design.top, "backend": "openroad", "pdk": known.name,
-            "cells": int(cells[1]) if cells else None, "cell_area_um2": float(area[1]) if area else None,
+            "cells": cells, "cell_area_um2": area,
             "area_um2": round(box[0] * box[1], 2),
             "utilization": round(design.utilization * known.utilization_share, 4),
             "drc_violations": found.get("drc_violations"), "antenna_violations": found.get("antenna_violations"),
