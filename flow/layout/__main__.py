@@ -13,6 +13,7 @@ from flow.steps import Runner, StepError
 from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
+from . import history
 from .blocks import check_same, given, inner
 from .design import DESIGNS, design, folder_name
 from .embedded import Options, chain, files, layout
@@ -90,7 +91,10 @@ def publish(folder, name, settings, runner, summary):
             render(runner.paths["fill.gds"], part / f"{name}.png", process(settings.pdk)[0])
         pictures = figures(part, name, runner, settings)
         picture = f"{name}.png" if (part / f"{name}.png").exists() else None
-        (part / "report.html").write_text(page(summary, broken(summary), process(settings.pdk)[0], picture, pictures))
+        runs = history.continued(folder / "history.jsonl", summary)
+        (part / "history.jsonl").write_text(history.written(runs))
+        (part / "report.html").write_text(page(summary, broken(summary), process(settings.pdk)[0], runs, picture,
+                                               pictures))
         (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
 
 

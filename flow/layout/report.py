@@ -4,6 +4,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
 
+from . import history
 from .picture import PALETTE
 
 PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1")
@@ -18,15 +19,15 @@ BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("bloc
              ("ground_rise_mv", "ground's rise, mV"), ("model_error_ns", "block's Liberty off by, ns"))
 
 
-def page(summary, broken, known, picture=None, pictures=()):
-    """The report as HTML text. broken: lines of `summary.broken`; known: Embedded; picture: of the layout, file name
-    beside it; pictures: further (file name, what it shows)."""
+def page(summary, broken, known, runs, picture=None, pictures=()):
+    """The report as HTML text. broken: lines of `summary.broken`; known: Embedded; runs: of `history.continued`;
+    picture: of the layout, file name beside it; pictures: further (file name, what it shows)."""
     environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
     key = [(wire.name, f"#{color:06x}") for wire, color in zip(known.wires, PALETTE)]
     return environment.get_template("report.html").render(
         s=summary, broken=broken, tiles=_tiles(summary, broken), figures=_figures(summary), picture=picture, key=key,
         pictures=pictures, corners=_corners(summary), blocks=_blocks(summary),
-        table=_table(summary))
+        table=_table(summary), history=history.table(runs))
 
 
 def _tiles(s, broken):

@@ -8,6 +8,7 @@ from coriolis.Hurricane import Box
 from coriolis.plugins.block.block import Block
 from coriolis.plugins.block.configuration import BlockConf, IoPin
 
+from .leaves import balance
 from .macros import fix_macros
 from .session import CLOCK
 from .straps import PIN_CLEARANCE_UM, Straps
@@ -73,13 +74,14 @@ class TalbotBlock(Block):
         self.conf.placeArea = Box(*map(u, self.request["tree"]))        # of the clock's tree, which is built next
 
     def addHTrees(self):
-        """Sinks beyond the tree's area hang from its nearest leaf too, but not blocks laid out before: these have a
-        tree of their own and hang from the root."""
+        """Sinks beyond the tree's area hang from its leaves too, but not blocks laid out before: these have a tree of
+        their own and hang from the root."""
         self.conf.placeArea = None
         blocks = {macro["name"] for macro in self.request["macros"]}
         tree = self.spares.quadTree
         if tree:
             tree.isUnderArea = lambda plug: plug.getEntity().getInstance().getMasterCell().getName() not in blocks
+            balance(tree)
         self._timed("clock_tree", super().addHTrees)
         self.straps = self.power.positions([at for side, _, at in self.pins if side in ("north", "south")])
 

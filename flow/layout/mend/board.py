@@ -1,6 +1,7 @@
 """A routed layout whose wires can be taken out and drawn anew, net by net."""
 
 import numpy as np
+from numba import njit
 
 from ..boxes import boxes
 
@@ -72,45 +73,75 @@ class Board:
             half = cut.size // 2
             self.boxes[net] += [(cut.name, (x - half, y - half, x + half, y + half)) for x, y in sorted(set(points))]
 
-    def drawn(self, nets=None):
-        """A layout of its own with the wires of ``nets``, of all nets without, in it."""
+    def drawn(self):
+        """A layout of its own with the wires of all nets in it."""
         import klayout.db as db
         layout = self.layout.dup()
         shapes = {name: layout.top_cell().shapes(layer) for name, layer in self.layers.items()}
-        for net in self.nets if nets is None else nets:
+        for net in self.nets:
             for name, box in self.boxes[net]:
                 shapes[name].insert(db.Box(*box))
         return layout
 
-    def at(self, level, polygons):
-        """Names of the nets with a box whose middle lies in one of ``polygons`` (KLayout's)."""
+    def part(self, nets):
+        """The same with the wires of ``nets``, what of others comes near to these, and the cells below alone."""
         import klayout.db as db
-        found = set()
-        for polygon in polygons:
-            box = polygon.bbox()
-            for *ends, number in near(self.there[level], (box.left, box.bottom, box.right, box.top)):
-                if polygon.inside(db.Point(*map(int, middle(ends)))):
-                    found.add(self.nets[number])
-        return sorted(found)
+        layout, found = self.layout.dup(), {}
+        top, reach = layout.top_cell(), max(layer.space for layer in self.wiring.layers)
+        below = [inst.cell_inst for inst in top.each_inst()]
+        places = np.array([(box.left, box.bottom, box.right, box.top, number) for number, inst in enumerate(top.each_inst())
+                           for box in (inst.bbox(),)], int).reshape(-1, BOX_AND_NET)
+        kept = set()
+        for name, box in (made for net in nets for made in self.boxes[net]):
+            around = box[0] - reach, box[1] - reach, box[2] + reach, box[3] + reach
+            kept.update(near(places, around)[:, 4].tolist())
+            if name in self.levels:
+                for row in near(self.there[self.levels[name]], around).tolist():
+                    found[name, tuple(row[:4])] = True
+            found[name, box] = True
+        top.clear_insts()
+        for number in sorted(kept):
+            top.insert(below[number])
+        for name, box in found:
+            top.shapes(self.layers[name]).insert(db.Box(*box))
+        for cell in layout.top_cells():
+            if cell.cell_index() != top.cell_index():
+                cell.prune_cell()
+        return layout
 
+    def beside(self, nets):
+        """Names of all nets with a wire that meets one of ``nets``, these too."""
+        return {self.nets[number] for net in nets for name, box in self.boxes[net] if name in self.levels
+                for number in self.owners(self.there, self.levels[name], box)}
 
-def crowded(board):
-    """Names of nets that are nearer to others, or to themselves, than the rules allow: of two the first in the list."""
-    import klayout.db as db
-    layout, found = board.drawn(), set()
-    for level, wire in enumerate(board.wiring.layers[1:], 1):
-        metal = db.Region(layout.top_cell().begin_shapes_rec(board.layers[wire.name]))
-        for pair in metal.space_check(wire.space).each():
-            owners = {int(number) for edge in (pair.first, pair.second) for box in (edge.bbox(),)
-                      for number in near(board.there[level], (box.left, box.bottom, box.right, box.top))[:, 4]}
-            found |= {board.nets[min(owners)]} if owners else set()
-    return sorted(found)
+    def owners(self, there, level, box):
+        """Numbers of the nets with a wire that meets ``box``; there: this board's, of now or of before."""
+        return near(there[level], box)[:, 4].tolist()
+
+    def at(self, there, level, polygon):
+        """Names of the nets with a box whose middle lies in the ``polygon``, as KLayout writes one; there: as above."""
+        import klayout.db as db
+        polygon = db.Polygon.from_s(polygon)
+        box = polygon.bbox()
+        return {self.nets[number] for *ends, number in near(there[level], (box.left, box.bottom, box.right, box.top))
+                if polygon.inside(db.Point(*map(int, middle(ends))))}
 
 
 def near(there, reach):
     """Rows of the array ``there``, (left, bottom, right, top, ...), that meet the box ``reach``."""
-    return there[(there[:, 0] <= reach[2]) & (there[:, 2] >= reach[0])
-                 & (there[:, 1] <= reach[3]) & (there[:, 3] >= reach[1])]
+    return there[_meets(there, *map(int, reach))]
+
+
+@njit(cache=True)
+def _meets(there, left, bottom, right, top):
+    """Numbers of these rows."""
+    found = np.empty(len(there), np.int64)
+    count = 0
+    for k in range(len(there)):
+        if there[k, 0] <= right and there[k, 2] >= left and there[k, 1] <= top and there[k, 3] >= bottom:
+            found[count] = k
+            count += 1
+    return found[:count]
 
 
 def _claims(shapes):

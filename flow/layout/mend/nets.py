@@ -156,7 +156,7 @@ def _accesses(window, pin):
                 place = max(level, CELL_PINS + 1), i, j
                 access = window.inside(place) and _access(window, level, (x, y), window.at(i, j))
                 if access:
-                    strife = sum(window.site.strife(at, box) for at, boxes in access.wires.items() for box in boxes)
+                    strife = sum(window.strife(at, box) for at, boxes in access.wires.items() for box in boxes)
                     found.setdefault(strife, {})[place] = access
     return found[min(found)] if found else {}
 
@@ -168,7 +168,7 @@ def _access(window, level, point, place):
         shapes.cut(window.wiring, level, *point)
     half = (window.wiring.layers[above].width // 2,) * 2
     shapes.wire(above, _around(*(f(a, b) for f in (min, max) for a, b in zip(point, place, strict=True)), half))
-    return shapes if all(window.site.clear(above, box) for box in shapes.wires[above]) else None
+    return shapes if all(window.clear(above, box) for box in shapes.wires[above]) else None
 
 
 def _around(left, bottom, right, top, half):
@@ -185,13 +185,20 @@ def _join(shapes, more):
 
 def _draw(shapes, window, way):
     """Add the wires and cuts of ``way``, places of which one follows another along a row, a column or through a cut."""
-    for (level, *here), (other, *there) in pairwise(way):
+    for (level, *here), (other, *there) in pairwise(_corners(way)):
         if other != level:
             shapes.cut(window.wiring, min(level, other), *window.at(*here))
         else:
             (left, right), (bottom, top) = map(sorted, zip(window.at(*here), window.at(*there), strict=True))
             half = (window.wiring.layers[level].width // 2,) * 2
             shapes.wire(level, _around(left, bottom, right, top, half), right - left + top - bottom)
+
+
+def _corners(way):
+    """Its places where it begins, turns, has a cut or ends."""
+    turns = [here for before, here, after in zip(way, way[1:], way[2:], strict=False)
+             if before[0] != after[0] or any(y - x != z - y for x, y, z in zip(before, here, after, strict=True))]
+    return [way[0], *turns, *way[1:][-1:]]
 
 
 def enlarged(site, shapes, alone=False):

@@ -27,28 +27,26 @@ class Site:
 
     def clear(self, level, box, others=False):
         """Whether nothing fixed, or nothing at all with ``others``, is nearer to ``box`` (nm) than wires must be."""
-        reach = self._reach(level, box)
+        reach = self.reach(level, box)
         return not len(near(self.fixed[level], reach)) and not (others and len(near(self.board.there[level], reach)))
-
-    def strife(self, level, box):
-        """How many wires of others are nearer to ``box`` (nm) than wires must be, and places that were fought over."""
-        reach = self._reach(level, box)
-        return len(near(self.board.there[level], reach)) + len(near(self.board.scars[level], reach))
 
     def fought_over(self, shapes):
         """(nets, places): names of the board's nets that are nearer to the Shapes ``shapes`` than wires must be, and
         [(level, box), ...] of where."""
         nets, places = set(), []
         for level, boxes in shapes.wires.items():
+            ends = np.array(boxes)
+            there = near(self.board.there[level], self.reach(level, (*ends[:, :2].min(0), *ends[:, 2:].max(0))))
             for box in boxes:
-                reach = self._reach(level, box)
-                for left, bottom, right, top, number in near(self.board.there[level], reach).tolist():
+                reach = self.reach(level, box)
+                for left, bottom, right, top, number in near(there, reach).tolist():
                     nets.add(self.board.nets[number])
                     places.append((level, (max(left, reach[0]), max(bottom, reach[1]),
                                            min(right, reach[2]), min(top, reach[3]))))
         return nets, places
 
-    def _reach(self, level, box):
+    def reach(self, level, box):
+        """Where wires are too near to ``box`` (nm)."""
         space = self.wiring.layers[level].space - 1
         return box[0] - space, box[1] - space, box[2] + space, box[3] + space
 
@@ -76,6 +74,15 @@ class Window:
         self.wires = {level: self._prices([(level, self._half(level))]) for level in levels}
         self.cuts = {level: self._prices([(level, cut.below), (level + 1, cut.above)])
                      for level, cut in enumerate(self.wiring.cuts) if level}
+
+    def clear(self, level, box):
+        """Whether nothing fixed is nearer to ``box`` (nm), which is in the window, than wires must be."""
+        return not len(near(self._fixed[level], self.site.reach(level, box)))
+
+    def strife(self, level, box):
+        """How many wires of others are nearer to ``box`` (nm), which is in the window, than wires must be, and places
+        that were fought over."""
+        return len(near(self._others[level], self.site.reach(level, box)))
 
     def inside(self, place):
         """Whether a place is in the window and not at its edge."""

@@ -33,15 +33,15 @@ class Antenna(Step):
         known, _ = process(self.parameters.pdk)
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
-        found = {wire.name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
-                 for wire, bad in zip(known.wires, violations(layout, layout.top_cell(), known), strict=True)}
+        found = {known.wires[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+                 for level, bad in violations(layout, layout.top_cell(), known).items()}
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
 
 
-def connected(layout, top, known, first=0):
-    """Yields (LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]) of every level from
-    ``first``, all up to that wire joined. What an earlier one told of is gone with the next."""
+def connected(layout, top, known, levels):
+    """Yields (LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]) of every one of
+    ``levels``, all up to that wire joined. What an earlier one told of is gone with the next."""
     import klayout.db as db
 
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
@@ -59,7 +59,7 @@ def connected(layout, top, known, first=0):
         wires.append(l2n.make_polygon_layer(layout.layer(wire.layer, wire.datatype), wire.name))
         l2n.connect(wires[-1])
         l2n.connect(below, wires[-1])
-        if level >= first:
+        if level in levels:
             l2n.extract_netlist()
             yield l2n, gate, diffusion, list(wires)
             l2n.reset_extracted()
@@ -70,15 +70,19 @@ def connected(layout, top, known, first=0):
             l2n.connect(wires[-1], below)
 
 
-def violations(layout, top, known):
-    """klayout.db.Regions, one a level: known.wires[level] of the nets on which it is too large for their gates."""
+def violations(layout, top, known, levels=None):
+    """dict level -> klayout.db.Region, known.wires[level] of the nets on which it is too large for their gates, for
+    ``levels``, all without."""
     import klayout.db as db
-    found, safe = [], 1e9           # for what has a diffusion, in the check of what has none
-    for wire, (l2n, gate, diffusion, wires) in zip(known.wires, connected(layout, top, known), strict=True):
+    found, safe = {}, 1e9           # for what has a diffusion, in the check of what has none
+    levels = range(len(known.wires)) if levels is None else levels
+    for l2n, gate, diffusion, wires in connected(layout, top, known, levels):
+        level = len(wires) - 1
+        wire = known.wires[level]
         base, more = wire.antenna_diffusion
         factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)       # of the metal's area, its edges
         bad = db.Region()
         for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
             bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], *factors, ratio, [[diffusion, by_diffusion]])
-        found.append(db.Region(list(bad.each())))           # no longer of the extraction, which goes on
+        found[level] = db.Region(list(bad.each()))          # no longer of the extraction, which goes on
     return found

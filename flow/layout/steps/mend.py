@@ -4,6 +4,8 @@ import json
 import re
 from dataclasses import dataclass
 
+import joblib
+
 from flow.gds import write_gds
 from flow.platforms.embedded import process
 from flow.steps import Step
@@ -13,15 +15,17 @@ from .. import boxes as boxes_module
 from .. import netlist as netlist_module
 from ..mend import bargain as bargain_module
 from ..mend import board as board_module
+from ..mend import marks as marks_module
 from ..mend import nets, search, window, wiring
 from ..mend.bargain import bargain
-from ..mend.board import Board, crowded
+from ..mend.board import Board
+from ..mend.marks import Marks, marks, marks_of, shared_out
 from ..mend.wiring import Wiring
 from ..netlist import Netlist
 from . import antenna
-from .antenna import violations
 from .place_route import plain_names
 
+JOBS = 2            # in which the router's layout is looked at
 ROUNDS = 5          # who is moved for one net's sake may get an antenna by it
 
 
@@ -49,7 +53,8 @@ class Mend(Step):
     outputs = {"gds": "mended.gds", "placement": "placement.json"}
     Parameters = MendParameters
     metrics = {"open_nets": "", "mended": "", "hopped": "", "parted": "", "moved": "", "wire_um": "um"}
-    uses = (antenna, bargain_module, boxes_module, board_module, nets, search, window, wiring, netlist_module)
+    uses = (antenna, bargain_module, boxes_module, board_module, marks_module, nets, search, window, wiring,
+            netlist_module)
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
@@ -62,22 +67,12 @@ class Mend(Step):
         shapes = json.loads(inputs["shapes"].read_text())
         # Of a shape that two nets have drawn, the open one's is the short: it claims last
         order = [net for net in shapes if net in names and net not in left] + left
-        board = Board(layout, Wiring.of(known, json.loads(inputs["rules"].read_text())),
-                      {net: shapes[net] for net in order})
-        pins, hopping = {net: shapes[net]["pins"] for net in order}, set()
-        found = bargain(board, pins, left) if len(left) <= p.most else None
-        near, looked_at = set(), None           # at all nets the first time
-        for _ in range(ROUNDS if found else 0):
-            close, charged = crowded(board), antennas(board, known, looked_at)
-            asked = sorted({*close, *charged})
-            if found.open or not asked or len(asked) > p.most:
-                break
-            near |= set(close)
-            hopping |= set(charged)
-            bargain(board, pins, asked, hopping, found)
-            looked_at = found.made
+        rules = Wiring.of(known, json.loads(inputs["rules"].read_text()))
+        board = Board(layout, rules, {net: shapes[net] for net in order})
+        pins = {net: shapes[net]["pins"] for net in order}
+        found, near, hopping = negotiated(board, pins, left, p.most, inputs["gds"], known)
         made = found.made if found else {}
-        placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(board.wiring, shapes)
+        placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(rules, shapes)
                                for net, shapes in made.items()}
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
@@ -92,11 +87,28 @@ def open_nets(log):
     return list(dict.fromkeys(re.findall(r"^\s+\d+\| &<id:\d+ (?:Horizontal|Vertical) (\S+) ", log, re.M)))
 
 
-def antennas(board, known, looked_at=None):
-    """Names of the nets on the ``board``, of ``looked_at`` or all, on which a wire is too large for its gates."""
-    layout = board.drawn(looked_at)
-    found = violations(layout, layout.top_cell(), known)
-    return sorted(set().union(*(board.at(level, bad.each()) for level, bad in enumerate(found))))
+def negotiated(board, pins, left, most, gds, known):
+    """(Bargain, nets too near to others, nets with antennas) of the ``board``; the Bargain is None where more than
+    ``most`` nets are ``left`` open. The router's layout, the file ``gds``, is looked at in processes of their own while
+    these are routed; later only what was made anew is, and what open nets had been shorts to."""
+    close, charged = set(), set()
+    if len(left) > most:
+        return None, close, charged
+    before, shorted = dict(board.there), board.beside(left)
+    first = joblib.Parallel(n_jobs=JOBS, return_as="generator")(
+        [joblib.delayed(marks_of)(gds, board.wiring, known, levels) for levels in shared_out(board.wiring, JOBS)])
+    found = bargain(board, pins, left)
+    asked = sum(first, Marks((), ())).nets(board, before, [net for net in board.nets if net not in {*found.made, *shorted}])
+    for _ in range(ROUNDS):
+        looked_at = {*found.made, *shorted}
+        fresh = marks(board.part(looked_at), board.wiring, known).nets(board, board.there, looked_at)
+        close, charged = close.union(asked[0], fresh[0]), charged.union(asked[1], fresh[1])
+        wanted = sorted({*asked[0], *asked[1], *fresh[0], *fresh[1]})
+        if found.open or not wanted or len(wanted) > most:
+            break
+        bargain(board, pins, wanted, charged, found)
+        asked = (), ()
+    return found, close, charged
 
 
 def _wires(rules, shapes):

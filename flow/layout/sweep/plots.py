@@ -1,6 +1,7 @@
 """The sweeps as figures."""
 
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogFormatter
 
 from flow.charts import COLOURS
 
@@ -20,15 +21,20 @@ def pareto_plot(points):
     colour = {name: COLOURS[k % len(COLOURS)] for k, name in enumerate(dict.fromkeys(p["variant"] for p in points))}
     counted = [dict(point, results_uj=1e6 / point["pj_result"]) for point in points if point["pj_result"]]
     for axes, shown, key in ((left, points, "f_max_mhz"), (right, counted, "pj_result")):
+        for name in colour:
+            mine = [point for point in shown if point["variant"] == name]
+            axes.plot([p["area_um2"] for p in mine], [p[key] for p in mine], "o", color=colour[name], label=name)
         for point in shown:
-            axes.plot(point["area_um2"], point[key], "o", color=colour[point["variant"]])
-            axes.annotate(f"{point['variant']} {point['bits']}", (point["area_um2"], point[key]), fontsize=8,
-                          xytext=(4, 4), textcoords="offset points")
+            axes.annotate(point["bits"], (point["area_um2"], point[key]), fontsize=8, xytext=(5, 3),
+                          textcoords="offset points")
         line = front(shown, "area_um2", "f_max_mhz" if axes is left else "results_uj")
         axes.plot([p["area_um2"] for p in line], [p[key] for p in line], color="0.6", linewidth=1, zorder=0)
         axes.set_xlabel("routed area, um2")
-    left.set(ylabel="highest clock at the slowest corner, MHz", title="fraction bits behind the name")
+        axes.margins(0.08)
+    left.set(ylabel="highest clock at the slowest corner, MHz")
+    left.legend(title="beside a mark: fraction bits", fontsize=9, title_fontsize=9)
     right.set(ylabel="energy a result in a real frame, pJ", yscale="log")
+    right.yaxis.set_minor_formatter(LogFormatter(labelOnlyBase=False, minor_thresholds=(3, 1)))
     return figure
 
 

@@ -6,9 +6,10 @@ import pytest
 
 from flow.layout.mend.bargain import bargain
 from flow.layout.mend.board import Board
+from flow.layout.mend.marks import Marks, marks, shared_out
 from flow.layout.mend.nets import routed
 from flow.layout.mend.wiring import Wiring
-from flow.layout.steps.mend import antennas, open_nets
+from flow.layout.steps.mend import open_nets
 from flow.platforms.embedded import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
@@ -189,7 +190,42 @@ def test_a_board_draws_what_it_lifted():
     drawn = board.drawn()
     assert area == {layer.name: db.Region(drawn.top_cell().begin_shapes_rec(
         drawn.layer(layer.layer, layer.datatype))).area() for layer in WIRING.layers}
-    assert antennas(board, KNOWN) == []
+    assert marks(drawn, WIRING, KNOWN) == Marks((), ())
+
+
+def gate(layout):
+    """A cell with a gate of 0.075 um2 below a piece of m1."""
+    cell = layout.create_cell("gate")
+    li, m1, mcon = KNOWN.wires[0], KNOWN.wires[1], KNOWN.cuts[0]
+    for layer, *box in ((KNOWN.active, 0, 0, 1, 0.5), (KNOWN.poly, 0.4, -1, 0.55, 1),
+                        (KNOWN.contact, 0.4, -0.9, 0.55, -0.8), ((li.layer, li.datatype), 0.3, -1, 0.7, -0.5),
+                        ((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6),
+                        ((m1.layer, m1.datatype), 0.3, -0.8, 0.7, -0.5)):
+        cell.shapes(layout.layer(*layer)).insert(db.DBox(*box))
+    return cell
+
+
+def test_who_is_too_near_or_too_large_for_its_gate():
+    """w0 and w2 lead to gates, w0 too far; w2 is too near to w1. A part of the layout tells the same as the whole."""
+    layout, top = empty()
+    cell = gate(layout)
+    for y in (5_000, 30_000):
+        top.insert(db.CellInstArray(cell.cell_index(), db.Trans(db.Vector(1_000, y))))
+    wires = {"w0": (1_300, 4_200, 61_000, 4_500), "w1": (5_000, 29_600, 9_000, 29_900),
+             "w2": (1_300, 29_200, 9_000, 29_500)}
+    for box in wires.values():
+        draw(layout, top, 1, *box)
+    board = Board(layout, WIRING, {net: {"wires": [["m1", *(v / 1000 for v in box)]], "cuts": [], "pins": []}
+                                   for net, box in wires.items()})
+    whole = marks(board.drawn(), WIRING, KNOWN)
+    assert whole.nets(board, board.there) == (["w1"], ["w0"])
+    assert whole.nets(board, board.there, ["w2"]) == (["w2"], [])
+    for net in wires:
+        assert marks(board.part([net]), WIRING, KNOWN).nets(board, board.there, [net]) == \
+            whole.nets(board, board.there, [net])
+    assert board.beside(["w1"]) == {"w1"}
+    parts = [marks(board.drawn(), WIRING, KNOWN, levels) for levels in shared_out(WIRING, 2)]
+    assert sum(parts, Marks((), ())).nets(board, board.there) == (["w1"], ["w0"])
 
 
 def test_open_nets_are_read_from_the_routers_list():
