@@ -9,7 +9,7 @@ from flow.platforms.embedded import process
 from flow.simulate.process import ToolError, finish
 from flow.simulate.verilator import FRAME
 from flow.steps.versions import version
-from models.parameters import ParameterError, check_real
+from models.parameters import ParameterError, check_int, check_real
 
 from .constraints import sdc
 from .design import DESIGNS
@@ -46,12 +46,14 @@ CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 ASSEMBLED = {"place_route.netlist": "assemble.netlist", "place_route.placement": "assemble.placement",
              "mend.placement": "assemble.placement"}
 MOST_OPEN = {False: 60, True: 200}      # nets that are routed anew behind the router; around blocks it leaves more open
-STEP, LEAST = 0.04, 0.20        # utilization: of one try less than of the one before; of the last
+STEP, LEAST = 0.04, 0.20        # utilization: of one round of tries less than of the one before; of the last
+EVEN, UNEVEN = 0.05, 0.3        # variation of density of a round's first try or of its second, whichever the first has not
+ASPECTS = 1.0, 1.25             # width by height of a round's tries
 
 
 @dataclass(frozen=True)
 class Options:
-    """pdk: process. utilization: cells' area by core area at which the search begins.
+    """pdk: process. utilization: cells' area by core area at which the search begins. effort: of the placer, 1..3.
 
     liberty: paths of characterized cells, one a corner; () for the process's corners, measured now. untimed: whether
     there is no timing at all.
@@ -61,6 +63,7 @@ class Options:
     utilization: float = 0.8
     liberty: tuple = ()
     untimed: bool = False
+    effort: int = 2
 
     @property
     def corners(self):
@@ -79,6 +82,7 @@ class Options:
         if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST, 0.95)
+        check_int("effort", self.effort, 1, 3)
 
 
 def files(design, options, folder):
@@ -112,12 +116,16 @@ def front(design, options):
 
 
 def tries(design, options):
-    """Pairs (floorplan, place and route), the smallest area first."""
+    """Pairs (floorplan, place and route), the smallest area first: at every utilization the design's variation of
+    density in a square, then another one in another shape. Coriolis has no seed: these are what it answers to."""
     places = tuple((hard.instance, DESIGNS[hard.design].top, *hard.at) for hard in design.macros)
+    own = design.density_variation
     for k in range(int((options.utilization - LEAST) / STEP + 1e-9) + 1):
-        yield (Floorplan(FloorplanParameters(options.pdk, round(options.utilization - STEP * k, 4), macros=places)),
-               PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port, macros=modules(design),
-                                               density_variation=design.density_variation)))
+        for variation, aspect in zip((own, EVEN if own > EVEN else UNEVEN), ASPECTS, strict=True):
+            utilization = round(options.utilization - STEP * k, 4)
+            yield (Floorplan(FloorplanParameters(options.pdk, utilization, aspect, places)),
+                   PlaceRoute(PlaceRouteParameters(options.pdk, design.clock.port, options.effort, variation,
+                                                   macros=modules(design))))
 
 
 def judged(design, options):
@@ -175,8 +183,8 @@ def layout(design, options, runner, behind=back):
     (design, options) -> the steps behind it.
 
     A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken.
-    Returns the tries: list of {utilization, open_segments (None where the router gave up, or blocks found no place),
-    rules_broken (None without a layout)}. Raises ParameterError where blocks never find a place.
+    Returns the tries: list of {utilization, aspect, density_variation, open_segments (None where the router gave up, or
+    blocks found no place), rules_broken (None without a layout)}. Raises ParameterError where blocks never find a place.
     """
     version(f"python {process(options.pdk)[0].wheel}")
     for step in chain(design, options, behind):
@@ -184,15 +192,17 @@ def layout(design, options, runner, behind=back):
             version(tool)               # a tool that is missing is told before anything runs
     for step in front(design, options):
         runner.run(step)
-    tried = []
+    tried, placed, misfit = [], 0, None
     for floorplan, place_route in tries(design, options):
-        tried.append({"utilization": floorplan.parameters.utilization, "open_segments": None, "rules_broken": None})
+        tried.append({"utilization": floorplan.parameters.utilization, "aspect": floorplan.parameters.aspect,
+                      "density_variation": place_route.parameters.density_variation, "open_segments": None,
+                      "rules_broken": None})
         try:
             runner.run(floorplan)
-        except ParameterError:
-            if floorplan.parameters.utilization - STEP < LEAST:
-                raise
+        except ParameterError as error:
+            misfit = error
             continue
+        placed += 1
         found = runner.run(place_route)["metrics"]
         tried[-1]["open_segments"] = found["open_segments"]
         mend, *others = judged(design, options)
@@ -203,4 +213,6 @@ def layout(design, options, runner, behind=back):
             if not broken:
                 runner.run_all(behind(design, options))
                 return tried
+    if not placed:
+        raise misfit
     return tried

@@ -18,7 +18,7 @@ from .plots import effort_plot, pareto_plot
 from .points import candidates, effort_point, variant_point
 
 ROOT = Path(__file__).parents[3]
-EFFORTS, VARIATIONS = (1, 2, 3), (0.05, 0.15, 0.3)
+EFFORTS, VARIATIONS, UTILIZATIONS = (1, 2, 3), (0.05, 0.15, 0.3), (0.76, 0.84, 0.92)
 
 
 def arguments():
@@ -28,7 +28,8 @@ def arguments():
                         help="characterized cells at a corner (again for further corners)")
     parser.add_argument("--only", action="append", help="of pareto: names of points, radix4_8 (again for more)")
     parser.add_argument("--design", default="quad_divider", help="of effort (%(default)s)")
-    parser.add_argument("--utilization", type=float, default=0.76, help="of effort (%(default)s)")
+    parser.add_argument("--utilization", type=float, action="append",
+                        help=f"of effort (again for more; {', '.join(map(str, UTILIZATIONS))})")
     parser.add_argument("--workers", type=int, default=1, help="layouts at a time, -1 for all cores (%(default)s)")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout" / "sweep", help="folder (%(default)s)")
     return parser
@@ -41,9 +42,9 @@ def jobs(options):
     inputs = (*options.liberty, *(path for path in code if "test" not in path.parts))
     if options.what == "effort":
         chosen = flat_design(options.design)
-        return [Job(f"effort_{chosen.name}_{effort}_{variation:g}_{options.utilization:g}", effort_point,
-                    (chosen, liberty, str(options.out), effort, variation, options.utilization), inputs)
-                for effort in EFFORTS for variation in VARIATIONS]
+        return [Job(f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}", effort_point,
+                    (chosen, liberty, str(options.out), effort, variation, utilization), inputs)
+                for utilization in options.utilization or UTILIZATIONS for effort in EFFORTS for variation in VARIATIONS]
     found = {made.name: made for made in candidates()}
     for name in options.only or ():
         if name not in found:

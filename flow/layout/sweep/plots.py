@@ -1,9 +1,13 @@
 """The sweeps as figures."""
 
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatter
 
 from flow.charts import COLOURS
+
+QUALITY = ("area_um2", "area, um2"), ("wire_um", "wires, um"), ("wns_ns", "worst setup slack, ns")
+MARKS = {1: "o", 2: "s", 3: "^"}        # of an effort
 
 
 def front(points, small, large):
@@ -39,18 +43,25 @@ def pareto_plot(points):
 
 
 def effort_plot(points):
-    """Seconds of place and route against wire length and worst slack, a mark a point; crosses did not close."""
-    figure = Figure(figsize=(11, 4.4), layout="constrained")
-    for axes, key, words in zip(figure.subplots(1, 2), ("wire_um", "wns_ns"), ("wires, um", "worst setup slack, ns"),
-                                strict=True):
+    """Seconds of routing against area, wire length and worst slack: a mark an effort, a colour a utilization, beside it
+    the variation of density; crosses below did not close."""
+    figure = Figure(figsize=(13, 4.6), layout="constrained")
+    shares = sorted({point["utilization"] for point in points})
+    for axes, (key, words) in zip(figure.subplots(1, 3), QUALITY, strict=True):
         for point in points:
-            if point.get(key) is None:
-                axes.plot(point["seconds"], 0, "x", color=COLOURS[5], transform=axes.get_xaxis_transform(),
-                          clip_on=False)
+            colour = COLOURS[shares.index(point["utilization"]) % len(COLOURS)]
+            if not point["closed"]:
+                axes.plot(point["seconds"], 0, "x", color=colour, transform=axes.get_xaxis_transform(), clip_on=False)
                 continue
-            axes.plot(point["seconds"], point[key], "os^"[point["effort"] - 1], color=COLOURS[0])
-            axes.annotate(f"{point['effort']}, {point['variation']:g}", (point["seconds"], point[key]), fontsize=8,
-                          xytext=(4, 4), textcoords="offset points")
-        axes.set(xlabel="seconds of place and route", ylabel=words)
-    figure.suptitle("effort, variation of density; a cross: not routed", fontsize=10)
+            axes.plot(point["seconds"], point[key], MARKS[point["effort"]], color=colour)
+            axes.annotate(f"{point['variation']:g}", (point["seconds"], point[key]), fontsize=7, xytext=(4, 4),
+                          textcoords="offset points")
+        axes.set(xlabel="seconds of placing, routing and mending", ylabel=words)
+        axes.margins(0.08)
+    marks = [Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")
+             for effort, mark in MARKS.items()]
+    marks += [Line2D([], [], linestyle="", marker="o", color=COLOURS[k % len(COLOURS)], label=f"utilization {share:g}")
+              for k, share in enumerate(shares)]
+    figure.legend(handles=[*marks, Line2D([], [], linestyle="", marker="x", color="0.5", label="did not close")],
+                  loc="outside upper center", ncols=len(marks) + 1, fontsize=8)
     return figure

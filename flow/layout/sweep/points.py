@@ -1,11 +1,11 @@
 """One layout as a point: a dict of figures for JSON."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from flow.layout.design import divider
 from flow.layout.embedded import Options, files, front, judged, layout, timed, tries
 from flow.layout.steps.extraction import Extraction, ExtractionParameters
-from flow.layout.steps.place_route import PlaceRoute, PlaceRouteParameters
 from flow.steps import Runner
 
 VARIANTS = ("radix2", "radix4", "pipelined", "cordic")
@@ -46,27 +46,29 @@ def _measured(design, options):
 
 
 def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky130"):
-    """Place and route a design once with an effort of the placer and a variation of density: quality and seconds."""
-    options = Options(pdk, utilization, tuple(map(Path, liberty)))
+    """Place and route a design once with an effort of the placer, a variation of density and a utilization: quality,
+    where every net is routed and no rule broken ("closed"), and seconds of what does so."""
+    options = Options(pdk, utilization, tuple(map(Path, liberty)), effort=effort)
+    design = replace(design, density_variation=variation)
     runner = _runner(design, options, out)
-    for step in (*front(design, options), next(tries(design, options))[0]):
+    floorplan, place_route = next(tries(design, options))
+    for step in (*front(design, options), floorplan):
         runner.run(step)
-    found = runner.run(PlaceRoute(PlaceRouteParameters(pdk, design.clock.port, effort, variation)))
-    made = {"effort": effort, "variation": variation, "utilization": utilization,
-            "seconds": found["wall_s"],
-            "stopped": found["metrics"]["stopped"]}
+    found = runner.run(place_route)
+    made = {"effort": effort, "variation": variation, "utilization": utilization, "seconds": found["wall_s"],
+            "stopped": found["metrics"]["stopped"], "closed": False}
     if found["metrics"]["stopped"] is not None:
         return made
     mend, *others = judged(design, options)
-    wires = runner.run(mend)["metrics"]
-    made |= {"open_nets": wires["open_nets"], "wire_um": wires["wire_um"]}
-    if wires["open_nets"]:
+    wires = runner.run(mend)
+    made["seconds"] = round(made["seconds"] + wires["wall_s"], 2)
+    if wires["metrics"]["open_nets"]:
         return made
-    for step in others[:1]:
-        runner.run(step)
+    broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
     runner.run(Extraction(ExtractionParameters(pdk)))
     slack = [runner.run(step)["metrics"]["wns_ns"] for step in timed(design, options) if step.name.startswith("sta_")]
-    return made | {"wns_ns": min(slack)}
+    return made | {"closed": not broken, "wns_ns": min(slack), "wire_um": wires["metrics"]["wire_um"],
+                   "area_um2": runner.records["stream_out"]["metrics"]["area_um2"]}
 
 
 def _runner(design, options, out):
