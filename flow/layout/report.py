@@ -6,7 +6,8 @@ from jinja2 import Environment, FileSystemLoader
 
 from .picture import PALETTE
 
-PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1")
+PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1",
+         "not_checked")
 PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control", "timing": "timing, addressing",
          "adcs": "converters; here: their logic"}
 BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
@@ -32,12 +33,12 @@ def page(summary, broken, known, picture=None, pictures=()):
 def _tiles(s, broken):
     """What a reader looks for first: dicts value, label, kind ('good', 'bad' or '')."""
     def tile(value, label, rule=None):
-        kind = "" if rule is None else "bad" if any(line.startswith(rule) for line in broken) else "good"
+        kind = "" if rule is None or value is None else "bad" if any(line.startswith(rule) for line in broken) else "good"
         return {"value": "-" if value is None else value, "label": label, "kind": kind}
 
     tests = s["gate_tests"] or {}
     return [tile(f"{s['area_um2']:,.0f}", "um2"), tile(s["utilization"], "utilization"),
-            tile(f"{s['cells']:,}", "cells"),
+            tile(s["cells"] and f"{s['cells']:,}", "cells"),
             tile(s["open_nets"], "open nets", "open_nets"), tile(s["drc_violations"], "rules broken", "drc_violations"),
             tile({True: "match", False: "differ"}.get(s["lvs_match"]), "layout and netlist", "lvs_match"),
             tile(s["equivalence"], "netlist = Verilog", "equivalence"),
