@@ -14,7 +14,7 @@ from flow.platforms.die import thick
 from flow.platforms.embedded import process
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
 
-from .blocks import DEEP_UM, blocks
+from .blocks import DEEP_UM, AnalogSizes, blocks
 
 # Of Embedded.wires: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 2, 3
@@ -43,13 +43,12 @@ def box(pin, block, supply_um, grid_um):
 
 
 def lef(block, pdk, supply_um):
-    """The LEF of a block as text: outline, pins, and everything else an obstruction on the pins' layers."""
+    """The LEF of a block as text: outline, pins, and what lies deeper than these an obstruction on their layers."""
     known = process(pdk)[0]
-    found, layers = {}, {}
+    found = {}
     for pin in block.pins:
-        wire, name = layer(pin, pdk)
+        _, name = layer(pin, pdk)
         found.setdefault(pin.name, []).append((pin, name, box(pin, block, supply_um, known.grid_um)))
-        layers[name] = wire
     lines = ["VERSION 5.8 ;", 'BUSBITCHARS "[]" ;', 'DIVIDERCHAR "/" ;', f"MACRO {block.name}", "  CLASS BLOCK ;",
              f"  SIZE {block.width_um:.3f} BY {block.height_um:.3f} ;"]
     for name, pieces in found.items():
@@ -59,9 +58,11 @@ def lef(block, pdk, supply_um):
             lines += [f"      LAYER {of} ;", f"        RECT {' '.join(f'{value:.3f}' for value in corners)} ;"]
         lines += ["    END", f"  END {name}"]
     lines.append("  OBS")
-    for name in layers:
-        lines += [f"    LAYER {name} ;", f"      RECT {DEEP_UM:.3f} {DEEP_UM:.3f} {block.width_um - DEEP_UM:.3f} "
-                  f"{block.height_um - DEEP_UM:.3f} ;"]
+    deep = DEEP_UM + supply_um
+    inside = min(block.width_um, block.height_um) > 2 * deep
+    for name in dict.fromkeys(name for pieces in found.values() for _, name, _ in pieces) if inside else ():
+        lines += [f"    LAYER {name} ;", f"      RECT {deep:.3f} {deep:.3f} {block.width_um - deep:.3f} "
+                  f"{block.height_um - deep:.3f} ;"]
     return "\n".join([*lines, "  END", f"END {block.name}", "END LIBRARY", ""])
 
 
@@ -91,7 +92,6 @@ def write(out, made, pdk, supply_um):
 
 
 def main(argv=None):
-    from .blocks import AnalogSizes
     parser = argparse.ArgumentParser(prog="python -m pixels.footprints", description=__doc__.splitlines()[0])
     parser.add_argument("--pdk", default="sky130")
     parser.add_argument("--rows", type=int, default=ArrayParameters().rows)

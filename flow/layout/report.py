@@ -12,7 +12,8 @@ PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their co
          "adcs": "converters; here: their logic"}
 BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
              ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"), ("setup_margin_ns", "least seen, setup, ns"),
-             ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
+             ("slews_over", "slews longer than any the cells were measured at"),
+             ("worst_slew_ns", "the longest of these, ns"), ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
              ("energy_pj_cycle", "pJ a cycle"),
              ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
              ("supply_drop_mv", "supply's drop, mV"),

@@ -14,18 +14,18 @@ KINDS = "lef", "gds"
 
 
 def files(folder, pdk, analog=None):
-    """(dict '<block>.lef' and '<block>.gds' -> Path, names of the blocks that are frames).
+    """(dict '<block>.lef' and '<block>.gds' -> Path, names of the blocks that are frames, extra pins: tuple).
 
     folder: where the frames are written. analog: of the user's blocks, each with LEF and GDS; what is not there stays
-    a frame. Raises ParameterError.
+    a frame. A pin that a frame does not have, a reference or a bias, leads to one of the die. Raises ParameterError.
     """
     run([sys.executable, "-m", "pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.{kind}": Path(folder) / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
-    theirs = _theirs(Path(analog)) if analog else []
+    theirs, extra = _theirs(Path(analog)) if analog else [], {}
     for block in theirs:
-        check(Path(analog) / f"{block}.lef", found[f"{block}.lef"])
+        extra |= dict.fromkeys(check(Path(analog) / f"{block}.lef", found[f"{block}.lef"]))
         found |= {f"{block}.{kind}": Path(analog) / f"{block}.{kind}" for kind in KINDS}
-    return found, [block for block in BLOCKS if block not in theirs]
+    return found, [block for block in BLOCKS if block not in theirs], tuple(extra)
 
 
 def _theirs(folder):
@@ -41,7 +41,8 @@ def _theirs(folder):
 
 
 def check(path, frame):
-    """Raise ParameterError unless the LEF ``path`` has the pins of ``frame`` with their directions."""
+    """Names of the pins that the LEF ``path`` has more than ``frame``. Raises ParameterError unless it has those of
+    ``frame`` with their directions."""
     (own, asked) = ({pin.name: pin.direction.upper() for pin in lef.pins(file.read_text(errors="replace"))}
                     for file in (path, frame))
     if lacking := [pin for pin in asked if pin not in own]:
@@ -49,3 +50,4 @@ def check(path, frame):
                              + (f" and {len(lacking) - 5} more" if len(lacking) > 5 else ""))
     if other := [pin for pin in asked if own[pin] != asked[pin]]:
         raise ParameterError(f"analog = {path}: its pin {other[0]} must be of DIRECTION {asked[other[0]]}")
+    return [pin for pin in own if pin not in asked]

@@ -14,7 +14,7 @@ MEETINGS = (("pixel_array", "row_driver", "east", "pixel_reset_row[0]"),
             ("column_amplifiers", "adc_lanes", "north", "lane_a[0]"))
 DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vssa")
 SUPPLIES = DIGITAL + ANALOG
-# Pins of the die, beside the supplies, from the west; a pin of an analog block that no other has joins them
+# Pins of the die, beside the supplies, from the west
 SIGNALS = ("clk", "reset", "sclk", "csn", "mosi", "miso", "busy", "frame_sync", *(f"link_data[{k}]" for k in range(8)),
            "link_val", "link_rdy")
 
@@ -120,29 +120,28 @@ def with_core(placed, core, die, side_nm, channel_nm):
     return made
 
 
-def nets(blocks):
+def nets(blocks, extra=()):
     """dict net -> list of (block, pin): pins of one name are one net, and the die's pins, block 'die', are on theirs.
-    Raises ParameterError for an output that leads nowhere, and for a net with more than one."""
-    found = {}
+
+    extra: pins of analog blocks that lead to pins of the die. Raises ParameterError for a pin that no other meets, and
+    for a net that nothing or more than one block drives.
+    """
+    found = {net: [("die", net)] for net in (*SIGNALS, *SUPPLIES, *extra)}
     for name, block in blocks.items():
         for pin in block.pins:
             found.setdefault(pin, []).append((name, pin))
     for net, ends in found.items():
-        lonely = len(ends) == 1 and ends[0][0] != CORE
-        if net in SIGNALS + SUPPLIES or lonely:
-            ends.append(("die", net))
         if len(ends) == 1:
-            raise ParameterError(f"{net} = a pin of {ends[0][0]} alone: must be one of an analog block or of the die")
+            raise ParameterError(f"{net} = a pin of {ends[0][0]} alone: must be one of another block or of the die too")
         drivers = [name for name, pin in ends if name != "die" and blocks[name].directions[pin] == "output"]
-        if len(drivers) > 1 or not drivers and net not in SUPPLIES and ("die", net) not in ends:
+        if len(drivers) > 1 or not drivers and ends[0][0] != "die":
             raise ParameterError(f"{net} = driven by {', '.join(drivers) or 'nothing'}: must have one driver")
     return dict(sorted(found.items()))
 
 
 def driver(blocks, ends):
     """Of a net's ``ends`` the one that drives it: a block's output, else the die's pin."""
-    return next((end for end in ends if end[0] != "die" and blocks[end[0]].directions[end[1]] == "output"),
-                ("die", ends[0][1]))
+    return next((end for end in ends if end[0] != "die" and blocks[end[0]].directions[end[1]] == "output"), ends[0])
 
 
 def touching(blocks, ends):

@@ -8,7 +8,7 @@ from flow.files import staged
 from flow.layout.report import page
 from flow.layout.run import laid_out
 from flow.layout.steps.drc import Drc
-from flow.layout.steps.sta import Sta, StaParameters
+from flow.layout.steps.sta import StaParameters
 from flow.layout.summary import broken
 from flow.platforms.die import thick
 from flow.platforms.embedded import process
@@ -16,6 +16,7 @@ from flow.steps import Runner, StepError
 
 from . import analog as analog_module
 from .picture import by_block
+from .sta import DieSta
 from .steps import DieGds, DieMatch, DieParametersOfGds, DiePlan, DiePlanParameters
 from .summary import RULES, summarize
 from .wires import DieWires, DieWiresParameters
@@ -29,24 +30,16 @@ RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "drc.lyrdb": "drc.repo
            "die_match.report", "wires.json": "die_wires.nets", "sdc": "die_wires.sdc"}
 
 
-def sensor_steps(chip, settings):
-    """The die's steps in order. chip: Design; settings: Options."""
+def sensor_steps(chip, settings, extra=()):
+    """The die's steps in order. chip: Design; settings: Options; extra: as of DiePlanParameters."""
     pdk, clock, around = settings.pdk, chip.clock, chip.surroundings
     drc = Drc()
     drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
     wires = DieWiresParameters(pdk, clock.port, around.load_pf, around.input_delay * clock.period_ns,
                                around.output_delay * clock.period_ns)
-    return [DiePlan(DiePlanParameters(pdk)), DieGds(DieParametersOfGds(pdk)), DieMatch(DieParametersOfGds(pdk)),
-            DieWires(wires), *(die_sta(chip, corner) for corner in settings.corners), drc]
-
-
-def die_sta(chip, corner):
-    """The chip's static timing with the die's wires at its ports."""
-    step = Sta(StaParameters(chip.top, corner, chip.clock.period_ns))
-    step.name = f"die_sta_{corner}"
-    step.inputs = {"verilog": "core.verilog", "spef": "core.spef", "sdc": "die_wires.sdc",
-                   "liberty": f"timing.{corner}"}
-    return step
+    return [DiePlan(DiePlanParameters(pdk, extra=extra)), DieGds(DieParametersOfGds(pdk)), DieMatch(DieParametersOfGds(pdk)),
+            DieWires(wires), *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),
+            drc]
 
 
 def laid_out_sensor(chip, settings, analog, out, note):
@@ -54,29 +47,27 @@ def laid_out_sensor(chip, settings, analog, out, note):
     Raises ParameterError, StepError for a chip that breaks a limit."""
     thick(settings.pdk)             # a process without one is told before anything runs
     folder = Path(out) / SENSOR
-    blocks, frames = analog_module.files(folder / "frames", settings.pdk, analog)
+    blocks, frames, extra = analog_module.files(folder / "frames", settings.pdk, analog)
     core, summary = laid_out(chip, settings, out, lambda text: note(f"{CHIP}: {text}"))
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} is not whole: {wrong[0]}")
     given = {name: core.paths[source] for name, source in PARTS.items()} | {
         f"timing.{corner}": core.paths[f"timing.{corner}"] for corner in settings.corners}
-    return die(chip, settings, blocks | given, frames, folder, note)
+    return die(chip, settings, blocks | given, frames, extra, folder, note)
 
 
-def die(chip, settings, given, frames, folder, note):
+def die(chip, settings, given, frames, extra, folder, note):
     """As `laid_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
-    names of the blocks that are no circuits."""
+    names of the blocks that are no circuits; extra: pins of the others that lead to the die's."""
     platform = Path(__file__).parents[2] / "platforms" / settings.pdk.replace("-", "_")
     runner = Runner(folder / "steps", given | {"platform": platform / "embedded.py", "thick": platform / "die.py"}, note)
-    runner.run_all(sensor_steps(chip, settings))
+    runner.run_all(sensor_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)
     lines = broken(summary, RULES)
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in settings.corners}
     with staged(folder, [f"{SENSOR}.{suffix}" for suffix in results]) as part:
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
-        for block in (name for name in given if name.endswith((".lef", ".gds"))):
-            shutil.copyfile(given[block], part / block)
         by_block(part / f"{SENSOR}.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
         (part / "report.html").write_text(page(summary, lines, process(settings.pdk)[0], f"{SENSOR}.png"))
         (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")

@@ -83,7 +83,7 @@ def supplies(blocks, straps, die, wiring, thick):
             if of == net:
                 half = nm(thick.cut.size_um + 2 * thick.below_um) // 2
                 shapes += cuts(net, (blocks[CORE].x + x - half, box[1], blocks[CORE].x + x + half, box[3]), below, thick)
-    return shapes, pins
+    return list(dict.fromkeys(shapes)), pins
 
 
 def _over_core(core, straps, die):

@@ -20,10 +20,11 @@ TOP = "asp_sensor"
 
 @dataclass(frozen=True)
 class DiePlanParameters:
-    """pdk: process. die: sizes."""
+    """pdk: process. die: sizes. extra: pins of analog blocks that lead to pins of the die."""
 
     pdk: str = "sky130"
     die: DieParameters = field(default_factory=DieParameters)
+    extra: tuple = ()
 
 
 class DiePlan(Step):
@@ -52,7 +53,7 @@ class DiePlan(Step):
         core, begin = blocks.pop(CORE), nm(die.edge_um + die.gap_um)
         room, placed = routing.side_room(core, tracks), plan.stack(blocks, die)
         low = plan.with_core(placed, core, die, room, 0)
-        nets = plan.nets(low)
+        nets = plan.nets(low, self.parameters.extra)
         routed, abutted = routing.joined(low, nets)
         made = routing.reaches(low, routed, die, tracks, layers)
         lanes = routing.trunks(made, tracks)

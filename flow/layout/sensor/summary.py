@@ -6,6 +6,7 @@ from pathlib import Path
 from flow.layout.summary import timing
 
 from .plan import BLOCKS
+from .sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 SHOWN = 12          # nets in the summary, those with the largest loads
@@ -23,7 +24,7 @@ def summarize(name, settings, runner, frames):
     """The contract of summary.json, as a dict; what a die does not have is None. frames: blocks without a circuit."""
     records = runner.records
     metrics = {key: value for record in records.values() for key, value in record["metrics"].items()
-               if key not in ("wns_ns", "whs_ns", "f_max_mhz")}
+               if key not in DieSta.metrics}
     sta = {corner: records[f"die_sta_{corner}"]["metrics"] for corner in settings.corners}
     tools = {}
     for record in records.values():
@@ -40,7 +41,8 @@ def summarize(name, settings, runner, frames):
                                          "worst_delay_ns", "worst_delay", "loads_over")},
         "equivalence": None, "gate_tests": None, "antenna_violations": None, "power_uw": None,
         "timing_rests_on": f"the chip's ports with the die's wires; {timing(settings)}",
-        **{key: {corner: found[key] for corner, found in sta.items()} or None for key in ("wns_ns", "whs_ns")},
+        **{key: {corner: found[key] for corner, found in sta.items()} or None for key in DieSta.metrics
+           if key != "f_max_mhz"},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
         "largest_loads": dict(sorted(((net, found["load_pf"]) for net, found in nets.items()),
                                      key=lambda item: -item[1])[:SHOWN]),
