@@ -17,8 +17,8 @@ from models.parameters import ArrayParameters, ChipParameters, ParameterError
 from .blocks import DEEP_UM, AnalogSizes, blocks
 
 # Of Embedded.wires: of pins in the north and south, and in the west and east
-VERTICAL, ACROSS = 2, 3
-WIDE = {VERTICAL: 0.32, ACROSS: 0.4}        # um of a signal's pin
+VERTICAL, ACROSS = 4, 3
+WIDE_UM = 0.4       # of a signal's pin
 
 
 def layer(pin, pdk):
@@ -34,7 +34,7 @@ def layer(pin, pdk):
 def box(pin, block, supply_um, grid_um):
     """(left, bottom, right, top) in um of a pin, on the grid."""
     vertical = pin.side in ("north", "south")
-    wide = (supply_um if pin.supply else WIDE[VERTICAL if vertical else ACROSS]) / 2
+    wide = (supply_um if pin.supply else WIDE_UM) / 2
     deep = supply_um if pin.supply else DEEP_UM
     low, high = (round(round((pin.at_um + way * wide) / grid_um) * grid_um, 3) for way in (-1, 1))
     far = block.height_um if vertical else block.width_um

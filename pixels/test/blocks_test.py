@@ -1,4 +1,4 @@
-"""The analog blocks' pins are those of their real-number twin and of the chip, and their footprints are as described."""
+"""The analog blocks' pins are those of their real-number twin and of the chip; their footprints are as described."""
 
 import re
 from pathlib import Path
@@ -58,7 +58,7 @@ def test_what_two_blocks_share_lies_at_the_same_place():
 
 def test_footprints_read_back(tmp_path):
     db = pytest.importorskip("klayout.db", reason="klayout: not installed")
-    assert main(["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2      # no room for the chip
+    assert main(["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2      # no room
     assert main(["--rows", "8", "--out", str(tmp_path)]) == 0
     for block in blocks(ArrayParameters(rows=8)):
         text = (tmp_path / f"{block.name}.lef").read_text()
@@ -71,7 +71,7 @@ def test_footprints_read_back(tmp_path):
         layout.read(str(tmp_path / f"{block.name}.gds"))
         cell, = layout.top_cells()
         assert cell.name == block.name and cell.dbbox() == db.DBox(0, 0, block.width_um, block.height_um)
-        drawn = db.Region(cell.begin_shapes_rec(layout.layer(69, 20))) + db.Region(
+        drawn = db.Region(cell.begin_shapes_rec(layout.layer(71, 20))) + db.Region(
             cell.begin_shapes_rec(layout.layer(70, 20))) + db.Region(cell.begin_shapes_rec(layout.layer(72, 20)))
         asked = db.Region([db.DBox(*box).to_itype(layout.dbu) for pin in pins.values() for _, box in pin.boxes])
         assert (drawn ^ asked).is_empty() and drawn.count() == len(block.pins)      # none touches another

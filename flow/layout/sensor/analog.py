@@ -19,9 +19,9 @@ def files(folder, pdk, analog=None):
     folder: where the frames are written. analog: of the user's blocks, each with LEF and GDS; what is not there stays
     a frame. A pin that a frame does not have, a reference or a bias, leads to one of the die. Raises ParameterError.
     """
+    theirs, extra = _theirs(Path(analog)) if analog else [], {}
     run([sys.executable, "-m", "pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.{kind}": Path(folder) / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
-    theirs, extra = _theirs(Path(analog)) if analog else [], {}
     for block in theirs:
         extra |= dict.fromkeys(check(Path(analog) / f"{block}.lef", found[f"{block}.lef"]))
         found |= {f"{block}.{kind}": Path(analog) / f"{block}.{kind}" for kind in KINDS}

@@ -45,11 +45,10 @@ def net(reaches, y, driver, tracks, known, load_pf):
 
 def tree(reaches, y, tracks, known):
     """(list of edges as of `delays`, dict (block, pin) -> its node): a trunk, from it a cut and a vertical to every
-    pin, and of the chip's pins a cut and a stub."""
-    def wire(level, length, width, cut=None):
+    pin, and of the chip's pins three cuts and a stub."""
+    def wire(level, length, width, cuts=()):
         parts = [(known.wires[level].name, length / 1000, width / 1000)]
-        if cut is not None:
-            parts.append((f"{known.wires[cut].name}_{known.cuts[cut].name}_{known.wires[cut + 1].name}", 0, 0))
+        parts += [(f"{known.wires[cut].name}_{known.cuts[cut].name}_{known.wires[cut + 1].name}", 0, 0) for cut in cuts]
         femto, ohm = parasitics(parts, known)
         return ohm, femto
 
@@ -58,11 +57,11 @@ def tree(reaches, y, tracks, known):
         edges.append((("trunk", k), ("trunk", k + 1), *wire(TRUNK, other["x"] - one["x"], tracks["trunk"])))
     for k, reach in enumerate(ranked):
         end = ("end", k)
-        edges.append((("trunk", k), end, *wire(VERTICAL, abs(reach["end"] - y), tracks["vertical"], cut=VERTICAL)))
+        edges.append((("trunk", k), end, *wire(VERTICAL, abs(reach["end"] - y), tracks["vertical"], cuts=(TRUNK,))))
         if reach["block"] == CORE:
             left, bottom, right, top = reach["box"]
             length = max(left - reach["x"], reach["x"] - right, 0)
-            edges.append((end, ("pin", k), *wire(STUB, length, top - bottom, cut=STUB)))
+            edges.append((end, ("pin", k), *wire(STUB, length, top - bottom, cuts=range(STUB, VERTICAL))))
             end = ("pin", k)
         pins[reach["block"], reach["pin"]] = end
     return edges, pins

@@ -7,7 +7,9 @@ from flow.steps import StepError
 from .channel import check_apart, free, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, check_way, nm, touching
 
-STUB, VERTICAL, TRUNK = 1, 2, 3         # of Wiring.layers
+# Of Wiring.layers. Verticals are the highest: what a net joins it joins there, with its driver, so that no gate has the
+# trunk or a vertical as an antenna before
+STUB, TRUNK, VERTICAL = 1, 3, 4
 
 
 @dataclass(frozen=True)
@@ -34,10 +36,9 @@ class Tracks:
     @classmethod
     def of(cls, wiring):
         """As wide as the cuts' pads, with as much room between them."""
-        below, above = wiring.cuts[STUB], wiring.cuts[VERTICAL]
-        vertical = 2 * max(min(below.above), min(below.above[0], above.below[0]), above.below[0],
-                           -(-wiring.layers[VERTICAL].width // 2))
-        trunk = 2 * max(*above.above, -(-wiring.layers[TRUNK].width // 2))
+        cut = wiring.cuts[TRUNK]
+        vertical = 2 * max(cut.above[0], -(-wiring.layers[VERTICAL].width // 2))
+        trunk = 2 * max(cut.below[1], -(-wiring.layers[TRUNK].width // 2))
         pitches = [max(2 * width, width + wiring.layers[level].space)
                    for width, level in ((vertical, VERTICAL), (trunk, TRUNK))]
         return cls(*(-(-pitch // 10) * 10 for pitch in pitches), vertical, trunk)

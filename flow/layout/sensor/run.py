@@ -7,6 +7,7 @@ from pathlib import Path
 from flow.files import staged
 from flow.layout.report import page
 from flow.layout.run import laid_out
+from flow.layout.steps.antenna import AntennaParameters
 from flow.layout.steps.drc import Drc
 from flow.layout.steps.sta import StaParameters
 from flow.layout.summary import broken
@@ -15,9 +16,10 @@ from flow.platforms.embedded import process
 from flow.steps import Runner, StepError
 
 from . import analog as analog_module
+from .antenna import DieAntenna
 from .picture import by_block
 from .sta import DieSta
-from .steps import DieGds, DieMatch, DieParametersOfGds, DiePlan, DiePlanParameters
+from .steps import DieGds, DieMatch, DieGdsParameters, DiePlan, DiePlanParameters
 from .summary import RULES, summarize
 from .wires import DieWires, DieWiresParameters
 
@@ -37,9 +39,10 @@ def sensor_steps(chip, settings, extra=()):
     drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
     wires = DieWiresParameters(pdk, clock.port, around.load_pf, around.input_delay * clock.period_ns,
                                around.output_delay * clock.period_ns)
-    return [DiePlan(DiePlanParameters(pdk, extra=extra)), DieGds(DieParametersOfGds(pdk)), DieMatch(DieParametersOfGds(pdk)),
-            DieWires(wires), *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),
-            drc]
+    return [DiePlan(DiePlanParameters(pdk, extra=extra)), DieGds(DieGdsParameters(pdk)),
+            DieMatch(DieGdsParameters(pdk)), DieWires(wires),
+            *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),
+            drc, DieAntenna(AntennaParameters(pdk))]
 
 
 def laid_out_sensor(chip, settings, analog, out, note):
@@ -60,7 +63,8 @@ def die(chip, settings, given, frames, extra, folder, note):
     """As `laid_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
     names of the blocks that are no circuits; extra: pins of the others that lead to the die's."""
     platform = Path(__file__).parents[2] / "platforms" / settings.pdk.replace("-", "_")
-    runner = Runner(folder / "steps", given | {"platform": platform / "embedded.py", "thick": platform / "die.py"}, note)
+    given = given | {"platform": platform / "embedded.py", "thick": platform / "die.py"}
+    runner = Runner(folder / "steps", given, note)
     runner.run_all(sensor_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)
     lines = broken(summary, RULES)

@@ -17,7 +17,21 @@ class Shape:
 
 
 def drawn(wire, net, *box):
+    """The Shape of a net on a wire or a cut."""
     return Shape(net, wire.layer, wire.datatype, box)
+
+
+def metal(made, straps, die, tracks, wiring, thick):
+    """(list of all Shapes of an Arranged, dict net -> those at the die's edge that are its pins).
+
+    straps: pairs (supply, x in the chip). thick: Thick.
+    """
+    found, ends = supplies(made.blocks, straps, die, wiring, thick)
+    pins = {net: [drawn(thick.wire, net, *box) for box in boxes] for net, boxes in ends.items()}
+    for net, reaches in made.routes.items():
+        found += signal(net, reaches, made.y[net], tracks, wiring)
+        pins |= {net: [pad(reach, die, tracks, wiring)] for reach in reaches if reach.block == "die"}
+    return found, pins
 
 
 def signal(net, reaches, y, tracks, wiring):
@@ -27,14 +41,24 @@ def signal(net, reaches, y, tracks, wiring):
     xs = [reach.x for reach in reaches]
     yield drawn(trunk, net, min(xs) - thick, y - thick, max(xs) + thick, y + thick)
     for reach in reaches:
-        yield from via(net, reach.x, y, VERTICAL, wiring)
+        yield from via(net, reach.x, y, TRUNK, wiring)
         low, high = sorted((y, reach.end))
         if reach.block == CORE:
             left, bottom, right, top = reach.box
             pad = wiring.cuts[STUB].below
             yield drawn(stub, net, min(left, reach.x - pad[0]), bottom, max(right, reach.x + pad[0]), top)
-            yield from via(net, reach.x, reach.end, STUB, wiring)
+            yield from stack(net, reach.x, reach.end, wiring)
         yield drawn(vertical, net, reach.x - half, low, reach.x + half, high)
+
+
+def stack(net, x, y, wiring):
+    """Cuts from the stub up to the vertical; the wires between have no more than their least areas."""
+    for level in range(STUB, VERTICAL):
+        yield from via(net, x, y, level, wiring)
+    for level in range(STUB + 1, VERTICAL):
+        wire, height = wiring.layers[level], 2 * wiring.cuts[level - 1].above[1]
+        half = -(-wire.area // (2 * height) // 5) * 5
+        yield drawn(wire, net, x - half, y - height // 2, x + half, y + height // 2)
 
 
 def pad(reach, die, tracks, wiring):
@@ -75,14 +99,15 @@ def supplies(blocks, straps, die, wiring, thick):
             shapes.append(drawn(below, net, *across))
             for box in boxes:
                 shapes += [drawn(thick.wire, net, *box),
-                           *cuts(net, _both(box, across), below, thick)]
+                           *cuts(net, _both(box, across), thick)]
                 at = (0, edge) if side == "west" else (width - edge, width)
                 pins.setdefault(net, []).append((at[0], box[1], at[1], box[3]))
     for net, x in straps:
         for of, _, box in lines:
             if of == net:
                 half = nm(thick.cut.size_um + 2 * thick.below_um) // 2
-                shapes += cuts(net, (blocks[CORE].x + x - half, box[1], blocks[CORE].x + x + half, box[3]), below, thick)
+                at = blocks[CORE].x + x
+                shapes += cuts(net, (at - half, box[1], at + half, box[3]), thick)
     return list(dict.fromkeys(shapes)), pins
 
 
@@ -106,7 +131,7 @@ def _from_blocks(blocks, die):
                     yield pin, side, ((0, *box[1:]) if side == "west" else (*box[:2], nm(die.width_um), box[3]))
 
 
-def cuts(net, box, below, thick):
+def cuts(net, box, thick):
     """As many cuts to the thick wire as its rules allow in ``box``, in its middle."""
     size, space = nm(thick.cut.size_um), nm(thick.cut.space_um)
     pitch, counts, starts = size + space, [], []

@@ -12,7 +12,7 @@ from flow.platforms.die import thick
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
-from . import channel, connectivity, plan, routing, shapes, verilog
+from . import arrange, channel, connectivity, plan, routing, shapes, verilog
 from .plan import BLOCKS, CORE, Block, DieParameters, nm
 
 TOP = "asp_sensor"
@@ -40,47 +40,38 @@ class DiePlan(Step):
     Parameters = DiePlanParameters
     metrics = {"area_um2": "um2", "utilization": "", "nets": "", "routed": "", "abutted": "", "tracks": "",
                "wire_um": "um"}
-    uses = (channel, plan, routing, shapes, verilog, wiring_module)
+    uses = (arrange, channel, plan, routing, shapes, verilog, wiring_module)
 
     def run(self, inputs, outputs):
-        known, _ = process(self.parameters.pdk)
-        die, wiring = self.parameters.die, Wiring.of(known, json.loads(inputs["rules"].read_text()))
-        tracks, names = routing.Tracks.of(wiring), layer_names(self.parameters.pdk)
+        p, known = self.parameters, process(self.parameters.pdk)[0]
+        wiring, names = Wiring.of(known, json.loads(inputs["rules"].read_text())), layer_names(p.pdk)
         layers = [names.get((wire.layer, wire.datatype), wire.name)
                   for wire in (wiring.layers[routing.STUB], wiring.layers[routing.VERTICAL])]
-        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         straps = [(net, nm(x)) for net, x in Macro.read(inputs[f"{CORE}.lef"], known, names).straps]
-        core, begin = blocks.pop(CORE), nm(die.edge_um + die.gap_um)
-        room, placed = routing.side_room(core, tracks), plan.stack(blocks, die)
-        low = plan.with_core(placed, core, die, room, 0)
-        nets = plan.nets(low, self.parameters.extra)
-        routed, abutted = routing.joined(low, nets)
-        made = routing.reaches(low, routed, die, tracks, layers)
-        lanes = routing.trunks(made, tracks)
-        height = begin + (max(lanes.values()) + 1) * tracks.trunk_pitch + nm(die.gap_um)
-        blocks, made = plan.with_core(placed, core, die, room, height), routing.raised(made, height)
-        y = {net: begin + track * tracks.trunk_pitch for net, track in lanes.items()}
-        metal, pins = shapes.supplies(blocks, straps, die, wiring, thick(self.parameters.pdk))
-        for net, found in made.items():
-            metal += shapes.signal(net, found, y[net], tracks, wiring)
-        pads = {net: [shapes.pad(reach, die, tracks, wiring) for reach in found if reach.block == "die"]
-                for net, found in made.items()}
-        above = thick(self.parameters.pdk).wire
-        pads = {net: found for net, found in pads.items() if found} | {
-            net: [shapes.drawn(above, net, *box) for box in boxes] for net, boxes in pins.items()}
-        area = die.width_um * die.height_um
-        outputs["plan"].write_text(json.dumps({
-            "die": [nm(die.width_um), nm(die.height_um)],
-            "blocks": {name: {"cell": block.cell, "box": block.box} for name, block in blocks.items()},
-            "nets": nets, "drivers": {net: plan.driver(blocks, ends) for net, ends in routed.items()}, "channel": [begin, height], "tracks": asdict(tracks),
-            "pins": {net: [_plain(shape) for shape in found] for net, found in pads.items()},
+        blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
+        tracks = routing.Tracks.of(wiring)
+        made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
+        metal, pins = shapes.metal(made, straps, p.die, tracks, wiring, thick(p.pdk))
+        outputs["plan"].write_text(json.dumps(described(made, metal, pins, p.die, tracks)) + "\n")
+        outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
+        area = p.die.width_um * p.die.height_um
+        covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
+        return {"area_um2": area, "utilization": round(covered / area, 4), "nets": len(made.nets),
+                "routed": len(made.routes), "abutted": made.abutted, "tracks": made.count,
+                "wire_um": round(sum(routing.length(found, made.y[net])
+                                     for net, found in made.routes.items()) / 1000, 1)}
+
+
+def described(made, metal, pins, die, tracks):
+    """The plan as a dict for JSON, nm. made: Arranged; metal: list of Shape; pins: dict net -> those at the edge."""
+    return {"die": [nm(die.width_um), nm(die.height_um)],
+            "blocks": {name: {"cell": block.cell, "box": block.box} for name, block in made.blocks.items()},
+            "nets": made.nets, "drivers": {net: plan.driver(made.blocks, made.nets[net]) for net in made.routes},
+            "channel": made.channel, "tracks": asdict(tracks),
+            "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},
             "shapes": [_plain(shape) for shape in metal],
-            "routes": {net: {"y": y[net], "reaches": [asdict(reach) for reach in found]}
-                       for net, found in made.items()}}) + "\n")
-        outputs["verilog"].write_text(verilog.top(TOP, blocks, nets))
-        return {"area_um2": area, "utilization": round(sum(b.width * b.height for b in blocks.values()) / area / 1e6, 4),
-                "nets": len(nets), "routed": len(routed), "abutted": len(abutted), "tracks": max(lanes.values()) + 1,
-                "wire_um": round(sum(routing.length(found, y[net]) for net, found in made.items()) / 1000, 1)}
+            "routes": {net: {"y": made.y[net], "reaches": [asdict(reach) for reach in found]}
+                       for net, found in made.routes.items()}}
 
 
 def _plain(shape):
@@ -88,7 +79,7 @@ def _plain(shape):
 
 
 @dataclass(frozen=True)
-class DieParametersOfGds:
+class DieGdsParameters:
     """pdk: process."""
 
     pdk: str = "sky130"
@@ -101,7 +92,7 @@ class DieGds(Step):
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {
         "plan": "die_plan.plan", "platform": "platform"}
     outputs = {"gds": f"{TOP}.gds"}
-    Parameters = DieParametersOfGds
+    Parameters = DieGdsParameters
     metrics = {"rectangles": ""}
     tools = ("python klayout",)
 
@@ -126,7 +117,8 @@ class DieGds(Step):
         for net, boxes in made["pins"].items():
             for _, layer, datatype, *box in boxes:
                 for of in (known.pin_datatype, known.label_datatype):
-                    top.shapes(layout.layer(layer, of)).insert(db.Text(net, db.Trans(db.Box(*box).center() - db.Point())))
+                    middle = db.Trans(db.Box(*box).center() - db.Point())
+                    top.shapes(layout.layer(layer, of)).insert(db.Text(net, middle))
         outline = openroad.process(self.parameters.pdk).outline
         top.shapes(layout.layer(*outline)).insert(db.Box(0, 0, *made["die"]))
         write_gds(layout, outputs["gds"])
@@ -142,7 +134,7 @@ class DieMatch(Step):
     name = "die_match"
     inputs = {"gds": "die_gds.gds", "plan": "die_plan.plan", "platform": "platform", "thick": "thick"}
     outputs = {"report": "connectivity.json"}
-    Parameters = DieParametersOfGds
+    Parameters = DieGdsParameters
     metrics = {"open_nets": "", "shorts": "", "lvs_match": ""}
     uses = (connectivity,)
     tools = ("python klayout",)

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
-from flow.layout.sensor.steps import DieGds, DieMatch, DieParametersOfGds, DiePlan, DiePlanParameters
+from flow.layout.sensor.steps import DieGds, DieMatch, DieGdsParameters, DiePlan, DiePlanParameters
 from models.parameters import ArrayParameters, ChipParameters
 from pixels.blocks import AnalogSizes, blocks
 from pixels.footprints import write
@@ -12,9 +12,8 @@ from pixels.footprints import write
 ROOT = Path(__file__).parents[4]
 PLATFORM = {"platform": ROOT / "flow/platforms/sky130/embedded.py", "thick": ROOT / "flow/platforms/sky130/die.py"}
 DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
-RULES = {"wires": {"li": {"width": 0.17, "space": 0.17, "area": 0.0}, "m1": {"width": 0.14, "space": 0.14, "area": 0.083},
-                   "m2": {"width": 0.14, "space": 0.14, "area": 0.0676}, "m3": {"width": 0.3, "space": 0.3, "area": 0.24},
-                   "m4": {"width": 0.3, "space": 0.3, "area": 0.24}},
+RULES = {"wires": {name: {"width": least, "space": least, "area": area} for name, least, area in (
+             ("li", 0.17, 0.0), ("m1", 0.14, 0.083), ("m2", 0.14, 0.0676), ("m3", 0.3, 0.24), ("m4", 0.3, 0.24))},
          "cuts": {"mcon": {"below": [0.0, 0.0], "above": [0.03, 0.06]},
                   "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
                   "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
@@ -77,11 +76,12 @@ def run(step, given, folder):
     return metrics
 
 
-def plan(given, folder, die=DIE):
-    return run(DiePlan(DiePlanParameters("sky130", die)), given, folder)
+def plan(given, folder, die=DIE, extra=()):
+    """Metrics of the plan."""
+    return run(DiePlan(DiePlanParameters("sky130", die, extra)), given, folder)
 
 
 def match(given, folder):
     """Metrics of the comparison of what is drawn from the plan."""
-    run(DieGds(DieParametersOfGds()), given, folder)
-    return run(DieMatch(DieParametersOfGds()), given, folder)
+    run(DieGds(DieGdsParameters()), given, folder)
+    return run(DieMatch(DieGdsParameters()), given, folder)
