@@ -71,6 +71,8 @@ def _figures(s):
     def text(value):
         if isinstance(value, dict):
             return ", ".join(f"{name}: {text(v)}" for name, v in value.items())
+        if isinstance(value, list):
+            return ", ".join(map(str, value)) or "-"
         if isinstance(value, bool):
             return "yes" if value else "no"
         return "-" if value is None else f"{value:,}" if isinstance(value, (int, float)) else str(value)

@@ -26,8 +26,7 @@ def by_block(png, plan, frames):
                       rotation=90 if upright else 0, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8})
     lines = [line for route in plan["routes"].values() for line in _lines(route)]
     axes.add_collection(LineCollection(lines, colors="#17202a", linewidths=0.25))
-    axes.set(xlim=(0, plan["die"][0] / 1e3), ylim=(0, plan["die"][1] / 1e3), aspect="equal", xlabel="um", ylabel="um",
-             title="Hatched: a frame, no circuit")
+    axes.set(xlim=(0, plan["die"][0] / 1e3), ylim=(0, plan["die"][1] / 1e3), aspect="equal", xlabel="um", ylabel="um")
     figure.savefig(png, dpi=220, metadata={"Software": None})
 
 

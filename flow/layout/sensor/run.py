@@ -2,9 +2,11 @@
 
 import json
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 from flow.files import staged
+from flow.layout.picture import render
 from flow.layout.report import page
 from flow.layout.run import laid_out
 from flow.layout.steps.antenna import AntennaParameters
@@ -67,12 +69,15 @@ def die(chip, settings, given, frames, extra, folder, note):
     runner = Runner(folder / "steps", given, note)
     runner.run_all(sensor_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)
-    lines = broken(summary, RULES)
+    lines, known = broken(summary, RULES), process(settings.pdk)[0]
+    known = replace(known, wires=(*known.wires, thick(settings.pdk).wire))
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in settings.corners}
     with staged(folder, [f"{SENSOR}.{suffix}" for suffix in results]) as part:
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
-        by_block(part / f"{SENSOR}.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
-        (part / "report.html").write_text(page(summary, lines, process(settings.pdk)[0], f"{SENSOR}.png"))
+        by_block(part / f"{SENSOR}.blocks.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
+        render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", known)
+        (part / "report.html").write_text(page(summary, lines, known, f"{SENSOR}.png", [
+            (f"{SENSOR}.blocks.png", "The blocks; hatched: a frame, no circuit")]))
         (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     return folder / "summary.json", lines

@@ -40,7 +40,7 @@ def summarize(name, settings, runner, frames):
                                          "drc_violations", "lvs_match", "antenna_violations", "wire_pf", "worst_load_pf", "worst_load",
                                          "worst_delay_ns", "worst_delay", "loads_over")},
         "equivalence": None, "gate_tests": None, "power_uw": None,
-        "timing_rests_on": f"the chip's ports with the die's wires; {timing(settings)}",
+        "timing_rests_on": f"the chip, its ports with the die's wires; {timing(settings)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in DieSta.metrics
            if key != "f_max_mhz"},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
