@@ -34,7 +34,7 @@ class AnalogSizes:
     columns_um: float = field(default=200.0, metadata={"unit": "um"})
     lane_um: float = field(default=100.0, metadata={"unit": "um"})
     lanes_um: float = field(default=600.0, metadata={"unit": "um"})
-    chip_um: float = field(default=760.0, metadata={"unit": "um"})
+    chip_um: float = field(default=840.0, metadata={"unit": "um"})
     supply_um: float = field(default=10.0, metadata={"unit": "um"})
 
     def __post_init__(self):

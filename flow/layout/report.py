@@ -10,10 +10,12 @@ PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tool
          "not_checked")
 PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control", "timing": "timing, addressing",
          "adcs": "converters; here: their logic"}
-BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
+BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"),
+             ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
              ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"), ("setup_margin_ns", "least seen, setup, ns"),
              ("slews_over", "slews longer than any the cells were measured at"),
-             ("worst_slew_ns", "the longest of these, ns"), ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
+             ("worst_slew_ns", "the longest of these, ns"),
+             ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
              ("energy_pj_cycle", "pJ a cycle"),
              ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
              ("supply_drop_mv", "supply's drop, mV"),
@@ -34,7 +36,8 @@ def page(summary, broken, known, picture=None, pictures=()):
 def _tiles(s, broken):
     """What a reader looks for first: dicts value, label, kind ('good', 'bad' or '')."""
     def tile(value, label, rule=None):
-        kind = "" if rule is None or value is None else "bad" if any(line.startswith(rule) for line in broken) else "good"
+        bad = rule and any(line.startswith(rule) for line in broken)
+        kind = "bad" if bad else "" if rule is None or value is None else "good"
         return {"value": "-" if value is None else value, "label": label, "kind": kind}
 
     tests = s["gate_tests"] or {}

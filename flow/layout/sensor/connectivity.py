@@ -1,4 +1,4 @@
-"""What the metal of a GDS joins: the pins of its blocks and of the die, and how that differs from the nets asked for."""
+"""What the metal of a GDS joins, pins of its blocks and of the die, and how that differs from the nets asked for."""
 
 
 def nets(gds, cells, known, thick):

@@ -12,7 +12,7 @@ from flow.platforms.die import thick
 from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
-from . import arrange, channel, connectivity, plan, routing, shapes, verilog
+from . import arrange, channel, connectivity, plan, routing, shapes, supplies, verilog
 from .plan import BLOCKS, CORE, Block, DieParameters, nm
 
 TOP = "asp_sensor"
@@ -40,7 +40,7 @@ class DiePlan(Step):
     Parameters = DiePlanParameters
     metrics = {"area_um2": "um2", "utilization": "", "nets": "", "routed": "", "abutted": "", "tracks": "",
                "wire_um": "um"}
-    uses = (arrange, channel, plan, routing, shapes, verilog, wiring_module)
+    uses = (arrange, channel, plan, routing, shapes, supplies, verilog, wiring_module)
 
     def run(self, inputs, outputs):
         p, known = self.parameters, process(self.parameters.pdk)[0]
@@ -51,7 +51,7 @@ class DiePlan(Step):
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(wiring)
         made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
-        metal, pins = shapes.metal(made, straps, p.die, tracks, wiring, thick(p.pdk))
+        metal, pins = supplies.metal(made, straps, p.die, tracks, wiring, thick(p.pdk))
         outputs["plan"].write_text(json.dumps(described(made, metal, pins, p.die, tracks)) + "\n")
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
         area = p.die.width_um * p.die.height_um

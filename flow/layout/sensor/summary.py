@@ -37,10 +37,11 @@ def summarize(name, settings, runner, frames):
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
         "frames": frames, "circuits": [block for block in BLOCKS if block not in frames],
         **{key: metrics[key] for key in ("nets", "routed", "abutted", "tracks", "wire_um", "open_nets", "shorts",
-                                         "drc_violations", "lvs_match", "antenna_violations", "wire_pf", "worst_load_pf", "worst_load",
+                                         "drc_violations", "lvs_match", "antenna_violations", "wire_pf",
+                                         "worst_load_pf", "worst_load",
                                          "worst_delay_ns", "worst_delay", "loads_over")},
         "equivalence": None, "gate_tests": None, "power_uw": None,
-        "timing_rests_on": f"the chip, its ports with the die's wires; {timing(settings)}",
+        "timing_rests_on": f"the chip, its ports with the die's wires{extrapolated(sta)}; {timing(settings)}",
         **{key: {corner: found[key] for corner, found in sta.items()} or None for key in DieSta.metrics
            if key != "f_max_mhz"},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
@@ -50,6 +51,12 @@ def summarize(name, settings, runner, frames):
         "wall_s": {step: record["wall_s"] for step, record in records.items()},
         "peak_mib": {step: record["peak_mib"] for step, record in records.items()},
         "tools": dict(sorted(tools.items()))}
+
+
+def extrapolated(sta):
+    """Words of what the slacks are where slews are longer than any that was measured. sta: dict corner -> metrics."""
+    return ", delays EXTRAPOLATED where slews are beyond the cells' tables (slews_over)" if any(
+        found["slews_over"] for found in sta.values()) else ""
 
 
 def placed(block):

@@ -132,6 +132,16 @@ def test_a_pin_behind_a_block(made, tmp_path):
         small.plan(given, tmp_path)
 
 
+def test_a_supply_that_does_not_reach_its_side(made, tmp_path):
+    text = made[0]["adc_lanes.lef"].read_text()
+    given = made[0] | {"adc_lanes.lef": tmp_path / "lanes.lef"}
+    found = re.search(r"PIN vssa\n.*?RECT (\S+ \S+) (\S+) (\S+)", text, re.S)
+    given["adc_lanes.lef"].write_text(text.replace(f"{found[1]} {found[2]} {found[3]}",
+                                                   f"{found[1]} {float(found[2]) - 1} {found[3]}"))
+    with pytest.raises(StepError, match="adc_lanes: its pin vssa reaches neither its west nor its east side on met5"):
+        small.plan(given, tmp_path)
+
+
 def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
     """The chip's own Verilog in place of the small core: ports of the same names and widths, checked by Yosys."""
     subprocess.run([sys.executable, "-m", "rtl.export", "--top", "AspChip", "--out", tmp_path, "--rows=16",
