@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from .plan import CORE, nets, nm, stack, with_core
-from .routing import joined, raised, reaches, side_room, trunks
+from .plan import CORE, ORIENTATIONS, nets, nm, stack, with_core
+from .routing import joined, length, raised, reaches, side_room, trunks
 
 
 @dataclass(frozen=True)
@@ -21,9 +21,24 @@ class Arranged:
     count: int
 
 
+    @property
+    def wire(self):
+        """nm of all routes."""
+        return sum(length(found, self.y[net]) for net, found in self.routes.items())
+
+
 def arranged(blocks, die, tracks, layers, extra=()):
-    """The Arranged of ``blocks``, dict name -> Block at the origin. layers: names in LEF of the wires of the chip's and
-    of the analog blocks' pins. extra: as of `plan.nets`. Raises ParameterError, StepError.
+    """The Arranged of ``blocks``, dict name -> Block at the origin, with the chip turned so that there is least wire.
+
+    layers: names in LEF of the wires of the chip's and of the analog blocks' pins. extra: as of `plan.nets`. Raises
+    ParameterError, StepError.
+    """
+    return min((arranged_as_is(blocks | {CORE: blocks[CORE].turned(way)}, die, tracks, layers, extra)
+                for way in ORIENTATIONS), key=lambda made: made.wire)
+
+
+def arranged_as_is(blocks, die, tracks, layers, extra=()):
+    """As `arranged`, the chip as it is given.
 
     Where verticals and trunks lie does not depend on the channel's height: they come first, then all blocks are raised.
     """

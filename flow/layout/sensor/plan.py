@@ -39,9 +39,13 @@ class DieParameters:
             check_real(name, getattr(self, name), low, high)
 
 
+# As LEF names them: whether west and east, and south and north, change places
+ORIENTATIONS = {"N": (False, False), "FN": (True, False), "FS": (False, True), "S": (True, True)}
+
+
 @dataclass(frozen=True)
 class Block:
-    """x, y: of its south-west corner. pins: dict pin -> tuple of (LEF layer, (left, bottom, right, top)), where they
+    """x, y: of its south-west corner. orientation: one of ORIENTATIONS. pins: dict pin -> tuple of (LEF layer, (left, bottom, right, top)), where they
     lie. directions: dict pin -> 'input', 'output' or 'inout'."""
 
     name: str
@@ -52,6 +56,7 @@ class Block:
     height: int
     pins: dict
     directions: dict
+    orientation: str = "N"
 
     @classmethod
     def read(cls, name, text):
@@ -69,6 +74,20 @@ class Block:
         return replace(self, x=self.x + dx, y=self.y + dy, pins={
             pin: tuple((of, (box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy)) for of, box in boxes)
             for pin, boxes in self.pins.items()})
+
+    def turned(self, orientation):
+        """The block, at the origin and not yet turned, in one of ORIENTATIONS."""
+        sideways, upright = ORIENTATIONS[orientation]
+
+        def turn(box):
+            left, bottom, right, top = box
+            if sideways:
+                left, right = self.width - right, self.width - left
+            if upright:
+                bottom, top = self.height - top, self.height - bottom
+            return left, bottom, right, top
+        return replace(self, orientation=orientation, pins={
+            pin: tuple((of, turn(box)) for of, box in boxes) for pin, boxes in self.pins.items()})
 
     def at(self, side):
         """Boxes of pins that reach ``side``: list of (pin, layer, box)."""

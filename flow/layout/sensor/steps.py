@@ -4,7 +4,7 @@ import json
 from dataclasses import asdict, dataclass, field
 
 from flow.gds import write_gds
-from flow.layout.macro import Macro, layer_names
+from flow.layout.macro import layer_names
 from flow.layout.mend import wiring as wiring_module
 from flow.layout.mend.wiring import Wiring
 from flow.platforms import openroad
@@ -47,25 +47,23 @@ class DiePlan(Step):
         wiring, names = Wiring.of(known, json.loads(inputs["rules"].read_text())), layer_names(p.pdk)
         layers = [names.get((wire.layer, wire.datatype), wire.name)
                   for wire in (wiring.layers[routing.STUB], wiring.layers[routing.VERTICAL])]
-        straps = [(net, nm(x)) for net, x in Macro.read(inputs[f"{CORE}.lef"], known, names).straps]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(wiring)
         made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
-        metal, pins = supplies.metal(made, straps, p.die, tracks, wiring, thick(p.pdk))
+        metal, pins = supplies.metal(made, p.die, tracks, wiring, thick(p.pdk))
         outputs["plan"].write_text(json.dumps(described(made, metal, pins, p.die, tracks)) + "\n")
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
         area = p.die.width_um * p.die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
         return {"area_um2": area, "utilization": round(covered / area, 4), "nets": len(made.nets),
                 "routed": len(made.routes), "abutted": made.abutted, "tracks": made.count,
-                "wire_um": round(sum(routing.length(found, made.y[net])
-                                     for net, found in made.routes.items()) / 1000, 1)}
+                "wire_um": round(made.wire / 1000, 1)}
 
 
 def described(made, metal, pins, die, tracks):
     """The plan as a dict for JSON, nm. made: Arranged; metal: list of Shape; pins: dict net -> those at the edge."""
     return {"die": [nm(die.width_um), nm(die.height_um)],
-            "blocks": {name: {"cell": block.cell, "box": block.box} for name, block in made.blocks.items()},
+            "blocks": {name: {"cell": block.cell, "orientation": block.orientation, "box": block.box} for name, block in made.blocks.items()},
             "nets": made.nets, "drivers": {net: plan.driver(made.blocks, made.nets[net]) for net in made.routes},
             "channel": made.channel, "tracks": asdict(tracks),
             "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},
@@ -111,7 +109,7 @@ class DieGds(Step):
             if [cell.name for cell in new] != [block["cell"]]:
                 raise StepError(f"die_gds: {inputs[f'{name}.gds'].name} has the top cells "
                                 f"{', '.join(cell.name for cell in new)}; its LEF is of {block['cell']}")
-            top.insert(db.CellInstArray(new[0].cell_index(), db.Trans(*block["box"][:2])))
+            top.insert(db.CellInstArray(new[0].cell_index(), placed(block)))
         for _, layer, datatype, *box in made["shapes"]:
             top.shapes(layout.layer(layer, datatype)).insert(db.Box(*box))
         for net, boxes in made["pins"].items():
@@ -123,6 +121,16 @@ class DieGds(Step):
         top.shapes(layout.layer(*outline)).insert(db.Box(0, 0, *made["die"]))
         write_gds(layout, outputs["gds"])
         return {"rectangles": len(made["shapes"])}
+
+
+def placed(block):
+    """klayout.db.Trans of a block of the plan."""
+    import klayout.db as db
+    left, bottom, right, top = block["box"]
+    sideways, upright = plan.ORIENTATIONS[block["orientation"]]
+    turn = {(False, False): db.Trans.R0, (True, False): db.Trans.M90, (False, True): db.Trans.M0,
+            (True, True): db.Trans.R180}[sideways, upright]
+    return db.Trans(turn, right if sideways else left, top if upright else bottom)
 
 
 class DieMatch(Step):

@@ -60,6 +60,6 @@ def extrapolated(sta):
 
 
 def placed(block):
-    """'cell, width x height at (x, y)' in um of a block of the plan."""
+    """'cell, width x height at (x, y), orientation' of a block of the plan, um; orientations as LEF has them."""
     left, bottom, right, top = (size / 1000 for size in block["box"])
-    return f"{block['cell']}, {right - left:g} x {top - bottom:g} at ({left:g}, {bottom:g})"
+    return f"{block['cell']}, {right - left:g} x {top - bottom:g} at ({left:g}, {bottom:g}), {block['orientation']}"

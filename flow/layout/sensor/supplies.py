@@ -6,12 +6,12 @@ from . import shapes
 from .plan import ANALOG, CORE, DIGITAL, SUPPLIES, check_way, nm
 
 
-def metal(made, straps, die, tracks, wiring, thick):
+def metal(made, die, tracks, wiring, thick):
     """(list of all Shapes of an Arranged, dict net -> those at the die's edge that are its pins).
 
-    straps: pairs (supply, x in the chip). thick: Thick.
+    thick: Thick.
     """
-    found, ends = supplies(made.blocks, straps, die, wiring, thick)
+    found, ends = supplies(made.blocks, die, wiring, thick)
     pins = {net: [shapes.drawn(thick.wire, net, *box) for box in boxes] for net, boxes in ends.items()}
     for net, reaches in made.routes.items():
         found += shapes.signal(net, reaches, made.y[net], tracks, wiring)
@@ -19,12 +19,13 @@ def metal(made, straps, die, tracks, wiring, thick):
     return found, pins
 
 
-def supplies(blocks, straps, die, wiring, thick):
+def supplies(blocks, die, wiring, thick):
     """(list of Shapes of the supplies, dict net -> boxes of the die's pins on the thick wire).
 
     Thick wires lead from the straps over the chip and from the analog blocks' pins to the die's west and east edge,
     across bars of the wire below, one a net, and two thick wires in the north join the west with the east.
     """
+    straps = [(net, (box[0] + box[2]) // 2) for net in DIGITAL for _, box in blocks[CORE].pins[net]]
     lines = [*_over_core(blocks[CORE], straps, die), *_from_blocks(blocks, die, thick), *_in_north(die)]
     found, pins = [], {}
     width, edge = nm(die.width_um), nm(die.edge_um)
@@ -35,8 +36,7 @@ def supplies(blocks, straps, die, wiring, thick):
                 found += _bar(net, side, boxes, die, wiring.layers[-1], thick)
                 pins.setdefault(net, []).extend((left, box[1], right, box[3]) for box in boxes)
     half = nm(thick.cut.size_um + 2 * thick.below_um) // 2
-    for net, x in straps:
-        at = blocks[CORE].x + x
+    for net, at in straps:
         for box in (box for of, _, box in lines if of == net):
             found += cuts(net, (at - half, box[1], at + half, box[3]), thick)
     return list(dict.fromkeys(found)), pins
@@ -57,7 +57,7 @@ def _bar(net, side, boxes, die, below, thick):
 def _over_core(core, straps, die):
     """(net, side, box) of the thick wires over the chip, from the west edge to its last strap."""
     count, half = die.bars * len(DIGITAL), nm(die.bar_um) // 2
-    end = core.x + max(x for _, x in straps) + nm(die.gap_um)
+    end = max(x for _, x in straps) + nm(die.gap_um)
     for place in range(count):
         middle = core.y + core.height * (2 * place + 1) // (2 * count) // 10 * 10
         yield DIGITAL[place % 2], "west", (0, middle - half, end, middle + half)

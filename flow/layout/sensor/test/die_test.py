@@ -9,7 +9,8 @@ import sys
 import pytest
 
 from flow.layout.abstract import ports
-from flow.layout.sensor.plan import CORE, DieParameters
+from flow.layout.sensor import arrange
+from flow.layout.sensor.plan import CORE, ORIENTATIONS, DieParameters
 from flow.steps import StepError
 from models.parameters import ParameterError
 from pixels.blocks import blocks
@@ -49,6 +50,17 @@ def test_every_net_is_found_again(made, tmp_path):
     assert made[0]["metrics"]["nets"] == made[0]["metrics"]["routed"] + made[0]["metrics"]["abutted"] + 4
 
 
+@pytest.mark.parametrize("way", ORIENTATIONS)
+def test_the_chip_turned(made, tmp_path, monkeypatch, way):
+    """Whichever way it lies, all nets are joined; the way that is taken has the least wire."""
+    given = made[0] | {}
+    monkeypatch.setattr(arrange, "ORIENTATIONS", {way: ORIENTATIONS[way]})
+    metrics = small.plan(given, tmp_path)
+    assert metrics["wire_um"] >= made[0]["metrics"]["wire_um"]
+    assert json.loads(given["die_plan.plan"].read_text())["blocks"][CORE]["orientation"] == way
+    assert small.match(given, tmp_path)["lvs_match"]
+
+
 def index(plan, net, layer):
     """Of the longest shape of a net on a GDS layer."""
     found = [(max(right - left, top - bottom), k) for k, (of, number, datatype, left, bottom, right, top)
@@ -84,7 +96,8 @@ def test_a_wire_over_metal_inside_a_block_is_a_short(made, tmp_path):
     def change(plan):
         left, bottom, *_ = plan["blocks"][CORE]["box"]
         box = plan["shapes"][index(plan, "row[0]", 71)][3:]
-        strap = left + 50_000
+        strap = left + 50_000        # of vss, where the chip lies as drawn or upside down
+        assert plan["blocks"][CORE]["orientation"] in ("N", "FS")
         plan["shapes"].append(["row[0]", 71, 20, strap, bottom + 10_000, strap + 2000, bottom + 12_000])
         plan["shapes"].append(["row[0]", 70, 20, min(strap, box[0]), bottom + 10_900, strap + 2000, bottom + 11_300])
         for x in ((box[0] + box[2]) // 2, strap + 1000):
