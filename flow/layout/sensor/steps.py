@@ -100,16 +100,15 @@ class DieGds(Step):
         known, _ = process(self.parameters.pdk)
         layout.dbu = 0.001
         top = layout.create_cell(TOP)
-        options = db.LoadLayoutOptions()
-        options.cell_conflict_resolution = db.LoadLayoutOptions.CellConflictResolution.RenameCell
+        cells = {name: layout.create_cell(block["cell"]) for name, block in made["blocks"].items()}
         for name, block in made["blocks"].items():
-            before = {cell.cell_index() for cell in layout.top_cells()}
-            layout.read(str(inputs[f"{name}.gds"]), options)
-            new = [cell for cell in layout.top_cells() if cell.cell_index() not in before]
-            if [cell.name for cell in new] != [block["cell"]]:
+            source = db.Layout()
+            source.read(str(inputs[f"{name}.gds"]))
+            if [cell.name for cell in source.top_cells()] != [block["cell"]]:
                 raise StepError(f"die_gds: {inputs[f'{name}.gds'].name} has the top cells "
-                                f"{', '.join(cell.name for cell in new)}; its LEF is of {block['cell']}")
-            top.insert(db.CellInstArray(new[0].cell_index(), placed(block)))
+                                f"{', '.join(cell.name for cell in source.top_cells())}; its LEF is of {block['cell']}")
+            cells[name].copy_tree(source.top_cell())        # cells in it of a name that is taken get another
+            top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
         for _, layer, datatype, *box in made["shapes"]:
             top.shapes(layout.layer(layer, datatype)).insert(db.Box(*box))
         for net, boxes in made["pins"].items():

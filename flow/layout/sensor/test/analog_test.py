@@ -8,6 +8,8 @@ import pytest
 from flow.layout import __main__ as command
 from flow.layout.sensor.analog import check, files
 from flow.layout.sensor.plan import BLOCKS
+from flow.platforms.embedded import process
+from flow.steps import StepError
 from models.parameters import ParameterError
 
 from . import small
@@ -75,6 +77,7 @@ def test_files_that_lack(capsys, frames, tmp_path):
 
 
 def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
+    import klayout.db as db
     given = small.files(tmp_path)
     path = given["adc_lanes.lef"]
     path.write_text(with_reference(path.read_text()))
@@ -82,3 +85,17 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
         small.plan(given, tmp_path)
     assert small.plan(given, tmp_path, extra=("vref",))["routed"] == len(small.core_pins()) + 1
     assert "input vref;" in given["die_plan.verilog"].read_text()
+    assert small.match(given, tmp_path)["open_nets"] == 1        # its GDS does not have the pin yet
+    layout = db.Layout()
+    layout.read(str(given["adc_lanes.gds"]))
+    cell, wire = layout.cell("adc_lanes"), process("sky130")[0].wires[4]
+    inner = layout.create_cell("Core")                           # as the chip's: two cells of one name are not one
+    inner.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(1.8, 0, 2.2, 2))
+    cell.insert(db.CellInstArray(inner.cell_index(), db.Trans()))
+    cell.shapes(layout.layer(wire.layer, 16)).insert(db.DText("vref", 2, 1))
+    layout.write(str(given["adc_lanes.gds"]))
+    assert small.match(given, tmp_path)["lvs_match"]
+    layout.rename_cell(cell.cell_index(), "adc")
+    layout.write(str(given["adc_lanes.gds"]))
+    with pytest.raises(StepError, match="adc_lanes.gds has the top cells adc; its LEF is of adc_lanes"):
+        small.match(given, tmp_path)
