@@ -87,13 +87,13 @@ sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make
 	@$(PY) -m flow.sizes --document README.md
 
 .PHONY: layout
-layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, or DESIGN=quad_divider, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib']
+layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, DESIGN=quad_divider, or the whole die, DESIGN=asp_sensor, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib' ANALOG=folder]
 ifeq ($(BACKEND),openroad)
 	@$(PY) -m flow.openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 else
 	@$(PY) -m flow.layout $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK)) \
 		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
-		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+		$(if $(ANALOG),--analog $(call quoted,$(ANALOG))) $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 endif
 
 .PHONY: layout-pareto

@@ -1,39 +1,28 @@
 """`python -m flow.layout DESIGN`: Verilog to a checked layout in build/layout/<design>/."""
 
 import argparse
-import json
-import shutil
 import sys
 from pathlib import Path
 
-from flow.files import staged
-from flow.platforms.embedded import PROCESSES, process
+from flow.platforms.embedded import PROCESSES
 from flow.simulate.process import ToolError
-from flow.steps import Runner, StepError
+from flow.steps import StepError
 from models.parameters import ParameterError, check_choice
 from talbot.progress import Steps
 
-from . import history
-from .blocks import check_same, given, inner
+from .blocks import inner
 from .design import DESIGNS, design, folder_name
-from .embedded import Options, chain, files, layout
-from .energy import blocks
-from .netlist import Netlist
-from .picture import by_block, render
-from .report import page
-from .summary import broken, summarize
+from .embedded import Options, chain
+from .run import laid_out
+from .sensor.run import CHIP, SENSOR, laid_out_sensor, sensor_steps
+from .summary import broken
 
 ROOT = Path(__file__).parents[2]
-RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
-           "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
-BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty",
-             "power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
-FIRST = "sdf", "lib"            # of the first corner, also under the design's name alone
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.layout", description=__doc__.splitlines()[0])
-    parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
+    parser.add_argument("design", help=f"one of {', '.join((*DESIGNS, SENSOR))}")
     parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)} (%(default)s)")
     parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
     parser.add_argument("--utilization", type=float,
@@ -41,61 +30,10 @@ def arguments():
     parser.add_argument("--liberty", type=Path, action="append", default=[],
                         help="characterized cells at a corner (again for further corners); default: measured now")
     parser.add_argument("--untimed", action="store_true", help="no timing: cells by area alone")
+    parser.add_argument("--analog", type=Path,
+                        help=f"folder with <block>.lef and .gds of analog blocks in place of {SENSOR}'s frames")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
-
-
-def figures(folder, name, runner, options):
-    """Draw the cells by block where they are placed; (file, words) of this and of the voltage drop: list."""
-    found, first = [], next(iter(options.corners), "")
-    whole = "assemble" if "assemble.netlist" in runner.paths else "place_route"
-    if f"{whole}.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
-        placement, areas, plan = (json.loads(runner.paths[key].read_text())
-                                  for key in (f"{whole}.placement", "library.areas", "floorplan.floorplan"))
-        netlist = Netlist.read(runner.paths[f"{whole}.netlist"])
-        by_block(folder / f"{name}.blocks.png", netlist, placement["instances"], areas, process(options.pdk)[0],
-                 blocks(netlist), plan)
-        found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
-    return found
-
-
-def laid_out(chosen, settings, out, note):
-    """Lay out ``chosen``, and before it the blocks that are hardened in it: (Runner, summary); what came of each lies
-    in its folder in ``out``. Raises StepError for a block that breaks a limit."""
-    runners = {}
-    for block in inner(chosen):
-        own = Options(settings.pdk, block.utilization, settings.liberty, settings.untimed)
-        runners[block.name], summary = laid_out(block, own, out, lambda text, name=block.name: note(f"{name}: {text}"))
-        if wrong := broken(summary):
-            raise StepError(f"{chosen.name}: its block {block.name} is not whole: {wrong[0]}")
-    folder = out / folder_name(chosen, settings.pdk)
-    provided = files(chosen, settings, folder)
-    check_same(chosen, provided["rtl"], runners)
-    runner = Runner(folder / "steps", provided | given(chosen, runners, settings.corners), note, out / "shared")
-    summary = summarize(chosen, settings, runner, layout(chosen, settings, runner))
-    publish(folder, chosen.name, settings, runner, summary)
-    return runner, summary
-
-
-def publish(folder, name, settings, runner, summary):
-    """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
-    results = RESULTS | {f"{corner}.{suffix}": source.format(corner) for corner in settings.corners
-                         for suffix, source in BY_CORNER.items()}
-    for suffix in FIRST if settings.corners else ():
-        results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
-    with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:
-        for suffix, source in results.items():       # an earlier run's go where this one has none
-            if source in runner.paths:
-                shutil.copyfile(runner.paths[source], part / f"{name}.{suffix}")
-        if "fill.gds" in runner.paths:
-            render(runner.paths["fill.gds"], part / f"{name}.png", process(settings.pdk)[0])
-        pictures = figures(part, name, runner, settings)
-        picture = f"{name}.png" if (part / f"{name}.png").exists() else None
-        runs = history.continued(folder / "history.jsonl", summary)
-        (part / "history.jsonl").write_text(history.written(runs))
-        (part / "report.html").write_text(page(summary, broken(summary), process(settings.pdk)[0], runs, picture,
-                                               pictures))
-        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
 
 
 def one_line(error):
@@ -108,20 +46,41 @@ def one_line(error):
 def main(argv=None):
     options = arguments().parse_args(argv)
     try:
-        chosen = design(options.design)
+        check_choice("DESIGN", options.design, (*DESIGNS, SENSOR))
         check_choice("backend", options.backend, ("coriolis",))
+        chosen = design(CHIP if options.design == SENSOR else options.design)
         settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
                            tuple(options.liberty), options.untimed)
-        steps = [f"{block.name}: {step.name}" for block in inner(chosen) for step in chain(block, settings)]
-        with Steps([*steps, *(step.name for step in chain(chosen, settings))]) as bar:
-            _, summary = laid_out(chosen, settings, options.out, bar.note)
+        if options.design == SENSOR:
+            summary, lines = sensor(chosen, settings, options)
+        else:
+            summary, lines = block(chosen, settings, options)
     except (ParameterError, ToolError, StepError, OSError) as error:
         print(f"flow.layout: {one_line(error)}", file=sys.stderr)
         return 2
-    for line in broken(summary):
-        print(f"flow.layout: {chosen.name}: {line}", file=sys.stderr)
-    print(options.out / folder_name(chosen, options.pdk) / "summary.json")
-    return 1 if broken(summary) else 0
+    for line in lines:
+        print(f"flow.layout: {options.design}: {line}", file=sys.stderr)
+    print(summary)
+    return 1 if lines else 0
+
+
+def block(chosen, settings, options):
+    """(summary.json's path, limits broken) of a design laid out. Raises as `laid_out`."""
+    if options.analog:
+        raise ParameterError(f"analog = {options.analog}: must be with DESIGN={SENSOR} alone")
+    steps = [f"{block.name}: {step.name}" for block in inner(chosen) for step in chain(block, settings)]
+    with Steps([*steps, *(step.name for step in chain(chosen, settings))]) as bar:
+        _, summary = laid_out(chosen, settings, options.out, bar.note)
+    return options.out / folder_name(chosen, options.pdk) / "summary.json", broken(summary)
+
+
+def sensor(chip, settings, options):
+    """The same of the whole sensor. chip: Design of its digital part."""
+    steps = [*(f"{CHIP}: {step.name}" for step in chain(chip, settings)),
+             *(step.name for step in sensor_steps(chip, settings))]
+    with Steps(steps) as bar:
+        path, lines = laid_out_sensor(chip, settings, options.analog, options.out, bar.note)
+    return path, lines
 
 
 if __name__ == "__main__":

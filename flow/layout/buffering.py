@@ -36,6 +36,16 @@ def buffered(netlist, sides, buffer, most):
     return replace(netlist, instances=tuple(instances))
 
 
+def driven(netlist, buffer):
+    """The Netlist with a buffer of its own behind every output: what it leads to outside slows nothing within."""
+    outputs = {net: f"{net}_within" for port in netlist.ports if port.direction == "output" for net in port.bits()}
+    cell, taken, given = buffer
+    instances = [replace(i, pins={pin: outputs.get(net, net) for pin, net in i.pins.items()})
+                 for i in netlist.instances]
+    return replace(netlist, instances=(*instances, *(Instance(f"{net}_driver", cell, {taken: within, given: net})
+                                                     for net, within in outputs.items())))
+
+
 def _tree(net, ends, places, buffer, most):
     """Buffers between ``net`` and its ``ends``, (dict of an instance's pins, pin), which lie at ``places``; they are
     joined to them."""

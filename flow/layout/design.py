@@ -72,6 +72,7 @@ def divider(name, variant, n_frac=8):
                   divider=variant, n_frac=n_frac)
 
 
+DIE = Surroundings(load_pf=0.25)        # of the chip on the sensor's die: the longest wires of flow.layout.sensor
 DESIGNS = {made.name: made for made in (
     Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
     Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",),
@@ -87,9 +88,10 @@ DESIGNS = {made.name: made for made in (
            macros=(Hard("divider", "quad_divider"),)),
     Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
-    Design("asp_chip", "AspChip", "asp_chip", utilization=0.56),
+    Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, surroundings=DIE),
     # of the thesis (B.3.2): both blocks hardened, the rest around them
     Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.44, density_variation=0.3,
+           surroundings=DIE,
            macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.5, 0.0)))))}
 
 

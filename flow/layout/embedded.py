@@ -107,12 +107,12 @@ def modules(design):
 
 def front(design, options):
     """The steps ahead of a floorplan."""
-    library, hard = Library(LibraryParameters(options.pdk)), modules(design)
+    library, hard, load = Library(LibraryParameters(options.pdk)), modules(design), design.surroundings.load_pf
     if not options.corners:
-        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, hard))]
+        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, load, hard))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
-    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT, hard),
-                                             options.corners[0])]
+    return [library, *timing, TimedSynthesis(SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT, load,
+                                                                 hard), options.corners[0])]
 
 
 def tries(design, options):

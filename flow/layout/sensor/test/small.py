@@ -1,0 +1,87 @@
+"""A small die: 16 x 120 pixels, two lanes, and a core that has the chip's pins and straps and nothing in it."""
+
+import json
+from pathlib import Path
+
+from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
+from flow.layout.sensor.steps import DieGds, DieMatch, DieGdsParameters, DiePlan, DiePlanParameters
+from models.parameters import ArrayParameters, ChipParameters
+from pixels.blocks import AnalogSizes, blocks
+from pixels.footprints import write
+
+ROOT = Path(__file__).parents[4]
+PLATFORM = {"platform": ROOT / "flow/platforms/sky130/embedded.py", "thick": ROOT / "flow/platforms/sky130/die.py"}
+DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
+RULES = {"wires": {name: {"width": least, "space": least, "area": area} for name, least, area in (
+             ("li", 0.17, 0.0), ("m1", 0.14, 0.083), ("m2", 0.14, 0.0676), ("m3", 0.3, 0.24), ("m4", 0.3, 0.24))},
+         "cuts": {"mcon": {"below": [0.0, 0.0], "above": [0.03, 0.06]},
+                  "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
+                  "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
+                  "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]}}}
+CORE_INPUTS = {"clk", "reset", "sclk", "csn", "mosi", "link_rdy"}
+WIDTH, HEIGHT = 200.0, 400.0
+
+
+def analog():
+    return blocks(ArrayParameters(16, 120), ChipParameters(2), AnalogSizes(
+        row_driver_um=60.0, columns_um=100.0, lane_um=100.0, lanes_um=300.0, chip_um=360.0))
+
+
+def core_pins():
+    """dict pin -> direction: the die's signals and what the analog blocks have in the south, the other way round."""
+    outer = {pin.name: "output" if pin.direction == "input" else "input" for block in analog() for pin in block.pins
+             if pin.side == "south" and not pin.name.startswith(("column_", "lane_"))}
+    own = {name: "input" if name in CORE_INPUTS else "output" for name in SIGNALS}
+    return dict(sorted((outer | own).items()))
+
+
+def core(folder):
+    """Write core.lef and core.gds: pins on the west and the east, in turn, and four straps."""
+    import klayout.db as db
+    layout = db.Layout()
+    cell = layout.create_cell("Core")
+    lines = ["MACRO Core", f"  SIZE {WIDTH} BY {HEIGHT} ;"]
+
+    def draw(name, layer, lef, direction, boxes):
+        lines.extend([f"  PIN {name}", f"    DIRECTION {direction.upper()} ;", "    PORT", f"      LAYER {lef} ;"])
+        for box in boxes:
+            lines.append(f"      RECT {' '.join(f'{size:.3f}' for size in box)} ;")
+            cell.shapes(layout.layer(layer, 20)).insert(db.DBox(*box))
+            cell.shapes(layout.layer(layer, 16)).insert(db.DText(name, db.DTrans(db.DBox(*box).center() - db.DPoint())))
+        lines.extend(["    END", f"  END {name}"])
+
+    for k, (name, direction) in enumerate(core_pins().items()):
+        left, bottom = (0.0 if k % 2 == 0 else WIDTH - 0.3), 5 + 4.0 * (k // 2)
+        draw(name, 68, "met1", direction, [(left, bottom, left + 0.3, bottom + 0.32)])
+    for net, xs in (("vss", (50.0, 110.0)), ("vdd", (80.0, 140.0))):
+        draw(net, 71, "met4", "inout", [(x - 0.6, 0.0, x + 0.6, HEIGHT) for x in xs])
+    (folder / "core.lef").write_text("\n".join([*lines, "END Core", "END LIBRARY", ""]))
+    layout.write(str(folder / "core.gds"))
+
+
+def files(folder):
+    """Everything that the die's steps are given: dict name -> Path."""
+    write(folder, analog(), "sky130", AnalogSizes().supply_um)
+    core(folder)
+    (folder / "rules.json").write_text(json.dumps(RULES))
+    return {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")} | {
+        "library.rules": folder / "rules.json"} | PLATFORM
+
+
+def run(step, given, folder):
+    """The step's metrics; its outputs are added to ``given``."""
+    outputs = {name: folder / file for name, file in step.outputs.items()}
+    metrics = step.run({name: given[source] for name, source in step.inputs.items()}, outputs)
+    given |= {f"{step.name}.{name}": path for name, path in outputs.items()}
+    return metrics
+
+
+def plan(given, folder, die=DIE, extra=()):
+    """Metrics of the plan."""
+    return run(DiePlan(DiePlanParameters("sky130", die, extra)), given, folder)
+
+
+def match(given, folder):
+    """Metrics of the comparison of what is drawn from the plan."""
+    run(DieGds(DieGdsParameters()), given, folder)
+    return run(DieMatch(DieGdsParameters()), given, folder)

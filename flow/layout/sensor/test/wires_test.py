@@ -1,0 +1,99 @@
+"""Loads and delays of the die's wires, and the chip's timing with them."""
+
+import json
+import re
+
+import pytest
+
+from flow.layout.sensor.antenna import DieAntenna
+from flow.layout.sensor.elmore import delays
+from flow.layout.sensor.sta import over
+from flow.layout.sensor.wires import DieWires, DieWiresParameters
+from flow.layout.steps.antenna import AntennaParameters
+from flow.platforms.embedded import process
+
+from . import small
+
+pytest.importorskip("klayout.db", reason="klayout: not installed")
+
+
+def test_elmore_by_hand():
+    """a -1k- b -2k- c, b -3k- d; 10 fF at c, 20 fF at d, 4 fF of the first wire."""
+    edges = [("a", "b", 1000.0, 4.0), ("b", "c", 2000.0, 0.0), ("d", "b", 3000.0, 0.0)]
+    found = delays(edges, "a", {"c": 10.0, "d": 20.0})
+    assert found == pytest.approx({"a": 0.0, "b": 0.032, "c": 0.052, "d": 0.092})
+    assert delays(edges, "d", {"a": 5.0})["a"] == pytest.approx(3000 * 9e-6 + 1000 * 7e-6)
+
+
+@pytest.fixture(scope="module")
+def wires(tmp_path_factory):
+    """(metrics, nets, SDC, plan) of the small die."""
+    folder = tmp_path_factory.mktemp("wires")
+    given = small.files(folder)
+    small.plan(given, folder)
+    given["core.sdc"] = folder / "core.sdc"
+    given["core.sdc"].write_text("create_clock -name clk -period 20 [get_ports {clk}]\n")
+    metrics = small.run(DieWires(DieWiresParameters(load_pf=0.03, input_ns=3.0, output_ns=5.0)), given, folder)
+    return (metrics, json.loads(given["die_wires.nets"].read_text()), given["die_wires.sdc"].read_text(),
+            json.loads(given["die_plan.plan"].read_text()))
+
+
+def test_a_net_by_hand(wires):
+    """tap[0]: from the chip to the row driver and the column amplifiers; capacitance by length and width."""
+    _, nets, _, plan = wires
+    known, tracks, route = process("sky130")[0], plan["tracks"], plan["routes"]["tap[0]"]
+    assert len(route["reaches"]) == 3 and nets["tap[0]"]["driver"] == "core"
+    xs = [reach["x"] for reach in route["reaches"]]
+    lengths = {(3, tracks["trunk"]): max(xs) - min(xs),
+               (4, tracks["vertical"]): sum(abs(reach["end"] - route["y"]) for reach in route["reaches"])}
+    core, = [reach for reach in route["reaches"] if reach["block"] == "core"]
+    lengths[1, core["box"][3] - core["box"][1]] = max(core["box"][0] - core["x"], core["x"] - core["box"][2])
+    femto = sum(length * 1e-6 * (width / 1000 * known.wires[level].area_af_um2 + 2 * known.wires[level].edge_af_um)
+                for (level, width), length in lengths.items())
+    assert nets["tap[0]"]["wire_ff"] == pytest.approx(femto, abs=1e-3)
+    assert nets["tap[0]"]["load_pf"] == pytest.approx(femto / 1000 + 0.06, abs=1e-5)
+    slow, quick = nets["tap[0]"]["delay_ns"].values()
+    assert min(slow, quick) > 0 and set(nets["tap[0]"]["delay_ns"]) == {"row_driver.tap[0]", "column_amplifiers.tap[0]"}
+
+
+def test_constraints_have_every_port_once(wires):
+    metrics, nets, sdc, _ = wires
+    assert sdc.startswith("create_clock")
+    loads = {name: float(load) for load, name in re.findall(r"set_load (\S+) \[get_ports \{(.*?)\}\]", sdc)}
+    assert loads == {net: found["load_pf"] for net, found in nets.items() if found["driver"] == "core"}
+    late = {name: float(ns) for ns, name in
+            re.findall(r"set_output_delay (\S+) -clock clk \[get_ports \{(.*?)\}\]", sdc)}
+    early = {name: float(ns) for ns, name in
+             re.findall(r"set_input_delay (\S+) -max -clock clk \[get_ports \{(.*?)\}\]", sdc)}
+    assert set(late) | set(early) == set(small.core_pins()) - {"clk"} and not set(late) & set(early)
+    assert late["hold"] == pytest.approx(5 + max(nets["hold"]["delay_ns"].values()), abs=1e-5)
+    wire = nets["comparator[1]"]["delay_ns"]["core.comparator[1]"]
+    assert early["comparator[1]"] == pytest.approx(3 + wire, abs=1e-5)
+    assert metrics["worst_load_pf"] == round(max(loads.values()), 4) and metrics["loads_over"] == len(loads)
+
+
+def test_slews_that_openSTA_tells_of():
+    said = "WORST hold 1\nmax_transition\n\nPin  Limit Slew Slack\n---\nu1/q    1.50    2.96   -1.46 (VIOLATED)\n" \
+           "row[1]_reg/q    1.50    1.54   -0.04 (VIOLATED)\n\n"
+    assert over(said) == [2.96, 1.54] and over("WORST setup 1\n") == []
+
+
+@pytest.mark.parametrize("layer, violations", [((70, 20), 1), ((71, 20), 0)])
+def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
+    """300 um of the trunks' wire at a gate of 0.03 um2; of the verticals' wire nothing is said."""
+    import klayout.db as db
+    known, layout = process("sky130")[0], db.Layout()
+    cell = layout.create_cell("gate")
+
+    def draw(pair, *box):
+        cell.shapes(layout.layer(*pair)).insert(db.DBox(*box))
+    draw(known.active, -0.1, -0.5, 0.1, 0.5)
+    draw(known.poly, -1, -0.075, 1, 0.075)
+    for pair in (known.contact, *((cut.layer, cut.datatype) for cut in known.cuts)):
+        draw(pair, 0.8, -0.05, 0.9, 0.05)
+    for wire in known.wires:
+        draw((wire.layer, wire.datatype), 0.7, -0.15, 1.1, 0.15)
+    draw(layer, 0.7, -0.15, 300, 0.15)
+    layout.write(str(tmp_path / "die.gds"))
+    given = {"die_gds.gds": tmp_path / "die.gds"} | small.PLATFORM
+    assert small.run(DieAntenna(AntennaParameters()), given, tmp_path) == {"antenna_violations": violations}
