@@ -47,7 +47,7 @@ ASSEMBLED = {"place_route.netlist": "assemble.netlist", "place_route.placement":
              "mend.placement": "assemble.placement"}
 MOST_OPEN = {False: 60, True: 200}      # nets that are routed anew behind the router; around blocks it leaves more open
 STEP, LEAST = 0.04, 0.20        # utilization: of one round of tries less than of the one before; of the last
-EVEN, UNEVEN = 0.05, 0.3        # variation of density of a round's first try or of its second, whichever the first has not
+EVEN, UNEVEN = 0.05, 0.3        # variations of density: a round's second try has the one that its first has not
 ASPECTS = 1.0, 1.25             # width by height of a round's tries
 
 
@@ -184,7 +184,7 @@ def layout(design, options, runner, behind=back):
 
     A try closes when every net is routed, by the router or behind it, and no rule of design or antennas broken.
     Returns the tries: list of {utilization, aspect, density_variation, open_segments (None where the router gave up, or
-    blocks found no place), rules_broken (None without a layout)}. Raises ParameterError where blocks never find a place.
+    blocks found no place), rules_broken (None without a layout)}. Raises ParameterError where blocks find no place.
     """
     version(f"python {process(options.pdk)[0].wheel}")
     for step in chain(design, options, behind):

@@ -1,4 +1,4 @@
-"""Sinks of the clock shared among the leaves of its tree so that all leaves bear about alike: edges come at one time."""
+"""Sinks of the clock shared among the leaves of its tree: all leaves bear about alike, so edges come at one time."""
 
 from math import ceil
 

@@ -89,8 +89,9 @@ class Board:
         layout, found = self.layout.dup(), {}
         top, reach = layout.top_cell(), max(layer.space for layer in self.wiring.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
-        places = np.array([(box.left, box.bottom, box.right, box.top, number) for number, inst in enumerate(top.each_inst())
-                           for box in (inst.bbox(),)], int).reshape(-1, BOX_AND_NET)
+        outlines = [inst.bbox() for inst in top.each_inst()]
+        places = np.array([(box.left, box.bottom, box.right, box.top, number) for number, box in enumerate(outlines)],
+                          int).reshape(-1, BOX_AND_NET)
         kept = set()
         for name, box in (made for net in nets for made in self.boxes[net]):
             around = box[0] - reach, box[1] - reach, box[2] + reach, box[3] + reach

@@ -7,8 +7,8 @@ from ..steps.antenna import violations
 
 @dataclass(frozen=True)
 class Marks:
-    """close: [(level, box, box), ...], two edges (nm) nearer than wires must be. charged: [(level, polygon), ...], wires
-    too large for their gates, as KLayout writes a polygon. Levels are those of ``Wiring.layers``."""
+    """close: [(level, box, box), ...], two edges (nm) nearer than wires must be. charged: [(level, polygon), ...], wires too
+    large for their gates; a polygon as KLayout writes it. Levels are those of ``Wiring.layers``."""
 
     close: tuple
     charged: tuple
@@ -18,7 +18,7 @@ class Marks:
 
     def nets(self, board, there, among=None):
         """(names of nets that are too near to others or to themselves, of two the first in the list; names of nets with
-        an antenna), both sorted, of the names ``among`` alone if given. there: of the ``board`` when it was looked at."""
+        an antenna), both sorted, of the names ``among`` alone if given. there: of the ``board`` as it was then."""
         numbers = range(len(board.nets)) if among is None else [board.numbers[net] for net in among]
         close = set()
         for level, *edges in self.close:

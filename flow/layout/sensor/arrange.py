@@ -20,7 +20,6 @@ class Arranged:
     channel: tuple
     count: int
 
-
     @property
     def wire(self):
         """nm of all routes."""

@@ -31,14 +31,14 @@ def delays(edges, root, loads):
     return found
 
 
-def net(reaches, y, driver, tracks, known, load_pf):
+def net(reaches, y, driver, tracks, known, pin_pf):
     """(fF of all wires, dict (block, pin) -> ns behind the driver, its own resistance left out).
 
     reaches: dicts of routing.Reach; y: of the trunk, nm; driver: (block, pin). tracks: dict of routing.Tracks. known:
-    Embedded. load_pf: of every pin but the driver's.
+    Embedded. pin_pf: of every pin but the driver's.
     """
     edges, pins = tree(reaches, y, tracks, known)
-    loads = {node: load_pf * 1000 for end, node in pins.items() if end != driver}
+    loads = {node: pin_pf * 1000 for end, node in pins.items() if end != driver}
     found = delays(edges, pins[driver], loads)
     return sum(femto for *_, femto in edges), {end: found[node] for end, node in pins.items() if end != driver}
 

@@ -45,8 +45,8 @@ ORIENTATIONS = {"N": (False, False), "FN": (True, False), "FS": (False, True), "
 
 @dataclass(frozen=True)
 class Block:
-    """x, y: of its south-west corner. orientation: one of ORIENTATIONS. pins: dict pin -> tuple of (LEF layer, (left, bottom, right, top)), where they
-    lie. directions: dict pin -> 'input', 'output' or 'inout'."""
+    """x, y: of its south-west corner. orientation: one of ORIENTATIONS. pins: dict pin -> tuple of (LEF layer, (left,
+    bottom, right, top)), where they lie. directions: dict pin -> 'input', 'output' or 'inout'."""
 
     name: str
     cell: str

@@ -40,8 +40,8 @@ def sensor_steps(chip, settings, extra=()):
     pdk, clock, around = settings.pdk, chip.clock, chip.surroundings
     drc = Drc()
     drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
-    wires = DieWiresParameters(pdk, clock.port, around.load_pf, around.input_delay * clock.period_ns,
-                               around.output_delay * clock.period_ns)
+    wires = DieWiresParameters(pdk, clock.port, load_pf=around.load_pf, input_ns=around.input_delay * clock.period_ns,
+                               output_ns=around.output_delay * clock.period_ns)
     return [DiePlan(DiePlanParameters(pdk, extra=extra)), DieGds(DieGdsParameters(pdk)),
             DieMatch(DieGdsParameters(pdk)), DieWires(wires),
             *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),

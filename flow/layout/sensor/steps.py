@@ -63,7 +63,8 @@ class DiePlan(Step):
 def described(made, metal, pins, die, tracks):
     """The plan as a dict for JSON, nm. made: Arranged; metal: list of Shape; pins: dict net -> those at the edge."""
     return {"die": [nm(die.width_um), nm(die.height_um)],
-            "blocks": {name: {"cell": block.cell, "orientation": block.orientation, "box": block.box} for name, block in made.blocks.items()},
+            "blocks": {name: {"cell": block.cell, "orientation": block.orientation, "box": block.box}
+                       for name, block in made.blocks.items()},
             "nets": made.nets, "drivers": {net: plan.driver(made.blocks, made.nets[net]) for net in made.routes},
             "channel": made.channel, "tracks": asdict(tracks),
             "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},

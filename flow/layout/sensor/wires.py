@@ -13,12 +13,14 @@ from .plan import CORE
 
 @dataclass(frozen=True)
 class DieWiresParameters:
-    """pdk: process. clock: port. load_pf: of every pin at the far end of a wire. input_ns, output_ns: delays that the
-    chip's constraints leave to what is around it; those of the die's wires are added."""
+    """pdk: process. clock: port. pin_pf: of every pin at the far end of a wire, an assumption. load_pf: for which the
+    chip's outputs were laid out. input_ns, output_ns: delays that the chip's constraints leave to what is around it;
+    those of the die's wires are added."""
 
     pdk: str = "sky130"
     clock: str = "clk"
-    load_pf: float = field(default=0.02, metadata={"unit": "pF"})
+    pin_pf: float = field(default=0.02, metadata={"unit": "pF"})
+    load_pf: float = field(default=0.25, metadata={"unit": "pF"})
     input_ns: float = field(default=4.0, metadata={"unit": "ns"})
     output_ns: float = field(default=4.0, metadata={"unit": "ns"})
 
@@ -45,9 +47,9 @@ class DieWires(Step):
         nets = {}
         for net, route in plan["routes"].items():
             driver = tuple(plan["drivers"][net])
-            femto, found = elmore.net(route["reaches"], route["y"], driver, plan["tracks"], known, p.load_pf)
+            femto, found = elmore.net(route["reaches"], route["y"], driver, plan["tracks"], known, p.pin_pf)
             nets[net] = {"driver": driver[0], "wire_ff": round(femto, 3),
-                         "load_pf": round(femto / 1000 + len(found) * p.load_pf, 6),
+                         "load_pf": round(femto / 1000 + len(found) * p.pin_pf, 6),
                          "delay_ns": {f"{block}.{pin}": round(ns, 6) for (block, pin), ns in found.items()}}
         outputs["nets"].write_text(json.dumps(nets, indent=1) + "\n")
         outputs["sdc"].write_text(inputs["sdc"].read_text() + "\n".join(self.constraints(nets)) + "\n")

@@ -98,7 +98,8 @@ def negotiated(board, pins, left, most, gds, known):
     first = joblib.Parallel(n_jobs=JOBS, return_as="generator")(
         [joblib.delayed(marks_of)(gds, board.wiring, known, levels) for levels in shared_out(board.wiring, JOBS)])
     found = bargain(board, pins, left)
-    asked = sum(first, Marks((), ())).nets(board, before, [net for net in board.nets if net not in {*found.made, *shorted}])
+    rest = [net for net in board.nets if net not in {*found.made, *shorted}]
+    asked = sum(first, Marks((), ())).nets(board, before, rest)
     for _ in range(ROUNDS):
         looked_at = {*found.made, *shorted}
         fresh = marks(board.part(looked_at), board.wiring, known).nets(board, board.there, looked_at)

@@ -44,7 +44,8 @@ def jobs(options):
         chosen = flat_design(options.design)
         return [Job(f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}", effort_point,
                     (chosen, liberty, str(options.out), effort, variation, utilization), inputs)
-                for utilization in options.utilization or UTILIZATIONS for effort in EFFORTS for variation in VARIATIONS]
+                for utilization in options.utilization or UTILIZATIONS
+                for effort in EFFORTS for variation in VARIATIONS]
     found = {made.name: made for made in candidates()}
     for name in options.only or ():
         if name not in found:

@@ -1,9 +1,7 @@
-"""Sinks shared among the leaves of a clock's tree: none bears more than its share, and none hangs farther than it must."""
+"""Sinks shared among the leaves of a clock's tree: none bears more than its share or hangs farther than it must."""
 
 from collections import Counter
 from itertools import product
-
-
 
 from flow.layout.coriolis.leaves import shared
 

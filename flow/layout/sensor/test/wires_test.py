@@ -33,7 +33,7 @@ def wires(tmp_path_factory):
     small.plan(given, folder)
     given["core.sdc"] = folder / "core.sdc"
     given["core.sdc"].write_text("create_clock -name clk -period 20 [get_ports {clk}]\n")
-    metrics = small.run(DieWires(DieWiresParameters(load_pf=0.03, input_ns=3.0, output_ns=5.0)), given, folder)
+    metrics = small.run(DieWires(DieWiresParameters(pin_pf=0.03, load_pf=0.0, input_ns=3.0, output_ns=5.0)), given, folder)
     return (metrics, json.loads(given["die_wires.nets"].read_text()), given["die_wires.sdc"].read_text(),
             json.loads(given["die_plan.plan"].read_text()))
 
