@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 from flow.platforms.embedded import PROCESSES
+from flow.platforms.foundry import installed
 from flow.simulate.process import ToolError
 from flow.steps import StepError
 from models.parameters import ParameterError, check_choice
@@ -50,7 +51,8 @@ def main(argv=None):
         check_choice("backend", options.backend, ("coriolis",))
         chosen = design(CHIP if options.design == SENSOR else options.design)
         settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
-                           tuple(options.liberty), options.untimed)
+                           tuple(options.liberty), options.untimed,
+                           decks=tuple(installed(options.pdk).items()))
         if options.design == SENSOR:
             summary, lines = sensor(chosen, settings, options)
         else:

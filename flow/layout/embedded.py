@@ -21,6 +21,7 @@ from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
 from .steps.fill import Fill, FillParameters
 from .steps.floorplan import Floorplan, FloorplanParameters
+from .steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
 from .steps.gate_delays import GateDelays, GateDelaysParameters
 from .steps.gate_frames import GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
@@ -56,7 +57,7 @@ class Options:
     """pdk: process. utilization: cells' area by core area at which the search begins. effort: of the placer, 1..3.
 
     liberty: paths of characterized cells, one a corner; () for the process's corners, measured now. untimed: whether
-    there is no timing at all.
+    there is no timing at all. decks: pairs (name, path) of the foundry's own checks (`flow.platforms.foundry`).
     """
 
     pdk: str = "sky130"
@@ -64,6 +65,7 @@ class Options:
     liberty: tuple = ()
     untimed: bool = False
     effort: int = 2
+    decks: tuple = ()
 
     @property
     def corners(self):
@@ -97,7 +99,8 @@ def files(design, options, folder):
              "platform": ROOT / "flow" / "platforms" / options.pdk.replace("-", "_") / "embedded.py",
              "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis", "sdc": constraints, "frame_bench": FRAME}
     measure = {f"cells.{part}": ROOT / "cells" / part for part in MEASURES}
-    return given | measure | {f"timing.{path.stem}": path for path in options.liberty}
+    return given | measure | {f"timing.{path.stem}": path for path in options.liberty} | {
+        f"foundry.{name}": path for name, path in options.decks}
 
 
 def modules(design):
@@ -139,7 +142,9 @@ def judged(design, options):
 
 def back(design, options):
     """The steps behind a routing that keeps the design rules: what else judges it."""
-    steps = [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design),
+    told = FoundryDrcParameters(options.pdk, design.top)
+    foundry = [{"klayout": FoundryDrc, "magic": MagicDrc}[name](told) for name, _ in options.decks]
+    steps = [Equivalence(EquivalenceParameters(design.top, design.clock.port)), *simulations(design), *foundry,
              Lvs(LvsParameters(options.pdk)), Lef(LefParameters(options.pdk)),
              Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
     for step in steps if design.macros else ():

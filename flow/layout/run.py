@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 
 from flow.files import staged
 from flow.platforms.embedded import process
@@ -10,7 +11,7 @@ from flow.steps import Runner, StepError
 from . import history
 from .blocks import check_same, given, inner
 from .design import folder_name
-from .embedded import Options, files, layout
+from .embedded import files, layout
 from .energy import blocks
 from .netlist import Netlist
 from .picture import by_block, render
@@ -18,7 +19,8 @@ from .report import page
 from .summary import broken, summarize
 
 RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
-           "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
+           "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc", "foundry.lyrdb": "foundry_drc.report",
+           "magic_drc.txt": "magic_drc.report"}
 BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty",
              "power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
 FIRST = "sdf", "lib"            # of the first corner, also under the design's name alone
@@ -43,7 +45,7 @@ def laid_out(chosen, settings, out, note):
     in its folder in ``out``. Raises StepError for a block that breaks a limit."""
     runners = {}
     for block in inner(chosen):
-        own = Options(settings.pdk, block.utilization, settings.liberty, settings.untimed)
+        own = replace(settings, utilization=block.utilization)
         runners[block.name], summary = laid_out(block, own, out, lambda text, name=block.name: note(f"{name}: {text}"))
         if wrong := broken(summary):
             raise StepError(f"{chosen.name}: its block {block.name} is not whole: {wrong[0]}")

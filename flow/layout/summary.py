@@ -39,6 +39,8 @@ def summarize(design, options, runner, tried):
         "mended": metric("mend", "mended"), "hopped": metric("mend", "hopped"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
+        "foundry_drc_violations": metric("foundry_drc", "foundry_drc_violations"),
+        "magic_drc_violations": metric("magic_drc", "magic_drc_violations"),
         "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("fill", "after"),
         "density_violations": metric("fill", "density_violations"), "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),

@@ -14,6 +14,7 @@ COMMANDS = {
     "klayout": (["klayout", "-v"], r"KLayout (\S+)"),
     "sta": (["sta", "-version"], r"(\S+)"),
     "ngspice": (["ngspice", "--version"], r"ngspice-(\S+)"),
+    "magic": (["magic", "--version"], r"(\S+)"),
     "iverilog": (["iverilog", "-V"], r"version (\S+)"),
 }
 

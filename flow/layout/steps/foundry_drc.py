@@ -1,0 +1,99 @@
+"""Design rules once more, by the decks of the foundry's PDK where the user has one: in KLayout and in Magic."""
+
+import json
+import os
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from flow.platforms.foundry import foundry
+from flow.simulate.process import finish
+from flow.steps import Step, StepError
+
+from . import klayout_decks
+from .klayout_decks import violations
+
+# Of every rule that is broken, a line: how often, a tabulator, Magic's words
+MAGIC = """
+if {{"drc(full)" ni [drc listall style]}} {{
+  puts "error: the technology [tech name] has no style drc(full)"
+  quit -noprompt
+}}
+drc off
+gds read {gds}
+load {top}
+select top cell
+drc euclidean on
+drc style drc(full)
+drc check
+drc catchup
+set out [open {report} w]
+foreach {{rule places}} [drc listall why] {{ puts $out "[llength $places]\\t$rule" }}
+puts $out "end"
+close $out
+quit -noprompt
+"""
+
+
+@dataclass(frozen=True)
+class FoundryDrcParameters:
+    """pdk: process. top: cell."""
+
+    pdk: str = "sky130"
+    top: str = ""
+
+
+class FoundryDrc(Step):
+    """The KLayout deck over the whole layout, with all of its rules that are meant for blocks."""
+
+    name = "foundry_drc"
+    inputs = {"gds": "fill.gds", "deck": "foundry.klayout"}
+    outputs = {"report": "foundry.lyrdb", "summary": "foundry_drc.json"}
+    Parameters = FoundryDrcParameters
+    metrics = {"foundry_drc_violations": ""}
+    uses = (klayout_decks,)
+    tools = ("klayout",)
+
+    def run(self, inputs, outputs):
+        said = {"input": inputs["gds"].resolve(), "topcell": self.parameters.top,
+                "report": outputs["report"].resolve(), **dict(foundry(self.parameters.pdk).defines)}
+        done = finish(["klayout", "-b", "-zz", "-r", inputs["deck"].resolve(),
+                       *(word for name, value in said.items() for word in ("-rd", f"{name}={value}"))],
+                      env={"HOME": os.environ.get("HOME", "/tmp")})
+        if done.returncode:
+            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_last(done)}")
+        found = violations(outputs["report"])
+        outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
+        return {"foundry_drc_violations": sum(found.values())}
+
+
+class MagicDrc(Step):
+    """Magic's own rules, over the layout as Magic reads it."""
+
+    name = "magic_drc"
+    inputs = {"gds": "fill.gds", "magic": "foundry.magic"}
+    outputs = {"report": "magic_drc.txt"}
+    Parameters = FoundryDrcParameters
+    metrics = {"magic_drc_violations": ""}
+    tools = ("magic",)
+
+    def run(self, inputs, outputs):
+        folder, known = outputs["report"].parent.resolve(), foundry(self.parameters.pdk)
+        magic = inputs["magic"].resolve()
+        root = Path(str(magic).removesuffix(known.magic))
+        script = folder / "drc.tcl"
+        script.write_text(MAGIC.format(gds=inputs["gds"].resolve(), top=self.parameters.top,
+                                       report=outputs["report"].resolve()))
+        done = finish(["magic", "-dnull", "-noconsole", "-rcfile", magic / known.rc, script], cwd=folder,
+                      env={"PDK_ROOT": str(root), "HOME": os.environ.get("HOME", "/tmp")})
+        lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
+        if done.returncode or lines[-1:] != ["end"]:
+            raise StepError(f"magic_drc: Magic failed: {_last(done)}")
+        script.unlink()
+        return {"magic_drc_violations": sum(int(line.split("\t")[0]) for line in lines[:-1])}
+
+
+def _last(done):
+    said = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+    told = [line.strip() for line in said if re.search(r"(?i)^error|undefined|ERROR:", line.strip())]
+    return (told or said or ["it ended without a word"])[0 if told else -1]

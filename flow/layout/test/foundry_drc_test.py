@@ -1,0 +1,121 @@
+"""Checks of an installed PDK: a small one, made here, with a deck and a technology of one metal, read by the real tools."""
+
+import shutil
+
+import pytest
+
+from flow.layout.embedded import Options, back
+from flow.layout.design import design
+from flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
+from flow.platforms.foundry import foundry, installed
+from flow.steps import StepError
+from models.parameters import ParameterError
+
+db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
+
+DECK = """
+source($input, $topcell)
+report("one metal", $report)
+metal = input(68, 20)
+metal.space(0.14.um).output("m1.2", "space") if $beol == "true"
+"""
+TECHNOLOGY = """tech
+  format 29
+  small
+end
+version
+  version 1
+  description "one metal"
+end
+planes
+  metal1,m1
+end
+types
+  metal1 metal1,m1
+end
+contact
+end
+styles
+  styletype mos
+  metal1 1
+end
+compose
+end
+connect
+  metal1 metal1
+end
+cifoutput
+style gdsii
+  scalefactor 10 nanometers
+  layer MET1 metal1
+    calma 68 20
+end
+cifinput
+style gdsii
+  scalefactor 10 nanometers
+  layer metal1 MET1
+  calma MET1 68 20
+end
+drc
+style drc(full)
+  spacing metal1 metal1 14 touching_ok "space below 0.14 um"
+end
+extract
+end
+"""
+
+
+@pytest.fixture
+def root(tmp_path):
+    known = foundry("sky130")
+    for path, text in ((known.klayout, DECK), (f"{known.magic}/small.tech", TECHNOLOGY),
+                       (f"{known.magic}/{known.rc}", f"tech load $::env(PDK_ROOT)/{known.magic}/small.tech\n")):
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text)
+    return tmp_path
+
+
+def checked(step, root, gap_nm):
+    """Metrics of ``step`` for two wires so far from one another."""
+    layout = db.Layout()
+    layout.dbu = 0.001
+    metal = layout.create_cell("top").shapes(layout.layer(68, 20))
+    for bottom in (0, 140 + gap_nm):
+        metal.insert(db.Box(0, bottom, 1000, bottom + 140))
+    layout.write(str(root / "wires.gds"))
+    inputs = {"gds": root / "wires.gds"} | installed("sky130", {"PDK_ROOT": str(root)})
+    inputs["deck"] = inputs["klayout"]
+    return step.run(inputs, {name: root / file for name, file in step.outputs.items()})
+
+
+@pytest.mark.parametrize("gap_nm, broken", [(150, 0), (100, 1)])
+@pytest.mark.parametrize("tool, kind", [("klayout", FoundryDrc), ("magic", MagicDrc)])
+def test_a_space_that_is_too_small(tool, kind, gap_nm, broken, root):
+    if not shutil.which(tool):
+        pytest.skip(f"{tool}: not installed")
+    found = checked(kind(FoundryDrcParameters("sky130", "top")), root, gap_nm)
+    assert list(found.values()) == [broken]
+
+
+@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not installed")
+def test_a_deck_that_fails_is_told(root):
+    (root / foundry("sky130").klayout).write_text("no_such_word(1)\n")
+    with pytest.raises(StepError, match="sky130A_mr.drc failed: .*no_such_word"):
+        checked(FoundryDrc(FoundryDrcParameters("sky130", "top")), root, 150)
+
+
+@pytest.mark.skipif(not shutil.which("magic"), reason="magic: not installed")
+def test_a_technology_that_fails_is_told(root):
+    (root / foundry("sky130").magic / "sky130A.magicrc").write_text("no_such_word\n")
+    with pytest.raises(StepError, match="magic_drc: Magic failed"):
+        checked(MagicDrc(FoundryDrcParameters("sky130", "top")), root, 150)
+
+
+def test_what_is_installed_is_run(root):
+    assert installed("sky130", {}) == {} and installed("ihp-sg13g2", {"PDK_ROOT": str(root)}) == {}
+    decks = tuple(installed("sky130", {"PDK_ROOT": str(root)}).items())
+    names = {step.name for step in back(design("amp_ctrl"), Options(decks=decks))}
+    assert {"foundry_drc", "magic_drc"} <= names
+    shutil.rmtree(root / "sky130A")
+    with pytest.raises(ParameterError, match="PDK_ROOT = .*: must hold sky130A/libs.tech/klayout"):
+        installed("sky130", {"PDK_ROOT": str(root)})
