@@ -30,13 +30,16 @@ class Antenna(Step):
 
     def run(self, inputs, outputs):
         import klayout.db as db
-        known, _ = process(self.parameters.pdk)
-        layout = db.Layout()
+        known, layout = self.known(), db.Layout()
         layout.read(str(inputs["gds"]))
         found = {known.wires[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
                  for level, bad in violations(layout, layout.top_cell(), known).items()}
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
+
+    def known(self):
+        """Embedded, with the wires that are looked at."""
+        return process(self.parameters.pdk)[0]
 
 
 def connected(layout, top, known, levels):
