@@ -4,8 +4,11 @@ import hashlib
 import json
 import multiprocessing
 import time
+from contextlib import nullcontext
 from dataclasses import asdict
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from threading import Event, Semaphore
 
 import joblib
 
@@ -59,18 +62,37 @@ class Runner:
         return self.records[step.name]
 
     def run_all(self, steps):
-        """The records of ``steps``, in their order; those that do not need each other run at the same time."""
-        left = list(steps)
-        while left:
-            made_later = {f"{step.name}.{name}" for step in left for name in step.outputs}
-            ready = [step for step in left if not made_later & set(step.inputs.values())] or left[:1]
+        """The records of ``steps``, in their order. Each begins when what it needs is there: at once if others wait for
+        it, else when a core is free. Raises StepError, also for steps that need each other in a circle."""
+        made_by = {f"{step.name}.{name}": step.name for step in steps for name in step.outputs}
+        needs = {step.name: {made_by[source] for source in step.inputs.values() if source in made_by} for step in steps}
+        try:
+            TopologicalSorter(needs).prepare()
+        except CycleError as error:
+            raise StepError(f"steps: {' needs '.join(reversed(error.args[1]))}") from None
+        awaited, failed, cores = set().union(*needs.values()), Event(), Semaphore(joblib.cpu_count())
+        ended = {step.name: Event() for step in steps}
+
+        def begin(step):
             try:
-                joblib.Parallel(n_jobs=-1, backend="threading")(joblib.delayed(self.run)(step) for step in ready)
+                for name in needs[step.name]:
+                    ended[name].wait()
+                with nullcontext() if step.name in awaited else cores:
+                    if not failed.is_set():
+                        self.run(step)
             except BaseException:
-                for child in multiprocessing.active_children():     # else their threads wait for them to the end
-                    child.terminate()
+                failed.set()
                 raise
-            left = [step for step in left if step not in ready]
+            finally:
+                ended[step.name].set()
+
+        try:        # a thread a step, in batches of one: those that wait take nobody's place
+            joblib.Parallel(n_jobs=len(steps), backend="threading", batch_size=1)(
+                joblib.delayed(begin)(step) for step in steps)
+        except BaseException:
+            for child in multiprocessing.active_children():     # else their threads wait for them to the end
+                child.terminate()
+            raise
         return [self.records[step.name] for step in steps]
 
 

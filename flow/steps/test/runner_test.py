@@ -7,6 +7,7 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import joblib
 import pytest
 
 from flow.steps import Runner, Step, StepError
@@ -104,6 +105,56 @@ def test_steps_that_do_not_need_each_other_run_together(tmp_path, text):
     records = runner.run_all([Meet(), Both(), Greet()])
     assert [record["step"] for record in records] == ["meet", "both", "greet"]
     assert runner.paths["both.text"].read_text() == "TrueTrue"
+
+
+class Last(Both):
+    """Tells others, which have taken all cores, that the end of a chain was reached."""
+
+    name = "last"
+    inputs = {"text": "again.text"}
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(inputs["text"].read_text())
+        (inputs["text"].parents[1] / "last").write_text("")
+        return {"length": 0}
+
+
+class Patient(Repeat):
+    """Ends when `Last` has run."""
+
+    def __init__(self, number):
+        super().__init__(Times())
+        self.name = f"patient{number}"
+
+    def run(self, inputs, outputs):
+        outputs["text"].write_text(str(waited((outputs["text"].parents[1] / "last").exists)))
+        return {"length": 0}
+
+
+class Reader(Repeat):
+    name = "reader"
+    inputs = {"text": "last.text"}
+
+
+def test_a_chain_goes_on_while_others_have_all_cores(tmp_path, text):
+    runner, others = Runner(tmp_path / "steps", {"text": text}), [Patient(k) for k in range(joblib.cpu_count())]
+    runner.run_all([*others, Repeat(), Again(), Last(), Reader()])
+    assert [runner.paths[f"{step.name}.text"].read_text() for step in others] == ["True"] * len(others)
+
+
+class Circle(Repeat):
+    name = "circle"
+    inputs = {"text": "turn.text"}
+
+
+class Turn(Repeat):
+    name = "turn"
+    inputs = {"text": "circle.text"}
+
+
+def test_a_circle_is_told(tmp_path, text):
+    with pytest.raises(StepError, match="steps: (circle needs turn needs circle|turn needs circle needs turn)"):
+        Runner(tmp_path / "steps", {"text": text}).run_all([Circle(), Turn()])
 
 
 def test_of_steps_that_run_together_the_failed_one_is_told(tmp_path, text):
