@@ -16,7 +16,7 @@ from .design import DESIGNS
 from .steps.antenna import Antenna, AntennaParameters
 from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from .steps.drc import Drc
+from .steps.drc import Drc, DrcParameters
 from .steps.equivalence import Equivalence, EquivalenceParameters
 from .steps.extraction import Extraction, ExtractionParameters
 from .steps.fill import Fill, FillParameters
@@ -136,8 +136,8 @@ def judged(design, options):
     clock, hard = design.clock.port, modules(design)
     assemble = [Assemble(AssembleParameters(options.pdk, hard))] if hard else []
     return [Mend(MendParameters(options.pdk, clock, MOST_OPEN[bool(hard)])), *assemble,
-            StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))), Fill(FillParameters(options.pdk)), Drc(),
-            Antenna(AntennaParameters(options.pdk))]
+            StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))), Fill(FillParameters(options.pdk)),
+            Drc(DrcParameters(options.pdk)), Antenna(AntennaParameters(options.pdk))]
 
 
 def back(design, options):

@@ -12,7 +12,8 @@ PROCESSES = "sky130", "ihp-sg13g2"
 class Wire:
     """A wiring layer: its name in PDKMaster, GDS layer and datatype, capacitance to the ground plane (aF/um2, aF/um
     of edge), resistance (Ohm per square), thickness (um), and the most side wall by gate area: antenna_ratio on a net
-    without a diffusion, else antenna_diffusion[0] plus antenna_diffusion[1] an um2 of it."""
+    without a diffusion, else antenna_diffusion[0] plus antenna_diffusion[1] an um2 of it; least area of a hole in it,
+    where PDKMaster's rules have none of that."""
 
     name: str
     layer: int
@@ -23,6 +24,7 @@ class Wire:
     thickness_um: float
     antenna_ratio: float
     antenna_diffusion: tuple
+    hole_um2: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from flow.layout.picture import render
 from flow.layout.report import page
 from flow.layout.run import laid_out
 from flow.layout.steps.antenna import AntennaParameters
-from flow.layout.steps.drc import Drc
+from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.sta import StaParameters
 from flow.layout.summary import broken
 from flow.platforms.die import thick
@@ -38,7 +38,7 @@ RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "drc.lyrdb": "drc.repo
 def sensor_steps(chip, settings, extra=()):
     """The die's steps in order. chip: Design; settings: Options; extra: as of DiePlanParameters."""
     pdk, clock, around = settings.pdk, chip.clock, chip.surroundings
-    drc = Drc()
+    drc = Drc(DrcParameters(pdk))
     drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
     wires = DieWiresParameters(pdk, clock.port, load_pf=around.load_pf, input_ns=around.input_delay * clock.period_ns,
                                output_ns=around.output_delay * clock.period_ns)

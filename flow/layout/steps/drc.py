@@ -2,14 +2,22 @@
 
 import json
 import re
+from dataclasses import dataclass
 
+from flow.platforms.embedded import process
 from flow.steps import Step, StepError
 
 from . import klayout_decks
 from .klayout_decks import run_deck, violations
 
-
 WARNING = "[Warning]"
+
+
+@dataclass(frozen=True)
+class DrcParameters:
+    """pdk: process."""
+
+    pdk: str = "sky130"
 
 
 class Drc(Step):
@@ -20,15 +28,17 @@ class Drc(Step):
     """
 
     name = "drc"
-    inputs = {"gds": "fill.gds", "deck": "library.drc"}
+    inputs = {"gds": "fill.gds", "deck": "library.drc", "platform": "platform"}
     outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "spaces.drc"}
+    Parameters = DrcParameters
     metrics = {"drc_violations": ""}
     uses = (klayout_decks,)
     tools = ("klayout",)
 
     def run(self, inputs, outputs):
         log = outputs["report"].with_suffix(".log")
-        outputs["deck"].write_text(with_flat_spaces(inputs["deck"].read_text()))
+        deck = with_flat_spaces(inputs["deck"].read_text())
+        outputs["deck"].write_text("\n".join([deck, *holes(process(self.parameters.pdk)[0])]) + "\n")
         status = run_deck(outputs["deck"], {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "",
                                            "REPORT_FILE": outputs["report"].resolve()}, log)
         if status:
@@ -54,3 +64,12 @@ def with_flat_spaces(deck):
         deck = deck.replace(rule[0], "", 1)
     layers = dict.fromkeys(rule[1] for rule in rules)
     return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *(rule[0] for rule in rules)])
+
+
+def holes(known):
+    """Lines for a deck: the least areas of holes that ``known`` (Embedded) has beyond PDKMaster's rules."""
+    for wire in known.wires:
+        if wire.hole_um2:
+            yield f"{wire.name} = input({wire.layer}, {wire.datatype})"
+            yield (f"{wire.name}.holes.with_area(nil, {wire.hole_um2}).output(\"{wire.name} hole\", "
+                   f"\"{wire.name} minimum area of a hole\")")

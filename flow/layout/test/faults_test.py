@@ -4,7 +4,7 @@ import pytest
 
 from flow.layout import embedded
 from flow.layout.design import Design
-from flow.layout.steps.drc import Drc
+from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.lvs import Lvs, LvsParameters
 from flow.steps import Runner
 
@@ -49,7 +49,7 @@ def changed(runner, folder, change):
 
 
 def test_the_layout_is_clean_and_matches(runner, tmp_path):
-    assert runner.run(Drc())["metrics"] == {"drc_violations": 0}
+    assert runner.run(Drc(DrcParameters()))["metrics"] == {"drc_violations": 0}
     assert lvs(runner, runner.paths["fill.gds"], tmp_path)
 
 
@@ -80,6 +80,18 @@ def test_wires_too_near_are_found(runner, tmp_path):
         import klayout.db as db
         box = next(s.bbox() for s in top.shapes(layout.layer(69, 20)).each() if s.bbox().height() > 3000)
         top.shapes(layout.layer(69, 20)).insert(box.moved(box.width() + 100, 0) & db.Box(top.bbox()))
-    gds, step = changed(runner, tmp_path, near), Drc()
+    gds, step = changed(runner, tmp_path, near), Drc(DrcParameters())
     inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
     assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] > 0
+
+
+def test_a_hole_that_is_too_small_is_found(runner, tmp_path):
+    """A rule that PDKMaster's deck does not have."""
+    def ring(layout, top):
+        import klayout.db as db
+        right = top.bbox().right + 5000
+        metal = db.Region(db.Box(right, 0, right + 2000, 2000)) - db.Region(db.Box(right + 800, 800, right + 1100, 1200))
+        top.shapes(layout.layer(69, 20)).insert(metal)
+    gds, step = changed(runner, tmp_path, ring), Drc(DrcParameters())
+    inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
+    assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] == 1

@@ -5,7 +5,7 @@ import pytest
 from flow.layout import embedded
 from flow.layout.blocks import check_same, given
 from flow.layout.design import DESIGNS, Design, Hard
-from flow.layout.steps.drc import Drc
+from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from flow.layout.steps.lef import Lef, LefParameters
 from flow.layout.steps.lvs import Lvs, LvsParameters
@@ -53,7 +53,7 @@ def runners(tmp_path_factory):
 
 def test_it_is_clean_matches_and_is_proven(runners):
     runner = runners["pair"]
-    assert runner.run(Drc())["metrics"] == {"drc_violations": 0}
+    assert runner.run(Drc(DrcParameters()))["metrics"] == {"drc_violations": 0}
     assert runner.run(Lvs(LvsParameters()))["metrics"]["lvs_match"]
     proof = Equivalence(EquivalenceParameters("Pair"))
     proof.inputs = {name: embedded.ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}

@@ -28,6 +28,14 @@ def test_the_slit_beside_a_pad_is_filled():
     assert metal.area() == sum(db.Region(db.Box(*box)).area() for box in (pad, pin)) + 40 * 260
 
 
+@pytest.mark.parametrize("side, holes", [(360, 0), (380, 1)])
+def test_a_small_hole_is_filled(side, holes):
+    """0.14 um2 is 374 nm square; the hole is wider than a slit."""
+    ring = [(0, 0, 1000, 140), (0, 140 + side, 1000, 280 + side), (0, 0, 140, 280 + side), (140 + side, 0, 1000, 280 + side)]
+    count, metal = filled(*ring)
+    assert (count, metal.holes().count()) == (1 - holes, holes)
+
+
 def test_two_shapes_stay_two():
     assert filled((0, 0, 320, 320), (360, 0, 700, 320))[0] == 0
 

