@@ -9,6 +9,7 @@ from pathlib import Path
 
 from flow.files import staged
 from flow.gds import write_gds
+from flow.layout.macro import layer_names
 from flow.platforms import openroad
 from flow.platforms.die import thick
 from flow.platforms.embedded import process
@@ -27,8 +28,7 @@ def layer(pin, pdk):
     if pin.supply:
         return above.wire, above.lef
     wire = known.wires[VERTICAL if pin.side in ("north", "south") else ACROSS]
-    names = {numbers: name for name, numbers in openroad.process(pdk).gds.items()}
-    return wire, names[wire.layer, wire.datatype]
+    return wire, layer_names(pdk)[wire.layer, wire.datatype]
 
 
 def box(pin, block, supply_um, grid_um):

@@ -72,8 +72,12 @@ def publish(folder, name, settings, runner, summary):
             render(runner.paths["fill.gds"], part / f"{name}.png", process(settings.pdk)[0])
         pictures = figures(part, name, runner, settings)
         picture = f"{name}.png" if (part / f"{name}.png").exists() else None
-        runs = history.continued(folder / "history.jsonl", summary)
-        (part / "history.jsonl").write_text(history.written(runs))
-        (part / "report.html").write_text(page(summary, broken(summary), process(settings.pdk)[0], runs, picture,
-                                               pictures))
-        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+        tell(part, folder, summary, broken(summary), process(settings.pdk)[0], picture, pictures)
+
+
+def tell(part, folder, summary, lines, known, picture, pictures):
+    """Write summary, history and page into ``part``, which will be in ``folder``. The rest is as of `report.page`."""
+    runs = history.continued(folder / "history.jsonl", summary)
+    (part / "history.jsonl").write_text(history.written(runs))
+    (part / "report.html").write_text(page(summary, lines, known, runs, picture, pictures))
+    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")

@@ -6,10 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from flow.files import staged
-from flow.layout import history
 from flow.layout.picture import render
-from flow.layout.report import page
-from flow.layout.run import laid_out
+from flow.layout.run import laid_out, tell
 from flow.layout.steps.antenna import AntennaParameters
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.sta import StaParameters
@@ -78,9 +76,6 @@ def die(chip, settings, given, frames, extra, folder, note):
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         by_block(part / f"{SENSOR}.blocks.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
         render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", known)
-        runs = history.continued(folder / "history.jsonl", summary)
-        (part / "history.jsonl").write_text(history.written(runs))
-        (part / "report.html").write_text(page(summary, lines, known, runs, f"{SENSOR}.png", [
-            (f"{SENSOR}.blocks.png", "The blocks; hatched: a frame, no circuit")]))
-        (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+        tell(part, folder, summary, lines, known, f"{SENSOR}.png",
+             [(f"{SENSOR}.blocks.png", "The blocks; hatched: a frame, no circuit")])
     return folder / "summary.json", lines

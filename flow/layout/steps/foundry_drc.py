@@ -11,7 +11,7 @@ from flow.simulate.process import finish
 from flow.steps import Step, StepError
 
 from . import klayout_decks
-from .klayout_decks import violations
+from .klayout_decks import run_deck, violations
 
 # Of every rule that is broken, a line: how often, a tabulator, Magic's words
 MAGIC = """
@@ -57,11 +57,9 @@ class FoundryDrc(Step):
     def run(self, inputs, outputs):
         said = {"input": inputs["gds"].resolve(), "topcell": self.parameters.top,
                 "report": outputs["report"].resolve(), **dict(foundry(self.parameters.pdk).defines)}
-        done = finish(["klayout", "-b", "-zz", "-r", inputs["deck"].resolve(),
-                       *(word for name, value in said.items() for word in ("-rd", f"{name}={value}"))],
-                      env={"HOME": os.environ.get("HOME", "/tmp")})
-        if done.returncode:
-            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_last(done)}")
+        log = outputs["report"].with_suffix(".log")
+        if run_deck(inputs["deck"].resolve(), {}, log, said):
+            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_telling(log.read_text())}")
         found = violations(outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"foundry_drc_violations": sum(found.values())}
@@ -88,12 +86,13 @@ class MagicDrc(Step):
                       env={"PDK_ROOT": str(root), "HOME": os.environ.get("HOME", "/tmp")})
         lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
         if done.returncode or lines[-1:] != ["end"]:
-            raise StepError(f"magic_drc: Magic failed: {_last(done)}")
+            raise StepError(f"magic_drc: Magic failed: {_telling(done.stdout + done.stderr)}")
         script.unlink()
         return {"magic_drc_violations": sum(int(line.split("\t")[0]) for line in lines[:-1])}
 
 
-def _last(done):
-    said = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-    told = [line.strip() for line in said if re.search(r"(?i)^error|undefined|ERROR:", line.strip())]
+def _telling(words):
+    """The line of a tool's ``words`` that tells what went wrong, else the last."""
+    said = [line.strip() for line in words.splitlines() if line.strip()]
+    told = [line for line in said if re.search(r"(?i)^error|undefined|ERROR:", line)]
     return (told or said or ["it ended without a word"])[0 if told else -1]

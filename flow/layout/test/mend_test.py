@@ -10,6 +10,7 @@ from flow.layout.mend.marks import Marks, marks, shared_out
 from flow.layout.mend.nets import routed
 from flow.layout.mend.wiring import Wiring
 from flow.layout.steps.mend import open_nets
+from flow.layout.test.gate import gate
 from flow.platforms.embedded import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
@@ -193,22 +194,10 @@ def test_a_board_draws_what_it_lifted():
     assert marks(drawn, WIRING, KNOWN) == Marks((), ())
 
 
-def gate(layout):
-    """A cell with a gate of 0.075 um2 below a piece of m1."""
-    cell = layout.create_cell("gate")
-    li, m1, mcon = KNOWN.wires[0], KNOWN.wires[1], KNOWN.cuts[0]
-    for layer, *box in ((KNOWN.active, 0, 0, 1, 0.5), (KNOWN.poly, 0.4, -1, 0.55, 1),
-                        (KNOWN.contact, 0.4, -0.9, 0.55, -0.8), ((li.layer, li.datatype), 0.3, -1, 0.7, -0.5),
-                        ((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6),
-                        ((m1.layer, m1.datatype), 0.3, -0.8, 0.7, -0.5)):
-        cell.shapes(layout.layer(*layer)).insert(db.DBox(*box))
-    return cell
-
-
 def test_who_is_too_near_or_too_large_for_its_gate():
     """w0 and w2 lead to gates, w0 too far; w2 is too near to w1. A part of the layout tells the same as the whole."""
     layout, top = empty()
-    cell = gate(layout)
+    cell = gate(layout, KNOWN)
     for y in (5_000, 30_000):
         top.insert(db.CellInstArray(cell.cell_index(), db.Trans(db.Vector(1_000, y))))
     wires = {"w0": (1_300, 4_200, 61_000, 4_500), "w1": (5_000, 29_600, 9_000, 29_900),
