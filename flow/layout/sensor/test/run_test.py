@@ -35,7 +35,7 @@ def test_a_small_die(tmp_path):
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
     assert summary["frames"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
     there = {file.name for file in (tmp_path / "out").iterdir()}
-    assert there == {"steps", "report.html", "summary.json", *(f"asp_sensor.{suffix}" for suffix in (
+    assert there == {"steps", "report.html", "summary.json", "history.jsonl", *(f"asp_sensor.{suffix}" for suffix in (
         "gds", "v", "drc.lyrdb", "connectivity.json", "wires.json", "sdc", "png", "blocks.png"))}
     assert "insides of the frames" in (tmp_path / "out" / "report.html").read_text()
     for name, value in (("open_nets", 1), ("shorts", 2), ("lvs_match", False), ("drc_violations", 1),
