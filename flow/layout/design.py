@@ -90,9 +90,9 @@ DESIGNS = {made.name: made for made in (
     Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
     Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, surroundings=DIE),
     # of the thesis (B.3.2): both blocks hardened, the rest around them
-    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.4, density_variation=0.3,
+    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.5, density_variation=0.3,
            surroundings=DIE,
-           macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.5, 0.0)))))}
+           macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.93, 0.8)))))}
 
 
 def design(name):
