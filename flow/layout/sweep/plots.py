@@ -44,7 +44,7 @@ def pareto_plot(points):
 
 def effort_plot(points):
     """Seconds of routing against area, wire length and worst slack: a mark an effort, a colour a utilization, beside it
-    the variation of density; crosses below did not close."""
+    the variations of density that came to this; crosses below did not close."""
     figure = Figure(figsize=(13, 4.6), layout="constrained")
     shares = sorted({point["utilization"] for point in points})
     for axes, (key, words) in zip(figure.subplots(1, 3), QUALITY, strict=True):
@@ -54,8 +54,9 @@ def effort_plot(points):
                 axes.plot(point["seconds"], 0, "x", color=colour, transform=axes.get_xaxis_transform(), clip_on=False)
                 continue
             axes.plot(point["seconds"], point[key], MARKS[point["effort"]], color=colour)
-            axes.annotate(f"{point['variation']:g}", (point["seconds"], point[key]), fontsize=7, xytext=(4, 4),
-                          textcoords="offset points")
+        for (value, *_), same in alike(points, key).items() if key != "area_um2" else ():   # that is the utilization's
+            axes.annotate(", ".join(f"{point['variation']:g}" for point in same), (same[-1]["seconds"], value),
+                          fontsize=7, xytext=(6, -3), textcoords="offset points")
         axes.set(xlabel="seconds of placing, routing and mending", ylabel=words)
         axes.margins(0.08)
     marks = [Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")
@@ -65,3 +66,12 @@ def effort_plot(points):
     figure.legend(handles=[*marks, Line2D([], [], linestyle="", marker="x", color="0.5", label="did not close")],
                   loc="outside upper center", ncols=len(marks) + 1, fontsize=8)
     return figure
+
+
+def alike(points, key):
+    """dict (value of ``key``, effort, utilization) -> the points that closed with it, the slowest last."""
+    found = {}
+    for point in sorted(points, key=lambda point: point["seconds"]):
+        if point["closed"]:
+            found.setdefault((point[key], point["effort"], point["utilization"]), []).append(point)
+    return found
