@@ -47,22 +47,23 @@ def effort_plot(points):
     the variations of density that came to this; crosses below did not close."""
     figure = Figure(figsize=(13, 4.6), layout="constrained")
     shares = sorted({point["utilization"] for point in points})
+    colour = {share: COLOURS[k % len(COLOURS)] for k, share in enumerate(shares)}
     for axes, (key, words) in zip(figure.subplots(1, 3), QUALITY, strict=True):
         for point in points:
-            colour = COLOURS[shares.index(point["utilization"]) % len(COLOURS)]
             if not point["closed"]:
-                axes.plot(point["seconds"], 0, "x", color=colour, transform=axes.get_xaxis_transform(), clip_on=False)
-                continue
-            axes.plot(point["seconds"], point[key], MARKS[point["effort"]], color=colour)
-        for (value, *_), same in alike(points, key).items() if key != "area_um2" else ():   # that is the utilization's
-            axes.annotate(", ".join(f"{point['variation']:g}" for point in same), (same[-1]["seconds"], value),
-                          fontsize=7, xytext=(6, -3), textcoords="offset points")
+                axes.plot(point["seconds"], 0, "x", color=colour[point["utilization"]],
+                          transform=axes.get_xaxis_transform(), clip_on=False)
+        for (value, effort, share), same in alike(points, key).items():
+            axes.plot([point["seconds"] for point in same], [value] * len(same), MARKS[effort], color=colour[share])
+            if key != "area_um2":           # which follows from the utilization
+                axes.annotate(", ".join(f"{point['variation']:g}" for point in same), (same[-1]["seconds"], value),
+                              fontsize=7, xytext=(6, -3), textcoords="offset points")
         axes.set(xlabel="seconds of placing, routing and mending", ylabel=words)
         axes.margins(0.08)
     marks = [Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")
              for effort, mark in MARKS.items()]
-    marks += [Line2D([], [], linestyle="", marker="o", color=COLOURS[k % len(COLOURS)], label=f"utilization {share:g}")
-              for k, share in enumerate(shares)]
+    marks += [Line2D([], [], linestyle="", marker="o", color=colour[share], label=f"utilization {share:g}")
+              for share in shares]
     figure.legend(handles=[*marks, Line2D([], [], linestyle="", marker="x", color="0.5", label="did not close")],
                   loc="outside upper center", ncols=len(marks) + 1, fontsize=8)
     return figure
