@@ -19,17 +19,17 @@ help:  ## this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
 	@echo "Arguments of sim: $(SIM_OPTIONS) PHASE=1   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
 
-$(READY): requirements.lock pyproject.toml flow/setup/venv.sh
-	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements.lock
+$(READY): requirements/run.lock pyproject.toml requirements/venv.sh
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/run.lock
 	@touch $@
 
-$(TESTS_READY): $(READY) requirements-test.lock
-	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-test.lock
+$(TESTS_READY): $(READY) requirements/test.lock
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/test.lock
 	@touch $@
 
-$(LAYOUT_READY): $(READY) requirements-layout.lock requirements-pdk.lock
-	@bash flow/setup/venv.sh '$(PYTHON)' '$(VENV)' requirements-layout.lock
-	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements-pdk.lock
+$(LAYOUT_READY): $(READY) requirements/layout.lock requirements/pdk.lock
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/layout.lock
+	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements/pdk.lock
 	@touch $@
 
 .PHONY: setup
@@ -110,10 +110,10 @@ layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid ou
 	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
 		$(PY) -m flow.layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
 	done
-	@$(PY) -m flow.layout.compare $(DESIGNS)
+	@$(PY) -m flow.layout.report.compare $(DESIGNS)
 
 LIBRELANE := build/librelane
-$(LIBRELANE)/.ready: requirements-librelane.lock | $(READY)
+$(LIBRELANE)/.ready: requirements/librelane.lock | $(READY)
 	@rm -rf '$(LIBRELANE)'
 	@$(PY) -m venv --without-pip '$(LIBRELANE)'
 	@$(PY) -m pip --python '$(LIBRELANE)' install --quiet --disable-pip-version-check --require-hashes -r $<
@@ -148,11 +148,11 @@ cells-stability: $(LAYOUT_READY) have-tools  ## stiff and extreme cases of the c
 
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)
-	@bash flow/setup/tools.sh
+	@bash requirements/tools.sh
 
 .PHONY: have-tools
 have-tools:  # `make cells` and `make layout` install what is missing themselves, where they may
-	@bash flow/setup/tools.sh --missing
+	@bash requirements/tools.sh --missing
 
 .PHONY: clean
 clean:  ## remove build/ (the simulators' cache too)

@@ -27,10 +27,19 @@ def pytest_report_header():
 def pytest_addoption(parser):
     parser.addoption("--all", action="store_true", help="run the tests marked slow, too (make verify)")
     group = parser.getgroup("netlists", "run the Icarus level of the tests on netlists")
-    group.addoption("--netlist", action="append", default=[], metavar="NAME=FILE[:MODULE]",
-                    help="this Verilog in place of what the tests build as NAME (rtl/<block>/test): AmpCtrl=gates.v")
-    group.addoption("--netlist-in", choices=("icarus", "verilator"), default="icarus",
-                    help="simulator of the netlists; Verilator knows no X (%(default)s)")
+    group.addoption(
+        "--netlist",
+        action="append",
+        default=[],
+        metavar="NAME=FILE[:MODULE]",
+        help="this Verilog in place of what the tests build as NAME (rtl/<block>/test): AmpCtrl=gates.v",
+    )
+    group.addoption(
+        "--netlist-in",
+        choices=("icarus", "verilator"),
+        default="icarus",
+        help="simulator of the netlists; Verilator knows no X (%(default)s)",
+    )
     group.addoption("--cells", action="append", default=[], metavar="FILE", help="models of the netlists' cells")
 
 
@@ -41,16 +50,19 @@ def pytest_configure(config):
         if not match:
             raise pytest.UsageError(f"--netlist = {option!r}: must be NAME=FILE or NAME=FILE:MODULE")
         from rtl import icarus_level
+
         icarus_level.netlists[match[1]] = match[2], match[3]
         icarus_level.cells[:] = config.getoption("cells")
     if config.getoption("netlist") and config.getoption("netlist_in") == "verilator":
         from rtl import icarus_level
         from verif.coverage.netlists import in_verilator
+
         icarus_level.start = in_verilator
 
 
 def pytest_collection_modifyitems(config, items):
     from rtl.icarus import MISSING, installed
+
     in_icarus = [item for item in items if getattr(item.cls, "verilog", None) == "icarus"]
     if config.getoption("netlist"):
         config.hook.pytest_deselected(items=[item for item in items if item not in in_icarus])
@@ -70,6 +82,8 @@ def pytest_sessionfinish(session):
     if not options.netlist or options.collectonly or getattr(options, "dist", "no") != "no":
         return
     from rtl.icarus_level import asked, netlists
+
     if unused := sorted(set(netlists) - asked):
-        raise pytest.UsageError(f"--netlist = {', '.join(unused)}: no test built that; built were: "
-                                f"{', '.join(sorted(asked)) or 'none'}")
+        raise pytest.UsageError(
+            f"--netlist = {', '.join(unused)}: no test built that; built were: {', '.join(sorted(asked)) or 'none'}"
+        )

@@ -7,7 +7,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-PART = f".part-{platform.node()}-"          # then its process, so that it is known whose it is, should it stay
+PART = f".part-{platform.node()}-"  # then its process, so that it is known whose it is, should it stay
 
 
 def digest(*parts):
@@ -32,7 +32,7 @@ def cached(folder, make):
         make(part)
         try:
             part.rename(folder)
-        except OSError:             # another process was faster
+        except OSError:  # another process was faster
             if not folder.exists():
                 raise
     finally:

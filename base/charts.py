@@ -16,7 +16,7 @@ def svg(figure):
     out = io.StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None})
     text = out.getvalue()
-    return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg"):], count=1)
+    return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg") :], count=1)
 
 
 def save(figure, path):
@@ -50,8 +50,14 @@ def curves(series, x_label, y_label, title, log_x=False, log_y=False, mark=None)
     figure = Figure(figsize=(4.6, 3.1))
     axes = figure.add_subplot()
     for i, (name, points) in enumerate(series.items()):
-        axes.plot([p[0] for p in points], [p[1] for p in points], "o-", color=COLOURS[i % len(COLOURS)],
-                  label=name, markersize=4)
+        axes.plot(
+            [p[0] for p in points],
+            [p[1] for p in points],
+            "o-",
+            color=COLOURS[i % len(COLOURS)],
+            label=name,
+            markersize=4,
+        )
         for x, y, label in points:
             if label:
                 axes.annotate(label, (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)

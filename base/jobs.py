@@ -55,7 +55,7 @@ def run(jobs, store, title, workers=-1):
     todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not file.exists()]
     with tqdm(total=len(jobs), initial=len(jobs) - len(todo), desc=title, disable=None) as bar, _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
-        with warnings.catch_warnings():         # joblib renews a process that has grown, and says so
+        with warnings.catch_warnings():  # joblib renews a process that has grown, and says so
             warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
             for _ in joblib.Parallel(return_as="generator_unordered", batch_size=1)(calls):
                 bar.update()
@@ -71,6 +71,7 @@ def _backend(workers):
         return
     try:
         from distributed import Client
+
         client = Client(scheduler, timeout="10s")
     except (OSError, ValueError) as error:
         raise ParameterError(f"SCHEDULER = {scheduler!r}: no Dask scheduler answers there ({error})") from None

@@ -10,8 +10,13 @@ class Steps:
 
     def __init__(self, names):
         self.names = list(names)
-        self.bar = tqdm(total=len(self.names), file=sys.stderr, leave=False, disable=None,
-                        bar_format="{n_fmt}/{total_fmt} |{bar:24}| {desc} [{elapsed}]")
+        self.bar = tqdm(
+            total=len(self.names),
+            file=sys.stderr,
+            leave=False,
+            disable=None,
+            bar_format="{n_fmt}/{total_fmt} |{bar:24}| {desc} [{elapsed}]",
+        )
 
     def __enter__(self):
         return self

@@ -23,12 +23,22 @@ def finish(command, env=None, cwd=None, seconds=None):
     """
     command = [str(part) for part in command]
     try:
-        child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                 text=True, errors="replace", env=dict(os.environ, **(env or {})), cwd=cwd,
-                                 start_new_session=True)
+        child = subprocess.Popen(
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            env=dict(os.environ, **(env or {})),
+            cwd=cwd,
+            start_new_session=True,
+        )
     except FileNotFoundError as error:
-        raise ToolError(f"{Path(command[0]).name}: not found; install it with: make tools "
-                        f"(Debian: apt-get install {Path(command[0]).name})") from error
+        raise ToolError(
+            f"{Path(command[0]).name}: not found; install it with: make tools "
+            f"(Debian: apt-get install {Path(command[0]).name})"
+        ) from error
     with child:
         try:
             out, err = child.communicate(timeout=seconds)

@@ -6,11 +6,11 @@ import sys
 import time
 from pathlib import Path
 
+from base.tools import ToolError
 from cells import run, sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
 from cells.spice.engine import SimulationError
-from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -18,14 +18,18 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def main(argv=None):
     parser = argparse.ArgumentParser(prog="python -m cells", description=__doc__.splitlines()[0])
-    parser.add_argument("--lib", default="sky130_hd",
-                        help=f"{', '.join(sources.LIBRARIES)}, or a SPICE file of cells")
+    parser.add_argument("--lib", default="sky130_hd", help=f"{', '.join(sources.LIBRARIES)}, or a SPICE file of cells")
     parser.add_argument("--corner", default="tt_025C_1v80", help="process, temperature, supply: ff_n40C_1v95")
     parser.add_argument("--cells", help="names with commas between (inv_1,nand2_1); default: all for synthesis")
-    parser.add_argument("--models", default="fitted", choices=sources.process("sky130_hd").SETS,
-                        help="set of device models")
-    parser.add_argument("--netlist", default="extracted", choices=sources.NETLISTS,
-                        help="what is simulated: with stray capacitances, transistors as laid out, or as drawn")
+    parser.add_argument(
+        "--models", default="fitted", choices=sources.process("sky130_hd").SETS, help="set of device models"
+    )
+    parser.add_argument(
+        "--netlist",
+        default="extracted",
+        choices=sources.NETLISTS,
+        help="what is simulated: with stray capacitances, transistors as laid out, or as drawn",
+    )
     parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json to compare with")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "cells", help="folder of the libraries")
@@ -33,8 +37,16 @@ def main(argv=None):
     try:
         conditions = Conditions(Corner.parse(options.corner), options.models)
         started = time.monotonic()
-        summary = run.run(options.lib, conditions, options.cells and options.cells.split(","), options.netlist,
-                          options.out, options.reference, options.workers, started)
+        summary = run.run(
+            options.lib,
+            conditions,
+            options.cells and options.cells.split(","),
+            options.netlist,
+            options.out,
+            options.reference,
+            options.workers,
+            started,
+        )
     except (ParameterError, ToolError, SimulationError, OSError) as error:
         print(f"cells: {error}", file=sys.stderr)
         return 2

@@ -9,17 +9,18 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from base import jobs
+from base.files import staged
+from base.liberty import write
+from base.tools import finish
 from cells import sources
 from cells.characterize.cell import characterize
-from cells.liberty import accept, build, compare, reference, write
+from cells.liberty import accept, build, compare, reference
 from cells.liberty import check as check_library
 from cells.netlist.check import check
 from cells.netlist.function import understand
 from cells.netlist.spice import parse
 from cells.spice.circuit import circuit
-from flow import jobs
-from flow.files import staged
-from flow.simulate.process import finish
 from models.parameters import ParameterError
 
 CODE = Path(__file__).resolve().parent
@@ -39,25 +40,35 @@ def run(library, conditions, wanted, netlist, out, against, workers, started):
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
     known = reference.folder(against) if against else None
     found = [sources.source(library, cell, netlist) for cell in tqdm(wanted or everything, "netlists", disable=None)]
-    found.sort(key=lambda source: -len(source.netlist))              # what takes longest goes first
+    found.sort(key=lambda source: -len(source.netlist))  # what takes longest goes first
     cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
     for cell in cells:
         _has_models(cell, process, conditions)
     title = sources.title(library)
     folder = Path(out) / title
-    measured = jobs.run([job(source, conditions, process) for source in found], folder / "jobs", f"{title} {name}",
-                        workers)
+    measured = jobs.run(
+        [job(source, conditions, process) for source in found], folder / "jobs", f"{title} {name}", workers
+    )
     by_name = sorted(zip(cells, measured, found, strict=True), key=lambda entry: entry[2].name)
     cells, measured, found = zip(*by_name, strict=True)
-    tree = build.library(f"{title}__{name}", conditions, [(c, m, s.area) for c, m, s in by_name], process,
-                         {} if wanted else sources.constants(library))
+    tree = build.library(
+        f"{title}__{name}",
+        conditions,
+        [(c, m, s.area) for c, m, s in by_name],
+        process,
+        {} if wanted else sources.constants(library),
+    )
     summary = _summary(cells, measured, tree, known, time.monotonic() - started)
     with staged(folder) as part:
         (part / f"{name}.lib").write_text(write.text(tree) + "\n")
-        summary |= {"names": [s.name for s in found], "left_out": {} if wanted else sources.left_out(library),
-                    "read_by": accept.readers(part / f"{name}.lib")}
-        summary["problems"] += [f"{tool}: {said}" for tool, said in summary["read_by"].items()
-                                if said not in accept.GOOD]
+        summary |= {
+            "names": [s.name for s in found],
+            "left_out": {} if wanted else sources.left_out(library),
+            "read_by": accept.readers(part / f"{name}.lib"),
+        }
+        summary["problems"] += [
+            f"{tool}: {said}" for tool, said in summary["read_by"].items() if said not in accept.GOOD
+        ]
         corners = _corners(folder) | {name: dict(summary)}
         for suffix, text in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
             (part / f"{title}.{suffix}").write_text(text)
@@ -73,7 +84,8 @@ def _keep_failed(folder, measured):
         for k, failure in enumerate(measure["failed"]):
             folder.mkdir(parents=True, exist_ok=True)
             (folder / f"{measure['name']}.{k}.sp").write_text(
-                f"* {failure['what']}: {failure['why']}\n{failure['deck']}")
+                f"* {failure['what']}: {failure['why']}\n{failure['deck']}"
+            )
 
 
 def cell_of(source, process):
@@ -95,9 +107,18 @@ def job(source, conditions, process):
     """The job that characterizes ``source``; another netlist, corner, setting, model, ngspice or code is another."""
     code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
     name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
-    return jobs.Job(name, _measure, (source, conditions, process.__name__),
-                    (source.netlist, json.dumps(asdict(conditions)), Path(process.__file__),
-                     finish(["ngspice", "--version"]).stdout, *code))
+    return jobs.Job(
+        name,
+        _measure,
+        (source, conditions, process.__name__),
+        (
+            source.netlist,
+            json.dumps(asdict(conditions)),
+            Path(process.__file__),
+            finish(["ngspice", "--version"]).stdout,
+            *code,
+        ),
+    )
 
 
 def _measure(source, conditions, process):
@@ -116,14 +137,19 @@ def _corners(folder):
 
 def _summary(cells, measured, tree, known, seconds):
     failed = [f"{m['name']}: {f['what']}: {f['why']}" for m in measured for f in m["failed"]]
-    summary = {"cells": len(cells), "arcs": sum(len(m["arcs"]) for m in measured),
-               "constraints": sum(len(m["constraints"]) for m in measured),
-               "simulations": sum(m["simulations"] for m in measured),
-               "repeated": sum(m["repeated"] for m in measured), "failed": failed,
-               "problems": check_library.problems(tree), "wall_s": round(seconds, 1),
-               "cpu_s": round(sum(m["cpu_s"] for m in measured), 1),
-               "cell_s": {m["name"]: m["wall_s"] for m in measured},
-               "cell_cpu_s": {m["name"]: m["cpu_s"] for m in measured}}
+    summary = {
+        "cells": len(cells),
+        "arcs": sum(len(m["arcs"]) for m in measured),
+        "constraints": sum(len(m["constraints"]) for m in measured),
+        "simulations": sum(m["simulations"] for m in measured),
+        "repeated": sum(m["repeated"] for m in measured),
+        "failed": failed,
+        "problems": check_library.problems(tree),
+        "wall_s": round(seconds, 1),
+        "cpu_s": round(sum(m["cpu_s"] for m in measured), 1),
+        "cell_s": {m["name"]: m["wall_s"] for m in measured},
+        "cell_cpu_s": {m["name"]: m["cpu_s"] for m in measured},
+    }
     if known:
         summary |= compare.summary(compare.library(tree, known))
     return summary

@@ -6,24 +6,23 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from base import tools as child
 from cells.extract import extract
 from cells.flexcell.canvas import Canvas
 from cells.flexcell.catalogue import schematics
 from cells.flexcell.library import schematic_spice, written
 from cells.lef import header as lef_header
 from cells.netlist import spice
-from flow.platforms.sky130 import cells as sky130_hd
-from flow.platforms.sky130 import models as sky130
-from flow.platforms.sky130 import process as sky130_layout
-from flow.simulate import process as child
 from models.parameters import ParameterError
+from platforms.sky130 import cells as sky130_hd
+from platforms.sky130 import models as sky130
+from platforms.sky130 import process as sky130_layout
 
 LIBRARIES = ("sky130_hd", "flexcell")
 NETLISTS = ("extracted", "capacitances", "devices", "schematic")
 FLEXCELL = Path("build/cells/flexcell")
 # cells without an input that hold a constant: cell -> pin: level
-CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}},
-             "flexcell": {"zero_x1": {"zero": 0}, "one_x1": {"one": 1}}}
+CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}}, "flexcell": {"zero_x1": {"zero": 0}, "one_x1": {"one": 1}}}
 _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
 
 
@@ -78,8 +77,11 @@ def source(library, name, netlist="extracted"):
             return Source(name, schematic_spice(schematics()[name], Canvas()), _flexcell_areas()[name])
         return Source(name, extract(FLEXCELL / "flexcell.gds", name, sky130_layout, **strays), _flexcell_areas()[name])
     gds = sky130_hd.file(name, "gds")
-    text = (sky130_hd.file(name, "spice").read_text() if netlist == "schematic" else
-            extract(gds, gds.stem, sky130_layout, **strays))
+    text = (
+        sky130_hd.file(name, "spice").read_text()
+        if netlist == "schematic"
+        else extract(gds, gds.stem, sky130_layout, **strays)
+    )
     return Source(name, text, area(sky130_hd.file(name, "lef").read_text()))
 
 
@@ -94,9 +96,11 @@ def files(library, cells):
         return {suffix: (FLEXCELL / f"flexcell.{suffix}").read_text() for suffix in ("lef", "v")}
     names = sorted({*cells, *CONSTANTS[library]})
     macros = (sky130_hd.file(name, "lef").read_text() for name in names)
-    macros = [text[text.find("MACRO"):text.rfind("END LIBRARY")].rstrip() for text in macros]
-    return {"lef": lef_header(*sky130_hd.SITE) + "\n\n".join(macros) + "\n\nEND LIBRARY\n",
-            "v": "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names)}
+    macros = [text[text.find("MACRO") : text.rfind("END LIBRARY")].rstrip() for text in macros]
+    return {
+        "lef": lef_header(*sky130_hd.SITE) + "\n\n".join(macros) + "\n\nEND LIBRARY\n",
+        "v": "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names),
+    }
 
 
 def constants(library):
@@ -105,8 +109,10 @@ def constants(library):
         return {}
     if library == "flexcell":
         return {name: (pins, _flexcell_areas()[name]) for name, pins in CONSTANTS[library].items()}
-    return {f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
-            for name, pins in CONSTANTS[library].items()}
+    return {
+        f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
+        for name, pins in CONSTANTS[library].items()
+    }
 
 
 def area(lef):

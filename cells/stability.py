@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from tqdm import tqdm
 
+from base.tools import ToolError
 from cells import run, sources
 from cells.characterize import delay, tristate
 from cells.characterize.bench import Bench
@@ -14,21 +15,22 @@ from cells.characterize.conditions import Conditions
 from cells.characterize.constraint import PATIENCE, bisect, outcome
 from cells.characterize.scenario import Scenarios
 from cells.corner import PROCESSES, Corner
-from flow.simulate.process import ToolError
-from flow.stability import table
 from models.parameters import ParameterError
-from models.stability import Case
+from models.stability import Case, table
 
 TYPICAL = Conditions(Corner("tt", 25, 1.8), "fitted")
-FOUNDRY = (Corner("ss", 100, 1.6), Corner("ff", -40, 1.95))     # corners that SkyWater publishes tables for
+FOUNDRY = (Corner("ss", 100, 1.6), Corner("ff", -40, 1.95))  # corners that SkyWater publishes tables for
 
 
 def cases():
     """All cases: list of Case; shows a progress bar."""
     todo = [(loads_and_slews, ()), (hundred_times_the_load, ()), (metastable, ()), (let_go, ())]
     todo += [(fit_at_corner, (corner,)) for corner in FOUNDRY]
-    todo += [(corner_case, (Corner(process, temperature, supply),)) for process in PROCESSES
-             for temperature, supply in ((-40, 1.2), (150, 1.2), (-40, 1.95), (150, 1.95))]
+    todo += [
+        (corner_case, (Corner(process, temperature, supply),))
+        for process in PROCESSES
+        for temperature, supply in ((-40, 1.2), (150, 1.2), (-40, 1.95), (150, 1.95))
+    ]
     found = []
     for call, arguments in tqdm(todo, desc="cases", file=sys.stderr, disable=None):
         found += call(*arguments)
@@ -48,14 +50,32 @@ def loads_and_slews():
         for arc in inverter.arcs:
             change, normal = arc.changes[0], bench.edge(arc.changes[0], "Y", 10e-12, 0.5e-15)
             bare = bench.edge(change, "Y", 1e-12, 0.0)
-            out.append(_case(f"inverter {arc.edge}, no load, slew 1 ps", "0 < delay < that at 10 ps and 0.5 fF",
-                             bare.delay, 0 < bare.delay < normal.delay))
+            out.append(
+                _case(
+                    f"inverter {arc.edge}, no load, slew 1 ps",
+                    "0 < delay < that at 10 ps and 0.5 fF",
+                    bare.delay,
+                    0 < bare.delay < normal.delay,
+                )
+            )
             slow = bench.edge(change, "Y", 10e-9, 0.5e-15)
-            out.append(_case(f"inverter {arc.edge}, slew 10 ns", "0 < output slew < 3 ns, |delay| < 3 ns", slow.slew,
-                             0 < slow.slew < 3e-9 and abs(slow.delay) < 3e-9))
+            out.append(
+                _case(
+                    f"inverter {arc.edge}, slew 10 ns",
+                    "0 < output slew < 3 ns, |delay| < 3 ns",
+                    slow.slew,
+                    0 < slow.slew < 3e-9 and abs(slow.delay) < 3e-9,
+                )
+            )
             worst = bench.edge(change, "Y", 10e-9, 0.0)
-            out.append(_case(f"inverter {arc.edge}, slew 10 ns, no load", "within 20 % of that with 0.5 fF",
-                             worst.slew, abs(worst.slew / slow.slew - 1) < 0.2))
+            out.append(
+                _case(
+                    f"inverter {arc.edge}, slew 10 ns, no load",
+                    "within 20 % of that with 0.5 fF",
+                    worst.slew,
+                    abs(worst.slew / slow.slew - 1) < 0.2,
+                )
+            )
     return out
 
 
@@ -67,8 +87,14 @@ def hundred_times_the_load():
             change = arc.changes[0]
             largest = delay.largest_load(bench, [change], "Y")
             one, hundred = (bench.edge(change, "Y", 10e-12, factor * largest).slew for factor in (1, 100))
-            out.append(_case(f"inverter {arc.edge}, 100 times the largest load", "100 times the slew, within 2 %",
-                             hundred, abs(hundred / one / 100 - 1) < 0.02))
+            out.append(
+                _case(
+                    f"inverter {arc.edge}, 100 times the largest load",
+                    "100 times the slew, within 2 %",
+                    hundred,
+                    abs(hundred / one / 100 - 1) < 0.02,
+                )
+            )
     return out
 
 
@@ -77,20 +103,28 @@ def metastable():
     flip_flop = cell("dfxtp_1")
     (scenario,), longest = Scenarios(flip_flop).setup("D", 1), 0.0
     with Bench(flip_flop, sources.process("sky130_hd"), TYPICAL) as bench:
+
         def run_at(offset):
             nonlocal longest
             started = time.monotonic()
-            events = [(scenario.clock, 0.0, scenario.clock_to, 10e-12),
-                      (scenario.data, -offset, scenario.data_to, 10e-12)]
+            events = [
+                (scenario.clock, 0.0, scenario.clock_to, 10e-12),
+                (scenario.data, -offset, scenario.data_to, 10e-12),
+            ]
             found = outcome(bench, scenario.start, events, 1e-9, scenario.trigger, scenario.expected)
             longest = max(longest, time.monotonic() - started)
             return found
 
         at = bisect(run_at, 1e-9, True, 1e3, resolution=1e-15)
         lost = run_at(at - 2e-15)
-    return [Case("flip-flop, 1 fs from its metastable edge", f"lost 2 fs later, each run under {PATIENCE + 1:.0f} s",
-                 f"edge at {at * 1e12:.3f} ps, longest run {longest:.2f} s",
-                 lost is None and longest < PATIENCE + 1)]
+    return [
+        Case(
+            "flip-flop, 1 fs from its metastable edge",
+            f"lost 2 fs later, each run under {PATIENCE + 1:.0f} s",
+            f"edge at {at * 1e12:.3f} ps, longest run {longest:.2f} s",
+            lost is None and longest < PATIENCE + 1,
+        )
+    ]
 
 
 def let_go():
@@ -100,9 +134,14 @@ def let_go():
     with Bench(buffer, process, TYPICAL) as bench, tristate.Held(bench, "Z", process) as held:
         for arc in (a for a in buffer.arcs if a.type == "three_state_disable"):
             fast, slow = (held.let_go(arc.changes[0], slew) for slew in (1e-12, 10e-9))
-            out.append(_case(f"tri-state let go from {'low' if arc.edge == 'rise' else 'high'}, slew 10 ns",
-                             "0 < time at 1 ps < 0.5 ns; at 10 ns within half the ramp of it", slow,
-                             0 < fast < 0.5e-9 and abs(slow - fast) < TYPICAL.ramp(10e-9) / 2))
+            out.append(
+                _case(
+                    f"tri-state let go from {'low' if arc.edge == 'rise' else 'high'}, slew 10 ns",
+                    "0 < time at 1 ps < 0.5 ns; at 10 ns within half the ramp of it",
+                    slow,
+                    0 < fast < 0.5e-9 and abs(slow - fast) < TYPICAL.ramp(10e-9) / 2,
+                )
+            )
     return out
 
 
@@ -115,13 +154,19 @@ def fit_at_corner(corner):
             seconds = []
             for at in (TYPICAL.corner, corner):
                 with Bench(tested, process, replace(TYPICAL, corner=at, models=models)) as bench:
-                    seconds.append(sum(bench.edge(arc.changes[0], output, 0.12e-9, 10e-15).delay
-                                       for arc in tested.arcs))
+                    seconds.append(
+                        sum(bench.edge(arc.changes[0], output, 0.12e-9, 10e-15).delay for arc in tested.arcs)
+                    )
             ratio[models] = seconds[1] / seconds[0]
         slow = corner.process == "ss"
-        out.append(Case(f"{name}, {corner.name} over {TYPICAL.corner.name}", "that of the binned models, within 3 %",
-                        f"{ratio['fitted']:.3f}, binned {ratio['binned']:.3f}",
-                        (ratio["fitted"] > 1) == slow and abs(ratio["fitted"] / ratio["binned"] - 1) < 0.03))
+        out.append(
+            Case(
+                f"{name}, {corner.name} over {TYPICAL.corner.name}",
+                "that of the binned models, within 3 %",
+                f"{ratio['fitted']:.3f}, binned {ratio['binned']:.3f}",
+                (ratio["fitted"] > 1) == slow and abs(ratio["fitted"] / ratio["binned"] - 1) < 0.03,
+            )
+        )
     return out
 
 
@@ -139,9 +184,14 @@ def corner_case(corner):
     flip_flop = cell("dfxtp_1")
     with Bench(flip_flop, sources.process("sky130_hd"), conditions) as bench:
         stored = [bench.edge(arc.changes[0], "Q", 0.1e-9, 10e-15).delay for arc in flip_flop.arcs]
-    return [Case(f"NAND and flip-flop at {corner.name}", "delays and slews rise with the load; 0 < clock to Q < 100 ns",
-                 f"longest {longest * 1e9:.2f} ns, clock to Q {max(stored) * 1e9:.2f} ns",
-                 rises and 0 < min(stored) and max(stored) < 100e-9)]
+    return [
+        Case(
+            f"NAND and flip-flop at {corner.name}",
+            "delays and slews rise with the load; 0 < clock to Q < 100 ns",
+            f"longest {longest * 1e9:.2f} ns, clock to Q {max(stored) * 1e9:.2f} ns",
+            rises and 0 < min(stored) and max(stored) < 100e-9,
+        )
+    ]
 
 
 def _case(name, bound, seconds, ok):

@@ -52,8 +52,9 @@ def frame_case(name, arguments):
     summary = summarize(result)
     wrong = summary["stream_mismatches"] + summary["decoded_mismatches"]
     finite = bool(np.isfinite(exposed.samples).all() and np.isfinite(exposed.ideal).all())
-    return Case(name, "0 bytes or samples differ", f"{wrong} differ, {len(result.chip.stream)} bytes",
-                wrong == 0 and finite)
+    return Case(
+        name, "0 bytes or samples differ", f"{wrong} differ, {len(result.chip.stream)} bytes", wrong == 0 and finite
+    )
 
 
 def divider_cases():
@@ -63,10 +64,12 @@ def divider_cases():
     equal = np.arange(-255, 256)
     equal = equal[equal != 0]
     small = np.arange(1, 256)
-    sets = {"|x| = |y|, every sign": (np.r_[equal, equal], np.r_[equal, -equal]),
-            "full scale, every sign": corners,
-            "one operand zero, every sign": (np.r_[equal, 0 * equal], np.r_[0 * equal, equal]),
-            "ratio just under one and just over zero": (np.r_[small, 0 * small + 255], np.r_[small - 1, small])}
+    sets = {
+        "|x| = |y|, every sign": (np.r_[equal, equal], np.r_[equal, -equal]),
+        "full scale, every sign": corners,
+        "one operand zero, every sign": (np.r_[equal, 0 * equal], np.r_[0 * equal, equal]),
+        "ratio just under one and just over zero": (np.r_[small, 0 * small + 255], np.r_[small - 1, small]),
+    }
     out = []
     for name, (x, y) in sets.items():
         worst = float(np.abs(phase_error(x, y)).max())
@@ -81,11 +84,3 @@ def phase_error(x, y):
     """Phase of the divider less atan2, the short way round, in LSB."""
     exact = np.arctan2(y, x) * 256 / (2 * np.pi)
     return np.mod(quad_divide(x, y).phase - exact + 128, 256) - 128
-
-
-def table(cases):
-    """The cases as text, one a line."""
-    rows = [("case", "expected", "measured", ""), *((c.name, c.bound, c.measured, "ok" if c.ok else "FAILED")
-                                                     for c in cases)]
-    widths = [max(len(str(r[i])) for r in rows) for i in range(4)]
-    return "\n".join("  ".join(str(v).ljust(w) for v, w in zip(r, widths, strict=True)).rstrip() for r in rows)

@@ -12,8 +12,17 @@ from PIL import Image
 
 from models.capture import CaptureOperator, Exposure, capture, expose
 from models.capture.operator import rounding
-from models.parameters import (AmpTiming, ArrayParameters, ElectricalParameters, FrameParameters, OpticsParameters,
-                               ParameterError, PixelType, SensorParameters, TileParameters)
+from models.parameters import (
+    AmpTiming,
+    ArrayParameters,
+    ElectricalParameters,
+    FrameParameters,
+    OpticsParameters,
+    ParameterError,
+    PixelType,
+    SensorParameters,
+    TileParameters,
+)
 from models.pixel import Ripple, exact, gains, response
 from models.pixel.quadrature import sampled
 from models.plan import plan
@@ -31,10 +40,29 @@ class Case:
     ok: bool
 
 
+def table(cases):
+    """The cases as text, one a line."""
+    rows = [
+        ("case", "expected", "measured", ""),
+        *((c.name, c.bound, c.measured, "ok" if c.ok else "FAILED") for c in cases),
+    ]
+    widths = [max(len(str(r[i])) for r in rows) for i in range(4)]
+    return "\n".join("  ".join(str(v).ljust(w) for v, w in zip(r, widths, strict=True)).rstrip() for r in rows)
+
+
 def optical_cases():
     """All optical cases: list of Case."""
-    return [*_responses(), *_integrals(), _unseen_diode(), *_exposures(), *_frames(), _adjoint(), _one_view(),
-            *_pictures(), _no_edges()]
+    return [
+        *_responses(),
+        *_integrals(),
+        _unseen_diode(),
+        *_exposures(),
+        *_frames(),
+        _adjoint(),
+        _one_view(),
+        *_pictures(),
+        _no_edges(),
+    ]
 
 
 def _within(name, bound, value, low, high, unit=""):
@@ -50,8 +78,9 @@ def _responses():
             for beta in (0.0, 50.0):
                 for degrees in (45.0, 89.9, 90.0):
                     theta = np.deg2rad(np.array([-degrees, 0, degrees], dtype))
-                    rho = np.stack([response(alpha, beta, 0.7, theta[:, None], theta[None, :], m, 0.2)
-                                    for alpha in (0.0, np.pi)])
+                    rho = np.stack(
+                        [response(alpha, beta, 0.7, theta[:, None], theta[None, :], m, 0.2) for alpha in (0.0, np.pi)]
+                    )
                     name = f"response, {dtype}, m = {m:g}, beta = {beta:g}, theta to {degrees:g} degrees"
                     ok = np.isfinite(rho).all() and rho.min() >= 0 and rho.max() <= 1 + m
                     out.append(Case(name, f"0..{1 + m:g}", f"{rho.min():.2g}..{rho.max():.4g}", bool(ok)))
@@ -63,53 +92,80 @@ def _integrals():
     types = (PixelType(0, 0, 0.4), PixelType(50, 30, 0.4))
     still = Ripple(periods=0)
     out = []
-    for name, optics, bound in (("m = 0", OpticsParameters(m=0.0), 1e-6), ("m = 1", OpticsParameters(m=1.0), 1e-4),
-                                ("f/0.5", OpticsParameters(f_number=0.5, subsamples=16), 1e-4),
-                                ("f/32", OpticsParameters(f_number=32.0), 1e-9),
-                                ("aperture 0.01 rad", OpticsParameters(aperture_sigma=0.01, subsamples=32), 1e-4),
-                                ("31 views", OpticsParameters(views=31, subsamples=4), 1e-6)):
+    for name, optics, bound in (
+        ("m = 0", OpticsParameters(m=0.0), 1e-6),
+        ("m = 1", OpticsParameters(m=1.0), 1e-4),
+        ("f/0.5", OpticsParameters(f_number=0.5, subsamples=16), 1e-4),
+        ("f/32", OpticsParameters(f_number=32.0), 1e-9),
+        ("aperture 0.01 rad", OpticsParameters(aperture_sigma=0.01, subsamples=32), 1e-4),
+        ("31 views", OpticsParameters(views=31, subsamples=4), 1e-6),
+    ):
         reference = exact(types, optics, still)
         error = float(np.abs(sampled(types, optics, still) - reference).max() / reference.mean())
-        out.append(_within(f"weights against adaptive quadrature, beta 0 and 50, {name}", f"error <= {bound:g}", error,
-                           0, bound))
+        out.append(
+            _within(
+                f"weights against adaptive quadrature, beta 0 and 50, {name}", f"error <= {bound:g}", error, 0, bound
+            )
+        )
     return out
 
 
 def _unseen_diode():
     """m = 1, beta = 0: the second diode sees nothing; its capacitor ratio would be infinite."""
     g = gains(np.array([-1.0, 1.0]))
-    return Case("trim of a pixel with one blind diode", "1/64 and 64", f"{g[0]:g} and {g[1]:g}",
-                bool(np.allclose(g, [1 / 64, 64])))
+    return Case(
+        "trim of a pixel with one blind diode",
+        "1/64 and 64",
+        f"{g[0]:g} and {g[1]:g}",
+        bool(np.allclose(g, [1 / 64, 64])),
+    )
 
 
 def _exposures():
     """Currents, noise and wells far beyond the working range."""
     pair = np.stack([np.full((8, 12), 0.5), np.full((8, 12), 0.4)])
     full = ElectricalParameters(read_noise=0, offset_fpn=0)
-    cases = (("saturated scene", pair * 40, full, AmpTiming(), 0.0, 127.5, 127.5),
-             ("saturated scene, 255 common-mode resets", pair * 40, full, AmpTiming(n_cm=255), 0.0, 0, 127.5),
-             ("black scene, no noise", pair * 0, full, AmpTiming(), 0.0, 0, 0.001),
-             ("noise 100 times physical, dim scene", pair * 1e-3, ElectricalParameters(), AmpTiming(), 100.0, -60, 120),
-             ("denormal currents", pair * 1e-310, full, AmpTiming(), 1.0, 0, 0.1),
-             ("currents of 1e30", pair * 1e30, full, AmpTiming(), 100.0, 0, 127.5),
-             ("a minute's exposure at 1 kHz", pair, replace(full, white_current=1e-3),
-              AmpTiming(t_int=65535), 1.0, 127.5, 127.5))
+    cases = (
+        ("saturated scene", pair * 40, full, AmpTiming(), 0.0, 127.5, 127.5),
+        ("saturated scene, 255 common-mode resets", pair * 40, full, AmpTiming(n_cm=255), 0.0, 0, 127.5),
+        ("black scene, no noise", pair * 0, full, AmpTiming(), 0.0, 0, 0.001),
+        ("noise 100 times physical, dim scene", pair * 1e-3, ElectricalParameters(), AmpTiming(), 100.0, -60, 120),
+        ("denormal currents", pair * 1e-310, full, AmpTiming(), 1.0, 0, 0.1),
+        ("currents of 1e30", pair * 1e30, full, AmpTiming(), 100.0, 0, 127.5),
+        (
+            "a minute's exposure at 1 kHz",
+            pair,
+            replace(full, white_current=1e-3),
+            AmpTiming(t_int=65535),
+            1.0,
+            127.5,
+            127.5,
+        ),
+    )
     out = []
     for name, light, electrical, timing, noise, low, high in cases:
         f_clk = 1e3 if "1 kHz" in name else 10e6
         samples = expose(light, Exposure(electrical, timing, f_clk, noise))
         ok = np.isfinite(samples).all() and low - 1e-9 <= samples.min() and samples.max() <= high + 1e-9
-        out.append(Case(f"exposure: {name}", f"{low:g}..{high:g} LSB", f"{samples.min():.4g}..{samples.max():.4g} LSB",
-                        bool(ok)))
+        out.append(
+            Case(
+                f"exposure: {name}", f"{low:g}..{high:g} LSB", f"{samples.min():.4g}..{samples.max():.4g} LSB", bool(ok)
+            )
+        )
     return out
 
 
 def _frames():
     """Whole captures of odd arrays, masks and scenes: every sample finite, unread pixels dark."""
     out = []
-    for rows, cols, scene, mode, mask in ((4, 6, "motorcycle", "edge", 1 << 23), (1, 37, "camera", "edge", 0xFFFFFF),
-                                          (37, 1, "camera", "raw", 0xFFFFFF), (4, 6, "saturated", "image", 0xFFFFFF),
-                                          (9, 13, "black", "tof", 0xFFFFFF), (9, 13, "tilted", "tof", 1)):
+    for rows, cols, scene, mode, mask in (
+        (4, 6, "motorcycle", "edge", 1 << 23),
+        (1, 37, "camera", "edge", 0xFFFFFF),
+        (37, 1, "camera", "raw", 0xFFFFFF),
+        (4, 6, "saturated", "image", 0xFFFFFF),
+        (9, 13, "black", "tof", 0xFFFFFF),
+        (9, 13, "tilted", "tof", 1),
+    ):
         sensor = SensorParameters(array=ArrayParameters(rows, cols))
         frame = FrameParameters(sensor.full_window, mode=mode, mask=mask)
         seen = load(scene, Sampling(rows, cols))
@@ -118,8 +174,14 @@ def _frames():
         dark = samples[:, ~made.read].max(initial=0.0)
         limit = 127.5 * (1 + 1e-12)
         ok = np.isfinite(samples).all() and 0 <= samples.min() and samples.max() <= limit and dark < 0.001
-        out.append(Case(f"capture of {scene}, {rows} x {cols}, {mode}, mask {mask:06x}", "0..127.5 LSB, unread < 0.001",
-                        f"{samples.min():.3g}..{samples.max():.4g}, unread {dark:.2g}", bool(ok)))
+        out.append(
+            Case(
+                f"capture of {scene}, {rows} x {cols}, {mode}, mask {mask:06x}",
+                "0..127.5 LSB, unread < 0.001",
+                f"{samples.min():.3g}..{samples.max():.4g}, unread {dark:.2g}",
+                bool(ok),
+            )
+        )
     return out
 
 
@@ -130,8 +192,13 @@ def _adjoint():
     x, y = draw.standard_normal(operator.shape), draw.standard_normal((2, 7, 11))
     left, right = np.vdot(operator.forward(x), y), np.vdot(x, operator.transpose(y))
     scale = np.vdot(operator.forward(np.abs(x)), np.abs(y))
-    return _within("capture operator and its transpose, 31 x 31 views", "relative difference <= 1e-12",
-                   abs(left - right) / scale, 0, 1e-12)
+    return _within(
+        "capture operator and its transpose, 31 x 31 views",
+        "relative difference <= 1e-12",
+        abs(left - right) / scale,
+        0,
+        1e-12,
+    )
 
 
 def _one_view():
@@ -141,16 +208,26 @@ def _one_view():
     few = CaptureOperator(sensor, "float32", angular=False).forward(image[None, None])
     all_ = CaptureOperator(sensor, "float32").forward(np.broadcast_to(image, (5, 5, 12, 18)))
     bound = rounding("float32", 5)
-    return _within("one view for 25 equal ones, float32", f"relative difference <= {bound:.2g}",
-                   float((np.abs(few - all_) / all_).max()), 0, bound)
+    return _within(
+        "one view for 25 equal ones, float32",
+        f"relative difference <= {bound:.2g}",
+        float((np.abs(few - all_) / all_).max()),
+        0,
+        bound,
+    )
 
 
 def _pictures():
     """Picture files of every kind."""
     gray = np.tile(np.linspace(0, 255, 64).astype(np.uint8), (48, 1))
-    good = {"16-bit": gray.astype(np.uint16) * 257, "colour": np.stack([gray, gray[::-1], gray], -1),
-            "colour and alpha": np.stack([gray] * 4, -1), "1 x 1": gray[:1, 40:41], "1 x 64": gray[:1],
-            "huge, 12000 x 9000": np.tile(gray, (250, 140))}
+    good = {
+        "16-bit": gray.astype(np.uint16) * 257,
+        "colour": np.stack([gray, gray[::-1], gray], -1),
+        "colour and alpha": np.stack([gray] * 4, -1),
+        "1 x 1": gray[:1, 40:41],
+        "1 x 64": gray[:1],
+        "huge, 12000 x 9000": np.tile(gray, (250, 140)),
+    }
     bad = {"NaN": np.nan, "infinity": np.inf, "negative": -1.0}
     out = []
     with tempfile.TemporaryDirectory() as folder:

@@ -15,10 +15,20 @@ DIODES = "a", "b"
 ROW_BITS, GROUP_BITS, K_BITS, BALANCE_BITS, CODE_BITS = 10, 8, 3, 10, 8
 # What the blocks take from the chip, bits each: phases of the amplifiers; position and trim as pixels/afe.sv has them
 DRIVER_IN = {"amp_row": ROW_BITS} | ROW_PHASES
-COLUMNS_IN = {"ref_ctl": 1, "cm_reset": 1, "sample": 1, "read": 1, "tap": 2, "mode": 2, "row": ROW_BITS,
-              "group": GROUP_BITS, "k": K_BITS, "sub": 2}
-MARGIN_UM, DEEP_UM = 5.0, 2.0       # of pins from a block's corners; how far a pin reaches into its block
-CONTROL_PITCH_UM = 4.0              # of the column amplifiers' control pins
+COLUMNS_IN = {
+    "ref_ctl": 1,
+    "cm_reset": 1,
+    "sample": 1,
+    "read": 1,
+    "tap": 2,
+    "mode": 2,
+    "row": ROW_BITS,
+    "group": GROUP_BITS,
+    "k": K_BITS,
+    "sub": 2,
+}
+MARGIN_UM, DEEP_UM = 5.0, 2.0  # of pins from a block's corners; how far a pin reaches into its block
+CONTROL_PITCH_UM = 4.0  # of the column amplifiers' control pins
 
 
 @dataclass(frozen=True)
@@ -69,8 +79,12 @@ def blocks(array=None, chip=None, sizes=None):
     """tuple of the four Blocks. array: ArrayParameters; chip: ChipParameters; sizes: AnalogSizes. Raises
     ParameterError where the pins find no room."""
     array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
-    return (_pixel_array(array, sizes), _row_driver(array, sizes), _column_amplifiers(array, chip, sizes),
-            _adc_lanes(chip, sizes))
+    return (
+        _pixel_array(array, sizes),
+        _row_driver(array, sizes),
+        _column_amplifiers(array, chip, sizes),
+        _adc_lanes(chip, sizes),
+    )
 
 
 def bits(ports):
@@ -82,36 +96,58 @@ def row_lines(array):
     """(name, um from the south) of every row's lines; row 0 is the north one, as images have it."""
     lines = [f"{name}{bit if width > 1 else ''}_row" for name, width in ROW_PHASES.items() for bit in range(width)]
     pitch = array.pitch * 1e6
-    return [(f"{line}[{row}]", (array.rows - row - 1 + (place + 0.5) / len(lines)) * pitch)
-            for row in range(array.rows) for place, line in enumerate(lines)]
+    return [
+        (f"{line}[{row}]", (array.rows - row - 1 + (place + 0.5) / len(lines)) * pitch)
+        for row in range(array.rows)
+        for place, line in enumerate(lines)
+    ]
 
 
 def column_lines(array):
     """(name, um from the west) of every column's two lines, one a diode."""
     pitch = array.pitch * 1e6
-    return [(f"column_{diode}[{column}]", (column + (place + 0.5) / len(DIODES)) * pitch)
-            for column in range(array.cols) for place, diode in enumerate(DIODES)]
+    return [
+        (f"column_{diode}[{column}]", (column + (place + 0.5) / len(DIODES)) * pitch)
+        for column in range(array.cols)
+        for place, diode in enumerate(DIODES)
+    ]
 
 
 def lane_lines(chip, sizes):
     """(name, um from the west of the converters) of the lines from the column amplifiers to every lane."""
-    return [(f"lane_{diode}[{lane}]", (lane + (place + 1) / (len(DIODES) + 1)) * sizes.lane_um)
-            for lane in range(chip.lanes) for place, diode in enumerate(DIODES)]
+    return [
+        (f"lane_{diode}[{lane}]", (lane + (place + 1) / (len(DIODES) + 1)) * sizes.lane_um)
+        for lane in range(chip.lanes)
+        for place, diode in enumerate(DIODES)
+    ]
 
 
 def _pixel_array(array, sizes):
     width, height = array.cols * array.pitch * 1e6, array.rows * array.pitch * 1e6
-    return Block("pixel_array", width, height, (
-        *(Pin(name, "input", "west", at) for name, at in row_lines(array)),
-        *(Pin(name, "output", "south", at) for name, at in column_lines(array)),
-        *_supplies("east", height, sizes)))
+    return Block(
+        "pixel_array",
+        width,
+        height,
+        (
+            *(Pin(name, "input", "west", at) for name, at in row_lines(array)),
+            *(Pin(name, "output", "south", at) for name, at in column_lines(array)),
+            *_supplies("east", height, sizes),
+        ),
+    )
 
 
 def _row_driver(array, sizes):
     height = array.rows * array.pitch * 1e6
-    return Block("row_driver", sizes.row_driver_um, height, (
-        *_spread("row_driver", bits(DRIVER_IN), "input", 0, sizes.row_driver_um),
-        *(Pin(name, "output", "east", at) for name, at in row_lines(array)), *_supplies("west", height, sizes)))
+    return Block(
+        "row_driver",
+        sizes.row_driver_um,
+        height,
+        (
+            *_spread("row_driver", bits(DRIVER_IN), "input", 0, sizes.row_driver_um),
+            *(Pin(name, "output", "east", at) for name, at in row_lines(array)),
+            *_supplies("west", height, sizes),
+        ),
+    )
 
 
 def _column_amplifiers(array, chip, sizes):
@@ -120,41 +156,70 @@ def _column_amplifiers(array, chip, sizes):
     control = CONTROL_PITCH_UM * (len(pins) - 1) + 2 * MARGIN_UM
     begin = control + sizes.chip_um
     if begin + chip.lanes * sizes.lane_um > width:
-        raise ParameterError(f"cols = {array.cols}: {width:g} um must have room for pins, chip and converters, "
-                             f"{begin + chip.lanes * sizes.lane_um:g} um")
-    return Block("column_amplifiers", width, sizes.columns_um, (
-        *(Pin(name, "input", "north", at) for name, at in column_lines(array)),
-        *_spread("column_amplifiers", pins, "input", 0, control),
-        *(Pin(name, "output", "south", begin + at) for name, at in lane_lines(chip, sizes)),
-        *_supplies("west", sizes.columns_um, sizes), *_supplies("east", sizes.columns_um, sizes)))
+        raise ParameterError(
+            f"cols = {array.cols}: {width:g} um must have room for pins, chip and converters, "
+            f"{begin + chip.lanes * sizes.lane_um:g} um"
+        )
+    return Block(
+        "column_amplifiers",
+        width,
+        sizes.columns_um,
+        (
+            *(Pin(name, "input", "north", at) for name, at in column_lines(array)),
+            *_spread("column_amplifiers", pins, "input", 0, control),
+            *(Pin(name, "output", "south", begin + at) for name, at in lane_lines(chip, sizes)),
+            *_supplies("west", sizes.columns_um, sizes),
+            *_supplies("east", sizes.columns_um, sizes),
+        ),
+    )
 
 
 def _adc_lanes(chip, sizes):
     """Every lane has its codes and its decision at its own place, the rest is spread over all."""
     width = chip.lanes * sizes.lane_um
-    own = [name for lane in range(chip.lanes) for name in (
-        *(f"dac[{CODE_BITS * lane + bit}]" for bit in range(CODE_BITS)), f"en[{lane}]", f"comparator[{lane}]")]
+    own = [
+        name
+        for lane in range(chip.lanes)
+        for name in (
+            *(f"dac[{CODE_BITS * lane + bit}]" for bit in range(CODE_BITS)),
+            f"en[{lane}]",
+            f"comparator[{lane}]",
+        )
+    ]
     if chip.lanes == 1:
         own = [name.removesuffix("[0]") if name.startswith(("en", "comparator")) else name for name in own]
     shared = bits({"clk": 1, "hold": 1, "unsigned_": 1, "balance": BALANCE_BITS})
     pins = _spread("adc_lanes", [*shared, *own], "input", 0, width)
-    return Block("adc_lanes", width, sizes.lanes_um, (
-        *(Pin(name, "input", "north", at) for name, at in lane_lines(chip, sizes)),
-        *(Pin(pin.name, "output" if pin.name.startswith("comparator") else "input", "south", pin.at_um)
-          for pin in pins), *_supplies("east", sizes.lanes_um, sizes)))
+    return Block(
+        "adc_lanes",
+        width,
+        sizes.lanes_um,
+        (
+            *(Pin(name, "input", "north", at) for name, at in lane_lines(chip, sizes)),
+            *(
+                Pin(pin.name, "output" if pin.name.startswith("comparator") else "input", "south", pin.at_um)
+                for pin in pins
+            ),
+            *_supplies("east", sizes.lanes_um, sizes),
+        ),
+    )
 
 
 def _spread(block, names, direction, begin, end):
     """Pins on the south side, evenly from ``begin`` to ``end`` (um). Raises ParameterError."""
     step = (end - begin - 2 * MARGIN_UM) / max(len(names) - 1, 1)
     if step < 1.5:
-        raise ParameterError(f"{block} = {end - begin:g} um wide: must have 1.5 um for each of its {len(names)} pins "
-                             "in the south")
+        raise ParameterError(
+            f"{block} = {end - begin:g} um wide: must have 1.5 um for each of its {len(names)} pins in the south"
+        )
     return [Pin(name, direction, "south", begin + MARGIN_UM + step * k) for k, name in enumerate(names)]
 
 
 def _supplies(side, length, sizes):
     """A pair of supply pins for every 500 um of the side, one at least."""
     count = max(1, round(length / 500))
-    return [Pin(name, "inout", side, (place + (1 + k) / 3) * length / count, True)
-            for place in range(count) for k, name in enumerate(SUPPLIES)]
+    return [
+        Pin(name, "inout", side, (place + (1 + k) / 3) * length / count, True)
+        for place in range(count)
+        for k, name in enumerate(SUPPLIES)
+    ]

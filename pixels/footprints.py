@@ -7,19 +7,19 @@ import argparse
 import sys
 from pathlib import Path
 
-from flow.files import staged
-from flow.gds import write_gds
-from flow.layout.macro import layer_names
-from flow.platforms import openroad
-from flow.platforms.die import thick
-from flow.platforms.embedded import process
+from base.files import staged
+from base.gds import write_gds
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
+from platforms import openroad
+from platforms.coriolis import process
+from platforms.die import thick
+from platforms.openroad import layer_names
 
 from .blocks import DEEP_UM, AnalogSizes, blocks
 
 # Of Embedded.wires: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 4, 3
-WIDE_UM = 0.4       # of a signal's pin
+WIDE_UM = 0.4  # of a signal's pin
 
 
 def layer(pin, pdk):
@@ -49,8 +49,14 @@ def lef(block, pdk, supply_um):
     for pin in block.pins:
         _, name = layer(pin, pdk)
         found.setdefault(pin.name, []).append((pin, name, box(pin, block, supply_um, known.grid_um)))
-    lines = ["VERSION 5.8 ;", 'BUSBITCHARS "[]" ;', 'DIVIDERCHAR "/" ;', f"MACRO {block.name}", "  CLASS BLOCK ;",
-             f"  SIZE {block.width_um:.3f} BY {block.height_um:.3f} ;"]
+    lines = [
+        "VERSION 5.8 ;",
+        'BUSBITCHARS "[]" ;',
+        'DIVIDERCHAR "/" ;',
+        f"MACRO {block.name}",
+        "  CLASS BLOCK ;",
+        f"  SIZE {block.width_um:.3f} BY {block.height_um:.3f} ;",
+    ]
     for name, pieces in found.items():
         use = {"vdda": "POWER", "vssa": "GROUND"}.get(name, "SIGNAL")
         lines += [f"  PIN {name}", f"    DIRECTION {pieces[0][0].direction.upper()} ;", f"    USE {use} ;", "    PORT"]
@@ -61,14 +67,17 @@ def lef(block, pdk, supply_um):
     deep = DEEP_UM + supply_um
     inside = min(block.width_um, block.height_um) > 2 * deep
     for name in dict.fromkeys(name for pieces in found.values() for _, name, _ in pieces) if inside else ():
-        lines += [f"    LAYER {name} ;", f"      RECT {deep:.3f} {deep:.3f} {block.width_um - deep:.3f} "
-                  f"{block.height_um - deep:.3f} ;"]
+        lines += [
+            f"    LAYER {name} ;",
+            f"      RECT {deep:.3f} {deep:.3f} {block.width_um - deep:.3f} {block.height_um - deep:.3f} ;",
+        ]
     return "\n".join([*lines, "  END", f"END {block.name}", "END LIBRARY", ""])
 
 
 def frame(block, pdk, supply_um):
     """The klayout.db.Layout of a block's frame: its pins with their names, and its outline."""
     import klayout.db as db
+
     known, layout = process(pdk)[0], db.Layout()
     layout.dbu = 0.001
     cell = layout.create_cell(block.name)

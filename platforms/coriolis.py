@@ -98,11 +98,10 @@ def process(pdk):
     """(Embedded, function that makes the PDKMaster library) of ``pdk``. Raises ParameterError."""
     if pdk not in PROCESSES:
         raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)}")
-    module = importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.embedded")
+    module = importlib.import_module(f"platforms.{pdk.replace('-', '_')}.coriolis")
     return module.PROCESS, module.library
 
 
 def modules(pdk):
     """Modules with the device models (POLARITY, SUPPLIES ...) and the layers (PROCESS) of ``pdk``, for `cells`."""
-    return tuple(importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.{name}")
-                 for name in ("models", "process"))
+    return tuple(importlib.import_module(f"platforms.{pdk.replace('-', '_')}.{name}") for name in ("models", "process"))

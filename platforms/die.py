@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from models.parameters import ParameterError
 
-from .embedded import Cut, Wire
+from .coriolis import Cut, Wire
 
 PROCESSES = ("sky130",)
 
@@ -29,4 +29,4 @@ def thick(pdk):
     """The Thick of ``pdk``. Raises ParameterError."""
     if pdk not in PROCESSES:
         raise ParameterError(f"pdk = {pdk}: must be one of {', '.join(PROCESSES)} for a whole die")
-    return importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.die").THICK
+    return importlib.import_module(f"platforms.{pdk.replace('-', '_')}.die").THICK

@@ -23,7 +23,7 @@ class Foundry:
 
 def foundry(pdk):
     """The Foundry of a process; None where none is known."""
-    return importlib.import_module(f"flow.platforms.{pdk}.foundry").FOUNDRY if pdk in PROCESSES else None
+    return importlib.import_module(f"platforms.{pdk}.foundry").FOUNDRY if pdk in PROCESSES else None
 
 
 def installed(pdk, environment=os.environ):
@@ -32,9 +32,14 @@ def installed(pdk, environment=os.environ):
     known, root = foundry(pdk), environment.get("PDK_ROOT", "")
     if not root or known is None:
         return {}
-    found = {name: Path(root) / path for name, path in (("klayout", known.klayout), ("magic", known.magic))
-             if (Path(root) / path).exists()}
+    found = {
+        name: Path(root) / path
+        for name, path in (("klayout", known.klayout), ("magic", known.magic))
+        if (Path(root) / path).exists()
+    }
     if not found:
-        raise ParameterError(f"PDK_ROOT = {root}: must hold {known.klayout} or {known.magic}, or not be set: the layout "
-                             "is then checked by PDKMaster's decks alone")
+        raise ParameterError(
+            f"PDK_ROOT = {root}: must hold {known.klayout} or {known.magic}, or not be set: the layout "
+            "is then checked by PDKMaster's decks alone"
+        )
     return found

@@ -78,4 +78,10 @@ def process(pdk):
     """The OpenRoad of ``pdk``. Raises ParameterError."""
     if pdk not in PROCESSES:
         raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)} with BACKEND=openroad")
-    return importlib.import_module(f"flow.platforms.{pdk.replace('-', '_')}.openroad").PROCESS
+    return importlib.import_module(f"platforms.{pdk.replace('-', '_')}.openroad").PROCESS
+
+
+def layer_names(pdk):
+    """dict (GDS layer, datatype) -> name of the layer in LEF, where it is not that of the wire."""
+    known = process(pdk).gds if pdk in PROCESSES else {}
+    return {numbers: name for name, numbers in known.items()}

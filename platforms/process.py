@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-DIFFUSION = "diffusion"         # source, drain and taps, as a conductor beside the wires
+DIFFUSION = "diffusion"  # source, drain and taps, as a conductor beside the wires
+
 
 @dataclass(frozen=True)
 class Wire:

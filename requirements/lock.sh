@@ -4,7 +4,7 @@
 set -euo pipefail
 compile() { uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header "$@"; }
 lock() { compile pyproject.toml "$@"; }
-lock --extra setup --output-file requirements.lock
-lock --extra setup --extra test --extra verify --constraint requirements.lock --output-file requirements-test.lock
-lock --extra setup --extra layout --constraint requirements-test.lock --output-file requirements-layout.lock
-printf '%s\n' librelane==3.0.17 pyosys==0.70 | compile - --output-file requirements-librelane.lock
+lock --extra setup --output-file requirements/run.lock
+lock --extra setup --extra test --extra verify --constraint requirements/run.lock --output-file requirements/test.lock
+lock --extra setup --extra layout --constraint requirements/test.lock --output-file requirements/layout.lock
+printf '%s\n' librelane==3.0.17 pyosys==0.70 | compile - --output-file requirements/librelane.lock

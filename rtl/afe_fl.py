@@ -21,10 +21,11 @@ class AfeFL(Component):
         s.comparator = OutPort(lanes)
 
         s.converter = front_end.converter or Converter.ideal(lanes)
-        s.values = {n: front_end.values(samples, mode) for n, mode in enumerate(MODES)
-                    if mode != "tof" or len(samples) == 4}
+        s.values = {
+            n: front_end.values(samples, mode) for n, mode in enumerate(MODES) if mode != "tof" or len(samples) == 4
+        }
         s.held, s.index = np.zeros(lanes), np.zeros(lanes, np.int64)
-        s.decision = OutPort(8)     # cycles since the hold: what makes `compare` run again
+        s.decision = OutPort(8)  # cycles since the hold: what makes `compare` run again
 
         @update_ff
         def sample():
@@ -43,7 +44,7 @@ class AfeFL(Component):
         def compare():
             number, bits = int(s.decision), 0
             for lane in range(lanes):
-                dac = int(s.dac[8 * lane:8 * lane + 8])
+                dac = int(s.dac[8 * lane : 8 * lane + 8])
                 if s.converter.compare(s.held[lane], dac, bool(s.unsigned_), lane, s.index[lane], number):
                     bits |= 1 << lane
             s.comparator @= bits

@@ -14,13 +14,19 @@ from pathlib import Path
 
 from pymtl3.passes.backends.verilog import VerilogTranslationPass
 
-from models.parameters import (DIVIDERS, ArrayParameters, ChipParameters, ParameterError, SensorParameters,
-                               TileParameters)
+from base.paths import ROOT
+from models.parameters import (
+    DIVIDERS,
+    ArrayParameters,
+    ChipParameters,
+    ParameterError,
+    SensorParameters,
+    TileParameters,
+)
 from rtl.lint import LintError, lint
 from rtl.tops import TOPS, build_top
 
-ROOT = Path(__file__).parents[1]
-COLUMNS = "200"     # PyMTL folds lines at the terminal's width
+COLUMNS = "200"  # PyMTL folds lines at the terminal's width
 
 
 def module_names(top, name):
@@ -59,7 +65,7 @@ def tidy(text):
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
     text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)
-    text = text.replace("always_comb begin", "always @* begin")     # Icarus 11.0 loops in the first (its issue 508)
+    text = text.replace("always_comb begin", "always @* begin")  # Icarus 11.0 loops in the first (its issue 508)
     structs = sorted(set(re.findall(r"(?m)^} (\w+);", text)))
     short = [name.partition("__")[0] for name in structs]
     for name, plain in zip(structs, short, strict=True):
@@ -83,8 +89,8 @@ def translate_component(top, name):
     top.set_metadata(VerilogTranslationPass.enable, True)
     before, columns = Path.cwd(), os.environ.get("COLUMNS")
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
-        warnings.simplefilter("ignore")     # PyMTL3 3.1.17's translator warns about its own code
-        os.chdir(folder)                    # it writes into the working directory
+        warnings.simplefilter("ignore")  # PyMTL3 3.1.17's translator warns about its own code
+        os.chdir(folder)  # it writes into the working directory
         os.environ["COLUMNS"] = COLUMNS
         try:
             top.apply(VerilogTranslationPass())
@@ -126,8 +132,10 @@ def arguments():
 def sensor_of(options):
     """SensorParameters of the command line's options. Raises ParameterError."""
     return SensorParameters(
-        tile=TileParameters(), array=ArrayParameters(options.rows, options.cols),
-        chip=ChipParameters(options.lanes, options.divider, options.n_frac, options.iterations))
+        tile=TileParameters(),
+        array=ArrayParameters(options.rows, options.cols),
+        chip=ChipParameters(options.lanes, options.divider, options.n_frac, options.iterations),
+    )
 
 
 def main(argv=None):

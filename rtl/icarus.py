@@ -75,10 +75,11 @@ def compile_program(program, sources, top, texts=()):
         files = [f"{folder}/text{number}.v" for number in range(len(texts))]
         for file, text in zip(files, texts):
             Path(file).write_text(text)
-        files += map(str, sources)      # behind the bench: its time scale is that of cells that have none
+        files += map(str, sources)  # behind the bench: its time scale is that of cells that have none
         part = program.with_name(f".{program.name}.part-{os.getpid()}")
-        result = subprocess.run(["iverilog", "-g2012", "-s", top, "-o", part, *files], capture_output=True, text=True,
-                                timeout=300)
+        result = subprocess.run(
+            ["iverilog", "-g2012", "-s", top, "-o", part, *files], capture_output=True, text=True, timeout=300
+        )
         if result.returncode:
             raise IcarusError(f"iverilog refused {top}:\n{(result.stdout + result.stderr).strip()[-2000:]}")
         os.replace(part, program)
@@ -114,7 +115,7 @@ class Driven:
             self.send(b"%d %x\n" % (edge, inputs))
             self.flush()
         except BrokenPipeError:
-            pass        # what it said stands in what is left to read
+            pass  # what it said stands in what is left to read
         line = self.receive()
         if not line or line.strip(b"01xz\n"):
             said = line + self.process.stdout.read(2000)
@@ -125,7 +126,7 @@ class Driven:
     def unknown(self, line):
         """The ports that show X or Z in an answer: list of str, 'recv__rdy = x'."""
         bits = line.decode().strip()[::-1]
-        values = {port.name: bits[low:low + port.width][::-1] for port, low in places(self.outputs).items()}
+        values = {port.name: bits[low : low + port.width][::-1] for port, low in places(self.outputs).items()}
         return [f"{name} = {value}" for name, value in values.items() if value.strip("01")]
 
 

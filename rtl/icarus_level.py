@@ -46,8 +46,10 @@ class Conversation:
         inputs, outputs = split(ports)
         self.simulation, self.cycle, self.edge, self.inputs = simulation, 0, False, None
         self.low = tuple(places(inputs).values())
-        self.take = [(low, (1 << port.width) - 1, kinds[port.path] if port.struct else None, mk_bits(port.width))
-                     for port, low in places(outputs).items()]
+        self.take = [
+            (low, (1 << port.width) - 1, kinds[port.path] if port.struct else None, mk_bits(port.width))
+            for port, low in places(outputs).items()
+        ]
 
     def clock(self):
         self.edge = True
@@ -67,8 +69,10 @@ class Conversation:
                 # Registers hold X until the first clock edge of the first reset, and not a cycle longer
                 assert self.cycle == 0, f"cycle {self.cycle}: {', '.join(self.simulation.unknown(line))}"
                 answer = 0
-            self.answer = tuple(kind.from_bits(bits(answer >> low & mask)) if kind else answer >> low & mask
-                                for low, mask, kind, bits in self.take)
+            self.answer = tuple(
+                kind.from_bits(bits(answer >> low & mask)) if kind else answer >> low & mask
+                for low, mask, kind, bits in self.take
+            )
         return self.answer
 
 
@@ -77,7 +81,7 @@ def in_icarus(dut, name):
     return ["vvp", "-n", program(dut, name)]
 
 
-start = in_icarus       # another simulator's takes its place for netlists (conftest.py)
+start = in_icarus  # another simulator's takes its place for netlists (conftest.py)
 
 
 def icarus_level(dut, name):
@@ -89,7 +93,7 @@ def driven_level(dut, simulation):
     """The DrivenLevel for the elaborated component ``dut`` with the behaviour of ``simulation``, a Driven."""
     ports, start = ports_of(dut), len(repr(dut)) + 1
     kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
-    cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})       # PyMTL keeps what it knows of blocks by class
+    cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})  # PyMTL keeps what it knows of blocks by class
     return cls(dut, ports, Conversation(simulation, ports, kinds))
 
 
@@ -108,7 +112,8 @@ class DrivenLevel(Component):
         inputs, outputs = split(ports)
         source = SOURCE.format(
             inputs=", ".join(f"s.{port.path}" for port in inputs),
-            outputs="\n".join(f"    s.{port.path} @= answer[{i}]" for i, port in enumerate(outputs)))
+            outputs="\n".join(f"    s.{port.path} @= answer[{i}]" for i, port in enumerate(outputs)),
+        )
         file = f"<ports of {type(dut).__name__} {hash(ports):x}>"
         linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file
         scope = {"update": update, "update_ff": update_ff}

@@ -25,8 +25,16 @@ def commands(path, top):
     if shutil.which("iverilog"):
         out["Icarus"] = ["iverilog", "-g2012", "-t", "null", "-s", top, path], None
     if shutil.which("yosys"):
-        out["Yosys"] = ["yosys", "-q", "-p", f"read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt_clean; "
-                        "check -assert; select -assert-none t:$dlatch"], None
+        out["Yosys"] = (
+            [
+                "yosys",
+                "-q",
+                "-p",
+                f"read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt_clean; "
+                "check -assert; select -assert-none t:$dlatch",
+            ],
+            None,
+        )
     return out
 
 

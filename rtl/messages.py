@@ -4,7 +4,7 @@ from functools import cache
 
 from pymtl3 import Bits2, Bits3, Bits8, Bits9, Bits10, mk_bits, mk_bitstruct
 
-FRAME, ROW, SAMPLE, END = range(4)      # ScanMsg.kind and StepMsg.kind
+FRAME, ROW, SAMPLE, END = range(4)  # ScanMsg.kind and StepMsg.kind
 
 ScanMsg = mk_bitstruct("ScanMsg", {"kind": Bits2, "data": Bits10})
 
@@ -14,13 +14,23 @@ DivReq = mk_bitstruct("DivReq", {"x": Bits9, "y": Bits9})
 @cache
 def step_msg(lanes):
     """StepMsg for a bank of ``lanes`` converters."""
-    return mk_bitstruct(f"StepMsg_{lanes}", {
-        "kind": Bits2, "row": Bits10, "group": Bits8, "k": Bits3, "sub": Bits2, "en": mk_bits(lanes)})
+    return mk_bitstruct(
+        f"StepMsg_{lanes}",
+        {"kind": Bits2, "row": Bits10, "group": Bits8, "k": Bits3, "sub": Bits2, "en": mk_bits(lanes)},
+    )
 
 
 @cache
 def div_resp(n_frac):
     """DivResp with a ratio of ``n_frac`` bits."""
-    return mk_bitstruct(f"DivResp_{n_frac}", {
-        "octant": Bits3, "ratio": mk_bits(n_frac), "zero": mk_bits(1),
-        "phase": Bits8, "amp_valid": mk_bits(1), "amp": Bits8})
+    return mk_bitstruct(
+        f"DivResp_{n_frac}",
+        {
+            "octant": Bits3,
+            "ratio": mk_bits(n_frac),
+            "zero": mk_bits(1),
+            "phase": Bits8,
+            "amp_valid": mk_bits(1),
+            "amp": Bits8,
+        },
+    )

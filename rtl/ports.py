@@ -22,8 +22,11 @@ class Port:
 
 def port_signals(component):
     """Every port of an elaborated component, those of its interfaces too: list of InPort and OutPort."""
-    return [signal for signal in component.get_all_object_filter(lambda x: isinstance(x, (InPort, OutPort)))
-            if signal.get_host_component() is component and signal.is_top_level_signal()]
+    return [
+        signal
+        for signal in component.get_all_object_filter(lambda x: isinstance(x, (InPort, OutPort)))
+        if signal.get_host_component() is component and signal.is_top_level_signal()
+    ]
 
 
 def ports_of(component):

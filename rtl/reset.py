@@ -6,8 +6,8 @@ from pymtl3 import mk_bits
 
 from rtl.ports import ports_of, split, validity
 
-CYCLES = 4      # that are looked at behind a reset
-BEFORE = 60     # with any inputs, ahead of it
+CYCLES = 4  # that are looked at behind a reset
+BEFORE = 60  # with any inputs, ahead of it
 
 
 def shown_behind_reset(sim, before=BEFORE):

@@ -63,7 +63,7 @@ def build(top, verilog=False, name=None):
         top = _in_place(top, dut, other)
     elif verilog:
         with _verilator(name), warnings.catch_warnings():
-            warnings.simplefilter("ignore")     # PyMTL3 3.1.17's translator warns about its own code
+            warnings.simplefilter("ignore")  # PyMTL3 3.1.17's translator warns about its own code
             dut.set_metadata(VerilogTranslationImportPass.enable, True)
             dut.set_metadata(VerilogTranslationPass.explicit_module_name, name)
             top = VerilogTranslationImportPass()(top)
@@ -80,6 +80,7 @@ def build(top, verilog=False, name=None):
 def _other_behaviour(dut, verilog, name):
     """The component that takes the place of the elaborated ``dut``, or None."""
     from rtl.icarus_level import driven_level, icarus_level
+
     if found := next((simulation for make in stand_ins if (simulation := make(dut, verilog))), None):
         return driven_level(dut, found)
     return icarus_level(dut, name) if verilog == "icarus" else None
@@ -99,8 +100,9 @@ class StreamBench(Component):
     dut has `recv` and `send` streams; ``settings`` maps names of its other input ports to constants.
     """
 
-    def construct(s, dut, recv_type, send_type, msgs, expected, settings=(), source_delay=0, sink_delay=0,
-                  sink_initial=0):
+    def construct(
+        s, dut, recv_type, send_type, msgs, expected, settings=(), source_delay=0, sink_delay=0, sink_initial=0
+    ):
         s.source = SourceRTL(recv_type, msgs, 0, source_delay)
         s.dut = dut
         s.sink = SinkRTL(send_type, expected, sink_initial, sink_delay)

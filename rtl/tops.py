@@ -5,55 +5,81 @@ from models.parameters import ParameterError
 
 def amp_ctrl(sensor):
     from rtl.amp_ctrl import AmpCtrl
+
     return AmpCtrl()
 
 
 def readout_seq(sensor):
     from rtl.readout_seq import ReadoutSeq
-    return ReadoutSeq(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, tuple(sensor.tile.order),
-                      sensor.tile.rows, sensor.tile.cols)
+
+    return ReadoutSeq(
+        sensor.array.rows,
+        sensor.array.cols,
+        sensor.chip.lanes,
+        tuple(sensor.tile.order),
+        sensor.tile.rows,
+        sensor.tile.cols,
+    )
 
 
 def edge_adc(sensor):
     from rtl.edge_adc import EdgeAdc
+
     return EdgeAdc()
 
 
 def adc_bank(sensor):
     from rtl.adc_bank import AdcBank
+
     return AdcBank(sensor.chip.lanes)
 
 
 def divider(variant):
     """How to build one variant of the quadrature divider."""
+
     def build(sensor):
         from rtl.quad_divider import quad_divider
+
         return quad_divider(variant, sensor.chip.n_frac, sensor.chip.cordic_iterations)
+
     return build
 
 
 def phase_path(sensor):
     from rtl.phase_path import PhasePath
+
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
 def run_length(sensor):
     from rtl.run_length import RunLength
+
     return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
 
 
 def reg_file(sensor):
     from rtl.reg_file import RegFile
+
     return RegFile(sensor.tile_rows - 1, sensor.tile_cols - 1)
 
 
 def asp_chip(sensor):
     from rtl.asp_chip import AspChip
-    return AspChip(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, tuple(sensor.tile.order), sensor.tile.rows,
-                   sensor.tile.cols, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
+
+    return AspChip(
+        sensor.array.rows,
+        sensor.array.cols,
+        sensor.chip.lanes,
+        tuple(sensor.tile.order),
+        sensor.tile.rows,
+        sensor.tile.cols,
+        sensor.chip.divider,
+        sensor.chip.n_frac,
+        sensor.chip.cordic_iterations,
+    )
 
 
-TOPS = {        # each imports its block when it is built: a block that is being changed stops only itself
+TOPS = {  # each imports its block when it is built: a block that is being changed stops only itself
     "AmpCtrl": amp_ctrl,
     "ReadoutSeq": readout_seq,
     "EdgeAdc": edge_adc,

@@ -9,7 +9,7 @@ import os
 import signal
 import sys
 
-from flow.simulate.process import ToolError
+from base.tools import ToolError
 from models.parameters import ParameterError
 
 from . import commands
@@ -35,13 +35,13 @@ def parser():
 
 
 def main(argv=None):
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))     # unwinds, so that nothing half-written stays
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # unwinds, so that nothing half-written stays
     arguments = parser().parse_args(argv)
     try:
         return arguments.run(arguments)
     except KeyboardInterrupt:
         _refuse("interrupted; nothing was left half-written")
-    except BrokenPipeError:                                     # the reader of our output went away
+    except BrokenPipeError:  # the reader of our output went away
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (ParameterError, ToolError) as error:

@@ -2,8 +2,14 @@
 
 from models.parameters import ALL_TYPES, ParameterError, Window
 
-TYPE_GROUPS = {"all": ALL_TYPES, "low": 0x0000FF, "mid": 0x00FF00, "high": 0xFF0000,
-               "cosine": 0x555555, "sine": 0xAAAAAA}
+TYPE_GROUPS = {
+    "all": ALL_TYPES,
+    "low": 0x0000FF,
+    "mid": 0x00FF00,
+    "high": 0xFF0000,
+    "cosine": 0x555555,
+    "sine": 0xAAAAAA,
+}
 
 
 def pixel_types(text):

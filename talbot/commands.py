@@ -5,17 +5,18 @@ import json
 import sys
 from pathlib import Path
 
+from base.progress import Steps
 from models.parameters import LANES, MODES
 
 from . import arguments as text
-from .progress import Steps
 
 __all__ = ["add_decode", "add_sim", "add_stability", "add_tradeoff"]
 
 
 def _command(subs, name, run, help_text):
-    p = subs.add_parser(name, help=help_text, description=help_text,
-                        formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    p = subs.add_parser(
+        name, help=help_text, description=help_text, formatter_class=argparse.ArgumentDefaultsHelpFormatter
+    )
     p.set_defaults(run=run)
     return p
 
@@ -29,8 +30,9 @@ def add_sim(subs):
     p.add_argument("--threshold", default=10, help="edge mode: |code| below this is left out, 0..127")
     p.add_argument("--rows", default=384, help="pixels, 1..1024")
     p.add_argument("--cols", default=384, help="pixels, 1..1536")
-    p.add_argument("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups "
-                                                  + ", ".join(text.TYPE_GROUPS))
+    p.add_argument(
+        "--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS)
+    )
     p.add_argument("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
     p.add_argument("--decimation", default=0, help="log2 of the tile step, 0..3")
     p.add_argument("--lanes", default=8, help="converters, one of " + ", ".join(map(str, LANES)))
@@ -62,22 +64,37 @@ def _request(a):
     rows, cols = text.integer("rows", a.rows, 1, 1024), text.integer("cols", a.cols, 1, 1536)
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     focus = None if a.focus is None else text.real("focus", a.focus, -100, 100)
-    return request(rows=rows, cols=cols, lanes=text.integer("lanes", a.lanes, min(LANES), max(LANES)),
-                   window=lambda full: text.window(a.window, full), mask=text.pixel_types(a.types),
-                   scene=a.scene, depth=a.depth, focus=focus, mode=a.mode,
-                   threshold=text.integer("threshold", a.threshold, 0, 127),
-                   decimation=text.integer("decimation", a.decimation, 0, 3), phase=a.phase,
-                   noise=text.real("noise", a.noise, 0, 100), seed=text.integer("seed", a.seed, 0, 2**32 - 1),
-                   out=a.out, waves=waves)
+    return request(
+        rows=rows,
+        cols=cols,
+        lanes=text.integer("lanes", a.lanes, min(LANES), max(LANES)),
+        window=lambda full: text.window(a.window, full),
+        mask=text.pixel_types(a.types),
+        scene=a.scene,
+        depth=a.depth,
+        focus=focus,
+        mode=a.mode,
+        threshold=text.integer("threshold", a.threshold, 0, 127),
+        decimation=text.integer("decimation", a.decimation, 0, 3),
+        phase=a.phase,
+        noise=text.real("noise", a.noise, 0, 100),
+        seed=text.integer("seed", a.seed, 0, 2**32 - 1),
+        out=a.out,
+        waves=waves,
+    )
 
 
 def _tell(s, folder):
     psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.2f} dB"
-    print(f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "
-          f"{s['stream_mismatches']} stream bytes and {s['decoded_mismatches']} decoded samples differ from the model")
+    print(
+        f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "
+        f"{s['stream_mismatches']} stream bytes and {s['decoded_mismatches']} decoded samples differ from the model"
+    )
     print(f"  {s['stream_bytes']:,} bytes for {s['samples']:,} samples ({s['compression_ratio']:.2f}:1) at {psnr}")
-    print(f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
-          f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {s['energy_uj']['total']:.2f} uJ")
+    print(
+        f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
+        f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {s['energy_uj']['total']:.2f} uJ"
+    )
     print(f"  simulated at {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s; wall clock {sum(s['wall_s'].values()):.1f} s")
     print(f"  look at {folder / 'report.html'}")
 
@@ -89,7 +106,7 @@ def add_decode(subs):
 
 
 def _decode(a):
-    from flow.files import check_folder
+    from base.files import check_folder
     from models.digital.stream import decode_file
 
     out = Path(a.out) if a.out else Path(a.file).with_suffix(".npz")
@@ -98,7 +115,9 @@ def _decode(a):
     for frame in frames:
         h = frame.header
         bad = [f"bad rows: {ranges(frame.bad_rows)}"] if frame.bad_rows else []
-        print(f"frame {h.frame_number}: {h.mode}, {h.rows} x {h.cols}, {'; '.join([*frame.errors, *bad]) or 'complete'}")
+        print(
+            f"frame {h.frame_number}: {h.mode}, {h.rows} x {h.cols}, {'; '.join([*frame.errors, *bad]) or 'complete'}"
+        )
     print(f"written: {out}")
     return 0 if all(frame.complete for frame in frames) else 1
 
@@ -115,13 +134,15 @@ def ranges(numbers):
 
 
 def add_tradeoff(subs):
-    p = _command(subs, "tradeoff", _tradeoff, "Error against run time: a table (CSV) and a plot for each thing to turn.")
+    p = _command(
+        subs, "tradeoff", _tradeoff, "Error against run time: a table (CSV) and a plot for each thing to turn."
+    )
     p.add_argument("--only", help="comma-separated names of sweeps (default: all)")
     p.add_argument("--out", default="build/tradeoff", help="folder for the tables and plots")
 
 
 def _tradeoff(a):
-    from flow.files import check_folder
+    from base.files import check_folder
     from flow.tradeoff import run
 
     check_folder("out", a.out)
@@ -136,8 +157,9 @@ def add_stability(subs):
 
 
 def _stability(a):
-    from flow.files import check_folder, staged
-    from flow.stability import run, table
+    from base.files import check_folder, staged
+    from flow.stability import run
+    from models.stability import table
 
     if a.json:
         check_folder("json", Path(a.json).parent)

@@ -4,9 +4,9 @@ import hashlib
 import json
 from pathlib import Path
 
-from flow.files import staged
+from base.files import staged
+from base.paths import ROOT
 
-ROOT = Path(__file__).parents[1]
 OUT = ROOT / "build" / "verify"
 SOURCES = ".py", ".rdl", ".sv", ".v", ".vlt", ".cpp", ".lib", ".yaml", ".json", ".html"
 
@@ -21,8 +21,7 @@ def sources(*folders):
     """The files under these folders (or files) of the repository that decide a result, ascending: list of Path."""
     named = [ROOT / folder for folder in folders]
     found = {path for top in named for path in (top, *top.rglob("*")) if path.is_file()}
-    return sorted(path for path in found
-                  if path in named or path.suffix in SOURCES and "__pycache__" not in path.parts)
+    return sorted(path for path in found if path in named or path.suffix in SOURCES and "__pycache__" not in path.parts)
 
 
 def digest_of(*folders):

@@ -25,12 +25,11 @@ class Group:
 
     def all(self, kind, **wanted):
         """Groups in this one of ``kind`` whose attributes equal ``wanted``: list."""
-        return [g for g in self.groups if g.kind == kind
-                and all(g.attributes.get(k) == v for k, v in wanted.items())]
+        return [g for g in self.groups if g.kind == kind and all(g.attributes.get(k) == v for k, v in wanted.items())]
 
     def one(self, kind, *arguments):
         """The group of ``kind`` with these arguments, or None."""
-        return next((g for g in self.groups if g.kind == kind and g.arguments[:len(arguments)] == arguments), None)
+        return next((g for g in self.groups if g.kind == kind and g.arguments[: len(arguments)] == arguments), None)
 
     @property
     def name(self):

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from cells.liberty.group import Group
+from base.liberty.group import Group
 from models.parameters import ParameterError
 
 _TOKEN = re.compile(r'/\*.*?\*/|//[^\n]*|\\\r?\n|"((?:[^"\\]|\\.)*)"|([{}();:,])|([^\s{}();:,"]+)', re.S)
@@ -16,8 +16,11 @@ def read(path):
 
 def parse(source, origin="liberty"):
     """As `read`, of a text."""
-    tokens = [(m[1] if m[1] is not None else m[2] or m[3], m[1] is not None)
-              for m in _TOKEN.finditer(source) if m[1] is not None or m[2] or m[3]]
+    tokens = [
+        (m[1] if m[1] is not None else m[2] or m[3], m[1] is not None)
+        for m in _TOKEN.finditer(source)
+        if m[1] is not None or m[2] or m[3]
+    ]
     reader = _Reader(tokens, origin)
     try:
         return reader.statement(None)

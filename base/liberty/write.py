@@ -3,9 +3,22 @@
 import numpy as np
 
 # Attributes whose values are bare words in Liberty, not texts in quotes
-_WORDS = {"direction", "timing_type", "timing_sense", "pg_type", "delay_model", "type", "variable_1", "variable_2",
-          "in_place_swap_mode", "clear_preset_var1", "clear_preset_var2", "clock_gating_integrated_cell",
-          "default_operating_conditions", "tree_type"}
+_WORDS = {
+    "direction",
+    "timing_type",
+    "timing_sense",
+    "pg_type",
+    "delay_model",
+    "type",
+    "variable_1",
+    "variable_2",
+    "in_place_swap_mode",
+    "clear_preset_var1",
+    "clear_preset_var2",
+    "clock_gating_integrated_cell",
+    "default_operating_conditions",
+    "tree_type",
+}
 
 
 def text(group, depth=0):

@@ -12,7 +12,7 @@ import threading
 from .step import StepError
 
 ONE_AT_A_TIME = threading.Lock()
-PR_SET_PDEATHSIG = 1        # linux/prctl.h: the signal that a process gets when its parent ends
+PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that a process gets when its parent ends
 
 
 def alone(call, *arguments):
@@ -25,8 +25,10 @@ def alone(call, *arguments):
     try:
         result, peak = receiver.recv()
     except EOFError:
-        raise StepError(f"{getattr(call, '__qualname__', call)}: its process ended without a word "
-                        "(a crash in a library, or no memory left)") from None
+        raise StepError(
+            f"{getattr(call, '__qualname__', call)}: its process ended without a word "
+            "(a crash in a library, or no memory left)"
+        ) from None
     except BaseException:
         child.terminate()
         raise
@@ -68,9 +70,10 @@ def _send_workers_home():
     """The end of this process would wait for joblib's idle workers, five minutes."""
     if "joblib.externals.loky" in sys.modules:
         from joblib.externals.loky import get_reusable_executor
+
         get_reusable_executor(reuse=True).shutdown(kill_workers=True)
 
 
 def _end(signum, frame):
-    """As an exception, so that what runs in flow.simulate.process ends its tool."""
+    """As an exception, so that what runs in base.tools ends its tool."""
     raise SystemExit(128 + signum)

@@ -12,7 +12,7 @@ from threading import Event, Semaphore
 
 import joblib
 
-from flow.simulate.cache import cached, digest
+from base.cache import cached, digest
 
 from .alone import alone
 from .step import StepError
@@ -50,9 +50,17 @@ class Runner:
             outputs = {name: part / file for name, file in step.outputs.items()}
             metrics, peak = alone(step.run, inputs, outputs)
             _check(step, part, metrics)
-            record = {"step": step.name, "metrics": metrics, "units": step.metrics, "wall_s":
-                      round(time.perf_counter() - begin, 2), "peak_mib": peak, "parameters": parameters,
-                      "parameter_units": step.units(), "tools": tools, "inputs": hashes}
+            record = {
+                "step": step.name,
+                "metrics": metrics,
+                "units": step.metrics,
+                "wall_s": round(time.perf_counter() - begin, 2),
+                "peak_mib": peak,
+                "parameters": parameters,
+                "parameter_units": step.units(),
+                "tools": tools,
+                "inputs": hashes,
+            }
             (part / RECORD).write_text(json.dumps(record, indent=1, default=str) + "\n")
 
         made = cached((self.shared if step.shared else self.folder) / f"{step.name}.{key}", make)
@@ -86,11 +94,12 @@ class Runner:
             finally:
                 ended[step.name].set()
 
-        try:        # a thread a step, in batches of one: those that wait take nobody's place
+        try:  # a thread a step, in batches of one: those that wait take nobody's place
             joblib.Parallel(n_jobs=len(steps), backend="threading", batch_size=1)(
-                joblib.delayed(begin)(step) for step in steps)
+                joblib.delayed(begin)(step) for step in steps
+            )
         except BaseException:
-            for child in multiprocessing.active_children():     # else their threads wait for them to the end
+            for child in multiprocessing.active_children():  # else their threads wait for them to the end
                 child.terminate()
             raise
         return [self.records[step.name] for step in steps]

@@ -5,7 +5,7 @@ import re
 import shutil
 from functools import cache
 
-from flow.simulate.process import ToolError, finish
+from base.tools import ToolError, finish
 
 # What to call for the version and where it stands in the answer; 'python NAME' is the Python package NAME
 COMMANDS = {

@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from flow.simulate.cache import PART, cached
+from base.cache import PART, cached
 
 
 def test_it_is_made_once(tmp_path):
@@ -33,11 +33,13 @@ def test_nothing_is_left_of_what_fails(tmp_path):
 
 
 def test_what_a_killed_process_left_goes_and_what_is_being_made_stays(tmp_path):
-    script = ("import os, signal, sys; from flow.simulate.cache import cached; "
-              "cached(sys.argv[1], lambda part: os.kill(os.getpid(), signal.SIGKILL))")
+    script = (
+        "import os, signal, sys; from base.cache import cached; "
+        "cached(sys.argv[1], lambda part: os.kill(os.getpid(), signal.SIGKILL))"
+    )
     subprocess.run([sys.executable, "-c", script, tmp_path / "killed"], check=False)
     assert [path.name.startswith(PART) for path in tmp_path.iterdir()] == [True]
-    other = tmp_path / f"{PART}{os.getppid()}-abc"          # of a process that lives
+    other = tmp_path / f"{PART}{os.getppid()}-abc"  # of a process that lives
     other.mkdir()
     cached(tmp_path / "kept", lambda part: None)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(("kept", other.name))

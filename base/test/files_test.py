@@ -1,6 +1,6 @@
 import pytest
 
-from flow.files import staged
+from base.files import staged
 
 
 def test_files_appear_only_when_all_are_written(tmp_path):

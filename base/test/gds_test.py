@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from flow.gds import write_gds
+from base.gds import write_gds
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
@@ -15,7 +15,7 @@ def test_the_same_layout_is_the_same_file(tmp_path):
     layout.create_cell("other")
     top.shapes(layout.layer(1, 0)).insert(db.Box(0, 0, 10, 20))
     write_gds(layout, tmp_path / "a.gds")
-    time.sleep(1.1)         # GDS's time stamps are seconds
+    time.sleep(1.1)  # GDS's time stamps are seconds
     write_gds(layout, tmp_path / "b.gds")
     assert (tmp_path / "a.gds").read_bytes() == (tmp_path / "b.gds").read_bytes()
     write_gds(layout, tmp_path / "top.gds", top)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from flow.jobs import Job, run
+from base.jobs import Job, run
 from models.parameters import ParameterError
 
 
@@ -60,6 +60,7 @@ def test_no_scheduler_there(tmp_path, monkeypatch):
 def worker_of(number):
     """Raises ValueError where no Dask worker does it."""
     from distributed import get_worker
+
     return {"number": number, "worker": get_worker().address}
 
 
@@ -67,8 +68,9 @@ def test_on_a_cluster(tmp_path, monkeypatch):
     """Dask workers, met over TCP, do the jobs (joblib does them itself where there is one); results lie as always."""
     distributed = pytest.importorskip("distributed")
     jobs = [Job(f"n{n}", worker_of, (n,)) for n in range(4)]
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, protocol="tcp",
-                                  dashboard_address=None) as cluster:
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=False, protocol="tcp", dashboard_address=None
+    ) as cluster:
         monkeypatch.setenv("SCHEDULER", cluster.scheduler_address)
         results = run(jobs, tmp_path / "store", "on a cluster")
     assert [r["number"] for r in results] == [0, 1, 2, 3] and all(r["worker"].startswith("tcp://") for r in results)

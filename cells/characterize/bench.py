@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from cells.spice.circuit import circuit
 from cells.spice.engine import SimulationError, Simulator
 
-REST = 0.2e-9          # s before the edge that is measured, in which nothing moves
-QUICK = 0.05e-9        # s of the ramps that bring a cell into its state
-DOUBLINGS = 6          # of the time given to an output before it counts as stuck
+REST = 0.2e-9  # s before the edge that is measured, in which nothing moves
+QUICK = 0.05e-9  # s of the ramps that bring a cell into its state
+DOUBLINGS = 6  # of the time given to an output before it counts as stuck
 
 
 @dataclass(frozen=True)
@@ -35,14 +35,19 @@ class Bench:
         self.volts = conditions.corner.supply
         levels = {n: level for n, level in process.SUPPLIES.items() if n in machine.netlist.ports}
         self.supplies = [n for n, level in levels.items() if level]
-        self.simulator = Simulator(circuit(machine.netlist, process, conditions.models, conditions.corner, leakage),
-                                   machine.inputs, machine.outputs, {n: v * self.volts for n, v in levels.items()},
-                                   conditions.corner.temperature, conditions.settings)
-        self.tail = {}          # output -> [s, s a farad]: the slowest seen
-        self.pressed = {}       # output -> F under which constraints are measured
-        self.middle = {}        # output -> F in the middle of its load axis
-        self.edges = {}         # what `edge` has measured
-        self.stubborn = set()   # states that the operating point does not find
+        self.simulator = Simulator(
+            circuit(machine.netlist, process, conditions.models, conditions.corner, leakage),
+            machine.inputs,
+            machine.outputs,
+            {n: v * self.volts for n, v in levels.items()},
+            conditions.corner.temperature,
+            conditions.settings,
+        )
+        self.tail = {}  # output -> [s, s a farad]: the slowest seen
+        self.pressed = {}  # output -> F under which constraints are measured
+        self.middle = {}  # output -> F in the middle of its load axis
+        self.edges = {}  # what `edge` has measured
+        self.stubborn = set()  # states that the operating point does not find
 
     def __enter__(self):
         self.simulator.__enter__()
@@ -71,13 +76,15 @@ class Bench:
         is told; where that ends elsewhere, and where an output floats, inputs are applied one after another.
         """
         floats = "Z" in state.outputs
-        for by_path in ((True,) if floats or state in self.stubborn else (False, True)):
+        for by_path in (True,) if floats or state in self.stubborn else (False, True):
             vectors = state.path if by_path else (state.inputs,)
             nodes = [(n, v * self.volts) for n, v in state.nodes] if self.machine.sequential and not by_path else ()
             points, start = self._stimulus(vectors, pause or self.settling + QUICK, edges)
             wave = self.simulator.transient(points, loads, start + after, step, nodes, **how)
-            if by_path or all(abs(wave.at(output, start) - level * self.volts) < 0.1 * self.volts
-                              for output, level in zip(self.machine.outputs, state.outputs, strict=True)):
+            if by_path or all(
+                abs(wave.at(output, start) - level * self.volts) < 0.1 * self.volts
+                for output, level in zip(self.machine.outputs, state.outputs, strict=True)
+            ):
                 return wave, start
             self.stubborn.add(state)
         raise AssertionError("not reached")
@@ -117,8 +124,14 @@ class Bench:
         tail = self.patience(output, load)
         for _ in range(DOUBLINGS):
             step = (ramp + tail) / self.conditions.settings.steps
-            wave, start = self.run(change.before, {change.pin: [(0.0, ramp, int(rising))]}, ramp + tail, step,
-                                   {output: load}, pause=2 * tail + QUICK)
+            wave, start = self.run(
+                change.before,
+                {change.pin: [(0.0, ramp, int(rising))]},
+                ramp + tail,
+                step,
+                {output: load},
+                pause=2 * tail + QUICK,
+            )
             found = self._measure(wave, pin, rising, output, up, start, start + ramp + tail, load)
             if found:
                 known = self.tail[output]
@@ -126,8 +139,9 @@ class Bench:
                 known[1] = max(known[1], 3 * found.slew / load if load > 1e-15 else 0)
                 return found
             tail *= 2
-        raise SimulationError(f"{self.cell.name}: {output} does not reach its level after {pin} changes",
-                              self.simulator.last)
+        raise SimulationError(
+            f"{self.cell.name}: {output} does not reach its level after {pin} changes", self.simulator.last
+        )
 
     def _measure(self, wave, pin, rising, output, up, start, stop, load):
         """Edge, or None when the output has not arrived within 2 % of the supply."""
@@ -140,12 +154,16 @@ class Bench:
         if None in times:
             return None
         charge = sum(self.moved(wave, rail, start, stop) for rail in self.supplies)
-        return Edge(times[0] - here, times[2] - times[1], charge * volts - load * volts ** 2 / 2,
-                    self.moved(wave, pin, start, stop))
+        return Edge(
+            times[0] - here,
+            times[2] - times[1],
+            charge * volts - load * volts**2 / 2,
+            self.moved(wave, pin, start, stop),
+        )
 
     def moved(self, wave, source, start, stop):
         """Charge through ``source`` beyond what leaks before and after."""
         before, after = (float(wave.current[source][i]) for i in (0, -1))
-        if abs(after) > 1e-9:                 # not at rest yet, no leakage
+        if abs(after) > 1e-9:  # not at rest yet, no leakage
             after = before
         return wave.charge(source, start, stop) - (before + after) / 2 * (stop - start)

@@ -7,7 +7,7 @@ up to 50 % or 100 %, with other slews or loads, within 6 % to 20 %.
 
 import numpy as np
 
-END = 0.9              # of the ramp, up to which charge counts
+END = 0.9  # of the ramp, up to which charge counts
 
 
 def capacitance(bench, pin):

@@ -32,14 +32,16 @@ def characterize(cell, process, conditions):
                 bench.pressed[output] = _between(axis[1], 2 / 3)
         out["largest_load"] = {output: axis[1][-1] for output, axis in axes.items() if axis}
         out["interpolation_error"] = {output: axis[2] for output, axis in axes.items() if axis}
-        out["arcs"] = [tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc,
-                             *axes[arc.output][:2])
-                       for arc in cell.arcs if axes[arc.output] and arc.type != LETS_GO]
+        out["arcs"] = [
+            tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc, *axes[arc.output][:2])
+            for arc in cell.arcs
+            if axes[arc.output] and arc.type != LETS_GO
+        ]
         out["arcs"] = [arc for arc in out["arcs"] if arc]
-        out["capacitance"] = {pin: tried(f"{pin}: capacitance", capacitance, bench, pin)
-                              for pin in cell.machine.inputs}
-        out["quiet_energy"] = {pin: _lists(tried(f"{pin}: energy", quiet_energy, bench, pin))
-                               for pin in cell.machine.inputs}
+        out["capacitance"] = {pin: tried(f"{pin}: capacitance", capacitance, bench, pin) for pin in cell.machine.inputs}
+        out["quiet_energy"] = {
+            pin: _lists(tried(f"{pin}: energy", quiet_energy, bench, pin)) for pin in cell.machine.inputs
+        }
         _without_clock(out, cell)
         out["constraints"] = constraints(bench, tried) if cell.storage else []
         runs, repeated = _let_go(out, bench, process, axes, tried)
@@ -52,8 +54,10 @@ def characterize(cell, process, conditions):
 
 def cpu_seconds():
     """Processor's seconds of this process and of its children that have ended."""
-    return sum(part.ru_utime + part.ru_stime
-               for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)))
+    return sum(
+        part.ru_utime + part.ru_stime
+        for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    )
 
 
 class _Tries:
@@ -76,8 +80,9 @@ def _lists(arrays):
 
 def axes_of(bench, output):
     """(slews, loads, interpolation error) of ``output``; loads end where the slower edge reaches the longest slew."""
-    changes = [arc.changes[0] for arc in bench.cell.arcs
-               if arc.output == output and not arc.type.startswith("three_state")]
+    changes = [
+        arc.changes[0] for arc in bench.cell.arcs if arc.output == output and not arc.type.startswith("three_state")
+    ]
     number = bench.machine.outputs.index(output)
     edges = list({change.after.outputs[number]: change for change in changes}.values())
     loads = delay.load_axis(bench.conditions, delay.largest_load(bench, edges, output))
@@ -92,8 +97,13 @@ def _between(loads, share):
 def _arc(bench, arc, slews, loads):
     change = delay.slowest(bench, arc, loads[len(loads) // 2])
     table = delay.table(bench, change, arc.output, loads, slews)
-    return {**_named(arc), "slews": table.slews, "loads": table.loads, "state": list(change.before.inputs),
-            **_lists(table.values)}
+    return {
+        **_named(arc),
+        "slews": table.slews,
+        "loads": table.loads,
+        "state": list(change.before.inputs),
+        **_lists(table.values),
+    }
 
 
 def _named(arc):

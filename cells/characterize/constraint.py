@@ -15,11 +15,11 @@ import numpy as np
 from cells.characterize.scenario import Scenarios
 from cells.spice.engine import SimulationError
 
-RESOLUTION = 2e-12         # s, of a bisection
-RELTOL = 1e-3              # moves a setup time by less than 1 ps, and takes half the time of 1e-4
-NEAR = 16e-12              # s, first step away from a guess
-PATIENCE = 5.0             # s of run time for one run of a search
-FAR = 1.0                  # share of the settling time in which a constraint lies, beyond the ramps
+RESOLUTION = 2e-12  # s, of a bisection
+RELTOL = 1e-3  # moves a setup time by less than 1 ps, and takes half the time of 1e-4
+NEAR = 16e-12  # s, first step away from a guess
+PATIENCE = 5.0  # s of run time for one run of a search
+FAR = 1.0  # share of the settling time in which a constraint lies, beyond the ramps
 
 
 def constraints(bench, tried):
@@ -38,10 +38,20 @@ def constraints(bench, tried):
     pulses = {(pin, level) for pin, level in filter(None, (storage.clear, storage.preset))}
     pulses |= {(storage.clock, level) for level in ((0, 1) if storage.kind != "latch" else (storage.active,))}
     for pin in sorted({pin for pin, _ in pulses}):
-        widths = {("fall", "rise")[level]: tried(f"{pin}: pulse to {level}", _widths, bench, scenarios, pin, level)
-                  for other, level in sorted(pulses) if other == pin}
-        found.append({"pin": pin, "related": pin, "type": "min_pulse_width", "slews": bench.conditions.constraint_slews,
-                      **widths})
+        widths = {
+            ("fall", "rise")[level]: tried(f"{pin}: pulse to {level}", _widths, bench, scenarios, pin, level)
+            for other, level in sorted(pulses)
+            if other == pin
+        }
+        found.append(
+            {
+                "pin": pin,
+                "related": pin,
+                "type": "min_pulse_width",
+                "slews": bench.conditions.constraint_slews,
+                **widths,
+            }
+        )
     return [f for f in found if f.get("rise") is not None or f.get("fall") is not None]
 
 
@@ -77,8 +87,10 @@ def _time(bench, scenario, clock_slew, data_slew, guess):
     sign = -1 if scenario.early else 1
 
     def run(offset):
-        events = [(scenario.clock, 0.0, scenario.clock_to, clock_slew),
-                  (scenario.data, sign * offset, scenario.data_to, data_slew)]
+        events = [
+            (scenario.clock, 0.0, scenario.clock_to, clock_slew),
+            (scenario.data, sign * offset, scenario.data_to, data_slew),
+        ]
         return outcome(bench, scenario.start, events, far, scenario.trigger, scenario.expected)
 
     return bisect(run, far, scenario.moves, bench.conditions.degrade, guess=guess)
@@ -122,8 +134,15 @@ def outcome(bench, state, events, far, trigger, expected, edge=None):
     after = max(t + ramp for line in edges.values() for t, ramp, _ in line) + bench.settling
     after += bench.patience(output, load)
     try:
-        wave, start = bench.run(state, edges, after, after / c.settings.steps, {output: load},
-                                settings=replace(c.settings, reltol=RELTOL, timeout=PATIENCE), retry=False)
+        wave, start = bench.run(
+            state,
+            edges,
+            after,
+            after / c.settings.steps,
+            {output: load},
+            settings=replace(c.settings, reltol=RELTOL, timeout=PATIENCE),
+            retry=False,
+        )
     except SimulationError:
         return None
     stop = start + after

@@ -7,7 +7,7 @@ Conditions.bend or Conditions.extra points have been added.
 
 import numpy as np
 
-FLOOR = 5e-12          # s; smaller delays are compared as if they were this long
+FLOOR = 5e-12  # s; smaller delays are compared as if they were this long
 
 
 def refined(bench, changes, output, loads):
@@ -50,5 +50,8 @@ def _halfway_error(line, low, high):
     half = float(np.sqrt(low * high))
     share = (half - low) / (high - low)
     first, exact, last = line(low), line(half), line(high)
-    return max(abs(getattr(first, name) * (1 - share) + getattr(last, name) * share - getattr(exact, name))
-               / max(abs(getattr(exact, name)), FLOOR) for name in ("delay", "slew"))
+    return max(
+        abs(getattr(first, name) * (1 - share) + getattr(last, name) * share - getattr(exact, name))
+        / max(abs(getattr(exact, name)), FLOOR)
+        for name in ("delay", "slew")
+    )

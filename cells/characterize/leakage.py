@@ -1,6 +1,6 @@
 """What a cell draws in every state while nothing moves."""
 
-HOLD = 50e-6           # s, in which floating nodes between stacked transistors find their level
+HOLD = 50e-6  # s, in which floating nodes between stacked transistors find their level
 
 
 def leakage(bench):
@@ -11,7 +11,9 @@ def leakage(bench):
             continue
         wave, _ = bench.run(state, {}, HOLD, HOLD / 50, dict.fromkeys(machine.outputs, 0.0))
         watts = sum(float(wave.current[rail][-1]) for rail in bench.supplies) * bench.volts
-        watts += sum(float(wave.current[pin][-1]) * level * bench.volts
-                     for pin, level in zip(machine.inputs, state.inputs, strict=True))
+        watts += sum(
+            float(wave.current[pin][-1]) * level * bench.volts
+            for pin, level in zip(machine.inputs, state.inputs, strict=True)
+        )
         found[state.inputs, state.outputs] = watts
     return [(list(inputs), list(outputs), watts) for (inputs, outputs), watts in found.items()]

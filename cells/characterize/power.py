@@ -4,7 +4,7 @@ import numpy as np
 
 from cells.characterize.bench import REST
 
-MOST = 8               # states that are tried
+MOST = 8  # states that are tried
 
 
 def quiet_energy(bench, pin):
@@ -29,8 +29,11 @@ def _quiet_changes(machine, pin, level):
     """Changes of ``pin`` to ``level`` that move no output, driven or not, one for every pair of inputs and outputs."""
     found = {}
     for change in sorted(machine.changes, key=lambda c: len(c.before.path)):
-        if (machine.inputs[change.pin] == pin and change.after.inputs[change.pin] == level
-                and change.before.kept == change.after.kept):
+        if (
+            machine.inputs[change.pin] == pin
+            and change.after.inputs[change.pin] == level
+            and change.before.kept == change.after.kept
+        ):
             found.setdefault((change.before.inputs, change.before.outputs), change)
     return list(found.values())
 
@@ -39,6 +42,11 @@ def _energy(bench, change, slew):
     ramp = bench.conditions.ramp(slew)
     after = ramp + bench.settling
     loads = dict.fromkeys(bench.machine.outputs, bench.conditions.least_load)
-    wave, start = bench.run(change.before, {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]}, after,
-                            after / bench.conditions.settings.steps, loads)
+    wave, start = bench.run(
+        change.before,
+        {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]},
+        after,
+        after / bench.conditions.settings.steps,
+        loads,
+    )
     return bench.volts * sum(bench.moved(wave, rail, start - REST / 4, start + after) for rail in bench.supplies)

@@ -32,14 +32,20 @@ class Scenarios:
         self.machine, self.storage = cell.machine, cell.storage
         self.clock = self.machine.inputs.index(self.storage.clock)
         self.after = {(c.before, c.pin): c.after for c in self.machine.changes}
-        self.idle = {self.machine.inputs.index(p): 1 - level
-                     for p, level in filter(None, (self.storage.clear, self.storage.preset))}
+        self.idle = {
+            self.machine.inputs.index(p): 1 - level
+            for p, level in filter(None, (self.storage.clear, self.storage.preset))
+        }
         self.states = sorted(self.machine.states, key=lambda s: len(s.path))
 
     def _quiet(self, clock_level, but=None):
         """States with the clock at a level and set and reset idle (all but input number ``but``)."""
-        return [s for s in self.states if s.inputs[self.clock] == clock_level
-                and all(s.inputs[p] == level for p, level in self.idle.items() if p != but)]
+        return [
+            s
+            for s in self.states
+            if s.inputs[self.clock] == clock_level
+            and all(s.inputs[p] == level for p, level in self.idle.items() if p != but)
+        ]
 
     def setup(self, pin, to):
         """Scenarios of ``pin`` (name) going ``to`` 0 or 1 before the clock's edge: one for each level that it can bring
@@ -66,8 +72,9 @@ class Scenarios:
                 continue
             expected = (taken if early else kept).outputs[0]
             trigger = data if latch else self.clock
-            found.setdefault(expected, []).append(Scenario(s, data, to, self.clock, clock_to, expected,
-                                                           expected != s.outputs[0], early, trigger))
+            found.setdefault(expected, []).append(
+                Scenario(s, data, to, self.clock, clock_to, expected, expected != s.outputs[0], early, trigger)
+            )
         return [next((f for f in same if f.moves), same[0]) for _, same in sorted(found.items())]
 
     def release(self, pin, early):
@@ -89,8 +96,19 @@ class Scenarios:
             if kept.outputs[0] == taken.outputs[0]:
                 continue
             expected = (taken if early else kept).outputs[0]
-            return [Scenario(s, data, self.idle[data], self.clock, clock_to, expected, expected != s.outputs[0], early,
-                             data if latch else self.clock)]
+            return [
+                Scenario(
+                    s,
+                    data,
+                    self.idle[data],
+                    self.clock,
+                    clock_to,
+                    expected,
+                    expected != s.outputs[0],
+                    early,
+                    data if latch else self.clock,
+                )
+            ]
         return []
 
     def pulses(self, pin, level):
@@ -99,8 +117,11 @@ class Scenarios:
         move the output to.
         """
         number = self.machine.inputs.index(pin)
-        states = (self._quiet(1 - level) if number == self.clock else
-                  [s for s in self.states if all(s.inputs[p] == v for p, v in self.idle.items())])
+        states = (
+            self._quiet(1 - level)
+            if number == self.clock
+            else [s for s in self.states if all(s.inputs[p] == v for p, v in self.idle.items())]
+        )
         found = {}
         for s in states:
             first = self.after.get((s, number))

@@ -11,9 +11,9 @@ from cells.characterize.bench import DOUBLINGS, REST
 from cells.spice.circuit import circuit
 from cells.spice.engine import SimulationError, Simulator
 
-LEFT = 0.1             # of the current that the output drives at half the supply
-HELD = 0.5             # of the supply, at which the output is held
-END = 0.9              # of a ramp at the output, over which charge counts as for inputs
+LEFT = 0.1  # of the current that the output drives at half the supply
+HELD = 0.5  # of the supply, at which the output is held
+END = 0.9  # of a ramp at the output, over which charge counts as for inputs
 
 
 class Held:
@@ -23,8 +23,14 @@ class Held:
         self.bench, self.output = bench, output
         c, machine = bench.conditions, bench.machine
         others = [o for o in machine.outputs if o != output]
-        self.simulator = Simulator(circuit(machine.netlist, process, c.models, c.corner), (*machine.inputs, output),
-                                   others, bench.simulator.rails, c.corner.temperature, c.settings)
+        self.simulator = Simulator(
+            circuit(machine.netlist, process, c.models, c.corner),
+            (*machine.inputs, output),
+            others,
+            bench.simulator.rails,
+            c.corner.temperature,
+            c.settings,
+        )
 
     def __enter__(self):
         self.simulator.__enter__()
@@ -56,21 +62,24 @@ class Held:
                 when = wave.time[k] + (wave.time[k + 1] - wave.time[k]) * (here - LEFT) / (here - there)
                 return float(when - REST - c.middle * ramp)
             after *= 2
-        raise SimulationError(f"{bench.cell.name}: {self.output} drives on after {pin} has changed",
-                              self.simulator.last)
+        raise SimulationError(
+            f"{bench.cell.name}: {self.output} drives on after {pin} has changed", self.simulator.last
+        )
 
     def capacitance(self):
         """(rise, fall) in F of the output while nothing drives it: the mean over the states in which that is so."""
         bench, c = self.bench, self.bench.conditions
         number, ramp = bench.machine.outputs.index(self.output), c.ramp(c.slews[len(c.slews) // 2])
-        states = sorted({s.inputs for s in bench.machine.states if s.outputs[number] == "Z"})[:c.states]
+        states = sorted({s.inputs for s in bench.machine.states if s.outputs[number] == "Z"})[: c.states]
 
         def one(inputs, low, high):
             wave = self.run(inputs, {self.output: (ramp, low, high)}, ramp)
             return abs(wave.charge(self.output, REST, REST + END * ramp)) / (END * bench.volts)
 
-        return tuple(float(np.mean([one(inputs, *ends) for inputs in states]))
-                     for ends in ((0.0, bench.volts), (bench.volts, 0.0)))
+        return tuple(
+            float(np.mean([one(inputs, *ends) for inputs in states]))
+            for ends in ((0.0, bench.volts), (bench.volts, 0.0))
+        )
 
 
 def disable(held, arc, slews, loads):
@@ -79,8 +88,12 @@ def disable(held, arc, slews, loads):
     no edge of the output, so that the slew is 0 (OpenSTA warns where there is none).
     """
     middle = slews[len(slews) // 2]
-    few = arc.changes[:held.bench.conditions.states]
+    few = arc.changes[: held.bench.conditions.states]
     change = few[0] if len(few) == 1 else max(few, key=lambda change: held.let_go(change, middle))
-    return {"slews": slews, "loads": loads, "state": list(change.before.inputs),
-            "delay": [[held.let_go(change, slew)] * len(loads) for slew in slews],
-            "slew": np.zeros((len(slews), len(loads))).tolist()}
+    return {
+        "slews": slews,
+        "loads": loads,
+        "state": list(change.before.inputs),
+        "delay": [[held.let_go(change, slew)] * len(loads) for slew in slews],
+        "slew": np.zeros((len(slews), len(loads))).tolist(),
+    }

@@ -10,7 +10,7 @@ faces it. Gates are left out over active: the transistor model has their capacit
 import math
 from collections import defaultdict
 
-from flow.platforms.process import DIFFUSION
+from platforms.process import DIFFUSION
 
 
 def capacitances(found, process):
@@ -34,11 +34,11 @@ def capacitances(found, process):
 def _below(wire, process):
     """Conductors under ``wire``, the nearest first; diffusion under all."""
     names = [w.name for w in process.wires]
-    return [*reversed(names[:names.index(wire.name)]), DIFFUSION]
+    return [*reversed(names[: names.index(wire.name)]), DIFFUSION]
 
 
 def _areas(found, process, crossings, add):
-    um2 = found.dbu ** 2
+    um2 = found.dbu**2
     for wire in process.wires:
         for net, region in found.shapes[wire.name].items():
             rest = region.merged()
@@ -107,14 +107,16 @@ def _edge(edge, net, wire, strips, process, crossings, add):
         length = b - a
         if length < 1e-6:
             continue
-        here = {name: [(r[0], r[1], r[4]) for r in rectangles if r[2] <= a + 1e-6 and r[3] >= b - 1e-6]
-                for name, rectangles in (*layers.items(), ("well", wells), ("active", active))}
+        here = {
+            name: [(r[0], r[1], r[4]) for r in rectangles if r[2] <= a + 1e-6 and r[3] >= b - 1e-6]
+            for name, rectangles in (*layers.items(), ("well", wells), ("active", active))
+        }
         facing = min(here[wire.name], default=(process.halo, 0, net))
         add(net, facing[2], length * wire.sidewall / 2 / (facing[0] + wire.offset) if facing[2] != net else 0.0)
         free = [(0.0, facing[0])]
-        if not (here["active"] and min(here["active"])[0] < 1e-6):      # not along a channel
+        if not (here["active"] and min(here["active"])[0] < 1e-6):  # not along a channel
             _down(free, here, net, wire, names[:own], length, crossings, add)
-        _up(free, here, net, wire, names[own + 1:], length, crossings, add)
+        _up(free, here, net, wire, names[own + 1 :], length, crossings, add)
 
 
 def _down(free, here, net, wire, below, length, crossings, add):

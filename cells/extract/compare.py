@@ -13,8 +13,11 @@ def differences(first, second):
     for cells: their nets differ in more than symmetry).
     """
     a, b = _coloured(first), _coloured(second)
-    return [f"{who} has {count} more of {text}" for who, more in (("first", a - b), ("second", b - a))
-            for text, count in sorted(more.items())]
+    return [
+        f"{who} has {count} more of {text}"
+        for who, more in (("first", a - b), ("second", b - a))
+        for text, count in sorted(more.items())
+    ]
 
 
 def _coloured(netlist):
@@ -27,8 +30,10 @@ def _coloured(netlist):
             devices[t.name] = hash((_what(t), *ends, colour[t.gate], colour[t.bulk]))
             for role, node in (("channel", t.drain), ("channel", t.source), ("gate", t.gate), ("bulk", t.bulk)):
                 touching[node].append((role, devices[t.name]))
-        colour = {node: (node if node in netlist.ports else hash((was, *sorted(touching[node]))).__str__())
-                  for node, was in colour.items()}
+        colour = {
+            node: (node if node in netlist.ports else hash((was, *sorted(touching[node]))).__str__())
+            for node, was in colour.items()
+        }
     return Counter(f"{_what(t)} between {_named(netlist, t)} ({devices[t.name]:x})" for t in netlist.transistors)
 
 

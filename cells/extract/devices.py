@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import klayout.db as db
 
-from flow.platforms.process import DIFFUSION
 from models.parameters import ParameterError
+from platforms.process import DIFFUSION
 
 MARKS = ("hvtp", "lvtn", "library")
 
@@ -70,21 +70,26 @@ def read_cell(gds, name):
 
 
 def find(gds, name, process):
-    """The Layout of cell ``name`` in the file ``gds`` on ``process`` (flow.platforms.process.Process)."""
+    """The Layout of cell ``name`` in the file ``gds`` on ``process`` (platforms.process.Process)."""
     layout, cell = read_cell(gds, name)
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, cell, []))
     layers = _layers(l2n, layout, process, cell.bbox())
     for kind in "np":
         extractor = db.DeviceExtractorMOS4Transistor(kind)
-        l2n.extract_devices(extractor, {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"], "P": layers["poly"],
-                                        "W": layers[f"{kind}bulk"]})
+        l2n.extract_devices(
+            extractor,
+            {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"], "P": layers["poly"], "W": layers[f"{kind}bulk"]},
+        )
     _connect(l2n, layers, process)
     l2n.extract_netlist()
     circuit = l2n.netlist().top_circuit()
     found = _collect(l2n, circuit, layers, process)
     found.dbu = layout.dbu
-    strips = {mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark])))
-              for mark in MARKS if mark in process.devices}
+    strips = {
+        mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark])))
+        for mark in MARKS
+        if mark in process.devices
+    }
     found.devices = [_device(device, found, strips) for device in circuit.each_device()]
     found.cuts = [db.Region(list(layers[f"cut{i}"].each_merged())) for i in range(len(process.cuts))]
     found.labels = _labels(layout, cell, process)
@@ -102,15 +107,20 @@ def _labels(layout, cell, process):
 
 def _layers(l2n, layout, process, box):
     """Every region by name; all registered, so that their nets can be asked for."""
+
     def drawn(name, spec):
         return l2n.make_layer(layout.layer(*spec), name)
 
     raw = {name: drawn(name, spec) for name, spec in process.devices.items() if name not in MARKS}
     layers = {wire.name: drawn(wire.name, wire.layer) for wire in process.wires}
-    layers |= {f"{wire.name}.label": l2n.make_text_layer(layout.layer(*wire.label), f"{wire.name}.label")
-               for wire in process.wires}
-    layers |= {f"{wire.name}.pinlabel": l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.name}.pinlabel")
-               for wire in process.wires}
+    layers |= {
+        f"{wire.name}.label": l2n.make_text_layer(layout.layer(*wire.label), f"{wire.name}.label")
+        for wire in process.wires
+    }
+    layers |= {
+        f"{wire.name}.pinlabel": l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.name}.pinlabel")
+        for wire in process.wires
+    }
     for i, spec in enumerate(process.well_labels):
         layers[f"well.label{i}"] = l2n.make_text_layer(layout.layer(*spec), f"well.label{i}")
     for i, (spec, _, _) in enumerate(process.cuts):
@@ -120,9 +130,17 @@ def _layers(l2n, layout, process, box):
     pwell = db.Region(box.enlarged(1000)) - nwell
     pactive = active & raw["psdm"]
     nactive = active & raw["nsdm"] if "nsdm" in raw else active - pactive
-    made = {"nbulk": pwell, "pbulk": nwell, "ngate": (nactive - nwell) & poly, "pgate": (pactive & nwell) & poly,
-            "nsd": nactive - nwell - poly, "psd": (pactive & nwell) - poly,
-            "ntap": nactive & nwell, "ptap": pactive - nwell, "active": active}
+    made = {
+        "nbulk": pwell,
+        "pbulk": nwell,
+        "ngate": (nactive - nwell) & poly,
+        "pgate": (pactive & nwell) & poly,
+        "nsd": nactive - nwell - poly,
+        "psd": (pactive & nwell) - poly,
+        "ntap": nactive & nwell,
+        "ptap": pactive - nwell,
+        "active": active,
+    }
     for name, region in made.items():
         if name != "pbulk":
             l2n.register(region, name)
@@ -139,7 +157,7 @@ def _connect(l2n, layers, process):
         l2n.connect(layers[wire.name], layers[f"{wire.name}.pinlabel"])
     l2n.connect(layers["pbulk"], layers["ntap"])
     l2n.connect(layers["nbulk"], layers["ptap"])
-    for i, bulk in enumerate(("pbulk", "nbulk")[:len(process.well_labels)]):
+    for i, bulk in enumerate(("pbulk", "nbulk")[: len(process.well_labels)]):
         l2n.connect(layers[bulk], layers[f"well.label{i}"])
     for i, (_, lowers, upper) in enumerate(process.cuts):
         cut = layers[f"cut{i}"]
@@ -193,5 +211,20 @@ def _device(device, found, strips):
     line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
     run = next(part.bbox() for part in line.each_merged() if part.inside(point))
     sa, sb = ((point.x - run.left) * found.dbu - length / 2, (run.right - point.x) * found.dbu - length / 2)
-    return Device(device.device_class().name, net["D"], net["G"], net["S"], net["B"], w, length, value("AD"),
-                  value("AS"), value("PD"), value("PS"), sa, sb, marks, point)
+    return Device(
+        device.device_class().name,
+        net["D"],
+        net["G"],
+        net["S"],
+        net["B"],
+        w,
+        length,
+        value("AD"),
+        value("AS"),
+        value("PD"),
+        value("PS"),
+        sa,
+        sb,
+        marks,
+        point,
+    )

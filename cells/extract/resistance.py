@@ -12,14 +12,14 @@ from itertools import combinations
 import klayout.db as db
 from klayout import pex
 
-from flow.platforms.process import DIFFUSION
 from models.parameters import ParameterError
+from platforms.process import DIFFUSION
 
-IDEAL = 1e-3           # ohm a square of a diffusion, in which the transistor's model has the resistance
-LEAST = 1e-3           # ohm; what is less is as much
-MOST = 1e6             # ohm; what is more is left out
-BRANCHES = 5           # of a node that is taken out
-VIEWS = (db.Trans(), db.Trans(db.Trans.M90))     # as drawn, and mirrored
+IDEAL = 1e-3  # ohm a square of a diffusion, in which the transistor's model has the resistance
+LEAST = 1e-3  # ohm; what is less is as much
+MOST = 1e6  # ohm; what is more is left out
+BRANCHES = 5  # of a node that is taken out
+VIEWS = (db.Trans(), db.Trans(db.Trans.M90))  # as drawn, and mirrored
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,11 @@ def resistances(found, process):
             for i, role in users:
                 terminals[i][role] = node
         if len(ports) > 1:
-            kept = {pair: siemens for pair, siemens in _conductances(net, ports, found, process).items()
-                    if siemens > 1 / MOST}
+            kept = {
+                pair: siemens
+                for pair, siemens in _conductances(net, ports, found, process).items()
+                if siemens > 1 / MOST
+            }
             if set(range(len(ports))) - {end for pair in kept for end in pair}:
                 raise ParameterError(f"net = {net}: no resistance below {MOST:g} ohm joins its {len(ports)} terminals")
             number = {k: node for k, node in enumerate(nodes)}
@@ -112,13 +115,21 @@ def _conductances(net, ports, found, process):
     for k, (cut, (_, lowers, upper)) in enumerate(zip(found.cuts, process.cuts, strict=True)):
         for lower in [name for name in names if name in lowers or (name in found.islands and DIFFUSION in lowers)]:
             if number[lower] in geometry and number[upper] in geometry:
-                _via(tech, geometry, len(names) * (k + 1) + number[lower], number[lower], number[upper],
-                     cut & geometry[number[lower]] & geometry[number[upper]], process.contacts[lower])
+                _via(
+                    tech,
+                    geometry,
+                    len(names) * (k + 1) + number[lower],
+                    number[lower],
+                    number[upper],
+                    cut & geometry[number[lower]] & geometry[number[upper]],
+                    process.contacts[lower],
+                )
     points, polygons = {}, {}
     for layer, shape, _ in ports:
         (points if isinstance(shape, db.Point) else polygons).setdefault(number[layer], []).append(shape)
-    flat = {layer: [part for region in regions for part in region.merged().each()]
-            for layer, regions in polygons.items()}
+    flat = {
+        layer: [part for region in regions for part in region.merged().each()] for layer, regions in polygons.items()
+    }
     network = _network(found.dbu, tech, geometry, points, flat)
     return _reduced(network, [(number[layer], shape) for layer, shape, _ in ports], flat)
 
@@ -131,9 +142,11 @@ def _network(dbu, tech, geometry, points, polygons):
     found = []
     for view in VIEWS:
         network = pex.RNetExtractor(dbu).extract(
-            tech, {layer: region.transformed(view) for layer, region in geometry.items()},
+            tech,
+            {layer: region.transformed(view) for layer, region in geometry.items()},
             {layer: [view * point for point in same] for layer, same in points.items()},
-            {layer: [polygon.transformed(view) for polygon in same] for layer, same in polygons.items()})
+            {layer: [polygon.transformed(view) for polygon in same] for layer, same in polygons.items()},
+        )
         highest = max((element.resistance() for element in network.each_element()), default=0.0)
         if highest <= MOST:
             return network
@@ -155,14 +168,22 @@ def _via(tech, geometry, layer, lower, upper, region, ohm):
 def _reduced(network, ports, flat):
     """{(a, b): S} between the ports ((layer, shape)), numbered in their order, and inner nodes, numbered from there."""
     number, count = {}, len(ports)
-    for node in sorted(network.each_node(), key=lambda node: (node.layer(), str(node.location()))):    # not by address
-        hit = next((k for k, (layer, shape) in enumerate(ports)
-                    if node.layer() == layer and _is(node, shape, flat.get(layer))), None)
+    for node in sorted(network.each_node(), key=lambda node: (node.layer(), str(node.location()))):  # not by address
+        hit = next(
+            (
+                k
+                for k, (layer, shape) in enumerate(ports)
+                if node.layer() == layer and _is(node, shape, flat.get(layer))
+            ),
+            None,
+        )
         number[node.object_id()] = count if hit is None else hit
         count += hit is None
-    beside = [{} for _ in range(count)]                   # node -> neighbour: S
-    for a, b, ohm in sorted((*sorted((number[e.a().object_id()], number[e.b().object_id()])), e.resistance())
-                            for e in network.each_element()):
+    beside = [{} for _ in range(count)]  # node -> neighbour: S
+    for a, b, ohm in sorted(
+        (*sorted((number[e.a().object_id()], number[e.b().object_id()])), e.resistance())
+        for e in network.each_element()
+    ):
         _join(beside, a, b, 1 / max(ohm, LEAST))
     while inner := [k for k in range(len(ports), count) if 0 < len(beside[k]) <= BRANCHES]:
         _eliminate(beside, min(inner, key=lambda k: len(beside[k])))

@@ -5,10 +5,10 @@ import json
 import sys
 from pathlib import Path
 
+from base.files import check_folder
+from base.tools import ToolError
 from cells.flexcell.library import written
 from cells.flexcell.make import NoLayout
-from flow.files import check_folder
-from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 
 

@@ -11,14 +11,14 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from flow.files import insert
-from flow.jobs import Job, run
-from flow.simulate.process import ToolError
-from flow.simulate.process import run as run_tool
+from base.files import insert
+from base.jobs import Job, run
+from base.tools import ToolError
+from base.tools import run as run_tool
 from models.parameters import ParameterError
 
 BLOCKS = ("QuadDividerRadix2", "EdgeAdc", "AmpCtrl", "RunLength", "RegFile")
-LIMIT = 1.6         # of the sum, ours by theirs
+LIMIT = 1.6  # of the sum, ours by theirs
 STORE = Path("build/cells/flexcell/area")
 
 
@@ -26,8 +26,10 @@ def mapped(verilog, top, liberty):
     """{"um2": area, "cells": {type: number}} of module ``top`` of the file ``verilog``, mapped to ``liberty``."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
-        script = (f"read_verilog -sv {verilog}; synth -flatten -top {top}; dfflibmap -liberty {liberty}; "
-                  f"abc -liberty {liberty}; opt_clean -purge; tee -q -o {report} stat -json")
+        script = (
+            f"read_verilog -sv {verilog}; synth -flatten -top {top}; dfflibmap -liberty {liberty}; "
+            f"abc -liberty {liberty}; opt_clean -purge; tee -q -o {report} stat -json"
+        )
         run_tool(["yosys", "-q", "-p", script])
         cells = json.loads(report.read_text())["design"]["num_cells_by_type"]
     area = _areas(Path(liberty))
@@ -42,8 +44,11 @@ def compare(verilog, blocks, ours, theirs, store=STORE):
     for block, file in files.items():
         if not file.exists():
             raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")
-    jobs = [Job(f"{block}.{name}", mapped, (str(file), block, str(liberty)), (file, liberty))
-            for block, file in files.items() for name, liberty in (("ours", ours), ("theirs", theirs))]
+    jobs = [
+        Job(f"{block}.{name}", mapped, (str(file), block, str(liberty)), (file, liberty))
+        for block, file in files.items()
+        for name, liberty in (("ours", ours), ("theirs", theirs))
+    ]
     found = run(jobs, store, "blocks mapped")
     return {block: (found[2 * i], found[2 * i + 1]) for i, block in enumerate(files)}
 
@@ -63,7 +68,7 @@ def main(arguments=None):
 
 
 def _report(options):
-    from flow.platforms.sky130.functions import liberty
+    from platforms.sky130.functions import liberty
 
     ours = Path(options.liberty)
     if not ours.exists():
@@ -96,8 +101,10 @@ def _cells(found, k, liberty, most=10):
     total = sum(count[cell] * area[cell] for cell in count)
     lines = [f"| {liberty.stem}: cell | number | um2 each | share of the area |", "|---|---:|---:|---:|"]
     for cell in sorted(count, key=lambda c: -count[c] * area[c])[:most]:
-        lines.append(f"| {cell.removeprefix('sky130_fd_sc_hd__')} | {count[cell]} | {area[cell]:.2f} | "
-                     f"{count[cell] * area[cell] / total:.1%} |")
+        lines.append(
+            f"| {cell.removeprefix('sky130_fd_sc_hd__')} | {count[cell]} | {area[cell]:.2f} | "
+            f"{count[cell] * area[cell] / total:.1%} |"
+        )
     return "\n".join(lines)
 
 

@@ -36,12 +36,16 @@ def assemble(columns, spread=()):
     for kind in "np":
         for (h, column), following in zip(gates, [*gates[1:], None]):
             left, right = column.ends(kind)
-            if not made.diffusions or made.diffusions[-1].kind != kind or made.diffusions[-1].columns[-1] != h - 1 \
-                    or made.diffusions[-1].net != left:
+            if (
+                not made.diffusions
+                or made.diffusions[-1].kind != kind
+                or made.diffusions[-1].columns[-1] != h - 1
+                or made.diffusions[-1].net != left
+            ):
                 made.diffusions.append(Diffusion(kind, left, [h - 1]))
             made.diffusions.append(Diffusion(kind, right, [h + 1]))
             if following and following[0] == h + 4 and following[1].ends(kind)[0] == right:
-                made.diffusions[-1].columns.append(h + 3)       # runs on through the gap
+                made.diffusions[-1].columns.append(h + 3)  # runs on through the gap
     made.columns = gates[-1][0] + 2
     return made
 

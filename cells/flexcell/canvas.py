@@ -35,8 +35,10 @@ class Canvas:
 
     def __post_init__(self):
         if abs(self.height / self.site - round(self.height / self.site)) > 1e-9:
-            raise ParameterError(f"height = {self.height}: must be a multiple of site = {self.site} "
-                                 "(Coriolis rounds the pitch of rows up to one)")
+            raise ParameterError(
+                f"height = {self.height}: must be a multiple of site = {self.site} "
+                "(Coriolis rounds the pitch of rows up to one)"
+            )
         if self.site < 2 * (0.135 + 0.04 + 0.085) - 1e-9:
             raise ParameterError(f"site = {self.site}: must be at least 0.52 um: two diffusions end side by side in it")
         gaps = [b - a for a, b in zip(self.rows, self.rows[1:])]
@@ -49,5 +51,8 @@ class Canvas:
     def pins(self):
         """Pairs of neighbouring rows (lower one) between which a wire on li covers a track of met1 with its cut."""
         tracks = [k * self.site for k in range(1, round(self.height / self.site))]
-        return [r for r in range(len(self.rows) - 1)
-                if any(self.rows[r] - 0.085 <= t - 0.16 and t + 0.16 <= self.rows[r + 1] + 0.085 for t in tracks)]
+        return [
+            r
+            for r in range(len(self.rows) - 1)
+            if any(self.rows[r] - 0.085 <= t - 0.16 and t + 0.16 <= self.rows[r + 1] + 0.085 for t in tracks)
+        ]

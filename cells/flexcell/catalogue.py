@@ -7,8 +7,16 @@ INPUTS = ("i0", "i1", "i2", "i3", "i4")
 
 def schematics():
     """Every cell with transistors: name -> Schematic."""
-    made = [*_inverters(), *_simple(), *_complex(), *_exclusive(), *_arithmetic(), *_flip_flops(), *_clock_gates(),
-            *_constants()]
+    made = [
+        *_inverters(),
+        *_simple(),
+        *_complex(),
+        *_exclusive(),
+        *_arithmetic(),
+        *_flip_flops(),
+        *_clock_gates(),
+        *_constants(),
+    ]
     return {schematic.name: schematic for schematic in made}
 
 
@@ -21,8 +29,10 @@ def _inverters():
 
 def _constants():
     """Each transistor's gate hangs on the other's drain, never on a rail: no gate oxide sees the supply's edges."""
-    zero, one = Schematic("zero_x1", (), ("zero",), functions={"zero": "0"}), \
-        Schematic("one_x1", (), ("one",), functions={"one": "1"})
+    zero, one = (
+        Schematic("zero_x1", (), ("zero",), functions={"zero": "0"}),
+        Schematic("one_x1", (), ("one",), functions={"one": "1"}),
+    )
     for cell, low, high in ((zero, "zero", "h"), (one, "l", "one")):
         cell.n.append(Switch("n", high, low, "vss"))
         cell.p.append(Switch("p", low, high, "vdd"))
@@ -47,26 +57,42 @@ def _simple():
 
 def _complex():
     a, b, c, d, e = INPUTS
-    functions = {"and21nor": ("or", ("and", a, b), c), "or21nand": ("and", ("or", a, b), c),
-                 "and22nor": ("or", ("and", a, b), ("and", c, d)), "or22nand": ("and", ("or", a, b), ("or", c, d)),
-                 "and211nor": ("or", ("and", a, b), c, d), "or211nand": ("and", ("or", a, b), c, d),
-                 "and31nor": ("or", ("and", a, b, c), d), "or31nand": ("and", ("or", a, b, c), d),
-                 "and221nor": ("or", ("and", a, b), ("and", c, d), e),
-                 "or221nand": ("and", ("or", a, b), ("or", c, d), e)}
+    functions = {
+        "and21nor": ("or", ("and", a, b), c),
+        "or21nand": ("and", ("or", a, b), c),
+        "and22nor": ("or", ("and", a, b), ("and", c, d)),
+        "or22nand": ("and", ("or", a, b), ("or", c, d)),
+        "and211nor": ("or", ("and", a, b), c, d),
+        "or211nand": ("and", ("or", a, b), c, d),
+        "and31nor": ("or", ("and", a, b, c), d),
+        "or31nand": ("and", ("or", a, b, c), d),
+        "and221nor": ("or", ("and", a, b), ("and", c, d), e),
+        "or221nand": ("and", ("or", a, b), ("or", c, d), e),
+    }
     for name, function in functions.items():
-        ports = INPUTS[:sum(int(c) for c in name if c.isdigit())]
+        ports = INPUTS[: sum(int(c) for c in name if c.isdigit())]
         yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", function)
-    for name, function in (("and21or", functions["and21nor"]), ("or21and", functions["or21nand"]),
-                           ("and22or", functions["and22nor"]), ("or22and", functions["or22nand"])):
-        ports = INPUTS[:3 if "21" in name else 4]
+    for name, function in (
+        ("and21or", functions["and21nor"]),
+        ("or21and", functions["or21nand"]),
+        ("and22or", functions["and22nor"]),
+        ("or22and", functions["or22nand"]),
+    ):
+        ports = INPUTS[: 3 if "21" in name else 4]
         yield Schematic(f"{name}_x1", ports, ("q",)).gate("n", function).gate("q", "n")
 
 
 def _exclusive():
-    yield Schematic("xor2_x1", ("i0", "i1"), ("q",)).gate("n", ("or", "i0", "i1")).gate(
-        "q", ("or", ("and", "i0", "i1"), "n"))
-    yield Schematic("nexor2_x1", ("i0", "i1"), ("nq",)).gate("n", ("and", "i0", "i1")).gate(
-        "nq", ("and", ("or", "i0", "i1"), "n"))
+    yield (
+        Schematic("xor2_x1", ("i0", "i1"), ("q",))
+        .gate("n", ("or", "i0", "i1"))
+        .gate("q", ("or", ("and", "i0", "i1"), "n"))
+    )
+    yield (
+        Schematic("nexor2_x1", ("i0", "i1"), ("nq",))
+        .gate("n", ("and", "i0", "i1"))
+        .gate("nq", ("and", ("or", "i0", "i1"), "n"))
+    )
     for name, output in (("mux2_x1", "q"), ("nmux2_x1", "nq")):
         mux = Schematic(name, ("cmd", "i0", "i1"), (output,)).gate("c", "cmd")
         inner = "n" if output == "q" else output

@@ -4,9 +4,9 @@ import collections
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from flow.gds import write_gds
-from flow.jobs import Job, run
-from flow.simulate.process import ToolError, finish
+from base.gds import write_gds
+from base.jobs import Job, run
+from base.tools import ToolError, finish
 
 
 def check(folder, names, workers=-1):
@@ -19,12 +19,18 @@ def check(folder, names, workers=-1):
     _arrange(folder, names)
     drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
     jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in ("apart", "gallery")]
-    jobs += [Job(name, matches, (str(folder), name), (lvs, folder / "flexcell.spi", _content(folder, name)))
-             for name in names]
+    jobs += [
+        Job(name, matches, (str(folder), name), (lvs, folder / "flexcell.spi", _content(folder, name)))
+        for name in names
+    ]
     apart, abutted, *lvs = run(jobs, folder / "checks", "cells checked", workers)
     result = {name: {"drc": apart.get(name, {}), "lvs": ok} for name, ok in zip(names, lvs, strict=True)}
-    between = {rule: count for found in (abutted, {k: v for k, v in apart.items() if k not in names})
-               for rules_ in found.values() for rule, count in rules_.items()}
+    between = {
+        rule: count
+        for found in (abutted, {k: v for k, v in apart.items() if k not in names})
+        for rules_ in found.values()
+        for rule, count in rules_.items()
+    }
     return result | {"gallery": {"drc": between, "lvs": True}}
 
 
@@ -44,8 +50,11 @@ def _arrange(folder, names):
             for name in order:
                 cell = layout.cell(name)
                 box = cell.bbox_per_layer(boundary)
-                turn = db.Trans(db.Trans.M0, x, (row + 1) * box.height()) if row % 2 else \
-                    db.Trans(db.Trans.R0, x, row * box.height())
+                turn = (
+                    db.Trans(db.Trans.M0, x, (row + 1) * box.height())
+                    if row % 2
+                    else db.Trans(db.Trans.R0, x, row * box.height())
+                )
                 top.insert(db.CellInstArray(cell.cell_index(), turn))
                 x += box.width() + gap
         for cell in [cell for cell in layout.top_cells() if cell.name != top_name]:
@@ -67,8 +76,15 @@ def rules(folder, name):
 def matches(folder, name):
     """Does the layout of cell ``name`` have the transistors and nets of its netlist?"""
     folder = Path(folder)
-    _, words = _deck(folder, "lvs", name, {"SOURCE_FILE": str((folder / "flexcell.gds").absolute()),
-                                           "SPICE_FILE": str((folder / "flexcell.spi").absolute())})
+    _, words = _deck(
+        folder,
+        "lvs",
+        name,
+        {
+            "SOURCE_FILE": str((folder / "flexcell.gds").absolute()),
+            "SPICE_FILE": str((folder / "flexcell.spi").absolute()),
+        },
+    )
     return "LVS OK" in words
 
 
@@ -78,17 +94,25 @@ def _content(folder, name):
 
     layout = db.Layout()
     layout.read(str(folder / "flexcell.gds"))
-    return "".join(f"{info}{sorted(map(str, layout.cell(name).shapes(layout.layer(info)).each()))}"
-                   for info in layout.layer_infos())
+    return "".join(
+        f"{info}{sorted(map(str, layout.cell(name).shapes(layout.layer(info)).each()))}"
+        for info in layout.layer_infos()
+    )
 
 
 def _deck(folder, deck, name, environment):
     report = (folder / "reports" / f"{name}.{deck}.xml").absolute()
     report.parent.mkdir(exist_ok=True)
     report.unlink(missing_ok=True)
-    done = finish(["klayout", "-b", "-r", folder / "decks" / f"sky130.{deck}"],
-                  env={"REPORT_FILE": str(report), "CELL_NAME": name, "KLAYOUT_HOME": str(report.parent / ".klayout"),
-                       **environment})
+    done = finish(
+        ["klayout", "-b", "-r", folder / "decks" / f"sky130.{deck}"],
+        env={
+            "REPORT_FILE": str(report),
+            "CELL_NAME": name,
+            "KLAYOUT_HOME": str(report.parent / ".klayout"),
+            **environment,
+        },
+    )
     if done.returncode and deck == "drc" or not report.exists():
         raise ToolError(f"klayout: {deck} of {name} failed: {(done.stderr or done.stdout).strip()[-300:]}")
     return report, done.stdout + done.stderr

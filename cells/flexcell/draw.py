@@ -3,12 +3,12 @@
 from collections import defaultdict
 from dataclasses import dataclass, replace
 
-CUT, WIRE = 0.17, 0.17          # um: licon and mcon; li
-PAD = (0.27, 0.33)              # um: poly around its contact
-PATCH = 0.33                    # um: li around a contact, along one direction
-SHIFT = 0.08                    # um: a 'tap' contact beside its gate (route)
+CUT, WIRE = 0.17, 0.17  # um: licon and mcon; li
+PAD = (0.27, 0.33)  # um: poly around its contact
+PATCH = 0.33  # um: li around a contact, along one direction
+SHIFT = 0.08  # um: a 'tap' contact beside its gate (route)
 EPSILON = 1e-6
-VIA_PAD = (0.29, 0.23)          # um: met1 around mcon
+VIA_PAD = (0.29, 0.23)  # um: met1 around mcon
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,9 @@ class Drawing(Pen):
                 bottom, top = self._reach(net, x, bottom, top)
             for layer in ("li", "li.pin"):
                 self.box(layer, net, x - WIRE / 2, bottom, x + WIRE / 2, top)
-        self.shapes += [replace(s, layer="m1.block", net="") for s in self.shapes
-                        if s.layer == "m1" and s.net not in ("vdd", "vss")]
+        self.shapes += [
+            replace(s, layer="m1.block", net="") for s in self.shapes if s.layer == "m1" and s.net not in ("vdd", "vss")
+        ]
 
     def x(self, h):
         return (h + 1) * self.canvas.site / 2
@@ -64,8 +65,10 @@ class Drawing(Pen):
         c = self.canvas
         for h, column in self.made.gates:
             half = c.length / 2
-            for switch, low, high in ((column.n, c.n[0] - 0.13, c.rows[c.low] + half),
-                                      (column.p, c.rows[c.high] - half, c.p[1] + 0.13)):
+            for switch, low, high in (
+                (column.n, c.n[0] - 0.13, c.rows[c.low] + half),
+                (column.p, c.rows[c.high] - half, c.p[1] + 0.13),
+            ):
                 self.box("poly", switch.gate, self.x(h) - half, low, self.x(h) + half, high)
         for d in self.made.diffusions:
             low, high = c.n if d.kind == "n" else c.p
@@ -147,8 +150,11 @@ class Drawing(Pen):
     def _fill(self, net, vertices):
         """No gap between wires of one net that stand side by side."""
         rows = self.canvas.rows
-        upright = {(e[0][1], min(e[0][2], e[1][2])) for e in self.wiring.edges.get(net, ())
-                   if e[0][0] == e[1][0] == "li" and e[0][1] == e[1][1]}
+        upright = {
+            (e[0][1], min(e[0][2], e[1][2]))
+            for e in self.wiring.edges.get(net, ())
+            if e[0][0] == e[1][0] == "li" and e[0][1] == e[1][1]
+        }
         for layer, h, r in (v for v in vertices if v[0] in ("li", "poly", "met1")):
             if (layer, h + 1, r) not in vertices:
                 continue

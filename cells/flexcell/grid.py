@@ -103,14 +103,22 @@ class Grid:
             stripe = {("li", k, r) for k in here for r in (away, low, high)}
             pads = {("licon", h + 2 * side, row), ("tap", h + 2 * side, -side, row), ("tip", h + 2 * side, -side, row)}
             self.excludes[tap] = stripe | pads
-            self.crowds[tap] = stripe | {("licon", k, r) for k in other for r in (low, high)} | {
-                (kind, h, s, r) for kind in ("tap", "tip") for s in (-1, 1) for r in (low, high)}
+            self.crowds[tap] = (
+                stripe
+                | {("licon", k, r) for k in other for r in (low, high)}
+                | {(kind, h, s, r) for kind in ("tap", "tip") for s in (-1, 1) for r in (low, high)}
+            )
         for row, away in ((low, low - 1), (high, high + 1)):
             tip = ("tip", h, side, row)
             self._join(("poly", h, row), tip)
             self._join(tip, ("li", h + side, away))
             self.excludes[tip] = {("li", k, r) for k in here for r in (row, away)} | {
-                ("licon", h + 2 * side, row), ("tip", h + 2 * side, -side, row)}
-            self.crowds[tip] = {("licon", k, row) for k in other} | {("tip", h, s, r) for s in (-1, 1)
-                                                                     for r in (low, high)} | {
-                ("li", k, row) for k in here} | {("li", h, away)}
+                ("licon", h + 2 * side, row),
+                ("tip", h + 2 * side, -side, row),
+            }
+            self.crowds[tip] = (
+                {("licon", k, row) for k in other}
+                | {("tip", h, s, r) for s in (-1, 1) for r in (low, high)}
+                | {("li", k, row) for k in here}
+                | {("li", h, away)}
+            )

@@ -3,9 +3,13 @@
 
 def liberty(cells, canvas):
     """Text for ``cells`` (cells.flexcell.pdk.DrawnCell). No delays: pins have directions, functions and areas only."""
-    lines = ['library(flexcell) {', '  delay_model : table_lookup;', '  time_unit : "1ns"; voltage_unit : "1V"; '
-             'current_unit : "1mA"; pulling_resistance_unit : "1kohm"; leakage_power_unit : "1nW";',
-             '  capacitive_load_unit(1.0, pf);']
+    lines = [
+        "library(flexcell) {",
+        "  delay_model : table_lookup;",
+        '  time_unit : "1ns"; voltage_unit : "1V"; '
+        'current_unit : "1mA"; pulling_resistance_unit : "1kohm"; leakage_power_unit : "1nW";',
+        "  capacitive_load_unit(1.0, pf);",
+    ]
     for cell in cells:
         if cell.schematic.outputs:
             lines += _cell(cell, canvas)

@@ -3,34 +3,39 @@
 import shutil
 from pathlib import Path
 
+from base.cache import digest
+from base.files import staged
+from base.jobs import Job, run
 from cells.flexcell.canvas import Canvas
 from cells.flexcell.catalogue import schematics
 from cells.flexcell.make import make, recipe
 from cells.flexcell.ties import diode, ties
-from flow.files import staged
-from flow.jobs import Job, run
-from flow.simulate.cache import digest
 
 NAME = "StdCellLib"
 FOLDER = Path("build/cells/flexcell")
 SITE = "flexcell"
-SOURCES = [Path(__file__).with_name(f"{part}.py") for part in
-           ("transistors", "place", "grid", "route", "assemble", "draw", "rules", "make")]
+SOURCES = [
+    Path(__file__).with_name(f"{part}.py")
+    for part in ("transistors", "place", "grid", "route", "assemble", "draw", "rules", "make")
+]
 
 
 def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
     """name -> (Schematic, drawing: dict with width in um and shapes) of every cell, or of ``names``.
 
-    Made by `flow.jobs` and kept in ``store``: a second call reads them.
+    Made by `base.jobs` and kept in ``store``: a second call reads them.
     """
     canvas = canvas or Canvas()
     wanted = {name: s for name, s in schematics().items() if names is None or name in names}
-    order = sorted(wanted, key=lambda name: -len(wanted[name].n))            # the widest take longest
-    jobs = [Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known, *SOURCES))
-            for name in order]
+    order = sorted(wanted, key=lambda name: -len(wanted[name].n))  # the widest take longest
+    jobs = [
+        Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known, *SOURCES))
+        for name in order
+    ]
     made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
     return {name: (wanted[name], made[name]) for name in wanted} | {
-        name: entry for name, entry in (ties(canvas) | diode(canvas)).items() if names is None or name in names}
+        name: entry for name, entry in (ties(canvas) | diode(canvas)).items() if names is None or name in names
+    }
 
 
 def library(canvas=None, store=FOLDER / "drawn", workers=-1):
@@ -77,6 +82,9 @@ def schematic_spice(schematic, canvas):
     """The transistors alone, in um, as SkyWater's models want them."""
     lines = [f".subckt {schematic.name} {' '.join(schematic.ports)}"]
     for kind, switches, (low, high), bulk in (("n", schematic.n, canvas.n, "vss"), ("p", schematic.p, canvas.p, "vdd")):
-        lines += [f"X{kind}{k} {s.a} {s.gate} {s.b} {bulk} sky130_fd_pr__{kind}fet_01v8 w={high - low:.4g} "
-                  f"l={canvas.length:.4g}" for k, s in enumerate(switches)]
+        lines += [
+            f"X{kind}{k} {s.a} {s.gate} {s.b} {bulk} sky130_fd_pr__{kind}fet_01v8 w={high - low:.4g} "
+            f"l={canvas.length:.4g}"
+            for k, s in enumerate(switches)
+        ]
     return "\n".join([*lines, ".ends", ""])

@@ -15,10 +15,10 @@ from cells.flexcell.route import route
 from cells.flexcell.rules import broken
 
 RECIPES = Path(__file__).with_name("recipes.json")
-SEEDS = 24          # placements tried when there is no recipe
-GAPS = 3            # extra gaps at most
-CHOICES = 30        # recipes of one width that are compared
-WIDE = 8            # gate columns from which li alone is not tried
+SEEDS = 24  # placements tried when there is no recipe
+GAPS = 3  # extra gaps at most
+CHOICES = 30  # recipes of one width that are compared
+WIDE = 8  # gate columns from which li alone is not tried
 
 
 class NoLayout(RuntimeError):
@@ -52,8 +52,11 @@ def make(schematic, canvas, known=None):
         if known is None:
             raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
         drawing = _draw(schematic, place(schematic, known.seed), known, canvas)
-    return {"width": drawing.width, "recipe": [known.sites, known.met1, known.seed, known.spread],
-            "shapes": [asdict(shape) for shape in drawing.shapes]}
+    return {
+        "width": drawing.width,
+        "recipe": [known.sites, known.met1, known.seed, known.spread],
+        "shapes": [asdict(shape) for shape in drawing.shapes],
+    }
 
 
 def choose(schematic, canvas, seeds, below=None):
@@ -70,8 +73,11 @@ def merit(drawing):
     """(tracks of met1 that the least accessible pin meets, at most 3; less met1 inside), the more the better."""
     c = drawing.canvas
     tracks = [k * c.site for k in range(1, round(c.height / c.site))]
-    pins = [sum(s.bottom <= t - 0.16 + 1e-9 and t + 0.16 <= s.top + 1e-9 for t in tracks)
-            for s in drawing.shapes if s.layer == "li.pin"]
+    pins = [
+        sum(s.bottom <= t - 0.16 + 1e-9 and t + 0.16 <= s.top + 1e-9 for t in tracks)
+        for s in drawing.shapes
+        if s.layer == "li.pin"
+    ]
     return min(3, *pins, 3), -sum(s.layer == "m1" for s in drawing.shapes)
 
 
@@ -85,8 +91,11 @@ def search(schematic, canvas, seeds, below=None):
     for seed, columns in placed.items():
         for extra in range(GAPS + 1):
             sites = len(columns) + 1 + len(breaks(columns)) + extra
-            tried += [Recipe(sites, met1, seed, spread) for met1 in ((False, True) if len(columns) < WIDE else (True,))
-                      for spread in _spreads(columns, extra, seed)]
+            tried += [
+                Recipe(sites, met1, seed, spread)
+                for met1 in ((False, True) if len(columns) < WIDE else (True,))
+                for spread in _spreads(columns, extra, seed)
+            ]
     for trial in sorted(tried):
         if below is not None and trial.sites >= below.sites:
             return
@@ -113,6 +122,8 @@ def _spreads(columns, extra, seed):
     if len(free) < extra:
         return []
     step = len(free) / extra
-    choices = (tuple(sorted({free[int(i * step + shift * step / 3 + seed) % len(free)] for i in range(extra)}))
-               for shift in range(3))
+    choices = (
+        tuple(sorted({free[int(i * step + shift * step / 3 + seed) % len(free)] for i in range(extra)}))
+        for shift in range(3)
+    )
     return sorted({choice for choice in choices if len(choice) == extra})

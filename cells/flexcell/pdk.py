@@ -25,13 +25,20 @@ class DrawnCell(pdk_cell.Cell):
     def _devices(self, circuit, canvas):
         """Instances; returns net -> what is connected to it."""
         pins = {}
-        for kind, switches, (low, high), bulk in (("n", self.schematic.n, canvas.n, "vss"),
-                                                  ("p", self.schematic.p, canvas.p, "vdd")):
+        for kind, switches, (low, high), bulk in (
+            ("n", self.schematic.n, canvas.n, "vss"),
+            ("p", self.schematic.p, canvas.p, "vdd"),
+        ):
             for k, switch in enumerate(switches):
-                device = circuit.instantiate(tech.primitives[f"{kind}fet_01v8"], name=f"{kind}{k}",
-                                             w=round(high - low, 3), l=canvas.length)
-                for port, net in (("sourcedrain1", switch.a), ("gate", switch.gate), ("sourcedrain2", switch.b),
-                                  ("bulk", bulk)):
+                device = circuit.instantiate(
+                    tech.primitives[f"{kind}fet_01v8"], name=f"{kind}{k}", w=round(high - low, 3), l=canvas.length
+                )
+                for port, net in (
+                    ("sourcedrain1", switch.a),
+                    ("gate", switch.gate),
+                    ("sourcedrain2", switch.b),
+                    ("bulk", bulk),
+                ):
                     pins.setdefault(net, []).append(device.ports[port])
         if "diode" in self.drawing:
             width, height = self.drawing["diode"]
@@ -49,9 +56,15 @@ class DrawnCell(pdk_cell.Cell):
 def to_pdkmaster(name, canvas, drawn):
     """RoutingGaugeLibrary ``name`` of ``drawn`` (name -> (Schematic, drawing))."""
     metals = {metal: tech.primitives[metal] for metal in ("m1", "m2", "m5")}
-    gauge = RoutingGauge(tech=tech, bottom=metals["m1"], bottom_direction="horizontal", top=metals["m5"],
-                         pingrid_pitch=canvas.site, row_height=canvas.height,
-                         pitches={metals["m1"]: canvas.site, metals["m2"]: canvas.site})
+    gauge = RoutingGauge(
+        tech=tech,
+        bottom=metals["m1"],
+        bottom_direction="horizontal",
+        top=metals["m5"],
+        pingrid_pitch=canvas.site,
+        row_height=canvas.height,
+        pitches={metals["m1"]: canvas.site, metals["m2"]: canvas.site},
+    )
     library = RoutingGaugeLibrary(name=name, tech=tech, routinggauge=gauge)
     for schematic, drawing in drawn.values():
         library.cells += DrawnCell(canvas, schematic, drawing)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-BREAK = 10.0            # what a break of the diffusions weighs against one column that a net reaches
+BREAK = 10.0  # what a break of the diffusions weighs against one column that a net reaches
 
 
 @dataclass(frozen=True)
@@ -25,8 +25,11 @@ class Column:
 
 def breaks(columns):
     """Indices k where columns k and k + 1 cannot share both diffusions."""
-    return [k for k, (left, right) in enumerate(zip(columns, columns[1:]))
-            if any(left.ends(kind)[1] != right.ends(kind)[0] for kind in "np")]
+    return [
+        k
+        for k, (left, right) in enumerate(zip(columns, columns[1:]))
+        if any(left.ends(kind)[1] != right.ends(kind)[0] for kind in "np")
+    ]
 
 
 def place(schematic, seed):
@@ -36,11 +39,17 @@ def place(schematic, seed):
     """
     count = len(schematic.n)
     nets = {"vdd": 0, "vss": 1}
-    pins = np.array([[[nets.setdefault(net, len(nets)) for net in (s.gate, s.a, s.b)] for s in kind]
-                     for kind in (schematic.n, schematic.p)])
+    pins = np.array(
+        [
+            [[nets.setdefault(net, len(nets)) for net in (s.gate, s.a, s.b)] for s in kind]
+            for kind in (schematic.n, schematic.p)
+        ]
+    )
     order, turned = _anneal(pins, len(nets), 4000 + 6000 * count * max(1, count - 4), seed)
-    return [Column(schematic.n[order[0, k]], schematic.p[order[1, k]], bool(turned[0, k]), bool(turned[1, k]))
-            for k in range(count)]
+    return [
+        Column(schematic.n[order[0, k]], schematic.p[order[1, k]], bool(turned[0, k]), bool(turned[1, k]))
+        for k in range(count)
+    ]
 
 
 @njit(cache=True)
@@ -52,8 +61,10 @@ def _cost(pins, nets, order, turned):
         if k:
             gap = False
             for kind in range(2):
-                if pins[kind, order[kind, k - 1], 1 if turned[kind, k - 1] else 2] \
-                        != pins[kind, order[kind, k], 2 if turned[kind, k] else 1]:
+                if (
+                    pins[kind, order[kind, k - 1], 1 if turned[kind, k - 1] else 2]
+                    != pins[kind, order[kind, k], 2 if turned[kind, k] else 1]
+                ):
                     gap = True
             broken += gap
             x += 2.0 if gap else 1.0
@@ -85,15 +96,15 @@ def _anneal(pins, nets, steps, seed):
         old_order, old_turned = order.copy(), turned.copy()
         i, j = np.random.randint(count), np.random.randint(count)
         move = np.random.random()
-        if move < 0.25:                                     # one switch the other way round
+        if move < 0.25:  # one switch the other way round
             kind = np.random.randint(2)
             turned[kind, i] = not turned[kind, i]
-        elif move < 0.5:                                    # a stretch reversed
+        elif move < 0.5:  # a stretch reversed
             first, last = min(i, j), max(i, j)
             for kind in range(2):
-                order[kind, first:last + 1] = old_order[kind, first:last + 1][::-1]
-                turned[kind, first:last + 1] = ~old_turned[kind, first:last + 1][::-1]
-        elif move < 0.7:                                    # a column moved
+                order[kind, first : last + 1] = old_order[kind, first : last + 1][::-1]
+                turned[kind, first : last + 1] = ~old_turned[kind, first : last + 1][::-1]
+        elif move < 0.7:  # a column moved
             step_ = 1 if j > i else -1
             for k in range(i, j, step_):
                 order[:, k], turned[:, k] = old_order[:, k + step_], old_turned[:, k + step_]
@@ -101,7 +112,7 @@ def _anneal(pins, nets, steps, seed):
         elif move < 0.85:
             order[:, i], order[:, j] = old_order[:, j], old_order[:, i]
             turned[:, i], turned[:, j] = old_turned[:, j], old_turned[:, i]
-        else:                                               # p switches exchanged, where the gates allow it
+        else:  # p switches exchanged, where the gates allow it
             gi, gj = pins[0, order[0, i], 0], pins[0, order[0, j], 0]
             qi, qj = pins[1, order[1, i], 0], pins[1, order[1, j], 0]
             if qi == qj or (gi == qj and gj == qi) or (gi == qi and gj == qj and gi == gj):

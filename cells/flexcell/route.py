@@ -77,8 +77,11 @@ def _wiring(grid, names, used, edges):
     for net, (kind, h, r, *_) in pins.items():
         if kind == "pin":
             pairs[net].append((("li", h, r), ("li", h, r + 1)))
-    return Wiring({net: {v for v in vertices if v[0] != "pin"} for net, vertices in held.items()},
-                  {net: [e for e in found if "pin" not in (e[0][0], e[1][0])] for net, found in pairs.items()}, pins)
+    return Wiring(
+        {net: {v for v in vertices if v[0] != "pin"} for net, vertices in held.items()},
+        {net: [e for e in found if "pin" not in (e[0][0], e[1][0])] for net, found in pairs.items()},
+        pins,
+    )
 
 
 @njit(cache=True)
@@ -90,13 +93,27 @@ def _negotiate(price, leaf, nexts, excludes, needs, crowds, net_start, set_start
         held += used[net]
     edges = [(0, 0, 0)]
     for round_ in range(rounds):
-        present = min(0.6 * 1.3 ** round_, 1e6)
+        present = min(0.6 * 1.3**round_, 1e6)
         edges = [(0, 0, 0)]
         for net in range(count):
             held -= used[net]
             used[net] = False
-            tree, ok = _tree(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, held, past,
-                             present, net, edges)
+            tree, ok = _tree(
+                price,
+                leaf,
+                nexts,
+                excludes,
+                needs,
+                crowds,
+                net_start,
+                set_start,
+                members,
+                held,
+                past,
+                present,
+                net,
+                edges,
+            )
             if not ok:
                 return False, edges
             used[net] = tree

@@ -4,9 +4,9 @@ import klayout.db as db
 
 from cells.flexcell.draw import regions
 
-SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}     # nm
+SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}  # nm
 WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}
-AREAS = {"li": 56_100, "m1": 83_000}                                                        # nm2
+AREAS = {"li": 56_100, "m1": 83_000}  # nm2
 
 
 def broken(drawing):
@@ -20,12 +20,13 @@ def broken(drawing):
     for s in drawing.shapes:
         if s.net:
             nets.setdefault((s.layer, s.net), db.Region()).insert(
-                db.Box(*(round(v * 1000) for v in (s.left, s.bottom, s.right, s.top))))
+                db.Box(*(round(v * 1000) for v in (s.left, s.bottom, s.right, s.top)))
+            )
     pads = whole["licon"] & whole["poly"]
     for layer in ("li", "poly", "m1"):
         own = [(net, region.merged()) for (name, net), region in nets.items() if name == layer]
         for i, (a, first) in enumerate(own):
-            out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1:] if not (first & second).is_empty()]
+            out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1 :] if not (first & second).is_empty()]
     if not (pads.sized(190) & whole["difftap"]).is_empty():
         out.append("licon on poly to difftap")
     return out

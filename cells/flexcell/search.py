@@ -8,11 +8,11 @@ import json
 import re
 import sys
 
+from base.files import staged
+from base.jobs import Job, run
 from cells.flexcell.canvas import Canvas
 from cells.flexcell.catalogue import schematics
 from cells.flexcell.make import RECIPES, choose, recipe
-from flow.files import staged
-from flow.jobs import Job, run
 from models.parameters import ParameterError
 
 
@@ -48,9 +48,15 @@ def _run(options):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     span = int(seeds[1]), int(seeds[2])
     sources = sorted(RECIPES.parent.glob("*.py"))
-    jobs = [Job(f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}", best, (name, *span, not options.anew),
-                (recipe(name), Canvas(), *sources))
-            for name in names]
+    jobs = [
+        Job(
+            f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}",
+            best,
+            (name, *span, not options.anew),
+            (recipe(name), Canvas(), *sources),
+        )
+        for name in names
+    ]
     found = run(jobs, "build/cells/flexcell/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
     better = {name: made for name, made in zip(names, found, strict=True) if made}

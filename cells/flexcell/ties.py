@@ -5,13 +5,15 @@ from dataclasses import asdict
 from cells.flexcell.draw import CUT, WIRE, Pen, frame
 from cells.flexcell.transistors import Schematic
 
-WIDTHS = (1, 2, 4, 8)       # sites
+WIDTHS = (1, 2, 4, 8)  # sites
 
 
 def ties(canvas):
     """Nothing but rails, well and taps: name -> (Schematic, drawing). Names tie, tie_w2, ..."""
-    return {(name := "tie" if sites == 1 else f"tie_w{sites}"): (Schematic(name, (), ()), _entry(Pen(canvas, sites)))
-            for sites in WIDTHS}
+    return {
+        (name := "tie" if sites == 1 else f"tie_w{sites}"): (Schematic(name, (), ()), _entry(Pen(canvas, sites)))
+        for sites in WIDTHS
+    }
 
 
 def diode(canvas):

@@ -61,7 +61,7 @@ class Schematic:
             out.append(Switch(kind, function, a, b))
             return
         operator, *parts = function
-        if (operator == "and") == (kind == "n"):             # in series
+        if (operator == "and") == (kind == "n"):  # in series
             nets = [a, *(self.node() for _ in parts[1:]), b]
             for part, left, right in zip(parts, nets, nets[1:]):
                 self._network(kind, part, left, right, out)

@@ -3,8 +3,12 @@
 
 def verilog(cells):
     """Text for ``cells`` (cells.flexcell.pdk.DrawnCell): a module each, without supply pins."""
-    return "\n".join(["// Cells of the FlexCell library; written by python -m cells.flexcell",
-                      *(module(cell.schematic) for cell in cells)])
+    return "\n".join(
+        [
+            "// Cells of the FlexCell library; written by python -m cells.flexcell",
+            *(module(cell.schematic) for cell in cells),
+        ]
+    )
 
 
 def module(schematic):
@@ -23,6 +27,10 @@ def _storage(s):
     if s.storage == "gate":
         return ["  reg enable;", "  always @(clk or i) if (!clk) enable = i;", "  assign q = clk & enable;"]
     if "clear" in s.functions:
-        return ["  reg state;", "  always @(posedge clk or negedge nrst)",
-                f"    if (!nrst) state <= 1'b0; else state <= {s.functions['next_state']};", "  assign q = state;"]
+        return [
+            "  reg state;",
+            "  always @(posedge clk or negedge nrst)",
+            f"    if (!nrst) state <= 1'b0; else state <= {s.functions['next_state']};",
+            "  assign q = state;",
+        ]
     return ["  reg state;", f"  always @(posedge clk) state <= {s.functions['next_state']};", "  assign q = state;"]

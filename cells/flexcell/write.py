@@ -2,12 +2,12 @@
 
 import json
 
+from base.gds import write_gds
 from cells.flexcell.liberty import liberty
 from cells.flexcell.library import NAME, SITE, pins
 from cells.flexcell.verilog import verilog
 from cells.lef import abstract, header
-from flow.gds import write_gds
-from flow.platforms.sky130.process import PROCESS
+from platforms.sky130.process import PROCESS
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
 BLOCKAGES = '''"""What the router must go round inside the cells: their own met1."""
@@ -32,7 +32,7 @@ def fix(library):
 '''
 OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 BOUNDARY = (235, 4)
-NPC = (95, 20)              # nitride cut over the gates' contacts: a mask that PDKMaster's technology leaves out
+NPC = (95, 20)  # nitride cut over the gates' contacts: a mask that PDKMaster's technology leaves out
 
 
 def write(library, canvas, folder):
@@ -60,8 +60,9 @@ def _gds(library, canvas, path):
 
     layout = export2db(library, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
     npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
-    low, high = (round((canvas.rows[row] + beyond) * 1000)
-                 for row, beyond in ((canvas.low, -0.185), (canvas.high, 0.185)))
+    low, high = (
+        round((canvas.rows[row] + beyond) * 1000) for row, beyond in ((canvas.low, -0.185), (canvas.high, 0.185))
+    )
     for cell in library.cells:
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, low, width, high))

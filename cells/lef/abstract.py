@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import klayout.db as db
 
 from cells.extract.devices import find, read_cell
-from flow.platforms.process import DIFFUSION
 from models.parameters import ParameterError
+from platforms.process import DIFFUSION
 
 DIRECTIONS = ("INPUT", "OUTPUT", "INOUT")
 USES = ("SIGNAL", "CLOCK", "POWER", "GROUND")
@@ -32,21 +32,30 @@ class Pin:
 
 def header(site, width, height):
     """LEF of a library's start: version and its placement ``site`` (a name) of ``width`` by ``height`` um."""
-    return (f'VERSION 5.8 ;\nBUSBITCHARS "[]" ;\nDIVIDERCHAR "/" ;\nUNITS\n  DATABASE MICRONS 1000 ;\nEND UNITS\n\n'
-            f"SITE {site}\n  CLASS CORE ;\n  SYMMETRY Y ;\n  SIZE {width:.3f} BY {height:.3f} ;\nEND {site}\n\n")
+    return (
+        f'VERSION 5.8 ;\nBUSBITCHARS "[]" ;\nDIVIDERCHAR "/" ;\nUNITS\n  DATABASE MICRONS 1000 ;\nEND UNITS\n\n'
+        f"SITE {site}\n  CLASS CORE ;\n  SYMMETRY Y ;\n  SIZE {width:.3f} BY {height:.3f} ;\nEND {site}\n\n"
+    )
 
 
 def abstract(gds, name, process, pins, site):
     """LEF macro of cell ``name`` in the file ``gds``. pins: name -> Pin, in order; site: name of its placement site.
 
-    process: flow.platforms.process.Process. Wells and poly are left out: rows take care of the first, and nobody
+    process: platforms.process.Process. Wells and poly are left out: rows take care of the first, and nobody
     routes on the second. Raises ParameterError when a pin has no metal in the cell, or the cell no outline.
     """
     found = find(gds, name, process)
     outline = _outline(gds, name, process)
     metals = [wire.name for wire in process.wires if wire.name != "poly"]
-    lines = [f"MACRO {name}", "  CLASS CORE ;", f"  FOREIGN {name} ;", "  ORIGIN 0.000 0.000 ;",
-             f"  SIZE {outline.width():.3f} BY {outline.height():.3f} ;", "  SYMMETRY X Y ;", f"  SITE {site} ;"]
+    lines = [
+        f"MACRO {name}",
+        "  CLASS CORE ;",
+        f"  FOREIGN {name} ;",
+        "  ORIGIN 0.000 0.000 ;",
+        f"  SIZE {outline.width():.3f} BY {outline.height():.3f} ;",
+        "  SYMMETRY X Y ;",
+        f"  SITE {site} ;",
+    ]
     for pin, kind in pins.items():
         lines += _pin(pin, kind, found, metals)
     blocked = [(metal, region) for metal in metals for net, region in found.shapes[metal].items() if net not in pins]
@@ -78,7 +87,7 @@ def _pin(pin, kind, found, metals):
         if gates:
             lines.append(f"    ANTENNAGATEAREA {gates:.4f} ;")
         if diffusion:
-            lines.append(f"    ANTENNADIFFAREA {diffusion.area() * found.dbu ** 2:.4f} ;")
+            lines.append(f"    ANTENNADIFFAREA {diffusion.area() * found.dbu**2:.4f} ;")
     lines += [f"    DIRECTION {kind.direction} ;", f"    USE {kind.use} ;"]
     if kind.use in ("POWER", "GROUND"):
         lines.append("    SHAPE ABUTMENT ;")
@@ -91,10 +100,14 @@ def _pin(pin, kind, found, metals):
 def _layer(metal, region, dbu, indent):
     if region.is_empty():
         return []
-    boxes = sorted((b.left, b.bottom, b.right, b.top) for b in
-                   (p.bbox() for p in region.merged().decompose_trapezoids_to_region().each()))
-    return [f"{indent}LAYER {metal} ;",
-            *(f"{indent}  RECT {' '.join(f'{v * dbu:.3f}' for v in box)} ;" for box in boxes)]
+    boxes = sorted(
+        (b.left, b.bottom, b.right, b.top)
+        for b in (p.bbox() for p in region.merged().decompose_trapezoids_to_region().each())
+    )
+    return [
+        f"{indent}LAYER {metal} ;",
+        *(f"{indent}  RECT {' '.join(f'{v * dbu:.3f}' for v in box)} ;" for box in boxes),
+    ]
 
 
 def _sum(regions):

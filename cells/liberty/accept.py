@@ -4,7 +4,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from flow.simulate.process import finish
+from base.tools import finish
 
 SILENT, MISSING = "without a warning", "not installed"
 GOOD = (SILENT, MISSING)
@@ -16,8 +16,10 @@ def readers(path):
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"
         script.write_text(f"read_liberty {{{path}}}\nexit\n")
-        commands = {"yosys": ["yosys", "-q", "-p", f"read_liberty {path}"],
-                    "opensta": ["sta", "-no_splash", "-exit", script]}
+        commands = {
+            "yosys": ["yosys", "-q", "-p", f"read_liberty {path}"],
+            "opensta": ["sta", "-no_splash", "-exit", script],
+        }
         return {tool: _said(command) for tool, command in commands.items()}
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cells.liberty.group import Group
+from base.liberty.group import Group
 
 NS, PF, PJ, NW = 1e9, 1e12, 1e12, 1e9
 TABLES = {"delay": "cell_{}", "slew": "{}_transition"}
@@ -14,25 +14,51 @@ def library(name, conditions, cells, process, constants=None):
     constants: cell -> ({pin: level}, um2), cells that hold a constant.
     """
     corner = conditions.corner
-    lib = Group("library", (name,), {
-        "technology": ("cmos",), "delay_model": "table_lookup", "time_unit": "1ns", "voltage_unit": "1V",
-        "current_unit": "1mA", "leakage_power_unit": "1nW", "pulling_resistance_unit": "1kohm",
-        "capacitive_load_unit": (1.0, "pf"), "nom_process": 1.0, "nom_temperature": corner.temperature,
-        "nom_voltage": corner.supply})
+    lib = Group(
+        "library",
+        (name,),
+        {
+            "technology": ("cmos",),
+            "delay_model": "table_lookup",
+            "time_unit": "1ns",
+            "voltage_unit": "1V",
+            "current_unit": "1mA",
+            "leakage_power_unit": "1nW",
+            "pulling_resistance_unit": "1kohm",
+            "capacitive_load_unit": (1.0, "pf"),
+            "nom_process": 1.0,
+            "nom_temperature": corner.temperature,
+            "nom_voltage": corner.supply,
+        },
+    )
     for edge in ("rise", "fall"):
-        lib.attributes |= {f"input_threshold_pct_{edge}": 100 * conditions.middle,
-                           f"output_threshold_pct_{edge}": 100 * conditions.middle,
-                           f"slew_lower_threshold_pct_{edge}": 100 * conditions.lower,
-                           f"slew_upper_threshold_pct_{edge}": 100 * conditions.upper}
-    lib.attributes |= {"slew_derate_from_library": 1.0, "default_max_transition": NS * conditions.longest_slew,
-                       "default_cell_leakage_power": 0.0, "default_fanout_load": 0.0,
-                       "default_inout_pin_cap": 0.0, "default_input_pin_cap": 0.0, "default_output_pin_cap": 0.0,
-                       "default_leakage_power_density": 0.0}
+        lib.attributes |= {
+            f"input_threshold_pct_{edge}": 100 * conditions.middle,
+            f"output_threshold_pct_{edge}": 100 * conditions.middle,
+            f"slew_lower_threshold_pct_{edge}": 100 * conditions.lower,
+            f"slew_upper_threshold_pct_{edge}": 100 * conditions.upper,
+        }
+    lib.attributes |= {
+        "slew_derate_from_library": 1.0,
+        "default_max_transition": NS * conditions.longest_slew,
+        "default_cell_leakage_power": 0.0,
+        "default_fanout_load": 0.0,
+        "default_inout_pin_cap": 0.0,
+        "default_input_pin_cap": 0.0,
+        "default_output_pin_cap": 0.0,
+        "default_leakage_power_density": 0.0,
+    }
     for rail, level in process.SUPPLIES.items():
         if any(rail in cell.machine.netlist.ports for cell, _, _ in cells):
             lib.attributes.setdefault("voltage_map", []).append((rail, level * corner.supply))
-    lib.add("operating_conditions", corner.name, process=1.0, temperature=corner.temperature,
-            voltage=corner.supply, tree_type="balanced_tree")
+    lib.add(
+        "operating_conditions",
+        corner.name,
+        process=1.0,
+        temperature=corner.temperature,
+        voltage=corner.supply,
+        tree_type="balanced_tree",
+    )
     _templates(lib, conditions, {_size(arc) for _, measured, _ in cells for arc in measured["arcs"]})
     for cell, measured, area in cells:
         lib.groups.append(_cell(cell, measured, area, process))
@@ -52,15 +78,33 @@ def _templates(lib, c, sizes):
     slews, constraint = NS * np.array(c.slews), NS * np.array(c.constraint_slews)
     for size in sorted(sizes):
         rows, columns = map(int, size.split("_"))
-        axes = {"index_1": NS * np.geomspace(c.slews[0], c.slews[-1], rows),
-                "index_2": PF * np.geomspace(c.least_load, 100 * c.least_load, columns)}
-        lib.add("lu_table_template", f"delay_{size}", variable_1="input_net_transition",
-                variable_2="total_output_net_capacitance", **axes)
-        lib.add("power_lut_template", f"power_{size}", variable_1="input_transition_time",
-                variable_2="total_output_net_capacitance", **axes)
+        axes = {
+            "index_1": NS * np.geomspace(c.slews[0], c.slews[-1], rows),
+            "index_2": PF * np.geomspace(c.least_load, 100 * c.least_load, columns),
+        }
+        lib.add(
+            "lu_table_template",
+            f"delay_{size}",
+            variable_1="input_net_transition",
+            variable_2="total_output_net_capacitance",
+            **axes,
+        )
+        lib.add(
+            "power_lut_template",
+            f"power_{size}",
+            variable_1="input_transition_time",
+            variable_2="total_output_net_capacitance",
+            **axes,
+        )
     lib.add("power_lut_template", "quiet", variable_1="input_transition_time", index_1=slews)
-    lib.add("lu_table_template", "constraint", variable_1="related_pin_transition",
-            variable_2="constrained_pin_transition", index_1=constraint, index_2=constraint)
+    lib.add(
+        "lu_table_template",
+        "constraint",
+        variable_1="related_pin_transition",
+        variable_2="constrained_pin_transition",
+        index_1=constraint,
+        index_2=constraint,
+    )
     lib.add("lu_table_template", "width", variable_1="related_pin_transition", index_1=constraint)
 
 
@@ -118,8 +162,10 @@ def _storage(group, cell):
         if hit:
             inside[name] = hit[0] if hit[1] else f"!{hit[0]}"
     if s.both is not None:
-        inside |= {"clear_preset_var1": "HL"[1 - s.both] if s.both in (0, 1) else "X",
-                   "clear_preset_var2": "L" if s.both else "H"}
+        inside |= {
+            "clear_preset_var1": "HL"[1 - s.both] if s.both in (0, 1) else "X",
+            "clear_preset_var2": "L" if s.both else "H",
+        }
     group.add("ff" if s.kind == "ff" else "latch", "IQ", "IQ_N", **inside)
 
 
@@ -135,16 +181,22 @@ def _input(group, cell, measured, name):
     if storage and name == storage.clock and storage.kind != "latch":
         pin.attributes["clock"] = True
     if storage and storage.kind == "gate":
-        pin.attributes["clock_gate_clock_pin" if name == storage.clock else "clock_gate_enable_pin"
-                       if name == storage.data_pins[0] else "clock_gate_test_pin"] = True
+        pin.attributes[
+            "clock_gate_clock_pin"
+            if name == storage.clock
+            else "clock_gate_enable_pin"
+            if name == storage.data_pins[0]
+            else "clock_gate_test_pin"
+        ] = True
     _capacitance(pin, rise_fall)
     _rails(pin, cell)
     energy = measured["quiet_energy"].get(name)
     if energy:
         power = pin.add("internal_power", related_pg_pin=pin.attributes["related_power_pin"])
         for edge in ("rise", "fall"):
-            power.add(f"{edge}_power", "quiet", index_1=NS * np.array(measured["slews"]),
-                      values=PJ * np.array(energy[edge]))
+            power.add(
+                f"{edge}_power", "quiet", index_1=NS * np.array(measured["slews"]), values=PJ * np.array(energy[edge])
+            )
     for constraint in measured["constraints"]:
         if constraint["pin"] == name:
             _constraint(pin, constraint)
@@ -152,8 +204,11 @@ def _input(group, cell, measured, name):
 
 def _capacitance(pin, rise_fall):
     if rise_fall:
-        pin.attributes |= {"capacitance": PF * sum(rise_fall) / 2, "rise_capacitance": PF * rise_fall[0],
-                           "fall_capacitance": PF * rise_fall[1]}
+        pin.attributes |= {
+            "capacitance": PF * sum(rise_fall) / 2,
+            "rise_capacitance": PF * rise_fall[0],
+            "fall_capacitance": PF * rise_fall[1],
+        }
 
 
 def _rails(pin, cell):
@@ -171,8 +226,12 @@ def _constraint(pin, found):
         axes = {"index_1": NS * np.array(found["slews"])}
         if np.ndim(values) == 2:
             axes["index_2"] = NS * np.array(found["slews"])
-        timing.add(f"{edge}_constraint", "constraint" if np.ndim(values) == 2 else "width", **axes,
-                   values=NS * np.array(values))
+        timing.add(
+            f"{edge}_constraint",
+            "constraint" if np.ndim(values) == 2 else "width",
+            **axes,
+            values=NS * np.array(values),
+        )
 
 
 def _output(group, cell, measured, name):
@@ -210,5 +269,10 @@ def _power(pin, related, arcs):
 
 
 def _table(group, kind, template, arc, values):
-    group.add(kind, f"{template}_{_size(arc)}", index_1=NS * np.array(arc["slews"]),
-              index_2=PF * np.array(arc["loads"]), values=values)
+    group.add(
+        kind,
+        f"{template}_{_size(arc)}",
+        index_1=NS * np.array(arc["slews"]),
+        index_2=PF * np.array(arc["loads"]),
+        values=values,
+    )

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-SLACK = 1e-3           # ns or a share by which a table may fall where it should rise: the solver's noise
+SLACK = 1e-3  # ns or a share by which a table may fall where it should rise: the solver's noise
 
 
 def problems(library):
@@ -58,7 +58,7 @@ def _rises(name, timing, table):
     falls = np.diff(values, axis=1) < -SLACK * np.maximum(np.abs(values[:, 1:]), 1)
     if falls.any():
         yield f"{name} from {timing.attributes['related_pin']}: {table.kind} falls with the load"
-    least = 0 if timing.attributes["timing_type"] == "three_state_disable" else 1e-9      # nothing moves then
+    least = 0 if timing.attributes["timing_type"] == "three_state_disable" else 1e-9  # nothing moves then
     if table.kind.endswith("_transition") and (values < least).any():
         yield f"{name} from {timing.attributes['related_pin']}: {table.kind} is not above 0"
 

@@ -5,14 +5,28 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from base.liberty.group import Group
 from cells.characterize.table import bilinear
-from cells.liberty.group import Group
 
-KINDS = {"cell_rise": "delay", "cell_fall": "delay", "rise_transition": "slew", "fall_transition": "slew",
-         "rise_power": "energy", "fall_power": "energy"}
-CONSTRAINTS = {"setup_rising": "setup", "setup_falling": "setup", "hold_rising": "hold", "hold_falling": "hold",
-               "recovery_rising": "recovery", "recovery_falling": "recovery", "removal_rising": "removal",
-               "removal_falling": "removal", "min_pulse_width": "width"}
+KINDS = {
+    "cell_rise": "delay",
+    "cell_fall": "delay",
+    "rise_transition": "slew",
+    "fall_transition": "slew",
+    "rise_power": "energy",
+    "fall_power": "energy",
+}
+CONSTRAINTS = {
+    "setup_rising": "setup",
+    "setup_falling": "setup",
+    "hold_rising": "hold",
+    "hold_falling": "hold",
+    "recovery_rising": "recovery",
+    "recovery_falling": "recovery",
+    "removal_rising": "removal",
+    "removal_falling": "removal",
+    "min_pulse_width": "width",
+}
 
 
 # What makes two groups mean the same, the narrowest first: characterizers differ in whether a release is a 'preset' or
@@ -57,24 +71,54 @@ def library(tree, known):
 
 def differences(name, ours, theirs):
     """Differences of one cell: list. A table that one of the two lacks has NaN there."""
-    found = [Difference(name, "leakage", "mean", np.array([ours.attributes.get("cell_leakage_power", np.nan)]),
-                        np.array([theirs.attributes.get("cell_leakage_power", np.nan)]))]
-    found += [Difference(name, "leakage by state", state.attributes["when"], np.array([_leakage(ours, state)]),
-                         np.array([state.attributes["value"]]))
-              for state in theirs.all("leakage_power") if "when" in state.attributes]
+    found = [
+        Difference(
+            name,
+            "leakage",
+            "mean",
+            np.array([ours.attributes.get("cell_leakage_power", np.nan)]),
+            np.array([theirs.attributes.get("cell_leakage_power", np.nan)]),
+        )
+    ]
+    found += [
+        Difference(
+            name,
+            "leakage by state",
+            state.attributes["when"],
+            np.array([_leakage(ours, state)]),
+            np.array([state.attributes["value"]]),
+        )
+        for state in theirs.all("leakage_power")
+        if "when" in state.attributes
+    ]
     for pin in theirs.all("pin"):
         own, used = ours.one("pin", pin.name) or Group("pin", (pin.name,)), set()
         for attribute in ("rise_capacitance", "fall_capacitance"):
             if attribute in pin.attributes:
-                found.append(Difference(name, "capacitance", f"{pin.name} {attribute}",
-                                        np.array([own.attributes.get(attribute, np.nan)]),
-                                        np.array([pin.attributes[attribute]])))
+                found.append(
+                    Difference(
+                        name,
+                        "capacitance",
+                        f"{pin.name} {attribute}",
+                        np.array([own.attributes.get(attribute, np.nan)]),
+                        np.array([pin.attributes[attribute]]),
+                    )
+                )
         for kind in ("timing", "internal_power"):
             for group in pin.all(kind):
                 found += _tables(name, pin, own, group, used)
-            found += [Difference(name, _kind(group, table), _what(pin, group, table), table.array("values"),
-                                 np.full(np.shape(table.array("values")), np.nan))
-                      for group in own.all(kind) for table in group.groups if id(table) not in used]
+            found += [
+                Difference(
+                    name,
+                    _kind(group, table),
+                    _what(pin, group, table),
+                    table.array("values"),
+                    np.full(np.shape(table.array("values")), np.nan),
+                )
+                for group in own.all(kind)
+                for table in group.groups
+                if id(table) not in used
+            ]
     return found
 
 
@@ -85,8 +129,11 @@ def _kind(group, table):
 def _what(pin, group, table):
     """'Y A positive_unate cell_rise', 'D setup_rising rise_constraint': unique in a cell without conditions."""
     at = group.attributes
-    words = ([at["timing_type"]] if _kind(group, table) in CONSTRAINTS.values() else
-             [at.get("related_pin"), at.get("timing_type"), at.get("timing_sense"), at.get("when")])
+    words = (
+        [at["timing_type"]]
+        if _kind(group, table) in CONSTRAINTS.values()
+        else [at.get("related_pin"), at.get("timing_type"), at.get("timing_sense"), at.get("when")]
+    )
     return " ".join([pin.name, *(w for w in words if w and w != "combinational"), table.kind])
 
 
@@ -113,8 +160,13 @@ def _tables(name, pin, own, group, used):
         values = table.array("values")
         mine = _same(own, group, table.kind, kind)
         used.add(id(mine))
-        yield Difference(name, kind, _what(pin, group, table),
-                         np.full(values.shape, np.nan) if mine is None else _at(mine, table), values)
+        yield Difference(
+            name,
+            kind,
+            _what(pin, group, table),
+            np.full(values.shape, np.nan) if mine is None else _at(mine, table),
+            values,
+        )
 
 
 def _same(own, group, table, kind):
@@ -155,7 +207,13 @@ def summary(found):
         there = np.abs(errors[np.isfinite(errors)])
         out[kind] = {"unit": unit, "entries": int(errors.size), "missing": int(errors.size - there.size)}
         if there.size:
-            out[kind] |= {"median": round(float(np.median(there)), 3),
-                          "p95": round(float(np.percentile(there, 95)), 3), "worst": round(float(there.max()), 3)}
-    return {"error": out, "only_theirs": [f"{d.cell}: {d.what}" for d in both if np.isnan(d.ours).all()],
-            "only_ours": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.theirs).all()]}
+            out[kind] |= {
+                "median": round(float(np.median(there)), 3),
+                "p95": round(float(np.percentile(there, 95)), 3),
+                "worst": round(float(there.max()), 3),
+            }
+    return {
+        "error": out,
+        "only_theirs": [f"{d.cell}: {d.what}" for d in both if np.isnan(d.ours).all()],
+        "only_ours": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.theirs).all()],
+    }

@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from cells.liberty.group import Group
+from base.liberty.group import Group
 from models.parameters import ParameterError
 
 

@@ -54,5 +54,6 @@ def _cover(primes, ones):
 
 def _product(names, value, mask):
     last = len(names) - 1
-    return " & ".join(("" if value >> (last - i) & 1 else "!") + name
-                      for i, name in enumerate(names) if not mask >> (last - i) & 1)
+    return " & ".join(
+        ("" if value >> (last - i) & 1 else "!") + name for i, name in enumerate(names) if not mask >> (last - i) & 1
+    )

@@ -57,4 +57,5 @@ def _connected(netlist, fail):
 def _failure(netlist):
     def fail(why):
         raise ParameterError(f"netlist = {netlist.name}: {why}")
+
     return fail

@@ -75,8 +75,9 @@ def understand(netlist, polarity, rails):
         return Cell(machine, functions, three_state, None, tuple(_arcs(machine, _combinational_type)))
     storage = _storage(machine)
     functions = {q: _output_function(machine, storage, k) for k, q in enumerate(machine.outputs)}
-    return Cell(machine, functions, dict.fromkeys(machine.outputs), storage,
-                tuple(_arcs(machine, _sequential_type(storage))))
+    return Cell(
+        machine, functions, dict.fromkeys(machine.outputs), storage, tuple(_arcs(machine, _sequential_type(storage)))
+    )
 
 
 def _code(bits):
@@ -139,12 +140,16 @@ def _gating(machine):
     for clock in range(len(machine.inputs)):
         for active in (0, 1):
             rest = {s.outputs[0] for s in machine.states if s.inputs[clock] != active}
-            free = [c for c in machine.changes if c.pin != clock and c.before.inputs[clock] == active
-                    and c.before.outputs != c.after.outputs]
+            free = [
+                c
+                for c in machine.changes
+                if c.pin != clock and c.before.inputs[clock] == active and c.before.outputs != c.after.outputs
+            ]
             if rest == {1 - active} and not free:
                 data = tuple(i for i in range(len(machine.inputs)) if i != clock)
-                samples = [(c.before, c.after) for c in machine.changes
-                           if c.pin == clock and c.after.inputs[clock] == active]
+                samples = [
+                    (c.before, c.after) for c in machine.changes if c.pin == clock and c.after.inputs[clock] == active
+                ]
                 text, used = _stored(machine, samples, data, with_state=False)
                 return Storage("gate", machine.inputs[clock], active, text, used)
     return None
@@ -202,12 +207,13 @@ def _combinational_type(pin, pin_edge, before, after):
 def _sequential_type(storage):
     def kind(pin, pin_edge, before, after):
         if any(hit and pin == hit[0] for hit in (storage.clear, storage.preset)):
-            return "preset" if after else "clear"     # Liberty's words for an output that rises, or falls
+            return "preset" if after else "clear"  # Liberty's words for an output that rises, or falls
         if storage.kind == "gate":
             return "combinational" if pin == storage.clock else None
         if pin == storage.clock:
             return ("rising_edge" if storage.active else "falling_edge") if pin_edge == LEVEL[storage.active] else None
         return "combinational" if storage.kind == "latch" else None
+
     return kind
 
 

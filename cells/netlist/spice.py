@@ -91,7 +91,7 @@ def subcircuit(text, name):
     lines = _joined(text)
     first = next(i for i, line in enumerate(lines) if line.lower().startswith(".subckt") and line.split()[1] == name)
     last = next(i for i in range(first, len(lines)) if lines[i].lower().startswith(".ends"))
-    return "\n".join([*lines[first:last + 1], ""])
+    return "\n".join([*lines[first : last + 1], ""])
 
 
 def source(path):
@@ -152,10 +152,12 @@ def _element(netlist, words, line, origin, spelled):
         if many < 1 or many != int(many):
             raise ParameterError(f"netlist = {origin}: {line!r} must have a whole number m of 1 or more")
         ends = [_node(node, spelled) for node in nodes[:4]]
-        netlist.transistors += [Transistor(f"{name}_m{k}" if k else name, nodes[4].lower(), *ends, size)
-                                for k in range(int(many))]
+        netlist.transistors += [
+            Transistor(f"{name}_m{k}" if k else name, nodes[4].lower(), *ends, size) for k in range(int(many))
+        ]
     elif kind in "cr" and len(words) >= 4:
         (netlist.capacitors if kind == "c" else netlist.resistors).append(
-            Passive(name, *(_node(node, spelled) for node in words[1:3]), number(words[3].split("=")[-1])))
+            Passive(name, *(_node(node, spelled) for node in words[1:3]), number(words[3].split("=")[-1]))
+        )
     else:
         raise ParameterError(f"netlist = {origin}: {line!r} is no transistor, capacitor or resistor")

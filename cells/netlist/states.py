@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from cells.netlist.switch import Switches, floating
 from models.parameters import ParameterError
 
-LIMIT = 20000          # states, more than any cell of a library has
+LIMIT = 20000  # states, more than any cell of a library has
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,13 @@ class Machine:
         queue, found, blind = [], {}, set()
         for code in range(1 << n):
             vector = tuple(code >> (n - 1 - i) & 1 for i in range(n))
-            queue.append((self.switches.settle(self.switches.unknown(), dict(zip(self.inputs, vector, strict=True))),
-                          vector, (vector,)))
+            queue.append(
+                (
+                    self.switches.settle(self.switches.unknown(), dict(zip(self.inputs, vector, strict=True))),
+                    vector,
+                    (vector,),
+                )
+            )
         raw_changes = []
         while queue:
             later = []
@@ -70,8 +75,11 @@ class Machine:
                     blind.add(key)
                 else:
                     kept = tuple(nodes[self.switches.root[pin]] for pin in self.outputs)
-                    inside = tuple((node, nodes[node]) for node in self.switches.inner
-                                   if node not in self.netlist.ports and nodes[node] is not None)
+                    inside = tuple(
+                        (node, nodes[node])
+                        for node in self.switches.inner
+                        if node not in self.netlist.ports and nodes[node] is not None
+                    )
                     found[key] = State(vector, known, kept, inside, path)
                 for pin in range(n):
                     after = tuple(v ^ (i == pin) for i, v in enumerate(vector))
@@ -85,8 +93,9 @@ class Machine:
         self.changes = [Change(found[a], pin, found[b]) for a, pin, b in raw_changes if a in found and b in found]
         vectors = {s.inputs for s in self.states}
         if len(vectors) < 1 << n:
-            missing = next(v for c in range(1 << n) if (v := tuple(c >> (n - 1 - i) & 1 for i in range(n)))
-                           not in vectors)
+            missing = next(
+                v for c in range(1 << n) if (v := tuple(c >> (n - 1 - i) & 1 for i in range(n))) not in vectors
+            )
             values = " ".join(f"{p}={v}" for p, v in zip(self.inputs, missing, strict=True))
             raise ParameterError(f"netlist = {self.netlist.name}: an output is never known at {values}")
 

@@ -7,9 +7,9 @@ whose path has the lower resistance by FIGHT (a keeper loses against a driver). 
 import heapq
 import math
 
-FIGHT = 2.5            # ratio of resistances from which a path wins
-SLOW_P = 2.5           # a p transistor's resistance to that of an n transistor of the same size
-STEPS = 200            # of unit delay, after which what still changes is unknown
+FIGHT = 2.5  # ratio of resistances from which a path wins
+SLOW_P = 2.5  # a p transistor's resistance to that of an n transistor of the same size
+STEPS = 200  # of unit delay, after which what still changes is unknown
 
 
 class Switches:
@@ -20,7 +20,7 @@ class Switches:
         self.rails = {root[n]: level for n, level in rails.items() if n in root}
         self.root = root
         self.inner = sorted(set(root.values()) - set(self.rails))
-        self.edges = {}        # node -> [(neighbour, gate, level that switches on, resistance)]
+        self.edges = {}  # node -> [(neighbour, gate, level that switches on, resistance)]
         for t in netlist.transistors:
             on = 1 if polarity[t.model] == "n" else 0
             resistance = t.size["l"] / t.size["w"] * (1 if on else SLOW_P)
@@ -45,8 +45,9 @@ class Switches:
         return {n: v if v == previous[n] else None for n, v in state.items()}
 
     def _step(self, state, forced):
-        sure, maybe = ({level: self._distance(state, forced, level, doubt) for level in (0, 1)}
-                       for doubt in (False, True))
+        sure, maybe = (
+            {level: self._distance(state, forced, level, doubt) for level in (0, 1)} for doubt in (False, True)
+        )
         after = dict(forced)
         for node in self.inner:
             if node in forced:
@@ -108,6 +109,6 @@ def _joined(netlist):
 
     order = {n: i for i, n in enumerate(netlist.nodes)}
     for r in netlist.resistors:
-        a, b = sorted((find(r.a), find(r.b)), key=order.get)      # ports come first and stay
+        a, b = sorted((find(r.a), find(r.b)), key=order.get)  # ports come first and stay
         root[b] = a
     return {n: find(n) for n in root}

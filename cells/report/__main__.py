@@ -8,20 +8,28 @@ from pathlib import Path
 
 import jinja2
 
+from base.files import staged
+from base.liberty import read
+from base.tools import ToolError
 from cells import run, sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
-from cells.liberty import compare, read, reference
+from cells.liberty import compare, reference
 from cells.report import curve, pictures, separate
 from cells.spice.engine import SimulationError
-from flow.files import staged
-from flow.simulate.process import ToolError
 from models.parameters import ParameterError
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 # per cent, constraints in ps: median and 95th percentile that are asked for at the typical corner
-BOUNDS = {"delay": (5, 12), "slew": (5, 12), "capacitance": (5, None), "leakage": (20, None), "energy": (20, None),
-          "setup": (15, None), "hold": (15, None)}
+BOUNDS = {
+    "delay": (5, 12),
+    "slew": (5, 12),
+    "capacitance": (5, None),
+    "leakage": (20, None),
+    "energy": (20, None),
+    "setup": (15, None),
+    "hold": (15, None),
+}
 
 
 def main(argv=None):
@@ -39,8 +47,11 @@ def main(argv=None):
             page |= against(conditions, options)
         measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
         found = curve.table(measured)
-        page |= {"curve": found, "curve_picture": pictures.error_against_time(found, curve.DEFAULT),
-                 "off_grid": curve.by_cell(measured)}
+        page |= {
+            "curve": found,
+            "curve_picture": pictures.error_against_time(found, curve.DEFAULT),
+            "off_grid": curve.by_cell(measured),
+        }
         with staged(options.out) as part:
             template = Path(__file__).with_name("index.html").read_text()
             (part / "index.html").write_text(jinja2.Template(template).render(page))
@@ -50,8 +61,11 @@ def main(argv=None):
         print(f"cells.report: {error}", file=sys.stderr)
         return 2
     for kind, e in page["kinds"].items():
-        errors = (f"median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, " if "median" in e else
-                  "nothing to compare, ")
+        errors = (
+            f"median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, "
+            if "median" in e
+            else "nothing to compare, "
+        )
         print(f"{kind:16} {errors}{e['entries']} entries")
     print(options.out / "index.html")
     return 0
@@ -63,8 +77,9 @@ def against(conditions, options):
     names = sorted(set(known) & set(sources.names("sky130_hd")))
     if not names:
         raise ParameterError(f"reference = {options.reference}: has no cell of sky130_hd")
-    run.run("sky130_hd", conditions, names, "extracted", options.out / "libraries", None, options.workers,
-            time.monotonic())
+    run.run(
+        "sky130_hd", conditions, names, "extracted", options.out / "libraries", None, options.workers, time.monotonic()
+    )
     tree = read.read(options.out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
     differences = compare.library(tree, known)
     told = compare.summary(differences)

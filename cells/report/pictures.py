@@ -9,7 +9,7 @@ import numpy as np
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
 
-SCALE = 15             # per cent at the ends of the colours
+SCALE = 15  # per cent at the ends of the colours
 
 
 def embedded(figure):
@@ -25,8 +25,7 @@ def heat_maps(differences):
     tables = [d for d in differences if np.ndim(d.theirs) == 2 and np.isfinite(d.ours - d.theirs).all()]
     columns = 6
     rows = max(1, -(-len(tables) // columns))
-    figure, axes = plt.subplots(rows, columns, figsize=(2.3 * columns, 2.2 * rows), squeeze=False,
-                                layout="constrained")
+    figure, axes = plt.subplots(rows, columns, figsize=(2.3 * columns, 2.2 * rows), squeeze=False, layout="constrained")
     for axis in axes.flat:
         axis.axis("off")
     for axis, d in zip(axes.flat, tables, strict=False):
@@ -34,8 +33,15 @@ def heat_maps(differences):
         values = (d.ours - d.theirs) * 1e3 if time else 100 * d.relative
         axis.imshow(values, cmap="RdBu_r", vmin=-SCALE, vmax=SCALE)
         for (i, j), value in np.ndenumerate(values):
-            axis.text(j, i, str(round(value)), ha="center", va="center", fontsize=6,
-                      color="white" if abs(value) > 0.7 * SCALE else "black")
+            axis.text(
+                j,
+                i,
+                str(round(value)),
+                ha="center",
+                va="center",
+                fontsize=6,
+                color="white" if abs(value) > 0.7 * SCALE else "black",
+            )
         axis.set_title(f"{d.what}{' (ps)' if time else ' (%)'}", fontsize=6)
     return embedded(figure)
 
@@ -49,9 +55,14 @@ def error_against_time(rows, default):
         axis.plot(seconds, median, "s" if grid else "o", color="C0")
         axis.plot(seconds, high, "s" if grid else "o", color="C3", mfc="none")
         weight = "bold" if name == default else "normal"
-        axis.annotate(str(number), (seconds, high), fontsize=8, weight=weight, xytext=(2, 3),
-                      textcoords="offset points")
-    axis.set(xscale="log", yscale="log", xlabel="seconds of the processor, three cells",
-             ylabel="error in per cent: median, 95th percentile")
+        axis.annotate(
+            str(number), (seconds, high), fontsize=8, weight=weight, xytext=(2, 3), textcoords="offset points"
+        )
+    axis.set(
+        xscale="log",
+        yscale="log",
+        xlabel="seconds of the processor, three cells",
+        ylabel="error in per cent: median, 95th percentile",
+    )
     axis.grid(alpha=0.3, which="both")
     return embedded(figure)

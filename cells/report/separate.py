@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from base import jobs
 from cells import run, sources
 from cells.characterize.bench import Bench
 from cells.liberty import reference
-from flow import jobs
 
-POINTS = slice(0, None, 2)       # of the reference's axes: every other
+POINTS = slice(0, None, 2)  # of the reference's axes: every other
 
 
 def variants(process):
@@ -30,8 +30,14 @@ def separate(library, names, conditions, folder, store, workers):
             source = sources.source(library, name, netlist)
             at = replace(conditions, models=models)
             inputs = run.job(source, at, process).inputs
-            todo.append(jobs.Job(f"{name}.{models}.{netlist}.{conditions.corner.name}", errors,
-                                 (library, name, at, netlist, str(file)), (*inputs, file)))
+            todo.append(
+                jobs.Job(
+                    f"{name}.{models}.{netlist}.{conditions.corner.name}",
+                    errors,
+                    (library, name, at, netlist, str(file)),
+                    (*inputs, file),
+                )
+            )
     return jobs.run(todo, store, "models and netlists", workers)
 
 
@@ -42,13 +48,19 @@ def errors(library, name, conditions, netlist, file):
     found = {"cell": name, "models": conditions.models, "netlist": netlist, "delay": [], "slew": []}
     with Bench(cell, process, conditions) as bench:
         for arc in cell.arcs:
-            for timing in theirs.one("pin", arc.output).all("timing", related_pin=arc.pin, timing_type=arc.type,
-                                                            timing_sense=arc.sense):
+            for timing in theirs.one("pin", arc.output).all(
+                "timing", related_pin=arc.pin, timing_type=arc.type, timing_sense=arc.sense
+            ):
                 for field, kind in (("delay", f"cell_{arc.edge}"), ("slew", f"{arc.edge}_transition")):
                     table = timing.one(kind)
                     values = table.array("values")[POINTS, POINTS]
-                    ours = [[getattr(bench.edge(arc.changes[0], arc.output, slew * 1e-9, load * 1e-12), field) * 1e9
-                             for load in table.array("index_2")[POINTS]] for slew in table.array("index_1")[POINTS]]
+                    ours = [
+                        [
+                            getattr(bench.edge(arc.changes[0], arc.output, slew * 1e-9, load * 1e-12), field) * 1e9
+                            for load in table.array("index_2")[POINTS]
+                        ]
+                        for slew in table.array("index_1")[POINTS]
+                    ]
                     found[field] += np.ravel((np.array(ours) / values - 1) * 100).tolist()
     return found
 

@@ -2,7 +2,7 @@
 
 
 def circuit(netlist, process, models, corner, leakage=False):
-    """Lines: models of ``process`` (a module like flow.platforms.sky130.models) in the set ``models``, the subcircuit,
+    """Lines: models of ``process`` (a module like platforms.sky130.models) in the set ``models``, the subcircuit,
 
     and one instance of it whose nodes have the ports' names. leakage: with the process's models for leakage.
     """

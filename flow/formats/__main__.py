@@ -8,9 +8,10 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from flow.charts import save
-from flow.files import insert, staged
-from flow.sizes.measure import ROOT, SizeError, measure as size_of
+from base.charts import save
+from base.files import insert, staged
+from flow.sizes.measure import ROOT, SizeError
+from flow.sizes.measure import measure as size_of
 from flow.tradeoff import write_csv
 from models.parameters import ParameterError
 
@@ -25,8 +26,12 @@ DEFAULT_THRESHOLD = 10
 def gates_of_packers():
     """NAND2 equivalents of every format's packer: dict format -> float, or None where Yosys is missing."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        result = subprocess.run([sys.executable, "-m", "rtl.run_length.candidates", "--out", folder], cwd=ROOT,
-                                capture_output=True, text=True)
+        result = subprocess.run(
+            [sys.executable, "-m", "rtl.run_length.candidates", "--out", folder],
+            cwd=ROOT,
+            capture_output=True,
+            text=True,
+        )
         if result.returncode:
             raise SizeError(result.stderr.strip().splitlines()[-1])
         try:
@@ -40,8 +45,12 @@ def gates_of_packers():
 
 def main(argv=None):
     parser = argparse.ArgumentParser(prog="python -m flow.formats", description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "formats",
-                        help="folder of formats.csv, formats.md and formats.png (%(default)s)")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=ROOT / "build" / "formats",
+        help="folder of formats.csv, formats.md and formats.png (%(default)s)",
+    )
     parser.add_argument("--codes", type=Path, help="npz with codes and ideal, both (rows, cols), in place of the scene")
     parser.add_argument("--document", type=Path, help="also put the tables between the marks of this Markdown file")
     options = parser.parse_args(argv)

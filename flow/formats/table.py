@@ -1,6 +1,6 @@
 """The measured comparison as Markdown and charts."""
 
-from flow.charts import curves
+from base.charts import curves
 
 from .orders import CHIP, ORDERS
 from .tokens import CHOSEN, FORMATS
@@ -22,26 +22,65 @@ def markdown(rows, gates, growths, threshold, source):
     """
     here = {(r["order"], r["format"]): r["ratio"] for r in rows if r["threshold"] == threshold}
     known = next(r for r in rows if r["threshold"] == threshold)
-    out = ["# Token formats and scan orders", "", f"Measured on {source}, by `python -m flow.formats`.", "",
-           f"Threshold {threshold}: {known['psnr_db']:.1f} dB, {100 * known['not_zero']:.1f} % of the samples are "
-           f"not zero, and their zero-order entropy allows {known['entropy_ratio']:.2f} : 1. Compression (a byte a "
-           "sample over all bytes of the frame), what random codes grow by, and gates of the packer:", ""]
-    out += _table(["format", *ORDERS, "noise grows", "gates"], [
-        [name, *(f"{here[order, name]:.2f}" for order in ORDERS), f"{100 * (growths[name] - 1):+.1f} %",
-         f"{gates[name]:,.0f}" if gates else "needs Yosys"] for name in FORMATS])
-    out += ["", *_table(["order", "must be held", "a wrong byte costs"],
-                        [[name, order.buffer, order.lost] for name, order in ORDERS.items()])]
+    out = [
+        "# Token formats and scan orders",
+        "",
+        f"Measured on {source}, by `python -m flow.formats`.",
+        "",
+        f"Threshold {threshold}: {known['psnr_db']:.1f} dB, {100 * known['not_zero']:.1f} % of the samples are "
+        f"not zero, and their zero-order entropy allows {known['entropy_ratio']:.2f} : 1. Compression (a byte a "
+        "sample over all bytes of the frame), what random codes grow by, and gates of the packer:",
+        "",
+    ]
+    out += _table(
+        ["format", *ORDERS, "noise grows", "gates"],
+        [
+            [
+                name,
+                *(f"{here[order, name]:.2f}" for order in ORDERS),
+                f"{100 * (growths[name] - 1):+.1f} %",
+                f"{gates[name]:,.0f}" if gates else "needs Yosys",
+            ]
+            for name in FORMATS
+        ],
+    )
+    out += [
+        "",
+        *_table(
+            ["order", "must be held", "a wrong byte costs"],
+            [[name, order.buffer, order.lost] for name, order in ORDERS.items()],
+        ),
+    ]
     out += ["", f"{CHOSEN[0].upper()}{CHOSEN[1:]}, {CHIP}:", ""]
-    out += _table(["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"], [
-        [r["threshold"], f"{r['psnr_db']:.2f}", f"{100 * r['not_zero']:.1f} %", f"{r['bytes']:,}", f"{r['ratio']:.2f}",
-         f"{r['entropy_ratio']:.2f}"] for r in rows if (r["order"], r["format"]) == (CHIP, CHOSEN)])
+    out += _table(
+        ["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"],
+        [
+            [
+                r["threshold"],
+                f"{r['psnr_db']:.2f}",
+                f"{100 * r['not_zero']:.1f} %",
+                f"{r['bytes']:,}",
+                f"{r['ratio']:.2f}",
+                f"{r['entropy_ratio']:.2f}",
+            ]
+            for r in rows
+            if (r["order"], r["format"]) == (CHIP, CHOSEN)
+        ],
+    )
     return "\n".join(out) + "\n"
 
 
 def chart(rows):
     """Compression against PSNR of every format in the chip's order, and what the entropy allows."""
-    series = {name: [(r["psnr_db"], r["ratio"], f"T={r['threshold']}" if name == CHOSEN else "")
-                     for r in rows if (r["order"], r["format"]) == (CHIP, name)] for name in FORMATS}
-    series["zero-order entropy"] = [(r["psnr_db"], r["entropy_ratio"], "") for r in rows
-                                    if (r["order"], r["format"]) == (CHIP, CHOSEN)]
+    series = {
+        name: [
+            (r["psnr_db"], r["ratio"], f"T={r['threshold']}" if name == CHOSEN else "")
+            for r in rows
+            if (r["order"], r["format"]) == (CHIP, name)
+        ]
+        for name in FORMATS
+    }
+    series["zero-order entropy"] = [
+        (r["psnr_db"], r["entropy_ratio"], "") for r in rows if (r["order"], r["format"]) == (CHIP, CHOSEN)
+    ]
     return curves(series, "PSNR of the codes sent (dB)", "compression", f"Token formats, {CHIP}", log_y=True)

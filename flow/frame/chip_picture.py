@@ -2,7 +2,7 @@
 
 import numpy as np
 
-DIE = 5e-3      # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
+DIE = 5e-3  # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
 BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}
 
 
@@ -13,16 +13,21 @@ def chip_svg(sensor, frame, width=360):
     px = width / side
     w, h = cols * pitch * px, rows * pitch * px
     x, y = (width - w) / 2 + 10, (width - h) / 2 - 14
-    parts = [_rect(0, 0, width, width, "#20262f", rx=6),
-             _rect(x, y, w, h, "#3b4656")]
+    parts = [_rect(0, 0, width, width, "#20262f", rx=6), _rect(x, y, w, h, "#3b4656")]
     parts += _window(sensor, frame, x, y, w, h)
     parts += _lanes(sensor, x, y + h + 5, w)
-    parts += [_rect(x - 20, y, 14, h, "#5f8f6a"), _text(x - 13, y + h / 2, "rows", 9, -90),
-              _rect(x, y + h + 32, w, 12, "#6b7b8d"), _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9)]
+    parts += [
+        _rect(x - 20, y, 14, h, "#5f8f6a"),
+        _text(x - 13, y + h / 2, "rows", 9, -90),
+        _rect(x, y + h + 32, w, 12, "#6b7b8d"),
+        _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9),
+    ]
     parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} um", 10))
     tile = _tile(sensor, frame, width + 24, 24, 46)
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width + 320} {width}" '
-            f'font-family="sans-serif">{"".join(parts + tile)}</svg>')
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width + 320} {width}" '
+        f'font-family="sans-serif">{"".join(parts + tile)}</svg>'
+    )
 
 
 def _rect(x, y, w, h, fill, rx=1, extra=""):
@@ -31,7 +36,9 @@ def _rect(x, y, w, h, fill, rx=1, extra=""):
 
 def _text(x, y, text, size, turn=0, fill="#fff", anchor="middle"):
     rotate = f' transform="rotate({turn} {x:.1f} {y:.1f})"' if turn else ""
-    return f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" text-anchor="{anchor}"{rotate}>{text}</text>'
+    return (
+        f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" text-anchor="{anchor}"{rotate}>{text}</text>'
+    )
 
 
 def _window(sensor, frame, x, y, w, h):
@@ -39,36 +46,55 @@ def _window(sensor, frame, x, y, w, h):
     x0, x1 = win.col0 * tile.cols, min(sensor.array.cols, (win.col1 + 1) * tile.cols)
     y0, y1 = win.row0 * tile.rows, min(sensor.array.rows, (win.row1 + 1) * tile.rows)
     sx, sy = w / sensor.array.cols, h / sensor.array.rows
-    return [_rect(x + x0 * sx, y + y0 * sy, (x1 - x0) * sx, (y1 - y0) * sy, "#e8c15a"),
-            _text(x + (x0 + x1) / 2 * sx, y + (y0 + y1) / 2 * sy, f"{y1 - y0} x {x1 - x0} pixels read", 12, fill="#222")]
+    return [
+        _rect(x + x0 * sx, y + y0 * sy, (x1 - x0) * sx, (y1 - y0) * sy, "#e8c15a"),
+        _text(x + (x0 + x1) / 2 * sx, y + (y0 + y1) / 2 * sy, f"{y1 - y0} x {x1 - x0} pixels read", 12, fill="#222"),
+    ]
 
 
 def _lanes(sensor, x, y, w):
     lanes, step = sensor.chip.lanes, w / sensor.chip.lanes
-    return [_rect(x + i * step + 1, y, max(step - 2, 0.5), 22, "#a9c3e0") for i in range(lanes)] \
-        + [_rect(x + w / 2 - 50, y + 3, 100, 16, "#a9c3e0"), _text(x + w / 2, y + 15, f"{lanes} converter lane{'s' if lanes > 1 else ''}", 11, fill="#222")]
+    return [_rect(x + i * step + 1, y, max(step - 2, 0.5), 22, "#a9c3e0") for i in range(lanes)] + [
+        _rect(x + w / 2 - 50, y + 3, 100, 16, "#a9c3e0"),
+        _text(x + w / 2, y + 15, f"{lanes} converter lane{'s' if lanes > 1 else ''}", 11, fill="#222"),
+    ]
 
 
 def _tile(sensor, frame, x, y, cell):
     tile = sensor.tile
-    parts = [_text(x, y - 8, "one tile: grating orientation and type; faded = not read", 11, fill="#333", anchor="start")]
+    parts = [
+        _text(x, y - 8, "one tile: grating orientation and type; faded = not read", 11, fill="#333", anchor="start")
+    ]
     for position, number in enumerate(tile.order):
         kind = tile.types[number]
         px, py = x + position % tile.cols * cell, y + position // tile.cols * cell
         used = frame.mask >> number & 1
-        parts.append(_rect(px + 1, py + 1, cell - 2, cell - 2, BETA_COLOURS.get(kind.beta, "#b0b0b0"), 3,
-                           f'opacity="{1 if used else 0.2}"'))
+        parts.append(
+            _rect(
+                px + 1,
+                py + 1,
+                cell - 2,
+                cell - 2,
+                BETA_COLOURS.get(kind.beta, "#b0b0b0"),
+                3,
+                f'opacity="{1 if used else 0.2}"',
+            )
+        )
         # Grating lines run across the direction gamma in which the response oscillates.
         angle = kind.gamma + np.pi / 2
         for shift in (-0.22, 0, 0.22):
             cx = px + cell / 2 + shift * cell * np.cos(kind.gamma)
             cy = py + cell / 2 - shift * cell * np.sin(kind.gamma)
             dx, dy = 0.24 * cell * np.cos(angle), -0.24 * cell * np.sin(angle)
-            parts.append(f'<line x1="{cx - dx:.1f}" y1="{cy - dy:.1f}" x2="{cx + dx:.1f}" y2="{cy + dy:.1f}" '
-                         f'stroke="#333" stroke-width="1.6" opacity="{1 if used else 0.2}"/>')
+            parts.append(
+                f'<line x1="{cx - dx:.1f}" y1="{cy - dy:.1f}" x2="{cx + dx:.1f}" y2="{cy + dy:.1f}" '
+                f'stroke="#333" stroke-width="1.6" opacity="{1 if used else 0.2}"/>'
+            )
         parts.append(_text(px + 5, py + 12, number, 9, fill="#222", anchor="start"))
     legend = y + tile.rows * cell + 20
     for i, beta in enumerate(sorted({t.beta for t in tile.types})):
-        parts += [_rect(x + 88 * i, legend, 12, 12, BETA_COLOURS.get(beta, "#b0b0b0")),
-                  _text(x + 88 * i + 17, legend + 10, f"beta {beta:g}", 11, fill="#333", anchor="start")]
+        parts += [
+            _rect(x + 88 * i, legend, 12, 12, BETA_COLOURS.get(beta, "#b0b0b0")),
+            _text(x + 88 * i + 17, legend + 10, f"beta {beta:g}", 11, fill="#333", anchor="start"),
+        ]
     return parts

@@ -8,7 +8,7 @@ from time import perf_counter
 
 import numpy as np
 
-from flow.charts import curves
+from base.charts import curves
 from models.capture import CaptureOperator
 from models.digital.chip import golden_frame
 from models.pixel.weights import raw_weights
@@ -36,14 +36,19 @@ def _threshold(result, summary):
         quality = psnr(decoding_error(golden.sent, result.exposed.ideal, golden.read, frame))
         if quality is None:
             continue
-        apart = abs(len(chip.stream) - labelled) > 0.1 * labelled       # labels would lie on one another
+        apart = abs(len(chip.stream) - labelled) > 0.1 * labelled  # labels would lie on one another
         label = f"T={threshold}: {1e3 * chip.status['cycles'] / sensor.chip.f_clk:.2f} ms" if apart else ""
         labelled = len(chip.stream) if apart else labelled
         points.append((len(chip.stream), quality, label))
     here = summary["stream_bytes"], summary["psnr_db"]
-    return curves({"differences": points}, "bytes a frame", "PSNR (dB)",
-                  "Threshold: error against bytes, and the chip's frame time", log_x=True,
-                  mark=here if None not in here else None)
+    return curves(
+        {"differences": points},
+        "bytes a frame",
+        "PSNR (dB)",
+        "Threshold: error against bytes, and the chip's frame time",
+        log_x=True,
+        mark=here if None not in here else None,
+    )
 
 
 def _capture(result):
@@ -58,8 +63,13 @@ def _capture(result):
             pair, seconds = _captured(replace_nodes(sensor, nodes), field.astype(dtype), dtype)
             error = float(np.abs(pair - best).max() / max(float(best.max()), np.finfo(float).tiny))
             series[dtype].append((1e3 * seconds, max(error, 1e-17), str(nodes)))
-    return curves(series, "weights and capture (ms); number: nodes a view cell", "largest error / largest value",
-                  "Capture model: error against run time", log_y=True)
+    return curves(
+        series,
+        "weights and capture (ms); number: nodes a view cell",
+        "largest error / largest value",
+        "Capture model: error against run time",
+        log_y=True,
+    )
 
 
 def replace_nodes(sensor, nodes):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from flow.simulate import bench_program, run_frame
-from flow.simulate.run import host_script
+from flow.simulate.frame import host_script
 from flow.simulate.verilator import Build
 from models.afe import write_converter, write_samples
 from models.parameters.registers import command, decode_status, frame_writes, status_transfers, write_transfers
@@ -27,9 +27,18 @@ class HardwareFrame:
 
 def build_of(sensor, taps=1, waves=False):
     """What to elaborate for ``sensor``."""
-    return Build(rows=sensor.array.rows, cols=sensor.array.cols, lanes=sensor.chip.lanes, divider=sensor.chip.divider,
-                 n_frac=sensor.chip.n_frac, iterations=sensor.chip.cordic_iterations,
-                 tile_rows=sensor.tile.rows, tile_cols=sensor.tile.cols, taps=taps, waves=waves)
+    return Build(
+        rows=sensor.array.rows,
+        cols=sensor.array.cols,
+        lanes=sensor.chip.lanes,
+        divider=sensor.chip.divider,
+        n_frac=sensor.chip.n_frac,
+        iterations=sensor.chip.cordic_iterations,
+        tile_rows=sensor.tile.rows,
+        tile_cols=sensor.tile.cols,
+        taps=taps,
+        waves=waves,
+    )
 
 
 def program(sensor, taps, waves=False, note=lambda text: None):
@@ -53,6 +62,6 @@ def simulate(binary, sensor, frame, samples, front_end, stall=0, waves=None, mor
         run = run_frame(binary, analog, converter, script, stall=stall, waves=waves, more=more)
     replies, end = [], len(run.miso)
     for transfer in reversed(after):
-        replies.insert(0, run.miso[end - len(transfer):end])
+        replies.insert(0, run.miso[end - len(transfer) : end])
         end -= len(transfer)
     return HardwareFrame(run.stream, decode_status(replies), run.activity, run.cycles, run.seconds)

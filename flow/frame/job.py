@@ -9,7 +9,7 @@ from time import perf_counter
 
 import numpy as np
 
-from flow.files import check_folder, staged
+from base.files import check_folder, staged
 from models.afe import trim_codes, trim_gain
 from models.capture import Exposure, capture
 from models.digital.chip import front_end_of, golden_frame
@@ -21,7 +21,6 @@ from models.scene import Sampling, load
 
 from . import hardware
 from .summary import summarize
-
 
 STEPS = ("setup", "capture", "build", "rtl", "decode", "report")
 
@@ -72,8 +71,14 @@ class FrameResult:
     @cached_property
     def rebuilt(self):
         """The 2-D image rebuilt from the decoded edges alone (models.reconstruct.rebuild)."""
-        return rebuild(self.decoded.samples[..., 0], self.decoded.read, self.exposed.scene, self.request.sensor,
-                       self.exposed.front_end.trim, self.request.frame.timing)
+        return rebuild(
+            self.decoded.samples[..., 0],
+            self.decoded.read,
+            self.exposed.scene,
+            self.request.sensor,
+            self.exposed.front_end.trim,
+            self.request.frame.timing,
+        )
 
 
 def see(request):
@@ -107,7 +112,7 @@ def read_out(request, exposed, program, clock=None, waves=None):
         chip = hardware.simulate(program, sensor, frame, exposed.samples, exposed.front_end, waves=waves)
     with clock.step("decode"):
         golden = golden_frame(exposed.samples, sensor, frame, exposed.front_end)
-        decoded = decode_stream(chip.stream, sensor.tile)[0]     # of a stream without a frame: StreamError
+        decoded = decode_stream(chip.stream, sensor.tile)[0]  # of a stream without a frame: StreamError
     return FrameResult(request, exposed, program, golden, chip, decoded)
 
 
@@ -117,7 +122,7 @@ def run(request, note=lambda text: None):
     note: called with the name of each of `STEPS` as it starts, and with a line before each long part of one.
     Raises ParameterError, ToolError, OSError.
     """
-    from . import outputs       # Matplotlib: not before it is needed
+    from . import outputs  # Matplotlib: not before it is needed
 
     check_folder("out", request.folder)
     clock = Clock(note=note)

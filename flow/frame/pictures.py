@@ -64,8 +64,7 @@ def edge_sheet(edges, tile, scale):
     """The 24 edge images (n_types, tile_rows, tile_cols) as a contact sheet, one row a beta."""
     images = [signed(edge, scale) for edge in edges]
     labels = [f"{t.beta:g}, {t.gamma_deg:g}°{' sin' if t.alpha else ' cos'}" for t in tile.types]
-    return contact_sheet(images, labels, columns=max(1, len(images) // 3),
-                         aspect=tile.cols / tile.rows)
+    return contact_sheet(images, labels, columns=max(1, len(images) // 3), aspect=tile.cols / tile.rows)
 
 
 def view_sheet(light_field, cell=96):

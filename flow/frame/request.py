@@ -3,8 +3,17 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from models.parameters import (ALL_TYPES, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
-                               SensorParameters, Window, check_int, check_real)
+from models.parameters import (
+    ALL_TYPES,
+    ArrayParameters,
+    ChipParameters,
+    FrameParameters,
+    ParameterError,
+    SensorParameters,
+    Window,
+    check_int,
+    check_real,
+)
 
 
 @dataclass(frozen=True)
@@ -34,8 +43,9 @@ class FrameRequest:
         if self.focus is not None:
             check_real("focus", self.focus, -100, 100)
         if self.waves and self.waves[1] >= self.sensor.array.rows:
-            raise ParameterError(f"waves = {self.waves[0]}:{self.waves[1]}: rows must be in "
-                                 f"0..{self.sensor.array.rows - 1}")
+            raise ParameterError(
+                f"waves = {self.waves[0]}:{self.waves[1]}: rows must be in 0..{self.sensor.array.rows - 1}"
+            )
 
     @property
     def name(self):
@@ -51,7 +61,8 @@ def request(rows=384, cols=384, lanes=8, window=None, mask=ALL_TYPES, **rest):
     """A FrameRequest for an array of ``rows`` x ``cols``; ``window``: function of the full window, or None."""
     sensor = SensorParameters(array=ArrayParameters(rows=rows, cols=cols), chip=ChipParameters(lanes=lanes))
     full: Window = sensor.full_window
-    own = {name: rest.pop(name) for name in ("scene", "depth", "focus", "noise", "seed", "waves", "out")
-           if name in rest}
+    own = {
+        name: rest.pop(name) for name in ("scene", "depth", "focus", "noise", "seed", "waves", "out") if name in rest
+    }
     frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)
     return FrameRequest(sensor=sensor, frame=frame, **own)

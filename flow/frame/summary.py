@@ -10,7 +10,7 @@ from models.digital.stream.header import HEADER_BYTES
 from models.digital.stream.trailer import TRAILER_BYTES
 from models.parameters import EnergyParameters
 
-PEAK = 255.0        # span of the 8-bit codes
+PEAK = 255.0  # span of the 8-bit codes
 
 
 def mismatches(first, second):
@@ -53,9 +53,12 @@ def energy_of(result):
     frame, sensor, golden = result.request.frame, result.request.sensor, result.golden
     taps = 4 if frame.mode == "tof" else 1
     rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
-    parts = EnergyParameters().frame(resets=rows * sensor.array.cols * taps, amplified=rows * columns * taps,
-                                     seconds=result.chip.status["cycles"] / sensor.chip.f_clk,
-                                     decisions=golden.decisions)
+    parts = EnergyParameters().frame(
+        resets=rows * sensor.array.cols * taps,
+        amplified=rows * columns * taps,
+        seconds=result.chip.status["cycles"] / sensor.chip.f_clk,
+        decisions=golden.decisions,
+    )
     micro = {name: 1e6 * value for name, value in parts.items()}
     return {**micro, "total": sum(micro.values())}
 
@@ -75,24 +78,43 @@ def summarize(result):
     body = len(chip.stream) - HEADER_BYTES - TRAILER_BYTES
     marks = 2 * int(golden.read.any(1).sum())
     return {
-        "scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols,
-        "threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed,
-        "window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation,
-        "phase": frame.phase, "focus": asked.focus,
-        "pixels": int(golden.read.sum()), "samples": golden.samples,
-        "conversions_made": chip.status["conversions_made"], "conversions_left_out": chip.status["conversions_left_out"],
+        "scene": asked.name,
+        "mode": frame.mode,
+        "rows": sensor.array.rows,
+        "cols": sensor.array.cols,
+        "threshold": frame.threshold,
+        "lanes": sensor.chip.lanes,
+        "noise": asked.noise,
+        "seed": asked.seed,
+        "window": vars(frame.window),
+        "mask": f"{frame.mask:#08x}",
+        "decimation": frame.decimation,
+        "phase": frame.phase,
+        "focus": asked.focus,
+        "pixels": int(golden.read.sum()),
+        "samples": golden.samples,
+        "conversions_made": chip.status["conversions_made"],
+        "conversions_left_out": chip.status["conversions_left_out"],
         "comparator_decisions": golden.decisions,
-        "cycles": chip.status["cycles"], "frame_s_at_clock": chip.status["cycles"] / sensor.chip.f_clk,
+        "cycles": chip.status["cycles"],
+        "frame_s_at_clock": chip.status["cycles"] / sensor.chip.f_clk,
         "cycles_by_pin": chip.activity,
-        "stream_bytes": len(chip.stream), "raw_bytes": int(sent),
+        "stream_bytes": len(chip.stream),
+        "raw_bytes": int(sent),
         "bytes": {"header": HEADER_BYTES, "tokens": body - marks, "row marks": marks, "trailer": TRAILER_BYTES},
         "compression_ratio": float(sent) / max(len(chip.stream), 1),
         "stream_mismatches": mismatches(chip.stream, golden.stream),
         "decoded_mismatches": int((decoded.samples != golden.sent).sum()),
-        "psnr_db": psnr(error), "peak": PEAK, "signal_span": float(span),
+        "psnr_db": psnr(error),
+        "peak": PEAK,
+        "signal_span": float(span),
         "energy_uj": energy_of(result),
         "left_out": result.exposed.plan.left_out,
-        "rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles,
-        "tools": {"python": sys.version.split()[0], "verilator": verilator_version(),
-                  **{name: version(name) for name in ("pymtl3", "numpy", "numba")}},
+        "rtl_cycles_per_s": chip.cycles / chip.seconds,
+        "rtl_simulated_cycles": chip.cycles,
+        "tools": {
+            "python": sys.version.split()[0],
+            "verilator": verilator_version(),
+            **{name: version(name) for name in ("pymtl3", "numpy", "numba")},
+        },
     }

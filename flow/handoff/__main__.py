@@ -4,23 +4,23 @@ import argparse
 import sys
 from pathlib import Path
 
-from flow.files import check_folder, staged
+from base.files import check_folder, staged
+from base.paths import ROOT
 from flow.layout.design import DESIGNS, design, folder_name
-from flow.platforms.embedded import PROCESSES
 from models.parameters import ParameterError, check_choice
+from platforms.coriolis import PROCESSES
 
 from .archive import archive, sha256
 from .contents import Broken, contents, manifest, waived
-
-ROOT = Path(__file__).parents[2]
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.handoff", description=__doc__.splitlines()[0])
     parser.add_argument("--design", default="quad_divider", help=f"one of {', '.join(DESIGNS)} (%(default)s)")
     parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)} (%(default)s)")
-    parser.add_argument("--layouts", type=Path, default=ROOT / "build" / "layout",
-                        help="folder of the layouts (%(default)s)")
+    parser.add_argument(
+        "--layouts", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts (%(default)s)"
+    )
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "handoff", help="folder (%(default)s)")
     return parser
 

@@ -5,8 +5,8 @@ import re
 from importlib.metadata import version
 from pathlib import Path
 
-from flow.layout.netlist import SUPPLIES
-from flow.layout.summary import broken
+from flow.layout.netlist.netlist import SUPPLIES
+from flow.layout.report.metrics import broken
 from models.parameters import ParameterError
 
 from .archive import sha256
@@ -15,15 +15,23 @@ from .power import powered
 
 WAIVERS = Path(__file__).parent / "waivers.json"
 # suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
-REQUIRED = {"gds": "layout", "lef": "layout", "v": "netlist", "sdc": "timing", "drc.lyrdb": "reports",
-            "lvsdb": "reports"}
-OPTIONAL = {"lib": ("timing", "no model of the block: time it as its netlist, with the SPEF and the cells' Liberty"),
-            "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
-            "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
-            "sta.txt": ("reports", "no static timing was run")}
-OF_A_RUN = "wall_s", "peak_mib"                  # figures that differ from run to run of the same layout
+REQUIRED = {
+    "gds": "layout",
+    "lef": "layout",
+    "v": "netlist",
+    "sdc": "timing",
+    "drc.lyrdb": "reports",
+    "lvsdb": "reports",
+}
+OPTIONAL = {
+    "lib": ("timing", "no model of the block: time it as its netlist, with the SPEF and the cells' Liberty"),
+    "spef": ("timing", "no wires extracted: the timing, if there is one, is that of estimated wires"),
+    "sdf": ("timing", "no delays: back-annotate from the Liberty and the SPEF"),
+    "sta.txt": ("reports", "no static timing was run"),
+}
+OF_A_RUN = "wall_s", "peak_mib"  # figures that differ from run to run of the same layout
 RUN = re.compile(rb"(?s)<!-- run -->.*?<!-- end of run -->")
-SHOWN = re.compile(r'\bsrc="([^":/]+)"')         # files that the report's page shows
+SHOWN = re.compile(r'\bsrc="([^":/]+)"')  # files that the report's page shows
 
 
 class Broken(RuntimeError):
@@ -45,17 +53,21 @@ def contents(design, folder, waivers):
     Raises ParameterError that names every required file that is not there, Broken for rules not waived.
     """
     folder = Path(folder)
-    sources = {"reports/summary.json": folder / "summary.json", "reports/report.html": folder / "report.html",
-               f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
-               **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}"
-                  for suffix, place in REQUIRED.items()}}
+    sources = {
+        "reports/summary.json": folder / "summary.json",
+        "reports/report.html": folder / "report.html",
+        f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
+        **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}" for suffix, place in REQUIRED.items()},
+    }
     if (page := sources["reports/report.html"]).is_file():
         sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text())}
-    missing = sorted(path.name if path.parent == folder else f"rtl/{path.name}"
-                     for path in sources.values() if not path.is_file())
+    missing = sorted(
+        path.name if path.parent == folder else f"rtl/{path.name}" for path in sources.values() if not path.is_file()
+    )
     if missing:
-        raise ParameterError(f"{folder} = without {', '.join(missing)}: must be a finished layout "
-                             f"(make layout DESIGN={design.name})")
+        raise ParameterError(
+            f"{folder} = without {', '.join(missing)}: must be a finished layout (make layout DESIGN={design.name})"
+        )
     summary = json.loads(sources["reports/summary.json"].read_text())
     rules = {waiver["rule"] for waiver in waivers}
     lines = [line for line in broken(summary) if line.partition(" = ")[0] not in rules]
@@ -73,9 +85,12 @@ def contents(design, folder, waivers):
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
     lef = files[f"layout/{design.name}.lef"].decode()
-    files |= {f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(), "pinout.md": pinout(lef).encode(),
-              "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
-              "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode()}
+    files |= {
+        f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(),
+        "pinout.md": pinout(lef).encode(),
+        "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
+        "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode(),
+    }
     return files, substitutes
 
 
@@ -87,8 +102,18 @@ def plain(data, folder):
 def manifest(design, files, substitutes):
     """manifest.json as bytes: every file's size and SHA-256, versions of the tools, what stands in for what."""
     summary = json.loads(files["reports/summary.json"])
-    return (json.dumps({
-        "design": design.name, "top": design.top, "pdk": summary.get("pdk"), "backend": summary.get("backend"),
-        "versions": {"talbot": version("talbot"), **summary.get("tools", {})}, "substitutes": substitutes,
-        "files": {name: {"bytes": len(data), "sha256": sha256(data)} for name, data in sorted(files.items())}},
-        indent=1) + "\n").encode()
+    return (
+        json.dumps(
+            {
+                "design": design.name,
+                "top": design.top,
+                "pdk": summary.get("pdk"),
+                "backend": summary.get("backend"),
+                "versions": {"talbot": version("talbot"), **summary.get("tools", {})},
+                "substitutes": substitutes,
+                "files": {name: {"bytes": len(data), "sha256": sha256(data)} for name, data in sorted(files.items())},
+            },
+            indent=1,
+        )
+        + "\n"
+    ).encode()

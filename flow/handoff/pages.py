@@ -1,17 +1,18 @@
 """The pages for people: pinout and datasheet, in Markdown."""
 
-from flow.lef import pins, size
-
+from base.lef import pins, size
 
 WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
 
 
 def pinout(lef):
     """Markdown table of the pins of a LEF."""
-    rows = [f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |"
-            for p in pins(lef)]
-    return "\n".join(["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|",
-                      *rows, ""])
+    rows = [
+        f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |" for p in pins(lef)
+    ]
+    return "\n".join(
+        ["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|", *rows, ""]
+    )
 
 
 def datasheet(design, summary, lef, waivers):
@@ -19,22 +20,36 @@ def datasheet(design, summary, lef, waivers):
     width, height = size(lef)
     around, clock = design.surroundings, design.clock
     tests, density = summary.get("gate_tests"), summary.get("density") or {}
-    rows = [("top", design.top), ("process", summary.get("pdk")), ("size", f"{width:g} x {height:g} um"),
-            ("cells", summary.get("cells")), ("flip-flops", summary.get("flip_flops")),
-            ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),
-            *_figures(summary, "f_max_mhz", "highest clock, MHz"), *_figures(summary, "power_uw", "power, uW"),
-            ("input delay, output delay", f"{around.input_delay:.0%}, {around.output_delay:.0%} of the period"),
-            ("load of an output", f"{around.load_pf:g} pF"), *_figures(summary, "wns_ns", "setup slack, ns"),
-            *_figures(summary, "whs_ns", "hold slack, ns"), ("timing rests on", summary.get("timing_rests_on")),
-            ("power rests on", f"{summary.get('stimulus_cycles')} cycles of {WATCHED[summary['stimulus']]}"
-             if summary.get("stimulus") else None),
-            *_figures(summary, "energy_pj_cycle", "energy a cycle, pJ"),
-            *_figures(summary, "ir_drop_percent", "largest voltage drop, % of the supply"),
-            ("netlist's tests passed, failed", tests and f"{tests['passed']}, {tests['failed']}"),
-            ("metal by layer", ", ".join(f"{name} {share:.0%}" for name, share in density.items()) or None),
-            ("DRC violations", summary.get("drc_violations")), ("layout = netlist", summary.get("lvs_match")),
-            ("netlist = RTL", summary.get("equivalence")), ("antenna violations", summary.get("antenna_violations")),
-            ("open nets", summary.get("open_nets"))]
+    rows = [
+        ("top", design.top),
+        ("process", summary.get("pdk")),
+        ("size", f"{width:g} x {height:g} um"),
+        ("cells", summary.get("cells")),
+        ("flip-flops", summary.get("flip_flops")),
+        ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),
+        *_figures(summary, "f_max_mhz", "highest clock, MHz"),
+        *_figures(summary, "power_uw", "power, uW"),
+        ("input delay, output delay", f"{around.input_delay:.0%}, {around.output_delay:.0%} of the period"),
+        ("load of an output", f"{around.load_pf:g} pF"),
+        *_figures(summary, "wns_ns", "setup slack, ns"),
+        *_figures(summary, "whs_ns", "hold slack, ns"),
+        ("timing rests on", summary.get("timing_rests_on")),
+        (
+            "power rests on",
+            f"{summary.get('stimulus_cycles')} cycles of {WATCHED[summary['stimulus']]}"
+            if summary.get("stimulus")
+            else None,
+        ),
+        *_figures(summary, "energy_pj_cycle", "energy a cycle, pJ"),
+        *_figures(summary, "ir_drop_percent", "largest voltage drop, % of the supply"),
+        ("netlist's tests passed, failed", tests and f"{tests['passed']}, {tests['failed']}"),
+        ("metal by layer", ", ".join(f"{name} {share:.0%}" for name, share in density.items()) or None),
+        ("DRC violations", summary.get("drc_violations")),
+        ("layout = netlist", summary.get("lvs_match")),
+        ("netlist = RTL", summary.get("equivalence")),
+        ("antenna violations", summary.get("antenna_violations")),
+        ("open nets", summary.get("open_nets")),
+    ]
     table = [f"| {name} | {'-' if value is None else value} |" for name, value in rows]
     waived = [f"- {w['rule']}: {w['reason']}" for w in waivers] or ["None."]
     return "\n".join([f"# {design.name}", "", "| | |", "|---|---|", *table, "", "## Waivers", "", *waived, ""])
@@ -43,5 +58,5 @@ def datasheet(design, summary, lef, waivers):
 def _figures(summary, name, words):
     """Rows of a figure that summary.json holds by corner, as one number, or not at all."""
     value = summary.get(name)
-    for corner, figure in (value.items() if isinstance(value, dict) else [("", value)]):
+    for corner, figure in value.items() if isinstance(value, dict) else [("", value)]:
         yield f"{words}{f' ({corner})' if corner else ''}", figure

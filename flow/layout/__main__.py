@@ -4,21 +4,20 @@ import argparse
 import sys
 from pathlib import Path
 
-from flow.platforms.embedded import PROCESSES
-from flow.platforms.foundry import installed
-from flow.simulate.process import ToolError
-from flow.steps import StepError
+from base.paths import ROOT
+from base.progress import Steps
+from base.steps import StepError
+from base.tools import ToolError
 from models.parameters import ParameterError, check_choice
-from talbot.progress import Steps
+from platforms.coriolis import PROCESSES
+from platforms.foundry import installed
 
-from .blocks import inner
+from .block import laid_out
+from .chain import Options, chain
 from .design import DESIGNS, design, folder_name
-from .embedded import Options, chain
-from .run import laid_out
-from .sensor.run import CHIP, SENSOR, laid_out_sensor, sensor_steps
-from .summary import broken
-
-ROOT = Path(__file__).parents[2]
+from .macros import inner
+from .report.metrics import broken
+from .sensor.die import CHIP, SENSOR, laid_out_sensor, sensor_steps
 
 
 def arguments():
@@ -26,13 +25,22 @@ def arguments():
     parser.add_argument("design", help=f"one of {', '.join((*DESIGNS, SENSOR))}")
     parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)} (%(default)s)")
     parser.add_argument("--backend", default="coriolis", help="what places and routes: coriolis (%(default)s)")
-    parser.add_argument("--utilization", type=float,
-                        help="cells' area by core area where the search for the smallest begins; default: the design's")
-    parser.add_argument("--liberty", type=Path, action="append", default=[],
-                        help="characterized cells at a corner (again for further corners); default: measured now")
+    parser.add_argument(
+        "--utilization",
+        type=float,
+        help="cells' area by core area where the search for the smallest begins; default: the design's",
+    )
+    parser.add_argument(
+        "--liberty",
+        type=Path,
+        action="append",
+        default=[],
+        help="characterized cells at a corner (again for further corners); default: measured now",
+    )
     parser.add_argument("--untimed", action="store_true", help="no timing: cells by area alone")
-    parser.add_argument("--analog", type=Path,
-                        help=f"folder with <block>.lef and .gds of analog blocks in place of {SENSOR}'s frames")
+    parser.add_argument(
+        "--analog", type=Path, help=f"folder with <block>.lef and .gds of analog blocks in place of {SENSOR}'s frames"
+    )
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder (%(default)s)")
     return parser
 
@@ -50,9 +58,13 @@ def main(argv=None):
         check_choice("DESIGN", options.design, (*DESIGNS, SENSOR))
         check_choice("backend", options.backend, ("coriolis",))
         chosen = design(CHIP if options.design == SENSOR else options.design)
-        settings = Options(options.pdk, chosen.utilization if options.utilization is None else options.utilization,
-                           tuple(options.liberty), options.untimed,
-                           decks=tuple(installed(options.pdk).items()))
+        settings = Options(
+            options.pdk,
+            chosen.utilization if options.utilization is None else options.utilization,
+            tuple(options.liberty),
+            options.untimed,
+            decks=tuple(installed(options.pdk).items()),
+        )
         if options.design == SENSOR:
             summary, lines = sensor(chosen, settings, options)
         else:
@@ -78,8 +90,10 @@ def block(chosen, settings, options):
 
 def sensor(chip, settings, options):
     """The same of the whole sensor. chip: Design of its digital part."""
-    steps = [*(f"{CHIP}: {step.name}" for step in chain(chip, settings)),
-             *(step.name for step in sensor_steps(chip, settings))]
+    steps = [
+        *(f"{CHIP}: {step.name}" for step in chain(chip, settings)),
+        *(step.name for step in sensor_steps(chip, settings)),
+    ]
     with Steps(steps) as bar:
         path, lines = laid_out_sensor(chip, settings, options.analog, options.out, bar.note)
     return path, lines

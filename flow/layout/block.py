@@ -4,26 +4,39 @@ import json
 import shutil
 from dataclasses import replace
 
-from flow.files import staged
-from flow.platforms.embedded import process
-from flow.steps import Runner, StepError
+from base.files import staged
+from base.steps import Runner, StepError
+from platforms.coriolis import process
 
-from . import history
-from .blocks import check_same, given, inner
+from .chain import files, layout
 from .design import folder_name
-from .embedded import files, layout
-from .energy import blocks
-from .netlist import Netlist
-from .picture import by_block, render
-from .report import page
-from .summary import broken, summarize
+from .macros import check_same, given, inner
+from .netlist.netlist import Netlist
+from .power.energy import blocks
+from .report import history
+from .report.metrics import broken, summarize
+from .report.page import page
+from .report.picture import by_block, render
 
-RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report",
-           "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc", "foundry.lyrdb": "foundry_drc.report",
-           "magic_drc.txt": "magic_drc.report"}
-BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty",
-             "power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
-FIRST = "sdf", "lib"            # of the first corner, also under the design's name alone
+RESULTS = {
+    "gds": "fill.gds",
+    "v": "stream_out.verilog",
+    "drc.lyrdb": "drc.report",
+    "lvsdb": "lvs.report",
+    "lef": "lef.lef",
+    "spef": "extraction.spef",
+    "sdc": "sdc",
+    "foundry.lyrdb": "foundry_drc.report",
+    "magic_drc.txt": "magic_drc.report",
+}
+BY_CORNER = {
+    "sdf": "sta_{}.sdf",
+    "sta.txt": "sta_{}.report",
+    "lib": "block_liberty_{}.liberty",
+    "power.json": "power_{}.instances",
+    "ir_drop.png": "ir_drop_{}.picture",
+}
+FIRST = "sdf", "lib"  # of the first corner, also under the design's name alone
 
 
 def figures(folder, name, runner, options):
@@ -31,11 +44,20 @@ def figures(folder, name, runner, options):
     found, first = [], next(iter(options.corners), "")
     whole = "assemble" if "assemble.netlist" in runner.paths else "place_route"
     if f"{whole}.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
-        placement, areas, plan = (json.loads(runner.paths[key].read_text())
-                                  for key in (f"{whole}.placement", "library.areas", "floorplan.floorplan"))
+        placement, areas, plan = (
+            json.loads(runner.paths[key].read_text())
+            for key in (f"{whole}.placement", "library.areas", "floorplan.floorplan")
+        )
         netlist = Netlist.read(runner.paths[f"{whole}.netlist"])
-        by_block(folder / f"{name}.blocks.png", netlist, placement["instances"], areas, process(options.pdk)[0],
-                 blocks(netlist), plan)
+        by_block(
+            folder / f"{name}.blocks.png",
+            netlist,
+            placement["instances"],
+            areas,
+            process(options.pdk)[0],
+            blocks(netlist),
+            plan,
+        )
         found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
     return found
 
@@ -60,12 +82,15 @@ def laid_out(chosen, settings, out, note):
 
 def publish(folder, name, settings, runner, summary):
     """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
-    results = RESULTS | {f"{corner}.{suffix}": source.format(corner) for corner in settings.corners
-                         for suffix, source in BY_CORNER.items()}
+    results = RESULTS | {
+        f"{corner}.{suffix}": source.format(corner)
+        for corner in settings.corners
+        for suffix, source in BY_CORNER.items()
+    }
     for suffix in FIRST if settings.corners else ():
         results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
     with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:
-        for suffix, source in results.items():       # an earlier run's go where this one has none
+        for suffix, source in results.items():  # an earlier run's go where this one has none
             if source in runner.paths:
                 shutil.copyfile(runner.paths[source], part / f"{name}.{suffix}")
         if "fill.gds" in runner.paths:

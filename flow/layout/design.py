@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from flow.platforms.embedded import PROCESSES
 from models.parameters import ParameterError, check_real
+from platforms.coriolis import PROCESSES
 
 
 @dataclass(frozen=True)
@@ -66,33 +66,61 @@ class Design:
 
 def divider(name, variant, n_frac=8):
     """The Design of a variant of the divider with ``n_frac`` fraction bits."""
-    top = {"radix2": "QuadDividerRadix2", "radix4": "QuadDividerRadix4", "pipelined": "QuadDividerPipelined",
-           "cordic": "Cordic"}[variant]
-    return Design(name, top, "quad_divider", (f"QuadDivider_{variant}_{n_frac}_10",), (f"--n-frac={n_frac}",),
-                  divider=variant, n_frac=n_frac)
+    top = {
+        "radix2": "QuadDividerRadix2",
+        "radix4": "QuadDividerRadix4",
+        "pipelined": "QuadDividerPipelined",
+        "cordic": "Cordic",
+    }[variant]
+    return Design(
+        name,
+        top,
+        "quad_divider",
+        (f"QuadDivider_{variant}_{n_frac}_10",),
+        (f"--n-frac={n_frac}",),
+        divider=variant,
+        n_frac=n_frac,
+    )
 
 
-DIE = Surroundings(load_pf=0.25)        # of the chip on the sensor's die: the longest wires of flow.layout.sensor
-DESIGNS = {made.name: made for made in (
-    Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
-    Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",),
-           ("--rows=7", "--cols=31", "--lanes=2")),
-    Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
-    Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
-    divider("quad_divider", "radix4"),
-    divider("quad_divider_radix2", "radix2"),
-    divider("quad_divider_pipelined", "pipelined"),
-    divider("cordic", "cordic"),
-    Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
-    Design("phase_path_macros", "PhasePath", "phase_path", ("PhasePath_8_radix4",), utilization=0.8,
-           macros=(Hard("divider", "quad_divider"),)),
-    Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
-    Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
-    Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, surroundings=DIE),
-    # of the thesis (B.3.2): both blocks hardened, the rest around them
-    Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.5, density_variation=0.3,
-           surroundings=DIE,
-           macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.93, 0.8)))))}
+DIE = Surroundings(load_pf=0.25)  # of the chip on the sensor's die: the longest wires of flow.layout.sensor
+DESIGNS = {
+    made.name: made
+    for made in (
+        Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
+        Design(
+            "readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",), ("--rows=7", "--cols=31", "--lanes=2")
+        ),
+        Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
+        Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
+        divider("quad_divider", "radix4"),
+        divider("quad_divider_radix2", "radix2"),
+        divider("quad_divider_pipelined", "pipelined"),
+        divider("cordic", "cordic"),
+        Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
+        Design(
+            "phase_path_macros",
+            "PhasePath",
+            "phase_path",
+            ("PhasePath_8_radix4",),
+            utilization=0.8,
+            macros=(Hard("divider", "quad_divider"),),
+        ),
+        Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
+        Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
+        Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, surroundings=DIE),
+        # of the thesis (B.3.2): both blocks hardened, the rest around them
+        Design(
+            "asp_chip_macros",
+            "AspChip",
+            "asp_chip",
+            utilization=0.5,
+            density_variation=0.3,
+            surroundings=DIE,
+            macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.93, 0.8))),
+        ),
+    )
+}
 
 
 def design(name):
@@ -106,8 +134,10 @@ def flat_design(name):
     """The same, of those that are laid out whole. Raises ParameterError for one with blocks of its own."""
     found = design(name)
     if found.macros:
-        raise ParameterError(f"DESIGN = {name!r}: must be without blocks laid out before it: only make layout of "
-                             "the embedded backend has these")
+        raise ParameterError(
+            f"DESIGN = {name!r}: must be without blocks laid out before it: only make layout of "
+            "the embedded backend has these"
+        )
     return found
 
 

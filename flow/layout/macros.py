@@ -1,13 +1,19 @@
 """The blocks of a design that are laid out before it, each a design of its own."""
 
-from flow.steps import StepError
+from base.steps import StepError
 
 from .design import DESIGNS
 from .steps.stimulus import modules
 
 # Of a block's run, what a design that holds it is given as macro.<module>.<part>
-PARTS = {"lef": "lef.lef", "gds": "fill.gds", "verilog": "stream_out.verilog", "netlist": "place_route.netlist",
-         "placement": "mend.placement", "spice": "stream_out.spice"}
+PARTS = {
+    "lef": "lef.lef",
+    "gds": "fill.gds",
+    "verilog": "stream_out.verilog",
+    "netlist": "place_route.netlist",
+    "placement": "mend.placement",
+    "spice": "stream_out.spice",
+}
 
 
 def inner(design):
@@ -19,8 +25,11 @@ def given(design, runners, corners=()):
     """dict file name -> Path for the design's Runner. runners: dict name of a block's Design -> Runner of its run.
     corners: of timing, where there is one."""
     parts = PARTS | {corner: f"block_liberty_{corner}.liberty" for corner in corners}
-    return {f"macro.{block.top}.{part}": runners[block.name].paths[source]
-            for block in inner(design) for part, source in parts.items()}
+    return {
+        f"macro.{block.top}.{part}": runners[block.name].paths[source]
+        for block in inner(design)
+        for part, source in parts.items()
+    }
 
 
 def check_same(design, rtl, runners):

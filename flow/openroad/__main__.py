@@ -6,19 +6,19 @@ import shutil
 import sys
 from pathlib import Path
 
-from flow.files import check_folder, staged
+from base.files import check_folder, staged
+from base.progress import Steps
+from base.tools import ToolError
 from flow.layout.design import DESIGNS, flat_design
-from flow.platforms.openroad import process
-from flow.simulate.process import ToolError
 from models.parameters import ParameterError
-from talbot.progress import Steps
+from platforms.openroad import process
 
 from .merge import merge
+from .metrics import broken, summarize
 from .stages import INSTALL, missing_tools, pdk_root, run, stages
-from .summary import broken, summarize
 from .write import ROOT, write
 
-RESULTS = ("lef", "v", "power.v", "spef", "sdc")       # of the names in the contract of flow.layout
+RESULTS = ("lef", "v", "power.v", "spef", "sdc")  # of the names in the contract of flow.layout
 
 
 def arguments():
@@ -41,15 +41,22 @@ def main(argv=None):
             print(f"{folder}: {', '.join(written)}")
             return 0
         if missing_tools():
-            raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {folder}: "
-                            + ", ".join(written))
+            raise ToolError(
+                f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {folder}: "
+                + ", ".join(written)
+            )
         root = pdk_root(known)
         with Steps([stage.log.removesuffix(".log") for stage in stages(chosen.top)] + ["gds"]) as bar:
             found = run(folder, chosen.top, known, root, bar.note)
             bar.note("gds")
             with staged(folder) as part:
-                box = merge(folder / f"{chosen.top}.def", [root / known.tech_lef, root / known.cell_lef],
-                            root / known.cell_gds, known, part / f"{chosen.name}.gds")
+                box = merge(
+                    folder / f"{chosen.top}.def",
+                    [root / known.tech_lef, root / known.cell_lef],
+                    root / known.cell_gds,
+                    known,
+                    part / f"{chosen.name}.gds",
+                )
                 for suffix in RESULTS:
                     shutil.copyfile(folder / f"{chosen.top}.{suffix}", part / f"{chosen.name}.{suffix}")
                 summary = summarize(chosen, known, found, folder, box)

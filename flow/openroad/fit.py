@@ -10,12 +10,12 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.files import insert
+from base.files import insert
+from base.tools import ToolError, run
 from flow.layout.design import design
-from flow.platforms.sky130 import functional
-from flow.platforms.sky130.tinytapeout import FULL, core_um2
-from flow.simulate.process import ToolError, run
 from models.parameters import ParameterError
+from platforms.sky130 import functional
+from platforms.sky130.tinytapeout import FULL, core_um2
 
 from .stat import counted
 from .tinytapeout import BUS, PROJECTS, TOPS, sources
@@ -60,9 +60,16 @@ def fit(name, folder):
         (folder / file).write_text((TOPS / file).read_text())
     (folder / "cells.lib").write_text(functional.liberty())
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
-    script.write_text(SCRIPT.format(top=project.top, liberty=folder / "cells.lib", stat=stat, netlist=netlist,
-                                    constant=f"{functional.LIBRARY}__{functional.CONSTANT}",
-                                    sources=" ".join(str(folder / file) for file in sources(project, chosen))))
+    script.write_text(
+        SCRIPT.format(
+            top=project.top,
+            liberty=folder / "cells.lib",
+            stat=stat,
+            netlist=netlist,
+            constant=f"{functional.LIBRARY}__{functional.CONSTANT}",
+            sources=" ".join(str(folder / file) for file in sources(project, chosen)),
+        )
+    )
     run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())
     flip_flops = len(re.findall(rf"(?m)^\s+{functional.LIBRARY}__{functional.FLIP_FLOP} ", netlist.read_text()))
@@ -71,10 +78,18 @@ def fit(name, folder):
 
 def table(fits):
     """Markdown."""
-    rows = [f"| {f.project} | {f.tiles} | {f.cells:,} | {f.flip_flops:,} | {f.area_um2:,.0f} | {f.room_um2:,.0f} | "
-            f"{f.share:.0%} |" for f in fits]
-    return "\n".join(["| project | tiles | cells | flip-flops | cells' area, um2 | tiles' core, um2 | full |",
-                      "|---|---|---:|---:|---:|---:|---:|", *rows])
+    rows = [
+        f"| {f.project} | {f.tiles} | {f.cells:,} | {f.flip_flops:,} | {f.area_um2:,.0f} | {f.room_um2:,.0f} | "
+        f"{f.share:.0%} |"
+        for f in fits
+    ]
+    return "\n".join(
+        [
+            "| project | tiles | cells | flip-flops | cells' area, um2 | tiles' core, um2 | full |",
+            "|---|---|---:|---:|---:|---:|---:|",
+            *rows,
+        ]
+    )
 
 
 def main(argv=None):

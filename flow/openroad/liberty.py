@@ -13,7 +13,7 @@ def without(text, patterns):
     kept, at = [], 0
     for match in CELL.finditer(text):
         if any(fnmatch.fnmatchcase(match[1], pattern) for pattern in patterns):
-            kept.append(text[at:match.start()])
+            kept.append(text[at : match.start()])
             at = _end(text, match)
     return "".join([*kept, text[at:]])
 

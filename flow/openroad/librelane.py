@@ -1,6 +1,6 @@
 """A design for LibreLane: config.yaml, constraints, Verilog. Run: librelane config.yaml."""
 
-from flow.layout.constraints import sdc
+from flow.layout.timing.constraints import sdc
 
 # LibreLane reads the constraints in every step; it says by this variable whether the clock has its tree by then
 PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPENLANE_SDC_IDEAL_CLOCKS)} {
@@ -15,10 +15,21 @@ def librelane(design, known, verilog):
     """Files of the design: dict path -> text."""
     utilization = round(100 * design.utilization * known.utilization_share)
     values = {
-        "DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.v]", "CLOCK_PORT": design.clock.port,
-        "CLOCK_PERIOD": design.clock.period_ns, "PNR_SDC_FILE": "dir::pnr.sdc", "SIGNOFF_SDC_FILE": "dir::signoff.sdc",
-        "FP_SIZING": "relative", "FP_CORE_UTIL": utilization, "FP_ASPECT_RATIO": 1,
-        "PL_TARGET_DENSITY_PCT": min(95, utilization + 15)}
+        "DESIGN_NAME": design.top,
+        "VERILOG_FILES": f"[dir::{design.top}.v]",
+        "CLOCK_PORT": design.clock.port,
+        "CLOCK_PERIOD": design.clock.period_ns,
+        "PNR_SDC_FILE": "dir::pnr.sdc",
+        "SIGNOFF_SDC_FILE": "dir::signoff.sdc",
+        "FP_SIZING": "relative",
+        "FP_CORE_UTIL": utilization,
+        "FP_ASPECT_RATIO": 1,
+        "PL_TARGET_DENSITY_PCT": min(95, utilization + 15),
+    }
     config = "meta:\n  version: 2\n  flow: Classic\n" + "".join(f"{key}: {value}\n" for key, value in values.items())
-    return {"librelane/config.yaml": config, "librelane/pnr.sdc": sdc(design, propagated=False) + PROPAGATE,
-            "librelane/signoff.sdc": sdc(design), f"librelane/{design.top}.v": verilog}
+    return {
+        "librelane/config.yaml": config,
+        "librelane/pnr.sdc": sdc(design, propagated=False) + PROPAGATE,
+        "librelane/signoff.sdc": sdc(design),
+        f"librelane/{design.top}.v": verilog,
+    }

@@ -1,6 +1,6 @@
 """DEF and the cells' GDS -> one GDS, by KLayout's reader: OpenROAD itself writes none."""
 
-from flow.gds import write_gds
+from base.gds import write_gds
 from models.parameters import ParameterError
 
 ROUTED = "NET,SPNET,VIA,PIN,LEFPIN,FILL"
@@ -10,8 +10,11 @@ def layer_map(known):
     """Text of a KLayout layer map: shapes to a wire's own datatype, pins and labels to those of the process."""
     lines = ["DIEAREA ALL {} {}".format(*known.outline)]
     for name, (layer, datatype) in known.gds.items():
-        lines += [f"{name} {ROUTED} {layer} {datatype}", f"{name} PIN {layer} {known.pin_datatype}",
-                  f"NAME {name}/PIN {layer} {known.label_datatype}"]
+        lines += [
+            f"{name} {ROUTED} {layer} {datatype}",
+            f"{name} PIN {layer} {known.pin_datatype}",
+            f"NAME {name}/PIN {layer} {known.label_datatype}",
+        ]
     return "\n".join([*lines, ""])
 
 
@@ -21,16 +24,17 @@ def merge(source, lefs, cells, known, target):
     Returns (width, height) in um of the die. Raises ParameterError for a cell that has no layout.
     """
     import klayout.db as db
+
     mapped = target.with_suffix(".map")
     mapped.write_text(layer_map(known))
     options = db.LoadLayoutOptions()
     config = options.lefdef_config
     config.dbu, config.read_lef_with_def, config.lef_files = 0.001, False, [str(path) for path in lefs]
     config.map_file = str(mapped)
-    config.macro_resolution_mode = 2        # a cell is what the GDS has, never what the LEF draws
+    config.macro_resolution_mode = 2  # a cell is what the GDS has, never what the LEF draws
     layout = db.Layout()
     layout.read(str(source), options)
-    top, = (cell for cell in layout.top_cells() if not cell.is_empty() or cell.child_instances())
+    (top,) = (cell for cell in layout.top_cells() if not cell.is_empty() or cell.child_instances())
     used = {layout.cell(index).name for index in top.called_cells() if layout.cell(index).is_ghost_cell()}
     library = db.Layout()
     library.read(str(cells))

@@ -1,12 +1,15 @@
 """summary.json of a run, as far as these stages measure what the contract of flow.layout asks for."""
 
-from flow.layout.summary import broken as breaks
-from flow.platforms.openroad import CORNERS
+from flow.layout.report.metrics import broken as breaks
+from platforms.openroad import CORNERS
 
 from .stat import counted
 
-RULES = {"drc_violations": {"is": 0}, "antenna_violations": {"is": 0},
-         **{f"{slack}.{corner}": {"least": 0} for slack in ("wns_ns", "whs_ns") for corner in CORNERS}}
+RULES = {
+    "drc_violations": {"is": 0},
+    "antenna_violations": {"is": 0},
+    **{f"{slack}.{corner}": {"least": 0} for slack in ("wns_ns", "whs_ns") for corner in CORNERS},
+}
 
 
 def summarize(design, known, found, folder, box):
@@ -17,13 +20,23 @@ def summarize(design, known, found, folder, box):
     cells, area = counted((folder / "synth.stat").read_text())
     period = design.clock.period_ns
     slack = by_corner["wns_ns"]["slow"]
-    return {"design": design.name, "top": design.top, "backend": "openroad", "pdk": known.name,
-            "cells": cells, "cell_area_um2": area,
-            "area_um2": round(box[0] * box[1], 2),
-            "utilization": round(design.utilization * known.utilization_share, 4),
-            "drc_violations": found.get("drc_violations"), "antenna_violations": found.get("antenna_violations"),
-            "lvs_match": None, "equivalence": None, "gate_tests": None, **by_corner,
-            "f_max_mhz": round(1000 / (period - slack), 2) if slack is not None else None}
+    return {
+        "design": design.name,
+        "top": design.top,
+        "backend": "openroad",
+        "pdk": known.name,
+        "cells": cells,
+        "cell_area_um2": area,
+        "area_um2": round(box[0] * box[1], 2),
+        "utilization": round(design.utilization * known.utilization_share, 4),
+        "drc_violations": found.get("drc_violations"),
+        "antenna_violations": found.get("antenna_violations"),
+        "lvs_match": None,
+        "equivalence": None,
+        "gate_tests": None,
+        **by_corner,
+        "f_max_mhz": round(1000 / (period - slack), 2) if slack is not None else None,
+    }
 
 
 def broken(summary):

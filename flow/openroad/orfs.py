@@ -2,13 +2,18 @@
 
 import json
 
-from flow.layout.constraints import sdc
+from flow.layout.timing.constraints import sdc
 
 # Metrics of flow-scripts' own rules-base.json that a design which closes must keep, whatever its size
-RULES = {"constraints__clocks__count": (1, "=="), "detailedplace__design__violations": (0, "=="),
-         "detailedroute__route__drc_errors": (0, "<="), "detailedroute__antenna__violating__nets": (0, "<="),
-         "finish__timing__setup__ws": (0.0, ">="), "finish__timing__drv__setup_violation_count": (0, "<="),
-         "finish__timing__drv__hold_violation_count": (0, "<=")}
+RULES = {
+    "constraints__clocks__count": (1, "=="),
+    "detailedplace__design__violations": (0, "=="),
+    "detailedroute__route__drc_errors": (0, "<="),
+    "detailedroute__antenna__violating__nets": (0, "<="),
+    "finish__timing__setup__ws": (0.0, ">="),
+    "finish__timing__drv__setup_violation_count": (0, "<="),
+    "finish__timing__drv__hold_violation_count": (0, "<="),
+}
 
 
 def orfs(design, known, verilog):
@@ -16,15 +21,23 @@ def orfs(design, known, verilog):
     name, platform = design.name, known.orfs_platform
     utilization = round(100 * design.utilization * known.utilization_share)
     values = {
-        "DESIGN_NAME": design.top, "DESIGN_NICKNAME": name, "PLATFORM": platform,
+        "DESIGN_NAME": design.top,
+        "DESIGN_NICKNAME": name,
+        "PLATFORM": platform,
         "VERILOG_FILES": f"$(DESIGN_HOME)/src/{name}/{design.top}.v",
         "SDC_FILE": f"$(DESIGN_HOME)/{platform}/{name}/constraint.sdc",
-        "CORE_UTILIZATION": utilization, "CORE_ASPECT_RATIO": 1, "CORE_MARGIN": 10, "PLACE_DENSITY_LB_ADDON": 0.1,
+        "CORE_UTILIZATION": utilization,
+        "CORE_ASPECT_RATIO": 1,
+        "CORE_MARGIN": 10,
+        "PLACE_DENSITY_LB_ADDON": 0.1,
         # else it is the number that the SDC has, which is in ns
-        "ABC_CLOCK_PERIOD_IN_PS": round(1000 * design.clock.period_ns)}
+        "ABC_CLOCK_PERIOD_IN_PS": round(1000 * design.clock.period_ns),
+    }
     config = "".join(f"export {key} = {value}\n" for key, value in values.items())
     rules = {key: {"value": value, "compare": compare} for key, (value, compare) in RULES.items()}
-    return {f"orfs/{platform}/{name}/config.mk": config,
-            f"orfs/{platform}/{name}/constraint.sdc": sdc(design, propagated=False),
-            f"orfs/{platform}/{name}/rules-base.json": json.dumps(rules, indent=4) + "\n",
-            f"orfs/src/{name}/{design.top}.v": verilog}
+    return {
+        f"orfs/{platform}/{name}/config.mk": config,
+        f"orfs/{platform}/{name}/constraint.sdc": sdc(design, propagated=False),
+        f"orfs/{platform}/{name}/rules-base.json": json.dumps(rules, indent=4) + "\n",
+        f"orfs/src/{name}/{design.top}.v": verilog,
+    }

@@ -6,9 +6,9 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.platforms.openroad import CORNERS
-from flow.simulate.process import ToolError, finish
+from base.tools import ToolError, finish
 from models.parameters import ParameterError
+from platforms.openroad import CORNERS
 
 from .liberty import without
 
@@ -29,23 +29,32 @@ class Stage:
         return f"{self.name}.{self.corner}.log" if self.corner else f"{self.name}.log"
 
     def command(self):
-        return ["yosys", "-q", "-c", "synth.tcl"] if self.name == "synth" else \
-            ["openroad", "-no_init", "-no_splash", "-threads", "max", "-exit", f"{self.name}.tcl"]
+        return (
+            ["yosys", "-q", "-c", "synth.tcl"]
+            if self.name == "synth"
+            else ["openroad", "-no_init", "-no_splash", "-threads", "max", "-exit", f"{self.name}.tcl"]
+        )
 
 
 def stages(top):
     """Every Stage for the module ``top``."""
     databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "hold", "route")]
-    return [Stage("synth", "netlist.v"), *databases, Stage("finish", f"{top}.spef"),
-            *(Stage("sta", f"{top}.{corner}.sdf", corner) for corner in CORNERS)]
+    return [
+        Stage("synth", "netlist.v"),
+        *databases,
+        Stage("finish", f"{top}.spef"),
+        *(Stage("sta", f"{top}.{corner}.sdf", corner) for corner in CORNERS),
+    ]
 
 
 def pdk_root(known, environment=os.environ):
     """The folder PDK_ROOT, every file of the process there. Raises ParameterError."""
     root = environment.get("PDK_ROOT", "")
     if not root:
-        raise ParameterError("PDK_ROOT = '': must be the folder of an installed PDK "
-                             f"(pip install ciel; ciel enable --pdk-family {known.name} <version>)")
+        raise ParameterError(
+            "PDK_ROOT = '': must be the folder of an installed PDK "
+            f"(pip install ciel; ciel enable --pdk-family {known.name} <version>)"
+        )
     needed = [(path,) for path in (*known.liberty.values(), known.tech_lef, known.cell_lef, known.cell_gds)]
     for paths in (*needed, known.rcx_rules):
         if not any((Path(root) / path).is_file() for path in paths):
@@ -73,7 +82,9 @@ def run(folder, top, known, root, note):
         (folder / stage.log).write_text(done.stdout + done.stderr)
         if done.returncode or not (folder / stage.gives).is_file():
             tail = "\n".join((done.stdout + done.stderr).strip().splitlines()[-10:])
-            raise ToolError(f"{stage.command()[0]} {stage.name}: status {done.returncode}, {stage.gives} "
-                            f"{'written' if (folder / stage.gives).is_file() else 'not written'}:\n{tail}")
+            raise ToolError(
+                f"{stage.command()[0]} {stage.name}: status {done.returncode}, {stage.gives} "
+                f"{'written' if (folder / stage.gives).is_file() else 'not written'}:\n{tail}"
+            )
         found |= {name: float(value) for name, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
     return found

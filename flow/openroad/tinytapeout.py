@@ -4,8 +4,8 @@ import json
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.platforms.sky130.tinytapeout import CONFIG, SIZES_UM
 from models.parameters import ParameterError, check_choice
+from platforms.sky130.tinytapeout import CONFIG, SIZES_UM
 
 TOPS = Path(__file__).parent / "tops"
 BUS = "tt_bytes.v"
@@ -36,18 +36,28 @@ class Project:
 _DATA = tuple(f"data {k}" for k in range(8))
 PROJECTS = {
     "quad_divider": Project(
-        "tt_um_talbot_divider", "Quadrature divider",
-        "Octant, ratio, amplitude and 8-bit phase of a signed 9-bit vector, by a radix-4 division", "1x1", _DATA,
-        tuple(f"result {k}" for k in range(8)), ("strobe", "is address", "", "", "", "", "busy", "valid"),
+        "tt_um_talbot_divider",
+        "Quadrature divider",
+        "Octant, ratio, amplitude and 8-bit phase of a signed 9-bit vector, by a radix-4 division",
+        "1x1",
+        _DATA,
+        tuple(f"result {k}" for k in range(8)),
+        ("strobe", "is address", "", "", "", "", "busy", "valid"),
         "Write the address 0, then the bytes of x, y and their signs, then any byte to start. When valid is high, "
-        "address 0 shows the phase: x = 100, y = 100 gives 32, an eighth of a turn."),
+        "address 0 shows the phase: x = 100, y = 100 gives 32, an eighth of a turn.",
+    ),
     "amp_ctrl": Project(
-        "tt_um_talbot_amp_ctrl", "Amplifier control of an angle-sensitive pixel",
-        "Phases of a differential pixel amplifier with common-mode reset and correlated double sampling", "1x2", _DATA,
+        "tt_um_talbot_amp_ctrl",
+        "Amplifier control of an angle-sensitive pixel",
+        "Phases of a differential pixel amplifier with common-mode reset and correlated double sampling",
+        "1x2",
+        _DATA,
         ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy"),
         ("strobe", "is address", "hold free", "", "tap 0", "tap 1", "cfg_err", "done"),
         "Write the address 0, then the six durations, n_cm, and the byte that starts a row, with hold free high. The "
-        "outputs then show one row's phases: no two of pixel_reset, integrate, cm_reset and read are high at once.")}
+        "outputs then show one row's phases: no two of pixel_reset, integrate, cm_reset and read are high at once.",
+    ),
+}
 
 
 def sources(project, design):
@@ -58,23 +68,41 @@ def sources(project, design):
 def project_files(project, design, verilog):
     """Files of the project: dict path -> text. verilog: of the Design."""
     config = {"CLOCK_PERIOD": design.clock.period_ns, "CLOCK_PORT": "clk", **CONFIG}
-    texts = dict(zip(sources(project, design), ((TOPS / f"{project.top}.v").read_text(), (TOPS / BUS).read_text(),
-                                                verilog), strict=True))
-    return {"tinytapeout/info.yaml": info(project, design), "tinytapeout/docs/info.md": page(project, texts),
-            "tinytapeout/src/config.json": json.dumps(config, indent=2) + "\n",
-            **{f"tinytapeout/src/{name}": text for name, text in texts.items()}}
+    texts = dict(
+        zip(
+            sources(project, design),
+            ((TOPS / f"{project.top}.v").read_text(), (TOPS / BUS).read_text(), verilog),
+            strict=True,
+        )
+    )
+    return {
+        "tinytapeout/info.yaml": info(project, design),
+        "tinytapeout/docs/info.md": page(project, texts),
+        "tinytapeout/src/config.json": json.dumps(config, indent=2) + "\n",
+        **{f"tinytapeout/src/{name}": text for name, text in texts.items()},
+    }
 
 
 def info(project, design):
     """Text of info.yaml, version 6."""
-    def quoted(text):
-        return json.dumps(text)         # a JSON string is a YAML string
 
-    lines = ["project:", f"  title: {quoted(project.title)}", '  author: "Talbot"',
-             f"  description: {quoted(project.description)}", '  language: "SystemVerilog"',
-             f"  clock_hz: {round(1e9 / design.clock.period_ns)}", f"  tiles: {quoted(project.tiles)}",
-             f"  top_module: {quoted(project.top)}", "  source_files:",
-             *(f"    - {quoted(name)}" for name in sources(project, design)), "", "pinout:"]
+    def quoted(text):
+        return json.dumps(text)  # a JSON string is a YAML string
+
+    lines = [
+        "project:",
+        f"  title: {quoted(project.title)}",
+        '  author: "Talbot"',
+        f"  description: {quoted(project.description)}",
+        '  language: "SystemVerilog"',
+        f"  clock_hz: {round(1e9 / design.clock.period_ns)}",
+        f"  tiles: {quoted(project.tiles)}",
+        f"  top_module: {quoted(project.top)}",
+        "  source_files:",
+        *(f"    - {quoted(name)}" for name in sources(project, design)),
+        "",
+        "pinout:",
+    ]
     for bank in ("ui", "uo", "uio"):
         lines += [f"  {bank}[{k}]: {quoted(name)}" for k, name in enumerate(getattr(project, bank))]
     return "\n".join([*lines, "", "yaml_version: 6", ""])
@@ -82,10 +110,27 @@ def info(project, design):
 
 def page(project, texts):
     """docs/info.md: the page of the shuttle's datasheet; the protocol as the top's own comment says it."""
+
     def comment(name):
         lines = texts[name].splitlines()
         end = next(k for k, line in enumerate(lines) if not line.startswith("//"))
         return "\n".join(line.removeprefix("//").strip() for line in lines[:end])
 
-    return "\n".join(["## How it works", "", comment(f"{project.top}.v"), "", comment(BUS), "", "## How to test", "",
-                      project.test, "", "## External hardware", "", "None.", ""])
+    return "\n".join(
+        [
+            "## How it works",
+            "",
+            comment(f"{project.top}.v"),
+            "",
+            comment(BUS),
+            "",
+            "## How to test",
+            "",
+            project.test,
+            "",
+            "## External hardware",
+            "",
+            "None.",
+            "",
+        ]
+    )

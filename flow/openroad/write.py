@@ -3,17 +3,16 @@
 import sys
 from pathlib import Path
 
-from flow.files import staged
-from flow.layout.constraints import sdc
-from flow.simulate.process import ToolError, finish
+from base.files import staged
+from base.paths import ROOT
+from base.tools import ToolError, finish
+from flow.layout.timing.constraints import sdc
 
 from .librelane import librelane
 from .orfs import orfs
 from .stages import SCRIPTS
 from .tinytapeout import PROJECTS, project_files
 from .variables import variables
-
-ROOT = Path(__file__).parents[2]
 
 
 def rtl(design, folder):
@@ -28,8 +27,12 @@ def write(design, known, folder):
     """Write the files of ``design`` for the process ``known`` (OpenRoad) into ``folder``; returns their names."""
     folder = Path(folder)
     verilog = rtl(design, folder)
-    files = {f"{design.top}.sdc": sdc(design, propagated=False), "design.tcl": variables(design, known),
-             **orfs(design, known, verilog), **librelane(design, known, verilog)}
+    files = {
+        f"{design.top}.sdc": sdc(design, propagated=False),
+        "design.tcl": variables(design, known),
+        **orfs(design, known, verilog),
+        **librelane(design, known, verilog),
+    }
     if design.name in PROJECTS:
         files |= project_files(PROJECTS[design.name], design, verilog)
     files |= {script.name: script.read_text() for script in SCRIPTS.glob("*.tcl")}

@@ -1,6 +1,6 @@
-"""Compile the frame bench (verif/frame) once, cached by content, and run frames through it."""
+"""Compile the frame bench (flow/simulate) once, cached by content, and run frames through it."""
 
-from .run import FrameRun, run_frame
+from .frame import FrameRun, run_frame
 from .verilator import bench_program
 
 __all__ = ["FrameRun", "bench_program", "run_frame"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-from .process import ToolError, finish
+from base.tools import ToolError, finish
 
 WAIT, TRANSFER, STOP = b"\x01", b"\x02", b"\x00"
 
@@ -30,8 +30,10 @@ def host_script(before, after):
 
     before, after: sequences of bytes, each one transfer of 1..255 bytes.
     """
+
     def transfers(items):
         return b"".join(TRANSFER + bytes([len(item)]) + item for item in items)
+
     return transfers(before) + WAIT + transfers(after) + STOP
 
 
@@ -56,10 +58,13 @@ def run_frame(program, samples, converter, script, stall=0, max_cycles=1_000_000
         spent = perf_counter() - start
         if result.returncode or not (folder / "activity").exists():
             tail = (result.stdout + result.stderr).strip()[-800:]
-            raise ToolError(f"the simulation stopped with status {result.returncode}"
-                            f"{' (no frame end)' if result.returncode == 4 else ''}: {tail}")
+            raise ToolError(
+                f"the simulation stopped with status {result.returncode}"
+                f"{' (no frame end)' if result.returncode == 4 else ''}: {tail}"
+            )
         activity = json.loads((folder / "activity").read_text())
         stats = folder / "stats"
         seconds = json.loads(stats.read_text())["seconds"] if stats.exists() else spent
-        return FrameRun((folder / "stream").read_bytes(), (folder / "miso").read_bytes(), activity,
-                        activity.pop("cycles"), seconds)
+        return FrameRun(
+            (folder / "stream").read_bytes(), (folder / "miso").read_bytes(), activity, activity.pop("cycles"), seconds
+        )

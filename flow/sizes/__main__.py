@@ -8,7 +8,7 @@ import tempfile
 from dataclasses import asdict
 from pathlib import Path
 
-from flow.files import insert, staged
+from base.files import insert, staged
 from models.parameters import ParameterError
 
 from .measure import ROOT, SizeError, measure
@@ -26,8 +26,10 @@ def export(tops, options, folder):
 
 def main(argv=None):
     parser = argparse.ArgumentParser(
-        prog="python -m flow.sizes", description=__doc__.splitlines()[0],
-        epilog="Further options (--lanes, --rows, --divider ...) go to python -m rtl.export.")
+        prog="python -m flow.sizes",
+        description=__doc__.splitlines()[0],
+        epilog="Further options (--lanes, --rows, --divider ...) go to python -m rtl.export.",
+    )
     parser.add_argument("tops", nargs="*", help="tops to measure; default: every one")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "sizes", help="folder of sizes.json and sizes.md")
     parser.add_argument("--document", type=Path, help="also put the blocks' table between the marks of this file")

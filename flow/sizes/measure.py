@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from base.paths import ROOT
+
 LIBRARY = ROOT / "cells" / "gates.lib"
 FLIP_FLOP = "DFF"
 
@@ -48,9 +49,11 @@ def synthesize(path, top):
         raise SizeError("yosys: not found; install it (Debian and Ubuntu: apt-get install yosys; make tools)")
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
-        script = (f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {LIBRARY}; "
-                  f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
-                  f"tee -q -o {report} stat -json")
+        script = (
+            f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {LIBRARY}; "
+            f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
+            f"tee -q -o {report} stat -json"
+        )
         result = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
         if result.returncode:
             tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])
@@ -64,5 +67,11 @@ def measure(path, top):
     unknown = sorted(set(counts) - set(areas()))
     if unknown:
         raise SizeError(f"{top}: cells that {LIBRARY.name} does not have: {', '.join(unknown)}")
-    return Size(top, sum(counts.values()), counts[FLIP_FLOP], sum(areas()[c] * n for c, n in counts.items()),
-                areas()[FLIP_FLOP] * counts[FLIP_FLOP], dict(sorted(counts.items())))
+    return Size(
+        top,
+        sum(counts.values()),
+        counts[FLIP_FLOP],
+        sum(areas()[c] * n for c, n in counts.items()),
+        areas()[FLIP_FLOP] * counts[FLIP_FLOP],
+        dict(sorted(counts.items())),
+    )

@@ -1,7 +1,7 @@
 import numpy as np
 
-from flow.stability import FRAMES, divider_cases, frame_case, phase_error, table
-from models.stability import Case
+from flow.stability import FRAMES, divider_cases, frame_case, phase_error
+from models.stability import Case, table
 
 
 def test_divider_cases_hold():

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from flow.charts import save
-from flow.files import staged
+from base.charts import save
+from base.files import staged
 from models.parameters import check_choice
 
 SWEEPS = ("divider", "threshold", "views", "precision", "noise")
@@ -50,8 +50,12 @@ def page(out):
     for name in SWEEPS:
         if (out / f"{name}.csv").exists():
             about = (import_module(f"flow.tradeoff.{name}").__doc__ or "").strip()
-            parts.append(f'<h2>{name}</h2><p>{about}</p><img src="{name}.png" style="max-width:100%">'
-                         f'<p><a href="{name}.csv">{name}.csv</a></p>')
-    return ('<!DOCTYPE html><meta charset="utf-8"><title>Talbot: error against run time</title>'
-            '<body style="font:15px/1.45 system-ui,sans-serif;max-width:900px;margin:2em auto">'
-            f'<h1>Error against run time</h1>{"".join(parts)}</body>\n')
+            parts.append(
+                f'<h2>{name}</h2><p>{about}</p><img src="{name}.png" style="max-width:100%">'
+                f'<p><a href="{name}.csv">{name}.csv</a></p>'
+            )
+    return (
+        '<!DOCTYPE html><meta charset="utf-8"><title>Talbot: error against run time</title>'
+        '<body style="font:15px/1.45 system-ui,sans-serif;max-width:900px;margin:2em auto">'
+        f"<h1>Error against run time</h1>{''.join(parts)}</body>\n"
+    )

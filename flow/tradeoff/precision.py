@@ -5,7 +5,7 @@ from time import perf_counter
 
 import numpy as np
 
-from flow.charts import curves
+from base.charts import curves
 from models.afe import FrontEnd, trim_codes
 from models.capture import CaptureOperator
 from models.parameters import ArrayParameters, SensorParameters
@@ -45,13 +45,29 @@ def measure(point):
         times.append(perf_counter() - start)
     error = float(np.abs(pair - best).max() / best.max())
     changed = int((_codes(pair, sensor) != _codes(best, sensor)).sum())
-    return [{"dtype": dtype, "rows": size, "error": error, "codes_changed": changed, "samples": size * size,
-             "capture_ms": 1e3 * min(times)}]
+    return [
+        {
+            "dtype": dtype,
+            "rows": size,
+            "error": error,
+            "codes_changed": changed,
+            "samples": size * size,
+            "capture_ms": 1e3 * min(times),
+        }
+    ]
 
 
 def plot(rows):
     # The reference itself has no error; it is drawn at float64's own rounding.
     floor = float(np.finfo(np.float64).eps)
-    return curves({d: [(r["capture_ms"], max(r["error"], floor), f"{r['rows']}") for r in rows if r["dtype"] == d]
-                   for d in ("float64", "float32")}, "capture (ms); number: rows of the array",
-                  "largest error / largest value", "float32 against float64", log_x=True, log_y=True)
+    return curves(
+        {
+            d: [(r["capture_ms"], max(r["error"], floor), f"{r['rows']}") for r in rows if r["dtype"] == d]
+            for d in ("float64", "float32")
+        },
+        "capture (ms); number: rows of the array",
+        "largest error / largest value",
+        "float32 against float64",
+        log_x=True,
+        log_y=True,
+    )

@@ -4,7 +4,7 @@ differences and of the image rebuilt from them against conversions, bytes, cycle
 from dataclasses import replace
 from functools import cache
 
-from flow.charts import curves
+from base.charts import curves
 from flow.frame import hardware, job
 from flow.frame.request import request
 from flow.frame.summary import summarize
@@ -30,13 +30,29 @@ def measure(point):
     result = job.read_out(asked, exposed, program)
     summary = summarize(result)
     rebuilt = result.rebuilt
-    return [{"threshold": threshold, "psnr_edges_db": summary["psnr_db"], "psnr_image_db": rebuilt.psnr_db,
-             "conversions": summary["conversions_made"], "bytes": summary["stream_bytes"],
-             "cycles": summary["cycles"], "energy_uj": summary["energy_uj"]["total"],
-             "simulation_s": result.chip.seconds, "mismatches": summary["stream_mismatches"]}]
+    return [
+        {
+            "threshold": threshold,
+            "psnr_edges_db": summary["psnr_db"],
+            "psnr_image_db": rebuilt.psnr_db,
+            "conversions": summary["conversions_made"],
+            "bytes": summary["stream_bytes"],
+            "cycles": summary["cycles"],
+            "energy_uj": summary["energy_uj"]["total"],
+            "simulation_s": result.chip.seconds,
+            "mismatches": summary["stream_mismatches"],
+        }
+    ]
 
 
 def plot(rows):
-    return curves({"decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],
-                   "image rebuilt from them": [(r["bytes"], r["psnr_image_db"], "") for r in rows]},
-                  "bytes a frame", "PSNR (dB)", "Threshold: error against bytes", log_x=True)
+    return curves(
+        {
+            "decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],
+            "image rebuilt from them": [(r["bytes"], r["psnr_image_db"], "") for r in rows],
+        },
+        "bytes a frame",
+        "PSNR (dB)",
+        "Threshold: error against bytes",
+        log_x=True,
+    )

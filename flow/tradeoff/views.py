@@ -3,7 +3,7 @@ for uniform light and for light that ripples with angle, against the time to com
 
 from dataclasses import replace
 
-from flow.charts import curves
+from base.charts import curves
 from models.parameters import SensorParameters
 from models.pixel import Ripple, exact, sampling_error
 
@@ -14,8 +14,12 @@ _references = {}
 
 
 def points(quick):
-    return [(light, views, nodes) for light in LIGHTS for views in ((3, 5) if quick else VIEWS)
-            for nodes in ((1, 4) if quick else NODES)]
+    return [
+        (light, views, nodes)
+        for light in LIGHTS
+        for views in ((3, 5) if quick else VIEWS)
+        for nodes in ((1, 4) if quick else NODES)
+    ]
 
 
 def measure(point):
@@ -25,13 +29,33 @@ def measure(point):
         _references[light] = exact(sensor.tile.types, sensor.optics, LIGHTS[light])
     optics = replace(sensor.optics, views=views, subsamples=nodes)
     found = sampling_error(sensor.tile.types, optics, LIGHTS[light], _references[light])
-    return [{"light": light, "views": views, "nodes": nodes, "worst": found.worst, "rms": found.rms,
-             "seconds": found.seconds}]
+    return [
+        {
+            "light": light,
+            "views": views,
+            "nodes": nodes,
+            "worst": found.worst,
+            "rms": found.rms,
+            "seconds": found.seconds,
+        }
+    ]
 
 
 def plot(rows):
-    return curves({f"{light}, {v} x {v} views": [(1e3 * r["seconds"], r["worst"], str(r["nodes"])) for r in rows
-                                                 if r["light"] == light and r["views"] == v]
-                   for light in LIGHTS for v in VIEWS if any(r["views"] == v for r in rows)},
-                  "time of the weights (ms); number: nodes a view cell", "worst error of a photocurrent / their mean",
-                  "Views and angular nodes", log_x=True, log_y=True)
+    return curves(
+        {
+            f"{light}, {v} x {v} views": [
+                (1e3 * r["seconds"], r["worst"], str(r["nodes"]))
+                for r in rows
+                if r["light"] == light and r["views"] == v
+            ]
+            for light in LIGHTS
+            for v in VIEWS
+            if any(r["views"] == v for r in rows)
+        },
+        "time of the weights (ms); number: nodes a view cell",
+        "worst error of a photocurrent / their mean",
+        "Views and angular nodes",
+        log_x=True,
+        log_y=True,
+    )

@@ -44,8 +44,13 @@ class Converter:
             error[lane] = bow * 4 * x * (1 - x) + (walk - x * walk[-1])
             offset[lane] = rng.standard_normal() * parameters.offset
         ideal = np.arange(CODES) - np.array([[128.5], [0.5]])
-        return cls(ideal[:, None] + error, offset, parameters.noise * NOISE_SCALE, parameters.ktc * NOISE_SCALE,
-                   parameters.seed)
+        return cls(
+            ideal[:, None] + error,
+            offset,
+            parameters.noise * NOISE_SCALE,
+            parameters.ktc * NOISE_SCALE,
+            parameters.seed,
+        )
 
     @classmethod
     def ideal(cls, lanes):

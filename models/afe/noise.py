@@ -5,9 +5,9 @@ No order of evaluation matters, so a simulator that skips, repeats or reorders d
 
 import numpy as np
 
-DECISIONS = 16                  # decision numbers of a sample: 0..14, and
-KTC_DECISION = DECISIONS - 1    # the one that stands for the sampling capacitor
-NOISE_SCALE = float(1 / np.sqrt(4 * (256**2 - 1) / 12))     # a count -> unit variance
+DECISIONS = 16  # decision numbers of a sample: 0..14, and
+KTC_DECISION = DECISIONS - 1  # the one that stands for the sampling capacitor
+NOISE_SCALE = float(1 / np.sqrt(4 * (256**2 - 1) / 12))  # a count -> unit variance
 _CENTRE = 4 * 255 // 2
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from models.parameters import ParameterError
 
 TRIM_BITS = 10
-TRIM_UNITY = 512        # steps of the register in a ratio of 1
+TRIM_UNITY = 512  # steps of the register in a ratio of 1
 TRIM_MIN, TRIM_MAX = -(1 << TRIM_BITS - 1), (1 << TRIM_BITS - 1) - 1
 
 
@@ -23,7 +23,7 @@ def trim_codes(g):
     g = np.asarray(g, np.float64)
     if np.isnan(g).any():
         raise ParameterError("trim ratio = nan: must be a number")
-    limited = np.clip(g, 0.0, 2.0)      # before the multiplication: a huge ratio must not overflow
+    limited = np.clip(g, 0.0, 2.0)  # before the multiplication: a huge ratio must not overflow
     return np.clip(np.rint((limited - 1.0) * TRIM_UNITY), TRIM_MIN, TRIM_MAX).astype(np.int64)
 
 

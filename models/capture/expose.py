@@ -9,7 +9,7 @@ from models.parameters import ELEMENTARY_CHARGE, ParameterError, check_int, chec
 from .shot import photon_count
 
 NOISE_MAX = 100.0
-PHOTONS_MAX = 1e15      # electrons a diode and interval: far beyond any well
+PHOTONS_MAX = 1e15  # electrons a diode and interval: far beyond any well
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ class CaptureOperator:
         weights = view_weights(sensor.tile, sensor.optics)
         if not angular:
             weights = weights.sum((2, 3), keepdims=True)
-        self.weights = weights.astype(self.dtype)       # (types, 2, v, u)
+        self.weights = weights.astype(self.dtype)  # (types, 2, v, u)
         self.views = weights.shape[-1]
         if read is not None and read.shape != (self.rows, self.cols):
             raise ParameterError(f"read shape = {read.shape}: must be ({self.rows}, {self.cols})")
@@ -56,11 +56,15 @@ class CaptureOperator:
         counts = masks.sum(1)
         columns = np.zeros((height, counts.max()), np.int64)
         for r in range(height):
-            columns[r, :counts[r]] = np.flatnonzero(masks[r])
+            columns[r, : counts[r]] = np.flatnonzero(masks[r])
         kinds = self.sensor.tile.type_map(height, self.cols)
         weights = self.weights[np.take_along_axis(kinds, columns, 1)]
-        return (np.flatnonzero(self.read.any(1)), columns, counts,
-                np.ascontiguousarray(weights.transpose(0, 3, 4, 2, 1)))
+        return (
+            np.flatnonzero(self.read.any(1)),
+            columns,
+            counts,
+            np.ascontiguousarray(weights.transpose(0, 3, 4, 2, 1)),
+        )
 
     @cached_property
     def _irregular(self):

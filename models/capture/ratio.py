@@ -16,7 +16,7 @@ def capture_ratio(sensor=None, dtype="float64", repeats=5):
     """
     operator = CaptureOperator(sensor or SensorParameters(), dtype)
     light_field = np.random.default_rng(0).random(operator.shape, operator.dtype)
-    operator.forward(light_field)       # compile, and lay the weights out
+    operator.forward(light_field)  # compile, and lay the weights out
     return _best(lambda: operator.forward(light_field), repeats) / _best(light_field.copy, repeats)
 
 

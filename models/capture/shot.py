@@ -8,7 +8,7 @@ import math
 
 from numba import vectorize
 
-FEW = 60.0      # electrons
+FEW = 60.0  # electrons
 
 
 @vectorize(["float32(float32, float32)", "float64(float64, float64)"], cache=True)

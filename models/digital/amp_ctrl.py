@@ -42,7 +42,7 @@ def _sub_frame(t, tap):
         for _ in range(length):
             yield AmpPins(tap=tap, busy=1, **high)
 
-    if tap == 0:        # later taps begin in the guard that ended the tap before
+    if tap == 0:  # later taps begin in the guard that ended the tap before
         yield from phase(t.t_guard)
     yield from phase(t.t_reset, pixel_reset=1)
     yield from phase(t.t_guard)
@@ -82,6 +82,13 @@ def waveform(timing, four_tap, hold_free):
 def row_cycles(timing, four_tap=False):
     """Cycles from the one behind `start` to the one before `done`, if the hold is free whenever it is asked for."""
     t = timing
-    tap = (t.t_reset + (t.n_cm + 1) * (t.t_int + t.t_guard) + t.n_cm * (t.t_cm + t.t_guard) + t.t_guard
-           + t.t_settle + t.t_read + t.t_guard)
+    tap = (
+        t.t_reset
+        + (t.n_cm + 1) * (t.t_int + t.t_guard)
+        + t.n_cm * (t.t_cm + t.t_guard)
+        + t.t_guard
+        + t.t_settle
+        + t.t_read
+        + t.t_guard
+    )
     return t.t_guard + (TAPS if four_tap else 1) * tap

@@ -56,8 +56,9 @@ def front_end_of(sensor, trims):
     """The analog front end of ``sensor``; ideal converters cost nothing. trims: register values by pixel type."""
     drawn = sensor.converter != ConverterParameters(seed=sensor.converter.seed)
     converter = Converter.draw(sensor.converter, sensor.chip.lanes) if drawn else None
-    return FrontEnd(sensor.electrical.difference_gain, tuple(int(t) for t in trims), sensor.chip.lanes, converter,
-                    sensor.tile)
+    return FrontEnd(
+        sensor.electrical.difference_gain, tuple(int(t) for t in trims), sensor.chip.lanes, converter, sensor.tile
+    )
 
 
 def golden_frame(samples, sensor, frame, front_end):

@@ -47,9 +47,11 @@ def cordic(x, y, iterations=10, noise_floor=0):
 def rotate(x, y, z, i, angle):
     """One step: turn (x, y) by atan(2^-i) towards the x axis and count the angle in z."""
     up = y >= 0
-    return (np.where(up, x + (y >> i), x - (y >> i)),
-            np.where(up, y - (x >> i), y + (x >> i)),
-            np.where(up, z + angle, z - angle))
+    return (
+        np.where(up, x + (y >> i), x - (y >> i)),
+        np.where(up, y - (x >> i), y + (x >> i)),
+        np.where(up, z + angle, z - angle),
+    )
 
 
 def nearest_even(z, fraction):

@@ -10,9 +10,9 @@ import numpy as np
 
 from models.parameters import ParameterError, check_int
 
-SAMPLE_MIN, SAMPLE_MAX = -256, 255      # differences of two 8-bit samples fit 9 bits
+SAMPLE_MIN, SAMPLE_MAX = -256, 255  # differences of two 8-bit samples fit 9 bits
 N_FRAC_MIN, N_FRAC_MAX = 4, 16
-TURN, OCTANT = 256, 32                  # in LSB of the phase
+TURN, OCTANT = 256, 32  # in LSB of the phase
 AMP_MAX = 255
 
 
@@ -61,7 +61,8 @@ def operands(x, y, noise_floor):
         outside = (value < SAMPLE_MIN) | (value > SAMPLE_MAX)
         if outside.any():
             raise ParameterError(
-                f"{field} = {value[outside].flat[0]}: must be an integer in {SAMPLE_MIN}..{SAMPLE_MAX}")
+                f"{field} = {value[outside].flat[0]}: must be an integer in {SAMPLE_MIN}..{SAMPLE_MAX}"
+            )
         checked.append(value.astype(np.int32))
     return np.broadcast_arrays(*checked)
 
@@ -88,9 +89,13 @@ def unfold(octant, larger, ratio, index, noise_floor):
     odd = octant & 1
     phase = OCTANT * (octant + odd) + np.where(odd, -index, index)
     return QuadResult(
-        octant=octant.astype(np.uint8), ratio=np.where(zero, 0, ratio).astype(np.uint16), zero=zero,
+        octant=octant.astype(np.uint8),
+        ratio=np.where(zero, 0, ratio).astype(np.uint16),
+        zero=zero,
         phase=np.where(zero, 0, phase % TURN).astype(np.uint8),
-        amp_valid=~zero & (larger >= noise_floor), amp=np.minimum(larger, AMP_MAX).astype(np.uint8))
+        amp_valid=~zero & (larger >= noise_floor),
+        amp=np.minimum(larger, AMP_MAX).astype(np.uint8),
+    )
 
 
 @cache

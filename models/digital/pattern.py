@@ -36,7 +36,7 @@ class PatternEnd:
 
     def values(self, mode):
         """What the comparators see, in LSB: float64 (subs, rows, cols)."""
-        sub, row, col = np.ogrid[:SAMPLES_PER_PIXEL[mode], :self.rows, :self.cols]
+        sub, row, col = np.ogrid[: SAMPLES_PER_PIXEL[mode], : self.rows, : self.cols]
         value = pattern_value(row, col // self.tile.cols, col % self.tile.cols, sub).astype(np.float64)
         return value - BIPOLAR if mode == "edge" else value
 

@@ -2,7 +2,7 @@
 
 from models.parameters.registers import register_map
 
-ADDRESS_MAX = 127       # reached, the address no longer counts up
+ADDRESS_MAX = 127  # reached, the address no longer counts up
 
 
 class RegisterBank:
@@ -18,8 +18,8 @@ class RegisterBank:
         self.bytes = chip.image(chip.fields, dict(resets))
         self.writable = chip.writable()
         self.sticky = {f.name: f.shift for f in chip.fields if f.access == "w1c"}
-        self.held = 0               # sticky bits at their places in the status byte
-        self.snapshot = 0           # bytes of the counter whose first byte was read last
+        self.held = 0  # sticky bits at their places in the status byte
+        self.snapshot = 0  # bytes of the counter whose first byte was read last
         self.start = False
         self.loop = None
 

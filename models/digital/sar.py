@@ -10,7 +10,7 @@ import numpy as np
 from models.parameters import ParameterError, check_int
 
 BITS = 8
-BIPOLAR = 128       # offset binary: DAC code = code + 128
+BIPOLAR = 128  # offset binary: DAC code = code + 128
 
 
 class Conversion(NamedTuple):
@@ -74,7 +74,7 @@ def _ideal(v, unsigned, window):
     low = 0 if unsigned else -BIPOLAR
     limited = np.clip(v, low, low + 255)
     nearest = np.floor(limited + 0.5)
-    nearest -= limited < nearest - 0.5      # where the sum was rounded up to the next integer
+    nearest -= limited < nearest - 0.5  # where the sum was rounded up to the next integer
     codes = nearest.astype(np.int16)
     return codes, np.abs(codes) >= window
 

@@ -16,7 +16,7 @@ class Step:
     k: int
     group: int
     sub: int
-    enable: int     # bit l = lane l converts
+    enable: int  # bit l = lane l converts
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,11 @@ class Scan:
         """Unmasked in-tile columns k of a row that exist in the window's first tile: tuple."""
         base = (row % self.tile.rows) * self.tile.cols
         first = self.tile.cols * self.frame.window.col0
-        return tuple(k for k in range(self.tile.cols)
-                     if self.frame.mask >> self.tile.order[base + k] & 1 and first + k < self.cols)
+        return tuple(
+            k
+            for k in range(self.tile.cols)
+            if self.frame.mask >> self.tile.order[base + k] & 1 and first + k < self.cols
+        )
 
     def steps(self, row):
         """Steps of one row, in order: list of Step.
@@ -85,9 +88,11 @@ class Scan:
         for k in self.columns_of(row):
             for group in groups:
                 tiles = [lanes * group + lane for lane in range(lanes)]
-                enable = sum(1 << lane for lane, t in enumerate(tiles)
-                             if w.col0 <= t <= w.col1 and (t - w.col0) % stride == 0
-                             and self.tile.cols * t + k < self.cols)
+                enable = sum(
+                    1 << lane
+                    for lane, t in enumerate(tiles)
+                    if w.col0 <= t <= w.col1 and (t - w.col0) % stride == 0 and self.tile.cols * t + k < self.cols
+                )
                 out += [Step(row, k, group, sub, enable) for sub in range(self.subs)]
         return out
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from .checks import check_int, check_real
 
-ROWS_MAX, COLS_MAX = 1024, 1536     # 256 tiles each way: tile addresses are 8 bits
+ROWS_MAX, COLS_MAX = 1024, 1536  # 256 tiles each way: tile addresses are 8 bits
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,7 @@ def check_int(field, value, low, high):
 
 def check_real(field, value, low, high):
     """Raise ParameterError unless ``value`` is a finite real number in ``[low, high]``."""
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value) \
-            or not low <= value <= high:
+    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value) or not low <= value <= high:
         raise ParameterError(f"{field} = {value!r}: must be a number in [{low}, {high}]")
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from .checks import check_int, check_real
 
-ELEMENTARY_CHARGE = 1.602176634e-19     # C
+ELEMENTARY_CHARGE = 1.602176634e-19  # C
 
 
 @dataclass(frozen=True)

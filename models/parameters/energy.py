@@ -36,7 +36,9 @@ class EnergyParameters:
         seconds: duration of the frame. decisions: comparator decisions, window and search together.
         """
         each = 1 / (self.frame_rate * self.pixels)
-        return {"pixel_array": self.pixel_array * each * resets,
-                "amplifiers": self.amplifiers * each * amplified,
-                "timing": self.timing * seconds,
-                "adcs": self.adcs * each / self.decisions * decisions}
+        return {
+            "pixel_array": self.pixel_array * each * resets,
+            "amplifiers": self.amplifiers * each * amplified,
+            "timing": self.timing * seconds,
+            "adcs": self.adcs * each / self.decisions * decisions,
+        }

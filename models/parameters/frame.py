@@ -4,7 +4,7 @@ from dataclasses import dataclass, fields
 
 from .checks import ParameterError, check_choice, check_int
 
-MODES = ("edge", "image", "raw", "tof")     # in the order of the register's code
+MODES = ("edge", "image", "raw", "tof")  # in the order of the register's code
 SAMPLES_PER_PIXEL = {"edge": 1, "image": 1, "raw": 2, "tof": 4}
 ALL_TYPES = (1 << 24) - 1
 
@@ -23,8 +23,7 @@ class AmpTiming:
 
     def __post_init__(self):
         for f in fields(self):
-            check_int(f.name, getattr(self, f.name), 0 if f.name == "n_cm" else 1,
-                      255 if f.name == "n_cm" else 65535)
+            check_int(f.name, getattr(self, f.name), 0 if f.name == "n_cm" else 1, 255 if f.name == "n_cm" else 65535)
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from .array import ArrayParameters
-from .chip import ChipParameters
 from .checks import ParameterError
+from .chip import ChipParameters
 from .electrical import ConverterParameters, ElectricalParameters
 from .frame import Window
 from .optics import OpticsParameters

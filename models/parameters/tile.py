@@ -32,19 +32,15 @@ class PixelType:
 
 
 def _thesis_types():
-    groups = ((12.0, (0.0, 90.0, 45.0, -45.0)),
-              (18.0, (22.5, -22.5, 67.5, -67.5)),
-              (24.0, (0.0, 90.0, 45.0, -45.0)))
-    return tuple(PixelType(beta, gamma, alpha)
-                 for beta, gammas in groups for gamma in gammas for alpha in (0.0, np.pi / 2))
+    groups = ((12.0, (0.0, 90.0, 45.0, -45.0)), (18.0, (22.5, -22.5, 67.5, -67.5)), (24.0, (0.0, 90.0, 45.0, -45.0)))
+    return tuple(
+        PixelType(beta, gamma, alpha) for beta, gammas in groups for gamma in gammas for alpha in (0.0, np.pi / 2)
+    )
 
 
 # Position (row by row) -> pixel type. Each row holds two types of every beta and each column
 # at least one, so that any patch has an even mix. Models, RTL, layout and documents read it here.
-_THESIS_ORDER = (0, 9, 20, 14, 3, 17,
-                 12, 22, 5, 11, 18, 6,
-                 2, 15, 16, 1, 8, 21,
-                 19, 4, 10, 23, 7, 13)
+_THESIS_ORDER = (0, 9, 20, 14, 3, 17, 12, 22, 5, 11, 18, 6, 2, 15, 16, 1, 8, 21, 19, 4, 10, 23, 7, 13)
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,21 @@ from .time_of_flight import demodulate, depth_of, phase_of
 from .trim import gains, measured_gains, optical_gains, residual
 from .weights import view_weights
 
-__all__ = ["Ripple", "SamplingError", "aperture", "demodulate", "depth_of", "exact", "gains", "measured_gains",
-           "optical_gains", "phase_of", "residual", "response", "sampling_error", "transmission", "view_weights",
-           "vignetting"]
+__all__ = [
+    "Ripple",
+    "SamplingError",
+    "aperture",
+    "demodulate",
+    "depth_of",
+    "exact",
+    "gains",
+    "measured_gains",
+    "optical_gains",
+    "phase_of",
+    "residual",
+    "response",
+    "sampling_error",
+    "transmission",
+    "view_weights",
+    "vignetting",
+]

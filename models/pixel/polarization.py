@@ -25,7 +25,7 @@ def stokes(i0, i45, i90, i135, diattenuation):
     """
     s1, s2 = i90 - i0, i135 - i45
     total = (i0 + i45 + i90 + i135) / 2
-    lit = total > np.finfo(np.result_type(total, 0.0)).tiny     # denormal light has no ratios
+    lit = total > np.finfo(np.result_type(total, 0.0)).tiny  # denormal light has no ratios
     return np.where(lit, np.stack([s1, s2]) / np.where(lit, total, 1) / diattenuation, 0.0)
 
 

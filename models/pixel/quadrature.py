@@ -41,10 +41,12 @@ def exact(types, optics, light, tolerance=1e-10):
 
     light: function of (nu_x, nu_y, nu_max). tolerance: relative, 1e-13..1e-2.
     """
+
     def integrand(points):
         r, phi = points.T
         x, y = r * np.cos(phi), r * np.sin(phi)
         return (density(types, optics, x, y) * (light(x, y, optics.nu_max) * r)).transpose(2, 0, 1)
+
     result = cubature(integrand, [0, 0], [optics.nu_max, 2 * np.pi], rtol=tolerance, atol=1e-14)
     return result.estimate
 
@@ -60,7 +62,7 @@ def sampling_error(types, optics, light=Ripple(), reference=None):
     """SamplingError of `optics.views` and `optics.subsamples`. reference: `exact` of the same, if at hand."""
     reference = exact(types, optics, light) if reference is None else reference
     start = perf_counter()
-    raw_weights.__wrapped__(types, optics)      # past the cache
+    raw_weights.__wrapped__(types, optics)  # past the cache
     seconds = perf_counter() - start
     error = np.abs(sampled(types, optics, light) - reference) / reference.mean()
     return SamplingError(float(error.max()), float(np.sqrt((error**2).mean())), seconds)

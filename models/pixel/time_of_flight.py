@@ -1,13 +1,13 @@
 """Four-tap time of flight [Jayasuriya2017, Ch. 5, with the signs and units that agree with each other].
 
-    i(tau) = (albedo / 2) cos(2 pi f_mod tau + phase)          taps at 2 pi f_mod tau = 0, pi/2, pi, 3 pi/2
-    phase = atan2(i_270 - i_90, i_0 - i_180)     albedo = hypot(i_270 - i_90, i_0 - i_180)
-    depth = c phase / (4 pi f_mod)
+i(tau) = (albedo / 2) cos(2 pi f_mod tau + phase)          taps at 2 pi f_mod tau = 0, pi/2, pi, 3 pi/2
+phase = atan2(i_270 - i_90, i_0 - i_180)     albedo = hypot(i_270 - i_90, i_0 - i_180)
+depth = c phase / (4 pi f_mod)
 """
 
 import numpy as np
 
-SPEED_OF_LIGHT = 299_792_458.0              # m/s
+SPEED_OF_LIGHT = 299_792_458.0  # m/s
 TAPS = (0.0, np.pi / 2, np.pi, 3 * np.pi / 2)
 
 

@@ -10,7 +10,7 @@ from models.parameters import ParameterError
 
 from .weights import view_weights
 
-GAIN_MAX = 64.0     # a diode that sees nothing of a flat field asks for no more (m = 1, beta = 0)
+GAIN_MAX = 64.0  # a diode that sees nothing of a flat field asks for no more (m = 1, beta = 0)
 
 
 def residual(weights):

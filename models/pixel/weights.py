@@ -17,9 +17,17 @@ def density(types, optics, nu_x, nu_y):
     """rho * omega of all diodes at the points nu_x, nu_y (n,): (types, 2, n)."""
     theta_x, theta_y = np.arctan(nu_x), np.arctan(nu_y)
     omega = vignetting(nu_x, nu_y, optics.vignetting_power)
-    return np.stack([np.stack([omega * response(t.alpha + flip, t.beta, t.gamma, theta_x, theta_y,
-                                                optics.m, optics.aperture_sigma) for flip in (0.0, np.pi)])
-                     for t in types])
+    return np.stack(
+        [
+            np.stack(
+                [
+                    omega * response(t.alpha + flip, t.beta, t.gamma, theta_x, theta_y, optics.m, optics.aperture_sigma)
+                    for flip in (0.0, np.pi)
+                ]
+            )
+            for t in types
+        ]
+    )
 
 
 def cell_nodes(optics, v, u):
@@ -40,7 +48,7 @@ def cell_nodes(optics, v, u):
         t = (t0 + t1) / 2 + node * (t1 - t0) / 2
         reach = radius * np.cos(t)
         low, high = np.maximum(y0, -reach), np.minimum(y1, reach)
-        half = np.maximum(high - low, 0) / 2            # 0: the disc does not reach this part of the cell
+        half = np.maximum(high - low, 0) / 2  # 0: the disc does not reach this part of the cell
         y = (low + high)[:, None] / 2 + half[:, None] * node
         w = (weight * (t1 - t0) / 2 * reach * half)[:, None] * weight
         x = np.broadcast_to(radius * np.sin(t)[:, None], y.shape)

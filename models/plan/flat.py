@@ -7,7 +7,7 @@ from models.parameters import ELEMENTARY_CHARGE
 from models.pixel.trim import gains, residual
 from models.pixel.weights import view_weights
 
-MARGIN = 1.0    # code: half for the rounding of the converter, half for that of the trim registers
+MARGIN = 1.0  # code: half for the rounding of the converter, half for that of the trim registers
 
 
 def flat_tiles(scene, sensor, frame):

@@ -39,11 +39,18 @@ def plan(scene, sensor, frame):
     views = scene.views**2
     notes = [tap_note] if tap_note else []
     if not angular:
-        notes.append(("views", "no angle content: all views are equal", f"{views - 1} of {views} views of {captures} "
-                      f"capture passes, {_megabytes((views - 1) * rows * cols * scene.light_field.itemsize)}"))
+        notes.append(
+            (
+                "views",
+                "no angle content: all views are equal",
+                f"{views - 1} of {views} views of {captures} "
+                f"capture passes, {_megabytes((views - 1) * rows * cols * scene.light_field.itemsize)}",
+            )
+        )
     if not polarized:
-        notes.append(("polarization", "the light is unpolarized",
-                      f"a factor on each of {int(read.sum()):,} diode pairs"))
+        notes.append(
+            ("polarization", "the light is unpolarized", f"a factor on each of {int(read.sum()):,} diode pairs")
+        )
     unread = rows * cols - int(read.sum())
     if unread:
         why = "pixel types masked" if frame.mask != ALL_TYPES else "outside the window or between the tiles read"
@@ -51,9 +58,13 @@ def plan(scene, sensor, frame):
     flat = flat_tiles(scene, sensor, frame)
     if flat.any():
         samples = int((read & _spread(flat, sensor)).sum())
-        notes.append(("conversions of flat tiles",
-                      f"no sample there can reach threshold {frame.threshold}, noise aside",
-                      f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles"))
+        notes.append(
+            (
+                "conversions of flat tiles",
+                f"no sample there can reach threshold {frame.threshold}, noise aside",
+                f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles",
+            )
+        )
     left_out = tuple({"what": what, "why": why, "saved": saved} for what, why, saved in notes)
     return Plan(angular, polarized, taps, captures, read, flat, left_out)
 
@@ -63,17 +74,23 @@ def _captures(scene, taps):
     if taps == 1:
         return 1, ("time-of-flight taps", "the mode reads none", "3 of 4 sub-frames")
     if scene.static and (scene.depth is None or not np.ptp(scene.depth)):
-        return 1, ("capture passes of the taps", "static scene at one depth: each tap is the same frame, scaled",
-                   "3 of 4 capture passes")
+        return 1, (
+            "capture passes of the taps",
+            "static scene at one depth: each tap is the same frame, scaled",
+            "3 of 4 capture passes",
+        )
     if scene.static:
-        return 3, ("capture passes of the taps", "static scene: mean, cosine and sine give all four taps",
-                   "1 of 4 capture passes")
+        return 3, (
+            "capture passes of the taps",
+            "static scene: mean, cosine and sine give all four taps",
+            "1 of 4 capture passes",
+        )
     return 4, None
 
 
 def _spread(flat, sensor):
     tile = sensor.tile
-    return np.repeat(np.repeat(flat, tile.rows, 0), tile.cols, 1)[:sensor.array.rows, :sensor.array.cols]
+    return np.repeat(np.repeat(flat, tile.rows, 0), tile.cols, 1)[: sensor.array.rows, : sensor.array.cols]
 
 
 def _megabytes(count):

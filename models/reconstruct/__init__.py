@@ -7,5 +7,17 @@ from .light_field import light_field_estimate
 from .psnr import psnr_db, psnr_without_mean_db
 from .rebuild import Rebuilt, rebuild
 
-__all__ = ["EdgeOperator", "Rebuilt", "Solver", "demosaic", "edge_images", "image_from_edges", "light_field_estimate",
-           "psnr_db", "psnr_without_mean_db", "rebuild", "sum_image", "white_sum"]
+__all__ = [
+    "EdgeOperator",
+    "Rebuilt",
+    "Solver",
+    "demosaic",
+    "edge_images",
+    "image_from_edges",
+    "light_field_estimate",
+    "psnr_db",
+    "psnr_without_mean_db",
+    "rebuild",
+    "sum_image",
+    "white_sum",
+]

@@ -69,6 +69,7 @@ def image_from_edges(samples, operator, solver=Solver()):
 
     samples: decoded codes divided by the codes that a radiance of 1 makes (models.plan.codes_per_unit).
     """
+
     def normal(image):
         return operator.transpose(operator.forward(image)) + solver.smoothness * laplacian(image)
 
@@ -89,7 +90,7 @@ def _conjugate_gradients(apply, right, precondition, solver):
             break
         upward = precondition(residual)
         before, energy = energy, _dot(residual, upward)
-        if energy <= 0:         # nothing left but what the preconditioner is blind to: the mean
+        if energy <= 0:  # nothing left but what the preconditioner is blind to: the mean
             break
         direction = upward + (energy / before if before else 0.0) * direction
         curved = apply(direction)

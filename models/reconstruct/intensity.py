@@ -6,7 +6,7 @@ from scipy.ndimage import distance_transform_edt
 from models.parameters import ELEMENTARY_CHARGE, AmpTiming
 from models.pixel.weights import view_weights
 
-FULL = 255.0        # LSB: both wells of a pair full
+FULL = 255.0  # LSB: both wells of a pair full
 
 
 def white_sum(sensor, timing=AmpTiming()):

@@ -6,14 +6,14 @@ ships it: 994.978 px, baseline 193.001 mm, the principal points 31.086 px apart,
 
 import numpy as np
 
-FOCAL_LENGTH_PX = 994.978       # at the resolution of the stereo pair
-BASELINE = 0.193001             # m
+FOCAL_LENGTH_PX = 994.978  # at the resolution of the stereo pair
+BASELINE = 0.193001  # m
 DOFFS_PX = 31.086
-FIELD = (480, 720)              # px of the pair that fill the array: a margin stays for the outer views
-APERTURE = BASELINE / 2         # m: width of the lens, all views together. Ours: it makes about -2..2 px a view step.
-REFERENCE_DEPTH = 3.0           # m: where a scene without depth stands, and where disparity is 0
+FIELD = (480, 720)  # px of the pair that fill the array: a margin stays for the outer views
+APERTURE = BASELINE / 2  # m: width of the lens, all views together. Ours: it makes about -2..2 px a view step.
+REFERENCE_DEPTH = 3.0  # m: where a scene without depth stands, and where disparity is 0
 
-DEPTH_MAX = 1000.0              # m: stands for infinity
+DEPTH_MAX = 1000.0  # m: stands for infinity
 
 
 def zoom(sampling):

@@ -27,7 +27,7 @@ def view_depths(scene, steps):
 def _inverse_depth(scene):
     """(a, b) of 1 / depth = a + b * disparity, from the nearest and the farthest pixel; None where all are alike."""
     disparity, inverse = np.ravel(scene.disparity), 1 / np.ravel(scene.depth)
-    finite = inverse > 2 / DEPTH_MAX        # at infinity depth is cut off
+    finite = inverse > 2 / DEPTH_MAX  # at infinity depth is cut off
     if not finite.any() or not np.ptp(disparity[finite]):
         return None
     near, far = np.argmax(np.where(finite, disparity, -np.inf)), np.argmin(np.where(finite, disparity, np.inf))

@@ -17,8 +17,8 @@ from . import camera, resample
 from .picture_file import read_codes
 from .scene import check_values
 
-NEAR, FAR = 2.0, 6.0            # m, of 8-bit images
-BYTES_MAX = 2**30               # of an array in an .npz
+NEAR, FAR = 2.0, 6.0  # m, of 8-bit images
+BYTES_MAX = 2**30  # of an array in an .npz
 
 
 def read_disparity(path, sampling, picture_shape):

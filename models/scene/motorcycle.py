@@ -35,8 +35,14 @@ def motorcycle(sampling):
 
     field = light_field(image, disparity, sampling, second, margin)
     inner = (slice(margin, margin + sampling.rows), slice(margin, margin + sampling.cols))
-    return Scene("motorcycle", sampling.views, field, image[inner].astype(sampling.dtype), disparity[inner].copy(),
-                 1 / crop(inverse_depth, resample.pick)[inner])
+    return Scene(
+        "motorcycle",
+        sampling.views,
+        field,
+        image[inner].astype(sampling.dtype),
+        disparity[inner].copy(),
+        1 / crop(inverse_depth, resample.pick)[inner],
+    )
 
 
 class _Crop:

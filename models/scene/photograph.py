@@ -32,7 +32,7 @@ def _on_depth(name, luminance, sampling, raw=None):
     """raw: disparity against the reference plane, or None for a plane `FOCUS` px a step behind the focal plane."""
     rows, cols = sampling.shape
     image = resample.resize(luminance, rows, cols, resample.centre_box(*luminance.shape, rows, cols))
-    image = np.clip(image, 0, 1)        # rounding of the resampling
+    image = np.clip(image, 0, 1)  # rounding of the resampling
     focus = sampling.focus_or(FOCUS if raw is None else 0.0)
     disparity = np.zeros(sampling.shape) - focus if raw is None else raw - focus
     flat = not disparity.any()

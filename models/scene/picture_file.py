@@ -10,8 +10,8 @@ from models.parameters import ParameterError
 
 from .resample import linear
 
-PIXELS_MAX = 2 * 89_478_485     # Pillow's limit against decompression bombs
-KEEP = 3                        # a picture this many times the array is reduced before it is decoded to linear light
+PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
+KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
 def read_luminance(path, rows, cols):
@@ -22,7 +22,7 @@ def read_luminance(path, rows, cols):
     Raises ParameterError where the file is missing, no image, damaged, too large, or holds NaN or infinity.
     """
     with _opened(path, "scene") as picture:
-        picture.draft("RGB", (KEEP * cols, KEEP * rows))        # JPEG: decode at a fraction of the size
+        picture.draft("RGB", (KEEP * cols, KEEP * rows))  # JPEG: decode at a fraction of the size
         picture = ImageOps.exif_transpose(_loaded(picture, path, "scene"))
         return _luminance(picture, path, max(1, min(picture.height // (KEEP * rows), picture.width // (KEEP * cols))))
 
@@ -47,22 +47,23 @@ def _opened(path, field):
         raise ParameterError(f"{field} = {str(path)!r}: no such file; must be a readable file")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)     # up to PIXELS_MAX is wanted
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # up to PIXELS_MAX is wanted
             picture = Image.open(path)
     except Image.DecompressionBombError:
         raise ParameterError(f"{field} = {str(path)!r}: must be an image of 1..{PIXELS_MAX} pixels") from None
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
-        raise ParameterError(f"{field} = {str(path)!r}: must be an image file that Pillow reads "
-                             f"({type(error).__name__})") from None
+        raise ParameterError(
+            f"{field} = {str(path)!r}: must be an image file that Pillow reads ({type(error).__name__})"
+        ) from None
     return picture
 
 
 def _loaded(picture, path, field):
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")     # odd metadata is no concern of ours; damaged pixels raise
+            warnings.simplefilter("ignore")  # odd metadata is no concern of ours; damaged pixels raise
             picture.load()
-    except Exception as error:      # a damaged file may raise nearly anything in a decoder
+    except Exception as error:  # a damaged file may raise nearly anything in a decoder
         raise ParameterError(f"{field} = {str(path)!r}: the image is damaged ({error})") from None
     return picture
 
@@ -73,8 +74,10 @@ def _luminance(picture, path, factor):
         smallest, largest = float(values.min()), float(values.max())
         if not (smallest >= 0 and largest <= 1):
             worst = largest if smallest >= 0 else smallest
-            raise ParameterError(f"scene = {str(path)!r}: pixel value {worst:g}: every floating-point pixel must be a "
-                                 "finite number in [0, 1]")
+            raise ParameterError(
+                f"scene = {str(path)!r}: pixel value {worst:g}: every floating-point pixel must be a "
+                "finite number in [0, 1]"
+            )
         return _reduced(picture, factor, np.float32)
     if picture.mode.startswith("I"):
         codes = np.asarray(picture)

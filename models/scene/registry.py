@@ -10,9 +10,17 @@ from .motorcycle import motorcycle
 from .photograph import PHOTOGRAPHS, photograph, picture
 
 # Each is a function of a Sampling; `name:number` on the command line adds the number (edge:30 is 30 degrees).
-scenes = {"motorcycle": motorcycle, "tilted": targets.tilted, "point": targets.point, "edge": targets.edge,
-          "flat": targets.flat, "saturated": targets.saturated, "black": targets.black,
-          "polarized": targets.polarized, **{name: partial(photograph, name) for name in PHOTOGRAPHS}}
+scenes = {
+    "motorcycle": motorcycle,
+    "tilted": targets.tilted,
+    "point": targets.point,
+    "edge": targets.edge,
+    "flat": targets.flat,
+    "saturated": targets.saturated,
+    "black": targets.black,
+    "polarized": targets.polarized,
+    **{name: partial(photograph, name) for name in PHOTOGRAPHS},
+}
 NUMBERS = {"edge": ("degrees", -360.0, 360.0), "flat": ("percent", 0.0, 1600.0), "polarized": ("percent", 0.0, 100.0)}
 
 

@@ -39,5 +39,5 @@ def linear(codes):
     decoded = np.where(steps <= 0.04045, steps / 12.92, ((steps + 0.055) / 1.055) ** 2.4).astype(np.float32)
     if codes.ndim == 2:
         return decoded[codes]
-    weights = np.float32([0.2126, 0.7152, 0.0722])     # Rec. 709
+    weights = np.float32([0.2126, 0.7152, 0.0722])  # Rec. 709
     return sum(w * decoded[codes[..., i]] for i, w in enumerate(weights))

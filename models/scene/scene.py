@@ -11,7 +11,7 @@ from models.parameters import ParameterError, check_choice, check_int, check_rea
 
 from .camera import DEPTH_MAX
 
-RADIANCE_MAX = 16.0     # 1 = diffuse white; highlights and the saturated target go above it
+RADIANCE_MAX = 16.0  # 1 = diffuse white; highlights and the saturated target go above it
 DTYPES = ("float32", "float64")
 
 
@@ -82,12 +82,17 @@ class Scene:
         field = self.light_field
         check_choice("light_field dtype", str(field.dtype), DTYPES)
         if field.ndim != 4 or field.shape[:2] not in ((self.views, self.views), (1, 1)) or 0 in field.shape:
-            raise ParameterError(f"light_field shape = {field.shape}: must be (views, views, rows, cols) or "
-                                 f"(1, 1, rows, cols) with views = {self.views}")
+            raise ParameterError(
+                f"light_field shape = {field.shape}: must be (views, views, rows, cols) or "
+                f"(1, 1, rows, cols) with views = {self.views}"
+            )
         check_values("light_field", field, 0, RADIANCE_MAX)
-        for name, low, high, shape in (("image", 0, RADIANCE_MAX, self.shape), ("disparity", -1e4, 1e4, self.shape),
-                                       ("depth", 1e-3, DEPTH_MAX, self.shape),
-                                       ("polarization", -1, 1, (2, *self.shape))):
+        for name, low, high, shape in (
+            ("image", 0, RADIANCE_MAX, self.shape),
+            ("disparity", -1e4, 1e4, self.shape),
+            ("depth", 1e-3, DEPTH_MAX, self.shape),
+            ("polarization", -1, 1, (2, *self.shape)),
+        ):
             value = getattr(self, name)
             if value is None:
                 continue

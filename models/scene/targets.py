@@ -9,11 +9,11 @@ import numpy as np
 from . import camera
 from .scene import Scene
 
-FOCUS = 1.0             # px a view step
-WAVELENGTH = 24.0       # px, of the tilted plane's texture
-TILT = 4.0              # px a view step between the left and the right end of the tilted plane, both sides of focus
-POINT_SIGMA = 0.7       # px
-SATURATED = 8.0         # radiance: fills the wells several times over
+FOCUS = 1.0  # px a view step
+WAVELENGTH = 24.0  # px, of the tilted plane's texture
+TILT = 4.0  # px a view step between the left and the right end of the tilted plane, both sides of focus
+POINT_SIGMA = 0.7  # px
+SATURATED = 8.0  # radiance: fills the wells several times over
 
 
 def flat(sampling, level=50.0):
@@ -60,8 +60,9 @@ def tilted(sampling):
             place = (x - du * shift) / (1 - du * slope)
             field[i, j] = texture(y + dv * (slope * place - shift), place)
     raw = np.broadcast_to(slope * x, sampling.shape)
-    return Scene("tilted", sampling.views, field, texture(y, x).astype(sampling.dtype), raw - shift,
-                 camera.depth(raw, sampling))
+    return Scene(
+        "tilted", sampling.views, field, texture(y, x).astype(sampling.dtype), raw - shift, camera.depth(raw, sampling)
+    )
 
 
 def polarized(sampling, degree=25.0):
@@ -78,8 +79,14 @@ def _places(sampling):
 
 def _uniform(name, sampling, radiance, polarization=None):
     image = np.full(sampling.shape, radiance, sampling.dtype)
-    return Scene(name, sampling.views, image[None, None], image,
-                 depth=np.full(sampling.shape, camera.REFERENCE_DEPTH), polarization=polarization)
+    return Scene(
+        name,
+        sampling.views,
+        image[None, None],
+        image,
+        depth=np.full(sampling.shape, camera.REFERENCE_DEPTH),
+        polarization=polarization,
+    )
 
 
 def _on_plane(name, sampling, radiance):
@@ -87,8 +94,10 @@ def _on_plane(name, sampling, radiance):
     y, x = _places(sampling)
     d = -sampling.focus_or(FOCUS)
     steps = sampling.steps if d else np.zeros(1)
-    field = np.stack([np.stack([np.broadcast_to(radiance(y + dv * d, x + du * d), sampling.shape) for du in steps])
-                      for dv in steps]).astype(sampling.dtype)
+    field = np.stack(
+        [np.stack([np.broadcast_to(radiance(y + dv * d, x + du * d), sampling.shape) for du in steps]) for dv in steps]
+    ).astype(sampling.dtype)
     image = np.broadcast_to(radiance(y, x), sampling.shape).astype(sampling.dtype)
-    return Scene(name, sampling.views, field, image, np.full(sampling.shape, d),
-                 np.full(sampling.shape, camera.REFERENCE_DEPTH))
+    return Scene(
+        name, sampling.views, field, image, np.full(sampling.shape, d), np.full(sampling.shape, camera.REFERENCE_DEPTH)
+    )

@@ -19,7 +19,7 @@ class Second:
         everywhere = np.ones(disparity.shape, bool)
         here = np.full(disparity.shape, warp.BEHIND)
         warp.splat(here, disparity, everywhere, -(scale * disparity + offset), 0.0, 0.0)
-        self.alone = here == warp.BEHIND        # what only this picture sees
+        self.alone = here == warp.BEHIND  # what only this picture sees
         warp.fill_rows(here, self.alone)
         self.disparity = here
 

@@ -7,9 +7,9 @@ at the exact sub-pixel place where the source saw that surface. So no surface is
 import numpy as np
 from numba import njit
 
-FOOTPRINT = 0.75    # px around its target that a pixel claims: surfaces stretched by up to 1.5 get no cracks
-BEHIND = -1e30      # no surface
-JUMP = 0.25         # px a view step between neighbours from which on two surfaces meet there
+FOOTPRINT = 0.75  # px around its target that a pixel claims: surfaces stretched by up to 1.5 get no cracks
+BEHIND = -1e30  # no surface
+JUMP = 0.25  # px a view step between neighbours from which on two surfaces meet there
 
 
 @njit(cache=True)
@@ -99,8 +99,12 @@ def cubic(image, y, x):
     total = 0.0
     for i in range(4):
         row = image[min(max(y0 + i - 1, 0), rows - 1)]
-        total += wy[i] * (wx[0] * row[max(x0 - 1, 0)] + wx[1] * row[x0]
-                          + wx[2] * row[min(x0 + 1, cols - 1)] + wx[3] * row[min(x0 + 2, cols - 1)])
+        total += wy[i] * (
+            wx[0] * row[max(x0 - 1, 0)]
+            + wx[1] * row[x0]
+            + wx[2] * row[min(x0 + 1, cols - 1)]
+            + wx[3] * row[min(x0 + 2, cols - 1)]
+        )
     return total
 
 

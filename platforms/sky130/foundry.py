@@ -1,8 +1,10 @@
 """SKY130 as open_pdks installs it: SkyWater's manufacturing rules for KLayout, Magic's technology."""
 
-from flow.platforms.foundry import Foundry
+from platforms.foundry import Foundry
 
 FOUNDRY = Foundry(
     klayout="sky130A/libs.tech/klayout/drc/sky130A_mr.drc",
     defines=(("feol", "true"), ("beol", "true"), ("offgrid", "true"), ("floating_met", "false"), ("seal", "false")),
-    magic="sky130A/libs.tech/magic", rc="sky130A.magicrc")
+    magic="sky130A/libs.tech/magic",
+    rc="sky130A.magicrc",
+)

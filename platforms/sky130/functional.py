@@ -7,16 +7,45 @@ import importlib.util
 import re
 from pathlib import Path
 
-from flow.simulate.process import ToolError
+from base.tools import ToolError
 
 LIBRARY = "sky130_fd_sc_hd"
-NOT_LOGIC = ("decap", "diode", "fill", "lpflow", "macro", "probe", "tap", "conb", "df", "dl", "edf", "sdf", "sdl",
-             "sedf", "einv", "ebuf", "clkdly")
+NOT_LOGIC = (
+    "decap",
+    "diode",
+    "fill",
+    "lpflow",
+    "macro",
+    "probe",
+    "tap",
+    "conb",
+    "df",
+    "dl",
+    "edf",
+    "sdf",
+    "sdl",
+    "sedf",
+    "einv",
+    "ebuf",
+    "clkdly",
+)
 FLIP_FLOP, CONSTANT = "dfxtp_1", "conb_1"
-THRESHOLDS = {"input_threshold_pct": 50, "output_threshold_pct": 50, "slew_lower_threshold_pct": 20,
-              "slew_upper_threshold_pct": 80}
-GATES = {"and": "({})", "or": "({})", "xor": "({})", "nand": "!({})", "nor": "!({})", "xnor": "!({})", "buf": "({})",
-         "not": "!({})"}
+THRESHOLDS = {
+    "input_threshold_pct": 50,
+    "output_threshold_pct": 50,
+    "slew_lower_threshold_pct": 20,
+    "slew_upper_threshold_pct": 80,
+}
+GATES = {
+    "and": "({})",
+    "or": "({})",
+    "xor": "({})",
+    "nand": "!({})",
+    "nor": "!({})",
+    "xnor": "!({})",
+    "buf": "({})",
+    "not": "!({})",
+}
 SIGNS = {"and": "&", "nand": "&", "or": "|", "nor": "|", "xor": "^", "xnor": "^", "buf": "", "not": ""}
 
 
@@ -64,24 +93,35 @@ def functions(verilog):
 
 def liberty():
     """Text of a Liberty file: combinational cells of one output, one flip-flop, the constants."""
-    lines = [f"library({LIBRARY}_functional) {{", " delay_model : table_lookup;", ' time_unit : "1ns";',
-             " capacitive_load_unit(1, pf);",
-             *(f" {name}_{edge} : {percent};" for edge in ("rise", "fall") for name, percent in THRESHOLDS.items())]
+    lines = [
+        f"library({LIBRARY}_functional) {{",
+        " delay_model : table_lookup;",
+        ' time_unit : "1ns";',
+        " capacitive_load_unit(1, pf);",
+        *(f" {name}_{edge} : {percent};" for edge in ("rise", "fall") for name, percent in THRESHOLDS.items()),
+    ]
     for path in sorted((folder() / "cells").glob("*/*.functional.v")):
         cell = path.name.removeprefix(f"{LIBRARY}__").removesuffix(".functional.v")
         if cell.startswith(NOT_LOGIC) or not cell.rpartition("_")[2].isdigit():
             continue
         made = functions(path.read_text())
         if len(made) == 1:
-            (output, (function, inputs)), = made.items()
+            ((output, (function, inputs)),) = made.items()
             pins = [f"  pin({pin}) {{ direction : input; }}" for pin in inputs]
             pins.append(f'  pin({output}) {{ direction : output; function : "{function}"; }}')
             lines += [f' cell("{LIBRARY}__{cell}") {{ area : {area(cell)};', *pins, " }"]
-    lines += [f' cell("{LIBRARY}__{FLIP_FLOP}") {{ area : {area(FLIP_FLOP)};',
-              '  ff(IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }',
-              '  pin(CLK) { direction : input; clock : true; }', '  pin(D) { direction : input; }',
-              '  pin(Q) { direction : output; function : "IQ"; }', " }",
-              f' cell("{LIBRARY}__{CONSTANT}") {{ area : {area(CONSTANT)};',
-              '  pin(HI) { direction : output; function : "1"; }', '  pin(LO) { direction : output; function : "0"; }',
-              " }", "}", ""]
+    lines += [
+        f' cell("{LIBRARY}__{FLIP_FLOP}") {{ area : {area(FLIP_FLOP)};',
+        '  ff(IQ, IQN) { clocked_on : "CLK"; next_state : "D"; }',
+        "  pin(CLK) { direction : input; clock : true; }",
+        "  pin(D) { direction : input; }",
+        '  pin(Q) { direction : output; function : "IQ"; }',
+        " }",
+        f' cell("{LIBRARY}__{CONSTANT}") {{ area : {area(CONSTANT)};',
+        '  pin(HI) { direction : output; function : "1"; }',
+        '  pin(LO) { direction : output; function : "0"; }',
+        " }",
+        "}",
+        "",
+    ]
     return "\n".join(lines)

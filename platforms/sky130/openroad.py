@@ -4,29 +4,60 @@ Files: as open_pdks lays out sky130A. Straps, pins' layers, taps and routing lay
 (test/sky130hd) and flow-scripts' platform sky130hd use. GDS numbers: SkyWater's layer table.
 """
 
-from flow.platforms.openroad import OpenRoad, Strap
+from platforms.openroad import OpenRoad, Strap
 
 _CELLS = "sky130A/libs.ref/sky130_fd_sc_hd"
 
 PROCESS = OpenRoad(
-    name="sky130", library="sky130_fd_sc_hd", orfs_platform="sky130hd", pdk="sky130A",
-    liberty={corner: f"{_CELLS}/lib/sky130_fd_sc_hd__{name}.lib" for corner, name in
-             (("slow", "ss_100C_1v60"), ("typical", "tt_025C_1v80"), ("fast", "ff_n40C_1v95"))},
-    tech_lef=f"{_CELLS}/techlef/sky130_fd_sc_hd__nom.tlef", cell_lef=f"{_CELLS}/lef/sky130_fd_sc_hd.lef",
+    name="sky130",
+    library="sky130_fd_sc_hd",
+    orfs_platform="sky130hd",
+    pdk="sky130A",
+    liberty={
+        corner: f"{_CELLS}/lib/sky130_fd_sc_hd__{name}.lib"
+        for corner, name in (("slow", "ss_100C_1v60"), ("typical", "tt_025C_1v80"), ("fast", "ff_n40C_1v95"))
+    },
+    tech_lef=f"{_CELLS}/techlef/sky130_fd_sc_hd__nom.tlef",
+    cell_lef=f"{_CELLS}/lef/sky130_fd_sc_hd.lef",
     cell_gds=f"{_CELLS}/gds/sky130_fd_sc_hd.gds",
     cell_models=(f"{_CELLS}/verilog/primitives.v", f"{_CELLS}/verilog/sky130_fd_sc_hd.v"),
-    rcx_rules=tuple(f"sky130A/libs.tech/{folder}/rules.openrcx.sky130A.nom.magic"
-                    for folder in ("librelane", "openlane")),         # renamed in 2025
-    site="unithd", site_um=0.46, row_um=2.72,
-    supply=("VPWR", ("VPWR", "VPB")), ground=("VGND", ("VGND", "VNB")),
-    high="sky130_fd_sc_hd__conb_1/HI", low="sky130_fd_sc_hd__conb_1/LO",
+    rcx_rules=tuple(
+        f"sky130A/libs.tech/{folder}/rules.openrcx.sky130A.nom.magic" for folder in ("librelane", "openlane")
+    ),  # renamed in 2025
+    site="unithd",
+    site_um=0.46,
+    row_um=2.72,
+    supply=("VPWR", ("VPWR", "VPB")),
+    ground=("VGND", ("VGND", "VNB")),
+    high="sky130_fd_sc_hd__conb_1/HI",
+    low="sky130_fd_sc_hd__conb_1/LO",
     diode="sky130_fd_sc_hd__diode_2",
-    tap="sky130_fd_sc_hd__tapvpwrvgnd_1", tap_um=14.0, clock_buffer="sky130_fd_sc_hd__clkbuf_4",
+    tap="sky130_fd_sc_hd__tapvpwrvgnd_1",
+    tap_um=14.0,
+    clock_buffer="sky130_fd_sc_hd__clkbuf_4",
     straps=(Strap("met1", 0.48), Strap("met4", 1.6, 27.14, 13.57), Strap("met5", 1.6, 27.2, 13.6)),
-    pins=("met3", "met2"), signal=("met1", "met5"), clock=("met3", "met5"), signal_rc="met2", clock_rc="met5",
+    pins=("met3", "met2"),
+    signal=("met1", "met5"),
+    clock=("met3", "met5"),
+    signal_rc="met2",
+    clock_rc="met5",
     fill=tuple(f"sky130_fd_sc_hd__fill_{width}" for width in (1, 2, 4, 8)),
     # probes have metal on all layers; lpflow cells belong to designs with several supplies
     dont_use=("sky130_fd_sc_hd__probe*", "sky130_fd_sc_hd__lpflow*"),
-    gds={"li1": (67, 20), "mcon": (67, 44), "met1": (68, 20), "via": (68, 44), "met2": (69, 20), "via2": (69, 44),
-         "met3": (70, 20), "via3": (70, 44), "met4": (71, 20), "via4": (71, 44), "met5": (72, 20)},
-    outline=(235, 4), pin_datatype=16, label_datatype=5)
+    gds={
+        "li1": (67, 20),
+        "mcon": (67, 44),
+        "met1": (68, 20),
+        "via": (68, 44),
+        "met2": (69, 20),
+        "via2": (69, 44),
+        "met3": (70, 20),
+        "via3": (70, 44),
+        "met4": (71, 20),
+        "via4": (71, 44),
+        "met5": (72, 20),
+    },
+    outline=(235, 4),
+    pin_datatype=16,
+    label_datatype=5,
+)

@@ -6,7 +6,7 @@ of klayout-pex 0.6.12 (process_parasitics: capacitance, resistance), which has t
 for LI_SIDEWALL. Typical corner.
 """
 
-from flow.platforms.process import DIFFUSION, Crossing, Process, Wire
+from platforms.process import DIFFUSION, Crossing, Process, Wire
 
 # aF between facing edges of li: 0.30 of Magic's 25.5. Fitted, with models.FIT, to SkyWater's tables of inv_1, nand2_1,
 # buf_2 and dfxtp_1 at the typical corner; with 25.5 slews at small loads are 10 % too long, whatever else is fitted.
@@ -30,12 +30,24 @@ _CROSSINGS = (
     Crossing("met2", "met1", 133.86, 67.05, 48.19),
 )
 PROCESS = Process(
-    wires=_WIRES, crossings=_CROSSINGS,
+    wires=_WIRES,
+    crossings=_CROSSINGS,
     cuts=(((66, 44), (DIFFUSION, "poly"), "li1"), ((67, 44), ("li1",), "met1"), ((68, 44), ("met1",), "met2")),
-    devices={"diff": (65, 20), "tap": (65, 44), "nwell": (64, 20), "nsdm": (93, 44), "psdm": (94, 20),
-             "hvtp": (78, 44), "lvtn": (125, 44), "library": (81, 4)},
-    outlines=((235, 4), (236, 0)), well_labels=((64, 5), (64, 59)), halo=8.0,
-    contacts={"n": 185.0, "p": 585.0, "poly": 152.0, "li1": 9.3, "met1": 4.5})
+    devices={
+        "diff": (65, 20),
+        "tap": (65, 44),
+        "nwell": (64, 20),
+        "nsdm": (93, 44),
+        "psdm": (94, 20),
+        "hvtp": (78, 44),
+        "lvtn": (125, 44),
+        "library": (81, 4),
+    },
+    outlines=((235, 4), (236, 0)),
+    well_labels=((64, 5), (64, 59)),
+    halo=8.0,
+    contacts={"n": 185.0, "p": 585.0, "poly": 152.0, "li1": 9.3, "met1": 4.5},
+)
 
 
 def model(kind, width, marks):

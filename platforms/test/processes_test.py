@@ -1,4 +1,4 @@
-"""Only flow/platforms/<pdk> knows a process; every process has what the embedded backend asks for."""
+"""Only platforms/<pdk> knows a process; every process has what the embedded backend asks for."""
 
 import importlib.util
 import re
@@ -6,18 +6,22 @@ from pathlib import Path
 
 import pytest
 
-from flow.platforms.embedded import PROCESSES, modules, process
-from flow.platforms.patience import patience
+from base.paths import ROOT
 from models.parameters import ParameterError
+from platforms.coriolis import PROCESSES, modules, process
+from platforms.patience import patience
 
-FLOW = Path(__file__).parents[2]
 # "sky130" in quotes: a default
 OF_A_PROCESS = re.compile(r'sky130(?!")|ihp|sg13|[np]fet|\bmet\d|\(\d+, (?:20|16|5|44)\)')
 
 
 def test_no_step_knows_a_process():
-    files = [path for folder in ("layout", "steps", "handoff") for path in (FLOW / folder).rglob("*.py")
-             if "test" not in path.parts]
+    files = [
+        path
+        for folder in ("flow/layout", "base/steps", "flow/handoff")
+        for path in (ROOT / folder).rglob("*.py")
+        if "test" not in path.parts
+    ]
     assert len(files) > 40
     found = {path.name: OF_A_PROCESS.findall(path.read_text()) for path in files}
     assert {name: words for name, words in found.items() if words} == {}
@@ -29,7 +33,7 @@ def test_figures_fit_each_other(pdk):
     assert known.name == pdk
     _, layers = modules(pdk)
     assert {upper for _, _, upper in layers.PROCESS.cuts} <= {wire.name for wire in layers.PROCESS.wires}
-    assert abs(known.row_um / known.site_um - round(known.row_um / known.site_um)) < 1e-9       # else wells overlap
+    assert abs(known.row_um / known.site_um - round(known.row_um / known.site_um)) < 1e-9  # else wells overlap
     assert len(known.cuts) == len(known.wires) - 1
     for size in (known.row_um, known.site_um, known.strap_um, *known.pin_pitch_um.values()):
         assert abs(size / known.grid_um - round(size / known.grid_um)) < 1e-6
@@ -38,8 +42,8 @@ def test_figures_fit_each_other(pdk):
     assert list(known.fill.sides_um) == sorted(known.fill.sides_um, reverse=True)
 
 
-@pytest.mark.slow                   # importing a process's package draws its cells
-@pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")       # c4m-pdk-ihpsg13g2's own
+@pytest.mark.slow  # importing a process's package draws its cells
+@pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")  # c4m-pdk-ihpsg13g2's own
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_what_the_wheel_says_agrees(pdk):
     known, _ = process(pdk)

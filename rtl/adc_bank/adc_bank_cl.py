@@ -15,13 +15,18 @@ class AdcBankCL(Component):
         add_ports(s, lanes)
 
         s.lanes = [LaneCycles() for _ in range(lanes)]
-        s.at_pins = None        # (kind, row, en) of what is sampled and converts, or of a mark behind what leaves
-        s.leaving = []          # what leaves, in order: marks (ScanMsg) and lanes (int)
+        s.at_pins = None  # (kind, row, en) of what is sampled and converts, or of a mark behind what leaves
+        s.leaving = []  # what leaves, in order: marks (ScanMsg) and lanes (int)
 
         def tick_lanes(taken_lane):
             for number, lane in enumerate(s.lanes):
-                lane.tick(bool(s.hold & s.en[number]), bool(s.unsigned_), int(s.threshold),
-                          bool(s.comparator[number]), number == taken_lane)
+                lane.tick(
+                    bool(s.hold & s.en[number]),
+                    bool(s.unsigned_),
+                    int(s.threshold),
+                    bool(s.comparator[number]),
+                    number == taken_lane,
+                )
 
         def count(head):
             if isinstance(head, int):
@@ -68,7 +73,7 @@ class AdcBankCL(Component):
             s.idle <<= not starts and not any(lane.busy for lane in s.lanes)
             s.dac <<= sum(lane.dac << 8 * number for number, lane in enumerate(s.lanes))
             head = s.leaving[0] if s.leaving else None
-            if isinstance(head, int):       # a lane, whose result may not be there yet
+            if isinstance(head, int):  # a lane, whose result may not be there yet
                 result = s.lanes[head].result
                 head = result and ScanMsg(SAMPLE, (len(s.leaving) == 1) << 9 | result[0] & 0xFF)
             s.scan.val <<= head is not None

@@ -16,9 +16,9 @@ class AdcBankFL(Component):
     def construct(s, lanes=8):
         add_ports(s, lanes)
 
-        s.runs = {}             # lane -> its decisions under way
-        s.done = {}             # lane -> (code, converted) of the step under way
-        s.queue = deque()       # (ScanMsg, converted or None)
+        s.runs = {}  # lane -> its decisions under way
+        s.done = {}  # lane -> (code, converted) of the step under way
+        s.queue = deque()  # (ScanMsg, converted or None)
         s.codes = [0] * lanes
 
         def convert():

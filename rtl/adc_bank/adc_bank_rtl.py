@@ -40,23 +40,23 @@ class AdcBank(Component):
         add_ports(s, lanes)
 
         # Components
-        for i in range(lanes):          # not a list: PyMTL would join the ports in arrays, which Yosys calls memories
+        for i in range(lanes):  # not a list: PyMTL would join the ports in arrays, which Yosys calls memories
             setattr(s, f"lane{i}", EdgeAdc())
             setattr(s, f"link{i}", LaneResult())
-        s.at_pins = Wire()              # the message whose row and lanes are at the pins is not draining yet
+        s.at_pins = Wire()  # the message whose row and lanes are at the pins is not draining yet
         s.pins_kind = Wire(Bits2)
-        s.mark = Wire()                 # FRAME, ROW or END is at the output
+        s.mark = Wire()  # FRAME, ROW or END is at the output
         s.mark_kind = Wire(Bits2)
         s.mark_row = Wire(Bits10)
-        s.remaining = Wire(Lanes)       # lanes of the draining step whose results have not left
+        s.remaining = Wire(Lanes)  # lanes of the draining step whose results have not left
 
         s.go = Wire(Lanes)
         s.free = Wire(Lanes)
         s.busy = Wire(Lanes)
         s.taken = Wire(Lanes)
-        s.first = Wire(Lanes)           # one-hot: the lane whose turn it is
+        s.first = Wire(Lanes)  # one-hot: the lane whose turn it is
         s.none = Wire(Bits10)
-        s.result = Wire(Bits10)         # its result: val, converted, code
+        s.result = Wire(Bits10)  # its result: val, converted, code
         s.last = Wire()
         s.sent = Wire()
         s.drained = Wire()
@@ -71,7 +71,7 @@ class AdcBank(Component):
             lane.unsigned_ //= s.unsigned_
             lane.threshold //= s.threshold
             lane.comparator //= s.comparator[i]
-            lane.dac //= s.dac[8 * i:8 * i + 8]
+            lane.dac //= s.dac[8 * i : 8 * i + 8]
             lane.free //= s.free[i]
             lane.busy //= s.busy[i]
             lane.out.rdy //= s.taken[i]

@@ -13,7 +13,7 @@ class AmpCtrlFL(Component):
 
     def construct(s):
         declare_ports(s)
-        s.row = None            # the waveform under way
+        s.row = None  # the waveform under way
         s.pins = AmpPins()
         s.error = 0
 

@@ -18,9 +18,9 @@ class AmpCtrl(Component):
         s.d_reset, s.d_int, s.d_cm = Wire(16), Wire(16), Wire(16)
         s.d_settle, s.d_read, s.d_guard = Wire(16), Wire(16), Wire(16)
         s.d_n_cm, s.d_four = Wire(8), Wire()
-        s.state, s.after = Wire(3), Wire(3)     # after: the phase behind the guard
-        s.count = Wire(16)                      # cycles left in the present phase, this one not counted
-        s.resets = Wire(8)                      # common-mode resets still to come
+        s.state, s.after = Wire(3), Wire(3)  # after: the phase behind the guard
+        s.count = Wire(16)  # cycles left in the present phase, this one not counted
+        s.resets = Wire(8)  # common-mode resets still to come
         s.next_state, s.next_after = Wire(3), Wire(3)
         s.next_count = Wire(16)
         s.length = Wire(16)
@@ -31,9 +31,15 @@ class AmpCtrl(Component):
         @update
         def up_control():
             s.zero @= 0
-            if s.start:         # the condition only spares simulators the work
-                s.zero @= ((s.t_reset == 0) | (s.t_int == 0) | (s.t_cm == 0) | (s.t_settle == 0)
-                           | (s.t_read == 0) | (s.t_guard == 0))
+            if s.start:  # the condition only spares simulators the work
+                s.zero @= (
+                    (s.t_reset == 0)
+                    | (s.t_int == 0)
+                    | (s.t_cm == 0)
+                    | (s.t_settle == 0)
+                    | (s.t_read == 0)
+                    | (s.t_guard == 0)
+                )
             s.accept @= s.start & (s.state == IDLE)
             s.last @= (s.state != IDLE) & (s.count == 0)
             s.blocked @= (s.state == GUARD) & (s.after == REFERENCE) & ~s.hold_free
@@ -111,7 +117,7 @@ class AmpCtrl(Component):
                 if s.accept:
                     s.cfg_err <<= s.zero
                 if s.sub_frame_done & s.d_four:
-                    s.tap <<= s.tap + 1     # behind the last one it is 0 again
+                    s.tap <<= s.tap + 1  # behind the last one it is 0 again
                 if s.last & (s.state == RESET):
                     s.resets <<= s.d_n_cm
                 elif s.last & (s.state == CM_RESET):

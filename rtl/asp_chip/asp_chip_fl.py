@@ -2,8 +2,17 @@
 
 from pymtl3 import Component, Wire, connect, update, update_ff
 
-from models.parameters import (MODES, AmpTiming, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
-                               SensorParameters, TileParameters, Window)
+from models.parameters import (
+    MODES,
+    AmpTiming,
+    ArrayParameters,
+    ChipParameters,
+    FrameParameters,
+    ParameterError,
+    SensorParameters,
+    TileParameters,
+    Window,
+)
 from models.parameters.registers import register_map
 from rtl.reg_file import RegFileFL, chip_status
 
@@ -17,9 +26,17 @@ def frame_of(cfg):
     """FrameParameters of a ChipConfig, without the durations. Raises ParameterError where there is no such frame."""
     mode = MODES[int(cfg.mode)]
     return FrameParameters(
-        Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))), mode, int(cfg.mask),
-        int(cfg.threshold), int(cfg.decimation), bool(cfg.phase) and mode == "tof", int(cfg.noise_floor),
-        bool(cfg.overlap), bool(cfg.test_pattern), int(cfg.frame_number))
+        Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))),
+        mode,
+        int(cfg.mask),
+        int(cfg.threshold),
+        int(cfg.decimation),
+        bool(cfg.phase) and mode == "tof",
+        int(cfg.noise_floor),
+        bool(cfg.overlap),
+        bool(cfg.test_pattern),
+        int(cfg.frame_number),
+    )
 
 
 def trims_of(cfg):
@@ -41,10 +58,12 @@ class AspChipFL(Component):
             connect(getattr(s, name), getattr(s.regs, name))
         s.mode //= s.regs.cfg.mode
 
-        types = TileParameters().types[:tile_rows * tile_cols]
-        s.sensor = SensorParameters(TileParameters(tile_rows, tile_cols, types, tuple(order)),
-                                    ArrayParameters(rows, cols),
-                                    chip=ChipParameters(lanes, divider, n_frac, iterations))
+        types = TileParameters().types[: tile_rows * tile_cols]
+        s.sensor = SensorParameters(
+            TileParameters(tile_rows, tile_cols, types, tuple(order)),
+            ArrayParameters(rows, cols),
+            chip=ChipParameters(lanes, divider, n_frac, iterations),
+        )
         s.byte, s.byte_val = Wire(8), Wire()
         s.run = s.job = None
         s.spent = 0
@@ -75,7 +94,7 @@ class AspChipFL(Component):
                     s.job = None
             elif s.regs.start:
                 cfg_err, amp_err = begin()
-            busy = done or s.job is not None        # until `done` is set
+            busy = done or s.job is not None  # until `done` is set
             s.busy <<= busy
             s.regs.status <<= chip_status()(busy, done, cfg_err, amp_err)
             s.regs.cycles <<= s.spent

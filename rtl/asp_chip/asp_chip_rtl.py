@@ -44,7 +44,7 @@ class AspChip(Component):
         s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
         s.phase_on = Wire()
         s.was_sync = Wire()
-        s.cfg_told = Wire()         # cfg_err and amp_err are levels: tell each once a start
+        s.cfg_told = Wire()  # cfg_err and amp_err are levels: tell each once a start
         s.amp_told = Wire()
 
         # Connections

@@ -34,9 +34,9 @@ class Balance(Component):
         def up_balance():
             s.position @= trunc(s.row % ROWS, 5) * COLS + zext(s.k, 5)
             s.kind_select @= zext(s.position, KindSelect) * KIND_BITS
-            s.kind @= s.kinds[s.kind_select:s.kind_select + 5]
+            s.kind @= s.kinds[s.kind_select : s.kind_select + 5]
             s.trim_select @= zext(s.kind, TrimSelect) * STRIDE
-            s.balance @= s.trims[s.trim_select:s.trim_select + trim_bits]
+            s.balance @= s.trims[s.trim_select : s.trim_select + trim_bits]
 
     def line_trace(s):
         return f"{s.kind}:{s.balance}"

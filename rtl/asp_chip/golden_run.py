@@ -14,8 +14,23 @@ from models.parameters import FrameParameters, SensorParameters
 
 def resting_pins():
     """The pins that a frame moves, before it does: dict name -> 0."""
-    return dict.fromkeys(("dac", "hold", "unsigned_", "row", "group", "k", "sub", "en", "balance", "link_data",
-                          "link_val", "frame_sync"), 0)
+    return dict.fromkeys(
+        (
+            "dac",
+            "hold",
+            "unsigned_",
+            "row",
+            "group",
+            "k",
+            "sub",
+            "en",
+            "balance",
+            "link_data",
+            "link_val",
+            "frame_sync",
+        ),
+        0,
+    )
 
 
 @dataclass
@@ -59,13 +74,22 @@ class GoldenRun:
     def _convert(self, step, codes, comparator):
         """The lanes of a step, a decision of all of them a cycle, into ``codes``."""
         tile, frame = self.sensor.tile, self.frame
-        tiles = {lane: self.scan.lanes * step.group + lane
-                 for lane in range(self.scan.lanes) if step.enable >> lane & 1}
+        tiles = {
+            lane: self.scan.lanes * step.group + lane for lane in range(self.scan.lanes) if step.enable >> lane & 1
+        }
         searches = {lane: decisions(frame.mode != "edge", frame.threshold) for lane in tiles}
         trial = {lane: next(search) for lane, search in searches.items()}
         kind = tile.order[tile.cols * (step.row % tile.rows) + step.k]
-        self.pins.update(hold=1, unsigned_=int(frame.mode != "edge"), row=step.row, group=step.group, k=step.k,
-                         sub=step.sub, en=step.enable, balance=self.trims[kind])
+        self.pins.update(
+            hold=1,
+            unsigned_=int(frame.mode != "edge"),
+            row=step.row,
+            group=step.group,
+            k=step.k,
+            sub=step.sub,
+            en=step.enable,
+            balance=self.trims[kind],
+        )
         yield
         while trial:
             self.pins.update(hold=0, dac=sum(code << 8 * lane for lane, code in trial.items()))

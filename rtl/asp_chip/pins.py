@@ -11,13 +11,33 @@ def pins(lanes):
     """(inputs, outputs) besides clk and reset: dict name -> type. lanes: converters."""
     inputs = {**dict.fromkeys(INPUTS, Bits1), "comparator": mk_bits(lanes)}
     outputs = {
-        "miso": Bits1, "link_data": Bits8, "link_val": Bits1, "frame_sync": Bits1, "busy": Bits1,
+        "miso": Bits1,
+        "link_data": Bits8,
+        "link_val": Bits1,
+        "frame_sync": Bits1,
+        "busy": Bits1,
         # to the converters and the array's addressing
-        "dac": mk_bits(8 * lanes), "hold": Bits1, "unsigned_": Bits1, "mode": Bits2, "row": Bits10, "group": Bits8,
-        "k": Bits3, "sub": Bits2, "en": mk_bits(lanes), "balance": mk_bits(register_map().trims[0].width),
+        "dac": mk_bits(8 * lanes),
+        "hold": Bits1,
+        "unsigned_": Bits1,
+        "mode": Bits2,
+        "row": Bits10,
+        "group": Bits8,
+        "k": Bits3,
+        "sub": Bits2,
+        "en": mk_bits(lanes),
+        "balance": mk_bits(register_map().trims[0].width),
         # to the amplifiers of the row that integrates
-        "pixel_reset": Bits1, "shutter": Bits1, "ref_ctl": Bits1, "integrate": Bits1, "cm_reset": Bits1,
-        "read": Bits1, "sample": Bits1, "tap": Bits2, "amp_row": Bits10}
+        "pixel_reset": Bits1,
+        "shutter": Bits1,
+        "ref_ctl": Bits1,
+        "integrate": Bits1,
+        "cm_reset": Bits1,
+        "read": Bits1,
+        "sample": Bits1,
+        "tap": Bits2,
+        "amp_row": Bits10,
+    }
     return inputs, outputs
 
 

@@ -14,9 +14,9 @@ class LaneCycles:
     """
 
     def __init__(self):
-        self.run = None         # the conversion under way
-        self.left = 0           # decisions it takes at most from here
-        self.waiting = None     # a result that finds the one before not taken yet
+        self.run = None  # the conversion under way
+        self.left = 0  # decisions it takes at most from here
+        self.waiting = None  # a result that finds the one before not taken yet
         self.result = None
         self.dac = 0
 
@@ -62,8 +62,9 @@ class EdgeAdcCL(Component):
                 s.lane = LaneCycles()
                 s.converted <<= 0
             else:
-                s.lane.tick(bool(s.go), bool(s.unsigned_), int(s.threshold), bool(s.comparator),
-                            bool(s.out.val & s.out.rdy))
+                s.lane.tick(
+                    bool(s.go), bool(s.unsigned_), int(s.threshold), bool(s.comparator), bool(s.out.val & s.out.rdy)
+                )
             s.dac <<= s.lane.dac
             s.busy <<= s.lane.busy
             s.free <<= s.lane.free

@@ -11,26 +11,25 @@ from .ports import add_ports
 # ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, when the first has said "above".
 # WAIT, WAIT_ZERO: a result whose predecessor was not taken yet; the code of WAIT is in `trial`.
 IDLE, ABOVE, BELOW, OUTSIDE, SEARCH, WAIT, WAIT_ZERO = range(7)
-MIDDLE = 0x80               # code 0 in offset binary, and the first trial of the search
+MIDDLE = 0x80  # code 0 in offset binary, and the first trial of the search
 
 
 class EdgeAdc(Component):
-
     def construct(s):
         # Interface
         add_ports(s)
 
         # Components
         s.state = Wire(Bits3)
-        s.trial = Wire(Bits8)       # at the DAC
-        s.full = Wire()             # `code` waits to be taken
+        s.trial = Wire(Bits8)  # at the DAC
+        s.full = Wire()  # `code` waits to be taken
         s.code = Wire(Bits8)
-        s.search_made = Wire()      # it took a search
+        s.search_made = Wire()  # it took a search
 
-        s.kept = Wire(Bits8)        # the trial after the comparator's answer
+        s.kept = Wire(Bits8)  # the trial after the comparator's answer
         s.result = Wire(Bits8)
         s.magnitude = Wire(Bits8)
-        s.found = Wire()            # `result` stands
+        s.found = Wire()  # `result` stands
 
         # Connections
         s.dac //= s.trial
@@ -93,7 +92,7 @@ class EdgeAdc(Component):
                     elif s.state == SEARCH:
                         s.trial <<= s.kept | ((s.trial & (~s.trial + 1)) >> 1)
                     elif s.state == ABOVE:
-                        s.trial <<= 129 - zext(s.threshold, 8)      # level(1 - T)
+                        s.trial <<= 129 - zext(s.threshold, 8)  # level(1 - T)
                         s.state <<= OUTSIDE if s.comparator else BELOW
                     else:
                         s.trial <<= MIDDLE
@@ -103,7 +102,7 @@ class EdgeAdc(Component):
                         s.trial <<= MIDDLE
                         s.state <<= SEARCH
                         if ~s.unsigned_ & (s.threshold != 0):
-                            s.trial <<= zext(s.threshold, 8) | MIDDLE       # level(T)
+                            s.trial <<= zext(s.threshold, 8) | MIDDLE  # level(T)
                             s.state <<= ABOVE
 
     def line_trace(s):

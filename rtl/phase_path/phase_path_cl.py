@@ -19,10 +19,10 @@ class PhasePathCL(Component):
         s.divider = QuadDividerCL(divider, n_frac, iterations)
         s.divider.noise_floor //= s.noise_floor
 
-        s.head = None           # (kind, data): the message that came last and has not gone on
-        s.taps = [[]]           # samples of the taps of a step so far, the last list of them growing
-        s.in_flight = 0         # vectors in the divider
-        s.half_sent = False     # of the divider's response the phase has left
+        s.head = None  # (kind, data): the message that came last and has not gone on
+        s.taps = [[]]  # samples of the taps of a step so far, the last list of them growing
+        s.in_flight = 0  # vectors in the divider
+        s.half_sent = False  # of the divider's response the phase has left
 
         def is_tap():
             return s.head is not None and bool(s.on) and s.head[0] == SAMPLE

@@ -20,7 +20,7 @@ class PhasePathFL(Component):
         s.noise_floor = InPort(Bits8)
         s.send = SendIfcRTL(ScanMsg)
 
-        s.taps = [[]]           # samples of the taps of a step so far
+        s.taps = [[]]  # samples of the taps of a step so far
         s.queue = deque()
 
         def take(kind, data):

@@ -1,13 +1,28 @@
 """PhasePath at RTL: a store of the taps, the divider, and the control that keeps the order."""
 
-from pymtl3 import (Bits2, Bits6, Bits8, Bits9, Bits10, Bits17, Component, InPort, OutPort, Wire, concat,
-                    mk_bits, update, update_ff, zext)
+from pymtl3 import (
+    Bits2,
+    Bits6,
+    Bits8,
+    Bits9,
+    Bits10,
+    Bits17,
+    Component,
+    InPort,
+    OutPort,
+    Wire,
+    concat,
+    mk_bits,
+    update,
+    update_ff,
+    zext,
+)
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from rtl.messages import SAMPLE, DivReq, ScanMsg
 from rtl.quad_divider import quad_divider
 
-IN_FLIGHT_MAX = 63          # more than any divider holds
+IN_FLIGHT_MAX = 63  # more than any divider holds
 
 
 class TapEntry(Component):
@@ -22,8 +37,8 @@ class TapEntry(Component):
         s.chain_in = InPort(Bits17)
         s.chain_out = OutPort(Bits17)
 
-        s.value_x = Wire(Bits9)     # i0 or i0 - i180, signed
-        s.value_y = Wire(Bits8)     # i90
+        s.value_x = Wire(Bits9)  # i0 or i0 - i180, signed
+        s.value_y = Wire(Bits8)  # i90
 
         @update
         def up_chain():
@@ -51,11 +66,11 @@ class TapStore(Component):
 
     def construct(s, lanes):
         # Interface
-        s.write = InPort()          # keep `sample` (taps 0 to 2)
+        s.write = InPort()  # keep `sample` (taps 0 to 2)
         s.tap = InPort(Bits2)
-        s.turn = InPort(lanes)      # one-hot: number of the sample in its step
+        s.turn = InPort(lanes)  # one-hot: number of the sample in its step
         s.sample = InPort(Bits8)
-        s.x = OutPort(Bits9)        # of the sample at tap 3
+        s.x = OutPort(Bits9)  # of the sample at tap 3
         s.y = OutPort(Bits9)
 
         # Components
@@ -112,17 +127,17 @@ class PhasePath(Component):
         # Components
         s.store = TapStore(lanes)
         s.divider = quad_divider(divider, n_frac, iterations)
-        s.full = Wire()             # `kind` and `data` hold a message
+        s.full = Wire()  # `kind` and `data` hold a message
         s.kind = Wire(Bits2)
         s.data = Wire(Bits10)
         s.tap = Wire(Bits2)
-        s.turn = Wire(Lanes)        # one-hot: number in its step of the sample in the register
-        s.in_flight = Wire(Bits6)   # requests whose responses have not left
-        s.second = Wire()           # the phase of a response left, its amplitude is next
+        s.turn = Wire(Lanes)  # one-hot: number in its step of the sample in the register
+        s.in_flight = Wire(Bits6)  # requests whose responses have not left
+        s.second = Wire()  # the phase of a response left, its amplitude is next
 
-        s.sample = Wire()           # a tap is in the register
+        s.sample = Wire()  # a tap is in the register
         s.fourth = Wire()
-        s.passes = Wire()           # what is in the register may leave as it is
+        s.passes = Wire()  # what is in the register may leave as it is
         s.asked = Wire()
         s.answered = Wire()
         s.consumed = Wire()

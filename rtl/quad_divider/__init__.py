@@ -6,5 +6,15 @@ from .quad_divider_fl import QuadDividerFL
 from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
 from .variants import golden, quad_divider, ratio_bits, timing
 
-__all__ = ["Cordic", "QuadDividerCL", "QuadDividerFL", "QuadDividerPipelined", "QuadDividerRadix2",
-           "QuadDividerRadix4", "golden", "quad_divider", "ratio_bits", "timing"]
+__all__ = [
+    "Cordic",
+    "QuadDividerCL",
+    "QuadDividerFL",
+    "QuadDividerPipelined",
+    "QuadDividerRadix2",
+    "QuadDividerRadix4",
+    "golden",
+    "quad_divider",
+    "ratio_bits",
+    "timing",
+]

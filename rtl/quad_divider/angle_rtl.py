@@ -65,8 +65,8 @@ class PhaseIndex(Component):
         s.trial = Wire(5)
         s.at = Wire(at_bits)
 
-        for k, threshold in enumerate((0, *phase_thresholds(n_frac))):     # the 0th is always reached
-            s.edges[k * n_frac:(k + 1) * n_frac] //= threshold
+        for k, threshold in enumerate((0, *phase_thresholds(n_frac))):  # the 0th is always reached
+            s.edges[k * n_frac : (k + 1) * n_frac] //= threshold
 
         @update
         def up_search():
@@ -76,9 +76,9 @@ class PhaseIndex(Component):
             for level in range(5):
                 s.trial @= s.found | (Bits5(16) >> Bits5(level))
                 s.at @= zext(s.trial, at_bits) * n_frac
-                if s.ratio >= s.edges[s.at:s.at + n_frac]:
+                if s.ratio >= s.edges[s.at : s.at + n_frac]:
                     s.found @= s.trial
-            s.index @= zext(s.found, 6) + zext(s.ratio >= s.edges[last:last + n_frac], 6)
+            s.index @= zext(s.found, 6) + zext(s.ratio >= s.edges[last : last + n_frac], 6)
 
 
 class Unfold(Component):
@@ -113,5 +113,11 @@ class Unfold(Component):
 
         @update
         def up_msg():
-            s.msg @= Response(s.octant, Ratio(0) if s.zero else s.ratio, s.zero, s.phase, s.amp_valid,
-                              s.larger[0:8] | sext(s.larger[8], 8))
+            s.msg @= Response(
+                s.octant,
+                Ratio(0) if s.zero else s.ratio,
+                s.zero,
+                s.phase,
+                s.amp_valid,
+                s.larger[0:8] | sext(s.larger[8], 8),
+            )

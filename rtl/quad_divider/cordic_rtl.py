@@ -9,7 +9,7 @@ from rtl.messages import DivReq, div_resp
 from .angle_rtl import Fold, Unfold
 from .iterative_rtl import IterativeDivider
 
-RATIO_BITS = 8      # of the response; the ratio of CORDIC is 0
+RATIO_BITS = 8  # of the response; the ratio of CORDIC is 0
 
 
 class AddSubtract(Component):
@@ -76,8 +76,8 @@ class NearestEven(Component):
 
         @update
         def up_index():
-            s.up @= s.z[fraction - 1] & ((s.z[0:fraction - 1] != Low(0)) | s.z[fraction])
-            s.index @= sext(s.z[fraction:fraction + 7], 8) + zext(s.up, 8)
+            s.up @= s.z[fraction - 1] & ((s.z[0 : fraction - 1] != Low(0)) | s.z[fraction])
+            s.index @= sext(s.z[fraction : fraction + 7], 8) + zext(s.up, 8)
 
 
 class CordicDatapath(Component):
@@ -117,7 +117,7 @@ class CordicDatapath(Component):
         s.rotation.y //= s.y
         s.rotation.z //= s.z
         for k in range(ITERATIONS_MAX):
-            s.angles[k * angle_bits:(k + 1) * angle_bits] //= angles(iterations)[k] if k < iterations else 0
+            s.angles[k * angle_bits : (k + 1) * angle_bits] //= angles(iterations)[k] if k < iterations else 0
         s.nearest.z //= s.z
         s.unfold.octant //= s.octant
         s.unfold.larger //= s.larger
@@ -130,7 +130,7 @@ class CordicDatapath(Component):
         def up_iteration():
             s.last @= s.i == Bits4(iterations - 1)
             s.at @= zext(s.i, at_bits) * angle_bits
-            s.rotation.angle @= s.angles[s.at:s.at + angle_bits]
+            s.rotation.angle @= s.angles[s.at : s.at + angle_bits]
 
         @update_ff
         def up_request():

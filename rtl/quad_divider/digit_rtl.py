@@ -2,8 +2,24 @@
 
 from functools import cache
 
-from pymtl3 import (Bits1, Bits2, Bits3, Bits9, Bits11, Bits12, Component, InPort, OutPort, Wire, concat, mk_bits,
-                    mk_bitstruct, trunc, update, zext)
+from pymtl3 import (
+    Bits1,
+    Bits2,
+    Bits3,
+    Bits9,
+    Bits11,
+    Bits12,
+    Component,
+    InPort,
+    OutPort,
+    Wire,
+    concat,
+    mk_bits,
+    mk_bitstruct,
+    trunc,
+    update,
+    zext,
+)
 
 
 @cache
@@ -12,8 +28,10 @@ def div_state(quotient_bits):
 
     rest = larger only for |x| = |y| (and for zero): then every digit is the highest, and the ratio saturates.
     """
-    return mk_bitstruct(f"DivState_{quotient_bits}", {
-        "octant": Bits3, "amp_valid": Bits1, "larger": Bits9, "rest": Bits9, "quotient": mk_bits(quotient_bits)})
+    return mk_bitstruct(
+        f"DivState_{quotient_bits}",
+        {"octant": Bits3, "amp_valid": Bits1, "larger": Bits9, "rest": Bits9, "quotient": mk_bits(quotient_bits)},
+    )
 
 
 class Radix2Digit(Component):
@@ -36,8 +54,13 @@ class Radix2Digit(Component):
             s.twice @= concat(Bits1(0), s.in_state.rest, Bits1(0))
             s.less @= s.twice - zext(s.in_state.larger, Bits11)
             s.rest @= trunc(s.twice if s.less[10] else s.less, Bits9)
-            s.out_state @= State(s.in_state.octant, s.in_state.amp_valid, s.in_state.larger,
-                                 s.rest, concat(s.in_state.quotient[0:kept], ~s.less[10]))
+            s.out_state @= State(
+                s.in_state.octant,
+                s.in_state.amp_valid,
+                s.in_state.larger,
+                s.rest,
+                concat(s.in_state.quotient[0:kept], ~s.less[10]),
+            )
 
 
 class Radix4Digit(Component):
@@ -77,5 +100,10 @@ class Radix4Digit(Component):
         def up_digit():
             s.rest @= trunc(s.rest3 if s.fits3 else s.rest2 if s.fits2 else s.rest1 if s.fits1 else s.rest0, Bits9)
             s.bits @= concat(s.fits2, s.fits3 | (s.fits1 & ~s.fits2))
-            s.out_state @= State(s.in_state.octant, s.in_state.amp_valid, s.in_state.larger,
-                                 s.rest, concat(s.in_state.quotient[0:kept], s.bits))
+            s.out_state @= State(
+                s.in_state.octant,
+                s.in_state.amp_valid,
+                s.in_state.larger,
+                s.rest,
+                concat(s.in_state.quotient[0:kept], s.bits),
+            )

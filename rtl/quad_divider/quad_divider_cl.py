@@ -25,6 +25,7 @@ class QuadDividerCL(Component):
         s.empty = Wire()
 
         if interval == 1:
+
             @update
             def up_rdy():
                 s.recv.rdy @= ~s.send.val | s.send.rdy

@@ -80,7 +80,7 @@ class DividerDatapath(Component):
         s.result.octant //= s.state.octant
         s.result.larger //= s.state.larger
         s.result.amp_valid //= s.state.amp_valid
-        s.result.ratio //= s.state.quotient[quotient_bits - n_frac:quotient_bits]  # a last digit may give a bit more
+        s.result.ratio //= s.state.quotient[quotient_bits - n_frac : quotient_bits]  # a last digit may give a bit more
         s.result.msg //= s.send_msg
         s.last //= lambda: s.count == Bits4(digits - 1)
 

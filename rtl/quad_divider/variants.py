@@ -43,7 +43,8 @@ def response(variant, n_frac, iterations, request, noise_floor):
     """The DivResp that ``variant`` must give to the DivReq ``request``."""
     r = golden(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
     return div_resp(ratio_bits(variant, n_frac))(
-        int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp))
+        int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp)
+    )
 
 
 def timing(variant, n_frac=8, iterations=10):

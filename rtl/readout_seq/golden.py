@@ -16,7 +16,7 @@ def configured_scan(s, rows, cols, lanes, tile):
 
 def tile_of(order, tile_rows, tile_cols):
     """TileParameters whose positions lie in ``order``."""
-    return TileParameters(tile_rows, tile_cols, TileParameters().types[:tile_rows * tile_cols], tuple(order))
+    return TileParameters(tile_rows, tile_cols, TileParameters().types[: tile_rows * tile_cols], tuple(order))
 
 
 def row_steps(scan, row):

@@ -27,7 +27,7 @@ def edges(rows, cols, lanes, order, tile_rows, tile_cols):
     check_int("rows", rows, 1, ROWS_MAX)
     check_int("cols", cols, 1, COLS_MAX)
     check_choice("lanes", lanes, LANES)
-    TileParameters(tile_rows, tile_cols, TileParameters().types[:tile_rows * tile_cols], tuple(order))
+    TileParameters(tile_rows, tile_cols, TileParameters().types[: tile_rows * tile_cols], tuple(order))
     last_row, last_col = (rows - 1) // tile_rows, (cols - 1) // tile_cols
     if max(last_row, last_col) > 255:
         raise ParameterError(f"array = {rows} x {cols}: must be at most 256 x 256 tiles of {tile_rows} x {tile_cols}")

@@ -41,12 +41,12 @@ class ReadoutSeqCL(Component):
 
     def clear(s):
         """The state behind a reset."""
-        s.frame = None              # generator: the walk through the frame, a cycle a step
-        s.todo = None               # rows that the amplifiers have not begun
-        s.amplified = 0             # the row they began last
+        s.frame = None  # generator: the walk through the frame, a cycle a step
+        s.todo = None  # rows that the amplifiers have not begun
+        s.amplified = 0  # the row they began last
         s.integrating = s.started = s.failing = s.ended = s.error = False
-        s.held = None               # row in the sample-and-holds
-        s.offer = None              # message at the port
+        s.held = None  # row in the sample-and-holds
+        s.offer = None  # message at the port
         s.count = 0
 
     def tick(s):
@@ -92,8 +92,8 @@ class ReadoutSeqCL(Component):
     def walk(s, scan):
         """A frame; every yield is one clock cycle."""
         s.launch()
-        yield           # `amp_start`
-        yield           # and its answer, which may be `amp_err`
+        yield  # `amp_start`
+        yield  # and its answer, which may be `amp_err`
         yield from s.send(mark(FRAME, scan.lanes))
         while s.integrating or s.held is not None:
             yield

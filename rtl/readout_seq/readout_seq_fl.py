@@ -49,7 +49,7 @@ class ReadoutSeqFL(Component):
 
     def clear(s):
         """The state behind a reset."""
-        s.job, s.queue = None, deque()      # the frame's generator, and messages on their way
+        s.job, s.queue = None, deque()  # the frame's generator, and messages on their way
         s.row = s.count = 0
         s.started = s.ended = False
         s.error, s.free = False, True
@@ -64,10 +64,10 @@ class ReadoutSeqFL(Component):
 
     def frame(s, scan):
         """The walk; every yield is one clock cycle."""
-        opening = [mark(FRAME, scan.lanes)]     # not before the amplifiers' control has taken its durations
+        opening = [mark(FRAME, scan.lanes)]  # not before the amplifiers' control has taken its durations
         for row in scan.row_list:
             s.row, s.started = int(row), True
-            yield           # `amp_start`
+            yield  # `amp_start`
             yield
             while not (s.amp_done or s.amp_err):
                 s.queue.extend(opening)

@@ -9,7 +9,7 @@ from .row_walk_rtl import RowWalk
 from .step_walk_rtl import StepWalk
 
 IDLE, CHECK, WAIT, DRAIN = range(4)
-OFFER = 4                   # and the message's kind in the lower bits
+OFFER = 4  # and the message's kind in the lower bits
 RAW, TOF = 2, 3
 
 
@@ -31,11 +31,11 @@ class ReadoutSeq(Component):
         s.rows = RowWalk(tile_rows, last_row, rows_there)
         s.steps = StepWalk(lanes, last_col, cols_there)
         s.state = Wire(3)
-        s.integrating = Wire()      # a row is with the amplifiers
-        s.failing = Wire()          # given up as soon as the message on offer is taken
-        s.row = Wire(10)            # the row that converts
-        s.unmasked = Wire(24)       # by position, six to a row of the tile
-        s.columns = Wire(24)        # of these, what exists in tile column col0
+        s.integrating = Wire()  # a row is with the amplifiers
+        s.failing = Wire()  # given up as soon as the message on offer is taken
+        s.row = Wire(10)  # the row that converts
+        s.unmasked = Wire(24)  # by position, six to a row of the tile
+        s.columns = Wire(24)  # of these, what exists in tile column col0
         s.window_ok = Wire()
         s.idle, s.taken, s.listening, s.failed, s.landed, s.drained = Wire(), Wire(), Wire(), Wire(), Wire(), Wire()
         s.accept, s.launch, s.abort = Wire(), Wire(), Wire()
@@ -68,8 +68,12 @@ class ReadoutSeq(Component):
         # Logic: configuration
         @update
         def up_configuration():
-            s.window_ok @= ((s.row0 <= s.row1) & (zext(s.row1, 9) <= last_row)      # nine bits: 255 may be the last
-                            & (s.col0 <= s.col1) & (zext(s.col1, 9) <= last_col))
+            s.window_ok @= (
+                (s.row0 <= s.row1)
+                & (zext(s.row1, 9) <= last_row)  # nine bits: 255 may be the last
+                & (s.col0 <= s.col1)
+                & (zext(s.col1, 9) <= last_col)
+            )
             s.four_tap @= s.mode == TOF
             s.steps.subs @= concat(s.mode == TOF, (s.mode == TOF) | (s.mode == RAW))
 
@@ -80,7 +84,7 @@ class ReadoutSeq(Component):
             s.busy @= s.state != IDLE
             s.taken @= s.step.val & s.step.rdy
             s.steps.advance @= s.taken & (s.state == OFFER + SAMPLE)
-            s.listening @= s.integrating & ~s.amp_start     # amp_err may be of the start before
+            s.listening @= s.integrating & ~s.amp_start  # amp_err may be of the start before
             s.failed @= s.listening & s.amp_err
             s.landed @= s.listening & s.amp_done & ~s.amp_err
             s.drained @= (s.state == DRAIN) & s.bank_idle
@@ -89,7 +93,7 @@ class ReadoutSeq(Component):
         @update
         def up_columns():
             s.columns @= 0
-            if s.rows.look | s.landed:      # the condition only spares simulators the work
+            if s.rows.look | s.landed:  # the condition only spares simulators the work
                 s.columns @= s.unmasked
                 if s.col0 == last_col:
                     s.columns @= s.columns & THERE
@@ -97,7 +101,7 @@ class ReadoutSeq(Component):
         @update
         def up_decisions():
             s.accept @= s.idle & s.start & s.window_ok & s.rows.found
-            s.launch @= s.accept | (~s.idle & s.rows.found)      # found only when looked for
+            s.launch @= s.accept | (~s.idle & s.rows.found)  # found only when looked for
             s.abort @= (s.failed | s.failing) & (~s.step.val | s.step.rdy)
 
         # Logic: state
@@ -111,7 +115,7 @@ class ReadoutSeq(Component):
                 if s.accept:
                     s.state <<= CHECK
             elif s.state == CHECK:
-                if ~s.amp_start:        # by now the amplifiers' control would have refused its durations
+                if ~s.amp_start:  # by now the amplifiers' control would have refused its durations
                     s.state <<= OFFER + FRAME
             elif s.state == WAIT:
                 if s.landed | ~s.hold_free:

@@ -14,11 +14,11 @@ class RowWalk(Component):
         BELOW = Bits4(0xE)
 
         # Interface
-        s.columns = InPort(24)      # what is read of each row of a tile, six bits a row
+        s.columns = InPort(24)  # what is read of each row of a tile, six bits a row
         s.row0 = InPort(8)
         s.row1 = InPort(8)
         s.decimation = InPort(2)
-        s.first = InPort()          # next is the first row of the window
+        s.first = InPort()  # next is the first row of the window
         s.look = InPort()
         s.move = InPort()
         s.found = OutPort()
@@ -27,11 +27,11 @@ class RowWalk(Component):
 
         # Components
         s.tile = Wire(8)
-        s.in_tile = Wire(2)         # row = tile_rows * tile + in_tile
-        s.wanted = Wire(4)          # rows of a tile with something to read
-        s.far = Wire(9)             # the tile behind this one
-        s.below = Wire(4)           # rows to read in this tile, below `row`
-        s.beyond = Wire(4)          # and in the tile behind
+        s.in_tile = Wire(2)  # row = tile_rows * tile + in_tile
+        s.wanted = Wire(4)  # rows of a tile with something to read
+        s.far = Wire(9)  # the tile behind this one
+        s.below = Wire(4)  # rows to read in this tile, below `row`
+        s.beyond = Wire(4)  # and in the tile behind
         s.choice = Wire(4)
         s.next_tile = Wire(8)
         s.next_in_tile = Wire(2)
@@ -44,9 +44,9 @@ class RowWalk(Component):
             s.far @= 0
             s.below @= 0
             s.beyond @= 0
-            if s.look:              # the conditions on `look` only spare simulators the work
+            if s.look:  # the conditions on `look` only spare simulators the work
                 for i in range(4):
-                    s.wanted[i] @= s.columns[6 * i:6 * i + 6] != 0
+                    s.wanted[i] @= s.columns[6 * i : 6 * i + 6] != 0
                 if s.first:
                     s.far @= zext(s.row0, 9)
                 else:

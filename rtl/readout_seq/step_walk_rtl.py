@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits8, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
 
-STRIDES = (1, 2, 4, 8)      # in tiles, by decimation
+STRIDES = (1, 2, 4, 8)  # in tiles, by decimation
 
 
 class StepWalk(Component):
@@ -22,7 +22,7 @@ class StepWalk(Component):
         s.load = InPort()
         s.advance = InPort()
         s.columns = InPort(6)
-        s.subs = InPort(2)          # sub-samples of a pixel less one
+        s.subs = InPort(2)  # sub-samples of a pixel less one
         s.col0 = InPort(8)
         s.col1 = InPort(8)
         s.decimation = InPort(2)
@@ -30,14 +30,14 @@ class StepWalk(Component):
         s.group = OutPort(8)
         s.sub = OutPort(2)
         s.en = OutPort(Lanes)
-        s.last = OutPort()          # the row's last step
+        s.last = OutPort()  # the row's last step
 
         # Components
-        s.last_tile = Wire(8)       # last tile that is kept in column k
-        s.left = Wire(6)            # columns still to come
+        s.last_tile = Wire(8)  # last tile that is kept in column k
+        s.left = Wire(6)  # columns still to come
         s.sub_ends, s.group_ends = Wire(), Wire()
-        s.regroup = Wire()          # the next step has another group
-        s.turn = Wire()             # and another column
+        s.regroup = Wire()  # the next step has another group
+        s.turn = Wire()  # and another column
         s.pending = Wire(6)
         s.next_k = Wire(3)
         s.rest = Wire(6)
@@ -89,7 +89,7 @@ class StepWalk(Component):
                     s.next_group @= s.col0 >> shift
                     s.next_last_tile @= s.bound - ((s.bound - s.col0) & s.stride_mask)
                 else:
-                    s.next_group @= s.group + (s.stride_mask >> shift) + 1      # by stride / lanes, or 1
+                    s.next_group @= s.group + (s.stride_mask >> shift) + 1  # by stride / lanes, or 1
                     s.next_last_tile @= s.last_tile
 
         if lanes == 1:
@@ -126,10 +126,10 @@ def add_lanes(s, lanes, shift, Lanes):
     ALL = Lanes((1 << lanes) - 1)
     kept = [Lanes(sum(1 << lane for lane in range(0, lanes, n))) for n in STRIDES]
     kept_1, kept_2, kept_3 = kept[1:]
-    few = min(3, shift)         # bits of a tile's number that decimation looks at within a group
+    few = min(3, shift)  # bits of a tile's number that decimation looks at within a group
 
     s.offset = Wire(few)
-    s.kept = Wire(Lanes)        # by decimation, with the first lane kept
+    s.kept = Wire(Lanes)  # by decimation, with the first lane kept
     s.next_en = Wire(Lanes)
 
     @update

@@ -26,7 +26,7 @@ class RegFileFL(Component):
 
         s.bank = RegisterBank({"row1": last_row, "col1": last_col})
         s.was_high = s.command = None
-        s.was_free = False          # csn has been high since reset
+        s.was_free = False  # csn has been high since reset
         s.bits, s.out = [], 0
 
         chip = register_map()
@@ -41,8 +41,7 @@ class RegFileFL(Component):
             if s.bits or s.command is None or s.command & 0x80:
                 s.out = s.out << 1 & 0xFF if s.bits else 0
             else:
-                s.out = s.bank.read(s.command, int(s.status.busy),
-                                    [int(getattr(s, name)) for name in counters])
+                s.out = s.bank.read(s.command, int(s.status.busy), [int(getattr(s, name)) for name in counters])
 
         def rising():
             s.bits.append(int(s.mosi))

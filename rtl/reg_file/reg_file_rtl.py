@@ -1,7 +1,23 @@
 """The register file: bytes over SPI to configuration, start strobe and status (models/parameters/registers)."""
 
-from pymtl3 import (Bits1, Bits3, Bits6, Bits7, Bits8, Bits10, Bits64, Component, InPort, OutPort, Wire, concat,
-                    connect, mk_bits, update, update_ff)
+from pymtl3 import (
+    Bits1,
+    Bits3,
+    Bits6,
+    Bits7,
+    Bits8,
+    Bits10,
+    Bits64,
+    Component,
+    InPort,
+    OutPort,
+    Wire,
+    concat,
+    connect,
+    mk_bits,
+    update,
+    update_ff,
+)
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 from models.parameters.registers import register_map
@@ -36,7 +52,7 @@ class RegFile(Component):
         A_CYCLES, A_MADE, A_LEFT_OUT = (Bits7(f.byte) for f in chip.counters)
         LAST_COUNTER = Bits7(chip.counters[-1].byte + 7)
         START_BIT = chip["start"].shift
-        sticky = [f for f in chip.fields if f.access == "w1c"]      # neighbours (a test says so)
+        sticky = [f for f in chip.fields if f.access == "w1c"]  # neighbours (a test says so)
         low, high = sticky[0].shift, sticky[-1].shift + 1
         Sticky = mk_bits(high - low)
         KEPT_AT_START = Sticky(1 << chip["refused"].shift - low)
@@ -53,17 +69,17 @@ class RegFile(Component):
         s.loop = SendIfcRTL(Bits8)
 
         s.spi = SpiSlave()
-        s.image = Wire(Image)           # the configuration's bytes, the lowest address in the lowest bits
-        s.written = Wire(Image)         # ... with the byte that is written now
+        s.image = Wire(Image)  # the configuration's bytes, the lowest address in the lowest bits
+        s.written = Wire(Image)  # ... with the byte that is written now
         s.writable = Wire(Image)
-        s.snapshot = Wire(64)           # the counter whose first byte was read last
+        s.snapshot = Wire(64)  # the counter whose first byte was read last
         s.sticky = Wire(Sticky)
-        s.events = Wire(Sticky)         # what sets them
+        s.events = Wire(Sticky)  # what sets them
         s.have_command = Wire()
         s.writing = Wire()
         s.address = Wire(7)
-        s.offset = Wire(7)              # of the address in the image, in bytes
-        s.index = Wire(10)          # ... in bits
+        s.offset = Wire(7)  # of the address in the image, in bytes
+        s.index = Wire(10)  # ... in bits
         s.counter_index = Wire(6)
         s.write = Wire()
         s.starting = Wire()
@@ -80,9 +96,9 @@ class RegFile(Component):
         for f in chip.configuration:
             if f.name != "trim":
                 bit = 8 * (f.address - first) + f.lsb
-                connect(getattr(s.cfg, f.name), s.image[bit:bit + f.width])
+                connect(getattr(s.cfg, f.name), s.image[bit : bit + f.width])
         trims, past = chip.trims[0].address, chip.trims[-1].address + chip.trims[-1].size
-        connect(s.cfg.trims, s.image[8 * (trims - first):8 * (past - first)])
+        connect(s.cfg.trims, s.image[8 * (trims - first) : 8 * (past - first)])
         for f in sticky:
             connect(s.events[f.shift - low], s.refused if f.name == "refused" else getattr(s.status, f.name))
 
@@ -101,15 +117,16 @@ class RegFile(Component):
                 s.starting @= (s.address == A_START) & s.spi.rx[START_BIT] & ~s.status.busy
                 s.configuring @= s.in_image & ~s.status.busy
                 s.looping @= (s.address == A_LOOP) & ~s.loop.val
-                s.refused @= (s.status.busy & (s.in_image | (s.address == A_START) & s.spi.rx[START_BIT])
-                              | s.loop.val & (s.address == A_LOOP))
+                s.refused @= s.status.busy & (
+                    s.in_image | (s.address == A_START) & s.spi.rx[START_BIT]
+                ) | s.loop.val & (s.address == A_LOOP)
 
         @update
         def up_read():
             s.spi.tx @= Bits8(0)
             if s.spi.tx_take & s.have_command & ~s.writing:
                 if s.in_image:
-                    s.spi.tx @= s.image[s.index:s.index + Bits10(8)]
+                    s.spi.tx @= s.image[s.index : s.index + Bits10(8)]
                 elif s.address == A_CYCLES:
                     s.spi.tx @= s.cycles[0:8]
                 elif s.address == A_MADE:
@@ -117,7 +134,7 @@ class RegFile(Component):
                 elif s.address == A_LEFT_OUT:
                     s.spi.tx @= s.conversions_left_out[0:8]
                 elif (s.address > A_CYCLES) & (s.address <= LAST_COUNTER):
-                    s.spi.tx @= s.snapshot[s.counter_index:s.counter_index + Bits6(8)]
+                    s.spi.tx @= s.snapshot[s.counter_index : s.counter_index + Bits6(8)]
                 elif s.address == A_STATUS:
                     s.spi.tx[BUSY] @= s.status.busy
                     s.spi.tx[low:high] @= s.sticky
@@ -142,12 +159,12 @@ class RegFile(Component):
 
         @update
         def up_written():
-            s.written @= Image(0)       # looked at when a byte is written only
+            s.written @= Image(0)  # looked at when a byte is written only
             if s.configuring:
                 s.written @= s.image
                 for i in range(n_bytes):
                     if s.offset == Bits7(i):
-                        s.written[i * 8:i * 8 + 8] @= s.spi.rx & s.writable[i * 8:i * 8 + 8]
+                        s.written[i * 8 : i * 8 + 8] @= s.spi.rx & s.writable[i * 8 : i * 8 + 8]
 
         @update_ff
         def up_image():

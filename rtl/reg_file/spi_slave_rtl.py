@@ -25,7 +25,7 @@ class SpiSlave(Component):
         s.sclk_sync = Wire(3)
         s.csn_sync = Wire(2)
         s.mosi_sync = Wire(2)
-        s.was_free = Wire()         # csn has been high: what is left of a transfer that a reset cut is no transfer
+        s.was_free = Wire()  # csn has been high: what is left of a transfer that a reset cut is no transfer
         s.rise = Wire()
         s.fall = Wire()
         s.count = Wire(3)
@@ -41,7 +41,7 @@ class SpiSlave(Component):
             s.fall @= Bits1(0)
             s.rx_val @= Bits1(0)
             s.tx_take @= Bits1(0)
-            if s.selected:          # nothing moves in most cycles of a frame, and nothing need be simulated
+            if s.selected:  # nothing moves in most cycles of a frame, and nothing need be simulated
                 s.rise @= s.sclk_sync[1] & ~s.sclk_sync[2]
                 s.fall @= ~s.sclk_sync[1] & s.sclk_sync[2]
                 s.rx_val @= s.rise & (s.count == Bits3(7))

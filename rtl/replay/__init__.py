@@ -4,5 +4,4 @@ from .record import RecordError, record, tests_of, whole_level
 from .replay import Mismatch, replay, replay_files
 from .trace import Trace, load
 
-__all__ = ["Mismatch", "RecordError", "Trace", "load", "record", "replay", "replay_files", "tests_of",
-           "whole_level"]
+__all__ = ["Mismatch", "RecordError", "Trace", "load", "record", "replay", "replay_files", "tests_of", "whole_level"]

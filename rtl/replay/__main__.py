@@ -1,4 +1,4 @@
-"""`python -m verif.replay`: record what a block's tests do at its ports; replay that into any Verilog of it."""
+"""`python -m rtl.replay`: record what a block's tests do at its ports; replay that into any Verilog of it."""
 
 import argparse
 import sys
@@ -14,7 +14,7 @@ from .trace import load
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m verif.replay", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m rtl.replay", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     recording = commands.add_parser("record", help="run a block's tests and save a trace a parameter set")
     recording.add_argument("block", choices=TOPS)
@@ -41,7 +41,7 @@ def main(argv=None):
                 raise ParameterError(f"file = {path}: must be there")
         found = replay_files(options.trace, options.verilog, options.top, options.cells, options.strict)
     except (ParameterError, IcarusError, RecordError, OSError) as error:
-        print(f"verif.replay: {error}", file=sys.stderr)
+        print(f"rtl.replay: {error}", file=sys.stderr)
         return 2
     for mismatch in found:
         print(mismatch)

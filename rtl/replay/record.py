@@ -3,12 +3,12 @@
 import sys
 from pathlib import Path
 
-from flow.simulate.process import finish
+from base.paths import ROOT
+from base.tools import finish
 from models.parameters import SensorParameters
 from rtl.tops import build_top
 
-ROOT = Path(__file__).parents[2]
-WHOLE = "AspChip"       # a frame of the chip is too long for PyMTL: its tests run whole at the Verilog level only
+WHOLE = "AspChip"  # a frame of the chip is too long for PyMTL: its tests run whole at the Verilog level only
 
 
 class RecordError(RuntimeError):
@@ -35,8 +35,10 @@ def record(block, folder, level=None):
     folder = Path(folder).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     level = level or whole_level(block)
-    program = ("import sys, pytest; from verif.replay.recorder import Plugin; "
-               "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))")
+    program = (
+        "import sys, pytest; from rtl.replay.recorder import Plugin; "
+        "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))"
+    )
     # PyMTL is a pytest plugin: that it is imported ahead of pytest is meant. A seed: the same traces every time.
     options = ["-p", "no:cacheprovider", "-W", "ignore::pytest.PytestAssertRewriteWarning", "--hypothesis-seed=1"]
     result = finish([sys.executable, "-c", program, cls, folder, level, *options, tests], cwd=ROOT)

@@ -1,4 +1,4 @@
-"""A pytest plugin that records what tests do at a component's ports: `-p verif.replay.recorder`, Verilog level too."""
+"""A pytest plugin that records what tests do at a component's ports: `-p rtl.replay.recorder`, Verilog level too."""
 
 import os
 from pathlib import Path
@@ -8,7 +8,7 @@ from rtl.ports import packed, ports_of, split
 
 from .trace import Trace
 
-LEVELS = ("cls", "component", "level")      # names under which a test class holds the component of its level
+LEVELS = ("cls", "component", "level")  # names under which a test class holds the component of its level
 
 
 class Recorder:
@@ -32,13 +32,14 @@ class Recorder:
 
     def _hook(self, part, top, component):
         inputs, outputs = (packed(group, component) for group in split(part.ports))
-        values = eval(f"lambda s: (({inputs}), ({outputs}))")       # called every cycle: no loop over ports in it
+        values = eval(f"lambda s: (({inputs}), ({outputs}))")  # called every cycle: no loop over ports in it
         lines, tests = part.lines, part.tests
 
         def hook():
             if not tests or tests[-1][1] != self.test:
                 tests.append((len(lines), self.test))
             lines.append("%d %x %x" % (not lines, *values(top)))
+
         return hook
 
     def traces(self):

@@ -10,7 +10,7 @@ from rtl.ports import places, split, total_width, validity
 
 from .trace import load
 
-SECONDS = 300       # a simulation that takes longer hangs
+SECONDS = 300  # a simulation that takes longer hangs
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,10 @@ def bench(top, ports, strict=False):
     """
     inputs, outputs = split(ports)
     where, valid = places(outputs), {} if strict else validity(ports)
-    care = [f"{{{port.width}{{want[{where[valid[port]]}]}}}}" if port in valid else f"{{{port.width}{{1'b1}}}}"
-            for port in reversed(outputs)]
+    care = [
+        f"{{{port.width}{{want[{where[valid[port]]}]}}}}" if port in valid else f"{{{port.width}{{1'b1}}}}"
+        for port in reversed(outputs)
+    ]
     bits = total_width(outputs)
     return f"""{TIMESCALE}module ReplayBench;
   reg clk = 0, fresh;
@@ -77,8 +79,9 @@ def replay_files(traces, verilog, top=None, cells=(), strict=False, seconds=SECO
     heads = [(Path(path), load(path, cycles=False)) for path in traces]
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         program = Path(folder) / "replay.vvp"
-        compile_program(program, [*verilog, *cells], "ReplayBench",
-                        [bench(top or heads[0][1].cls, heads[0][1].ports, strict)])
+        compile_program(
+            program, [*verilog, *cells], "ReplayBench", [bench(top or heads[0][1].cls, heads[0][1].ports, strict)]
+        )
         for path, head in heads:
             if found := _run(program, path, head, strict, seconds):
                 return found
@@ -112,8 +115,10 @@ def _differences(head, cycle, want, got, strict):
     """The ports that differ in ``cycle``; want, got: packed outputs in binary, highest bit first."""
     outputs, out = split(head.ports)[1], []
     valid = {} if strict else validity(head.ports)
-    value = {port: tuple(bits[::-1][low:low + port.width][::-1] for bits in (want, got))
-             for port, low in places(outputs).items()}
+    value = {
+        port: tuple(bits[::-1][low : low + port.width][::-1] for bits in (want, got))
+        for port, low in places(outputs).items()
+    }
     for port, (expected, seen) in value.items():
         matters = port not in valid or value[valid[port]][0] == "1"
         if seen.strip("01") or matters and seen != expected:

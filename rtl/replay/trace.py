@@ -26,7 +26,7 @@ class Trace:
     ports: tuple
     lines: list = field(default_factory=list)
     tests: list = field(default_factory=list)
-    cycles: int = 0         # where the lines were left in their file
+    cycles: int = 0  # where the lines were left in their file
 
     @property
     def name(self):
@@ -42,6 +42,7 @@ class Trace:
     def verilog(self):
         """Its Verilog as text; the module is named `cls`."""
         from rtl.export import translate_component
+
         return translate_component(self.component(), self.cls)
 
     def test_at(self, cycle):
@@ -56,15 +57,23 @@ class Trace:
     def values(self, cycle):
         """(inputs, outputs) of a cycle: dicts of a port's name in the Verilog -> int."""
         _, *packed = self.lines[cycle].split()
-        return tuple({port.name: int(number, 16) >> low & (1 << port.width) - 1 for port, low in places(group).items()}
-                     for group, number in zip(split(self.ports), packed))
+        return tuple(
+            {port.name: int(number, 16) >> low & (1 << port.width) - 1 for port, low in places(group).items()}
+            for group, number in zip(split(self.ports), packed)
+        )
 
     def save(self, folder):
         """Write <name>.trace, the cycles, and <name>.json, the rest; returns the latter's path."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        head = {"cls": self.cls, "module": self.module, "arguments": self.arguments, "cycles": len(self.lines),
-                "ports": [asdict(port) for port in self.ports], "tests": self.tests}
+        head = {
+            "cls": self.cls,
+            "module": self.module,
+            "arguments": self.arguments,
+            "cycles": len(self.lines),
+            "ports": [asdict(port) for port in self.ports],
+            "tests": self.tests,
+        }
         _write(folder / f"{self.name}.trace", "\n".join(self.lines) + "\n")
         path = folder / f"{self.name}.json"
         _write(path, json.dumps(head, indent=1) + "\n")
@@ -75,8 +84,15 @@ def load(path, cycles=True):
     """The Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
     head = json.loads(Path(path).read_text())
     lines = Path(path).with_suffix(".trace").read_text().splitlines() if cycles else []
-    return Trace(head["cls"], head["module"], _tuples(head["arguments"]), tuple(Port(**p) for p in head["ports"]),
-                 lines, [tuple(test) for test in head["tests"]], head["cycles"])
+    return Trace(
+        head["cls"],
+        head["module"],
+        _tuples(head["arguments"]),
+        tuple(Port(**p) for p in head["ports"]),
+        lines,
+        [tuple(test) for test in head["tests"]],
+        head["cycles"],
+    )
 
 
 def _tuples(value):

@@ -5,13 +5,12 @@ from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 
 class ByteQueue(Component):
-
     def construct(s):
         # Interface
-        s.put = InPort()            # only while `ready`
+        s.put = InPort()  # only while `ready`
         s.octet = InPort(Bits8)
         s.ready = OutPort()
-        s.last = OutPort()          # nothing is left behind this cycle
+        s.last = OutPort()  # nothing is left behind this cycle
         s.send = SendIfcRTL(Bits8)
 
         # Components

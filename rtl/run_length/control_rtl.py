@@ -10,37 +10,36 @@ COUNTS, COUNTED, TRAILER_BYTES = 8, 10, 14
 
 
 class RunLengthCtrl(Component):
-
     def construct(s):
         # Interface
-        s.val = InPort()            # of the message
+        s.val = InPort()  # of the message
         s.kind = InPort(Bits2)
         s.rdy = OutPort()
         s.packer_ready = InPort()
-        s.packer_val = InPort()     # a byte of the payload is due, ahead of anything else
+        s.packer_val = InPort()  # a byte of the payload is due, ahead of anything else
         s.queue_ready = InPort()
         s.queue_last = InPort()
-        s.start = OutPort()         # a frame starts
-        s.first_row = OutPort()     # the message's row is the first
-        s.next_row = OutPort()      # the message's row comes behind the mark of the row before
+        s.start = OutPort()  # a frame starts
+        s.first_row = OutPort()  # the message's row is the first
+        s.next_row = OutPort()  # the message's row comes behind the mark of the row before
         s.push = OutPort()
         s.flush = OutPort()
-        s.restart = OutPort()       # of the row's coder and its CRC
-        s.marked = OutPort()        # a row's mark is sent
-        s.put = OutPort()           # a byte goes into the queue
+        s.restart = OutPort()  # of the row's coder and its CRC
+        s.marked = OutPort()  # a row's mark is sent
+        s.put = OutPort()  # a byte goes into the queue
         s.put_crc16 = OutPort()
         s.put_crc32 = OutPort()
         s.state = OutPort(Bits3)
-        s.index = OutPort(Bits5)    # of the byte within header, mark or trailer
+        s.index = OutPort(Bits5)  # of the byte within header, mark or trailer
         s.frame_sync = OutPort()
 
         # Components
-        s.open = Wire()             # a row has started
-        s.ending = Wire()           # END has come
+        s.open = Wire()  # a row has started
+        s.ending = Wire()  # END has come
         s.go = Wire()
-        s.finish = Wire()           # the frame's END is taken
-        s.step = Wire()             # a byte of header, mark or trailer goes into the queue
-        s.last = Wire()             # ... its last one
+        s.finish = Wire()  # the frame's END is taken
+        s.step = Wire()  # a byte of header, mark or trailer goes into the queue
+        s.last = Wire()  # ... its last one
 
         # Logic
         @update
@@ -56,16 +55,21 @@ class RunLengthCtrl(Component):
 
         @update
         def next_byte():
-            s.step @= s.queue_ready & ~s.packer_val \
-                & ((s.state == HEADER) | (s.state == MARK) | (s.state == TRAILER))
+            s.step @= s.queue_ready & ~s.packer_val & ((s.state == HEADER) | (s.state == MARK) | (s.state == TRAILER))
             s.put @= s.step | (s.queue_ready & s.packer_val)
-            s.last @= s.step & (((s.state == HEADER) & (s.index == HEADER_BYTES - 1)) | ((s.state == MARK) & s.index[0])
-                                | (s.index == TRAILER_BYTES - 1) & (s.state == TRAILER))
+            s.last @= s.step & (
+                ((s.state == HEADER) & (s.index == HEADER_BYTES - 1))
+                | ((s.state == MARK) & s.index[0])
+                | (s.index == TRAILER_BYTES - 1) & (s.state == TRAILER)
+            )
             s.marked @= s.last & (s.state == MARK)
             s.restart @= s.first_row | s.marked | (s.finish & ~s.open)
             s.put_crc16 @= s.put & (s.packer_val | (s.state == TRAILER) & (s.index < COUNTS))
-            s.put_crc32 @= s.put & ~((s.state == HEADER) & (s.index >= HEADER_FIELDS)) \
+            s.put_crc32 @= (
+                s.put
+                & ~((s.state == HEADER) & (s.index >= HEADER_FIELDS))
                 & ~((s.state == TRAILER) & (s.index >= COUNTED))
+            )
 
         @update_ff
         def advance():

@@ -7,16 +7,16 @@ from .token_rtl import TokenCoder
 
 def add_packer_ports(s):
     """The interface of a packer."""
-    s.restart = InPort()        # a row starts: empty but for the coder's state
-    s.push = InPort()           # the sample is taken; only while `ready`
-    s.flush = InPort()          # the row ends: fill up its last byte; only while `ready`
+    s.restart = InPort()  # a row starts: empty but for the coder's state
+    s.push = InPort()  # the sample is taken; only while `ready`
+    s.flush = InPort()  # the row ends: fill up its last byte; only while `ready`
     s.ready = OutPort()
-    s.coded = InPort()          # edge mode; else a sample is a byte
+    s.coded = InPort()  # edge mode; else a sample is a byte
     s.threshold = InPort(Bits7)
     s.code = InPort(Bits8)
-    s.val = OutPort()           # a byte is due
+    s.val = OutPort()  # a byte is due
     s.octet = OutPort(Bits8)
-    s.rdy = InPort()            # it would be taken
+    s.rdy = InPort()  # it would be taken
 
 
 class PayloadPacker(Component):
@@ -37,7 +37,7 @@ class PayloadPacker(Component):
         s.count = Wire(Bits5)
 
         s.take = Wire()
-        s.behind = Wire(Bits5)         # bits behind the next token; at most 7 of them lie before it
+        s.behind = Wire(Bits5)  # bits behind the next token; at most 7 of them lie before it
 
         # Connections
         s.coder.restart //= s.restart
@@ -65,8 +65,9 @@ class PayloadPacker(Component):
                     s.count <<= s.count - 8
                 if s.push:
                     s.count <<= s.behind
-                    s.gathered <<= (concat(s.gathered[0:23], Bits8(0)) if s.take else s.gathered) \
-                        | (zext(s.coder.bits, 31) << zext(Bits5(31) - s.behind, 31))
+                    s.gathered <<= (concat(s.gathered[0:23], Bits8(0)) if s.take else s.gathered) | (
+                        zext(s.coder.bits, 31) << zext(Bits5(31) - s.behind, 31)
+                    )
                 elif s.take:
                     s.gathered <<= concat(s.gathered[0:23], Bits8(0))
                 if s.flush:

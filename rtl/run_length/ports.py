@@ -7,8 +7,18 @@ from models.digital.stream import StreamHeader
 from models.parameters import MODES, Window
 from rtl.messages import ScanMsg
 
-HEADER_PORTS = {"mode": Bits2, "phase": None, "row0": Bits8, "row1": Bits8, "col0": Bits8, "col1": Bits8,
-                "decimation": Bits2, "mask": Bits24, "threshold": Bits7, "frame_number": Bits16}
+HEADER_PORTS = {
+    "mode": Bits2,
+    "phase": None,
+    "row0": Bits8,
+    "row1": Bits8,
+    "col0": Bits8,
+    "col1": Bits8,
+    "decimation": Bits2,
+    "mask": Bits24,
+    "threshold": Bits7,
+    "frame_number": Bits16,
+}
 
 
 def add_header_ports(s):
@@ -30,5 +40,17 @@ def add_ports(s):
 def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
     """The StreamHeader that the ports of ``s`` ask for."""
     window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
-    return StreamHeader(rows, cols, lanes, tile_rows, tile_cols, window, MODES[int(s.mode)], bool(s.phase),
-                        int(s.decimation), int(s.mask), int(s.threshold), int(s.frame_number))
+    return StreamHeader(
+        rows,
+        cols,
+        lanes,
+        tile_rows,
+        tile_cols,
+        window,
+        MODES[int(s.mode)],
+        bool(s.phase),
+        int(s.decimation),
+        int(s.mask),
+        int(s.threshold),
+        int(s.frame_number),
+    )

@@ -11,7 +11,7 @@ from rtl.messages import END, FRAME, ROW, SAMPLE
 from .control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
 from .ports import add_ports, header_of
 
-QUEUE = 2       # bytes between the encoder and the link
+QUEUE = 2  # bytes between the encoder and the link
 
 
 class RunLengthCL(Component):

@@ -9,7 +9,7 @@ from .header_rtl import HeaderBytes
 from .packer_rtl import PayloadPacker
 from .ports import HEADER_PORTS, add_ports
 
-MARK_PLACE = COUNTS // 2     # upper bits of the index of the trailer's mark
+MARK_PLACE = COUNTS // 2  # upper bits of the index of the trailer's mark
 
 
 class RunLength(Component):
@@ -27,10 +27,10 @@ class RunLength(Component):
         s.crc32 = Crc32()
         s.queue = ByteQueue()
         s.row = Wire(Bits10)
-        s.following = Wire(Bits10)      # the row behind this one's mark
+        s.following = Wire(Bits10)  # the row behind this one's mark
         s.mark = Wire(Bits16)
-        s.word = Wire(Bits32)           # a count or the CRC-32
-        s.place = Wire(Bits2)           # of the byte in it, 0 on top
+        s.word = Wire(Bits32)  # a count or the CRC-32
+        s.place = Wire(Bits2)  # of the byte in it, 0 on top
         s.octet = Wire(Bits8)
 
         # Connections
@@ -68,7 +68,7 @@ class RunLength(Component):
         @update
         def select_word():
             s.word @= s.crc32.crc
-            s.place @= s.control.index[0:2] ^ 2     # the CRC-32s start at an index of 2 modulo 4
+            s.place @= s.control.index[0:2] ^ 2  # the CRC-32s start at an index of 2 modulo 4
             if (s.control.state == TRAILER) & (s.control.index < COUNTS):
                 s.word @= s.left_out if s.control.index[2] else s.made
                 s.place @= s.control.index[0:2]

@@ -1,23 +1,37 @@
 """TokenCoder at RTL: the state of a row's coder, and the bits that the next sample sends (docs/stream.md, Payload)."""
 
 from pymtl3 import (
-    Bits1, Bits2, Bits3, Bits4, Bits5, Bits7, Bits8, Bits9, Bits24, Component, InPort, OutPort, Wire, concat, update,
-    update_ff, zext,
+    Bits1,
+    Bits2,
+    Bits3,
+    Bits4,
+    Bits5,
+    Bits7,
+    Bits8,
+    Bits9,
+    Bits24,
+    Component,
+    InPort,
+    OutPort,
+    Wire,
+    concat,
+    update,
+    update_ff,
+    zext,
 )
 
 
 class TokenCoder(Component):
-
     def construct(s):
         # Interface
-        s.restart = InPort()        # a row starts
-        s.push = InPort()           # the sample is taken
+        s.restart = InPort()  # a row starts
+        s.push = InPort()  # the sample is taken
         s.coded = InPort()
         s.threshold = InPort(Bits7)
         s.code = InPort(Bits8)
-        s.bits = OutPort(Bits24)    # right-aligned
+        s.bits = OutPort(Bits24)  # right-aligned
         s.length = OutPort(Bits5)
-        s.open = OutPort()          # zeros wait for their token
+        s.open = OutPort()  # zeros wait for their token
 
         # Components: k, r2, run and credit as in models.digital.stream.payload
         s.k = Wire(Bits3)
@@ -26,17 +40,17 @@ class TokenCoder(Component):
         s.credit = Wire(Bits8)
 
         s.r = Wire(Bits3)
-        s.span = Wire(Bits8)        # 2**k
+        s.span = Wire(Bits8)  # 2**k
         s.full = Wire()
-        s.distance = Wire(Bits9)    # of the magnitude from the smallest one coded
+        s.distance = Wire(Bits9)  # of the magnitude from the smallest one coded
         s.zero = Wire()
         s.literal = Wire()
         s.value = Wire(Bits8)
-        s.top = Wire(Bits3)         # place of the value's leading one
+        s.top = Wire(Bits3)  # place of the value's leading one
         s.prefix = Wire(Bits3)
-        s.width = Wire(Bits4)       # of the value in its token
+        s.width = Wire(Bits4)  # of the value in its token
         s.token = Wire(Bits24)
-        s.after = Wire(Bits9)       # the credit behind the token
+        s.after = Wire(Bits9)  # the credit behind the token
 
         # Connections
         s.r //= s.r2[1:4]

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from base.paths import ROOT
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
 from rtl.export import main, tidy, translate
 from rtl.lint import LintError, lint
 from rtl.tops import TOPS
 
-ROOT = Path(__file__).parents[2]
 SMALL = SensorParameters(array=ArrayParameters(9, 20), chip=ChipParameters(lanes=2))
 
 
@@ -21,8 +21,13 @@ SMALL = SensorParameters(array=ArrayParameters(9, 20), chip=ChipParameters(lanes
 def exported(tmp_path_factory):
     """Every top of the default sensor in one folder, from a process of its own with another hash seed and width."""
     out = tmp_path_factory.mktemp("exported")
-    subprocess.run([sys.executable, "-m", "rtl.export", "--out", out], cwd=ROOT, check=True, capture_output=True,
-                   env=dict(os.environ, PYTHONHASHSEED="7", COLUMNS="40"))
+    subprocess.run(
+        [sys.executable, "-m", "rtl.export", "--out", out],
+        cwd=ROOT,
+        check=True,
+        capture_output=True,
+        env=dict(os.environ, PYTHONHASHSEED="7", COLUMNS="40"),
+    )
     return out
 
 

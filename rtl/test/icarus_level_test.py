@@ -92,9 +92,12 @@ def test_x_must_not_leave_reset():
 
 def test_a_simulation_that_ends_early_says_so(monkeypatch, tmp_path):
     from rtl import icarus_level
+
     path = tmp_path / "Counter.v"
-    path.write_text("module Counter(input clk, reset, input [3:0] step, output [3:0] value, output carry);\n"
-                    "  assign value = 0, carry = 0;\n  initial #150 $finish;\nendmodule\n")
+    path.write_text(
+        "module Counter(input clk, reset, input [3:0] step, output [3:0] value, output carry);\n"
+        "  assign value = 0, carry = 0;\n  initial #150 $finish;\nendmodule\n"
+    )
     monkeypatch.setitem(icarus_level.netlists, "Counter", (path, None))
     with pytest.raises(IcarusError, match="ended early"):
         seen(build(Counter(), "icarus"), STEPS)

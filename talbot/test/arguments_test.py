@@ -6,8 +6,17 @@ from talbot.arguments import pixel_types, span, window
 FULL = Window(0, 95, 0, 63)
 
 
-@pytest.mark.parametrize("text, mask", [
-    ("all", ALL_TYPES), ("low", 0xFF), ("low,high", 0xFF00FF), ("0x10", 0x10), ("0,2,23", 0x800005), ("cosine", 0x555555)])
+@pytest.mark.parametrize(
+    "text, mask",
+    [
+        ("all", ALL_TYPES),
+        ("low", 0xFF),
+        ("low,high", 0xFF00FF),
+        ("0x10", 0x10),
+        ("0,2,23", 0x800005),
+        ("cosine", 0x555555),
+    ],
+)
 def test_pixel_types(text, mask):
     assert pixel_types(text) == mask
 

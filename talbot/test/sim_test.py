@@ -13,16 +13,38 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from base.cache import PART
+from base.paths import ROOT
 from flow.frame.outputs import NAMES
-from flow.simulate.cache import PART
 from talbot.__main__ import main
 
-ROOT = Path(__file__).parents[2]
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
-KEYS = {"scene", "mode", "rows", "cols", "threshold", "lanes", "seed", "pixels", "samples", "conversions_made",
-        "conversions_left_out", "cycles", "frame_s_at_clock", "stream_bytes", "raw_bytes", "compression_ratio",
-        "stream_mismatches", "decoded_mismatches", "psnr_db", "energy_uj", "left_out", "wall_s", "rtl_cycles_per_s",
-        "tools"}
+KEYS = {
+    "scene",
+    "mode",
+    "rows",
+    "cols",
+    "threshold",
+    "lanes",
+    "seed",
+    "pixels",
+    "samples",
+    "conversions_made",
+    "conversions_left_out",
+    "cycles",
+    "frame_s_at_clock",
+    "stream_bytes",
+    "raw_bytes",
+    "compression_ratio",
+    "stream_mismatches",
+    "decoded_mismatches",
+    "psnr_db",
+    "energy_uj",
+    "left_out",
+    "wall_s",
+    "rtl_cycles_per_s",
+    "tools",
+}
 
 
 @pytest.fixture(autouse=True)
@@ -39,14 +61,28 @@ def photograph(tmp_path):
     return str(path)
 
 
-@pytest.mark.parametrize("mode, more", [
-    ("edge", ("--threshold", "3")), ("image", ("--types", "low,16")), ("raw", ("--window", "1:2,0:4")),
-    ("tof", ("--decimation", "1")), ("tof", ("--phase",))])
+@pytest.mark.parametrize(
+    "mode, more",
+    [
+        ("edge", ("--threshold", "3")),
+        ("image", ("--types", "low,16")),
+        ("raw", ("--window", "1:2,0:4")),
+        ("tof", ("--decimation", "1")),
+        ("tof", ("--phase",)),
+    ],
+)
 def test_every_mode_on_a_file(photograph, tmp_path, mode, more, capsys):
     out = tmp_path / "out"
     assert main(["sim", "--scene", photograph, "--mode", mode, "--out", str(out), *SMALL, *more]) == 0
     summary = json.loads((out / "summary.json").read_text())
-    assert summary.keys() >= KEYS and summary["wall_s"].keys() == {"setup", "build", "capture", "rtl", "decode", "report"}
+    assert summary.keys() >= KEYS and summary["wall_s"].keys() == {
+        "setup",
+        "build",
+        "capture",
+        "rtl",
+        "decode",
+        "report",
+    }
     assert summary["stream_mismatches"] == summary["decoded_mismatches"] == 0 and summary["mode"] == mode
     names = {p.name for p in out.iterdir()}
     assert {"stream.bin", "decoded.npz", "image.png", "conversions.png", "report.html"} <= names <= set(NAMES)
@@ -65,7 +101,7 @@ def test_waves_of_a_window_of_rows(photograph, tmp_path):
     lines = (tmp_path / "waves.vcd").read_text().splitlines()
     row = next(line.split()[3] for line in lines if line.split()[:1] == ["$var"] and line.split()[4] == "row")
     seen = {int(line[1:].split()[0], 2) for line in lines if line[:1] == "b" and line.endswith(f" {row}")}
-    assert {5, 6} <= seen <= {5, 6, 7}       # the last edge shows what comes next
+    assert {5, 6} <= seen <= {5, 6, 7}  # the last edge shows what comes next
 
 
 def test_a_decoded_file(photograph, tmp_path, capsys):
@@ -82,35 +118,38 @@ def test_a_decoded_file(photograph, tmp_path, capsys):
     assert "bad rows: " in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("words, said", [
-    ("sim --rows abc", "rows = 'abc': must be an integer in 1..1024"),
-    ("sim --cols 1537", "cols = '1537': must be an integer in 1..1536"),
-    ("sim --lanes 3", "lanes = 3: must be one of 1, 2, 4, 8, 16, 32"),
-    ("sim --threshold 128", "threshold = '128': must be an integer in 0..127"),
-    ("sim --threshold=-1", "threshold = '-1': must be an integer in 0..127"),
-    ("sim --mode video", "mode = 'video': must be one of edge, image, raw, tof"),
-    ("sim --noise nan", "noise = 'nan': must be a number in [0, 100]"),
-    ("sim --focus x", "focus = 'x': must be a number in [-100, 100]"),
-    ("sim --seed 1.5", "seed = '1.5': must be an integer in 0..4294967295"),
-    ("sim --window 0:96,0:3", "window rows = '96': must be an integer in 0..95"),
-    ("sim --types 24", "types = '24': must be an integer in 0..23"),
-    ("sim --decimation 4", "decimation = '4': must be an integer in 0..3"),
-    ("sim --waves 380:384", "waves = '384': must be an integer in 0..383"),
-    ("sim --phase", "phase = True: needs mode 'tof'"),
-    ("sim --scene nowhere.png", "scene = 'nowhere.png': no such file"),
-    ("sim --scene nothing", "scene = 'nothing': must be an image file or one of motorcycle"),
-    ("sim --scene edge:x", "scene edge degrees = 'x': must be a number in [-360, 360]"),
-    (f"sim --scene {__file__}", "must be an image file that Pillow reads"),
-    ("sim --depth d.npy", "depth = 'd.npy': must be left out"),
-    (f"sim --out {__file__}", "must be a folder"),
-    ("sim --nothing", "unrecognized arguments: --nothing"),
-    ("sim --sce coins", "unrecognized arguments: --sce coins"),
-    ("draw", "invalid choice: 'draw'"),
-    ("decode nowhere.bin", "file = nowhere.bin: No such file"),
-    (f"decode {__file__}", "a frame starts with b'TLBT'"),
-    ("tradeoff --only speed", "only = 'speed': must be one of divider"),
-    ("sim --rows 9 --cols 9 --window 3:3,0:0", "window rows = '3': must be an integer in 0..2"),
-])
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ("sim --rows abc", "rows = 'abc': must be an integer in 1..1024"),
+        ("sim --cols 1537", "cols = '1537': must be an integer in 1..1536"),
+        ("sim --lanes 3", "lanes = 3: must be one of 1, 2, 4, 8, 16, 32"),
+        ("sim --threshold 128", "threshold = '128': must be an integer in 0..127"),
+        ("sim --threshold=-1", "threshold = '-1': must be an integer in 0..127"),
+        ("sim --mode video", "mode = 'video': must be one of edge, image, raw, tof"),
+        ("sim --noise nan", "noise = 'nan': must be a number in [0, 100]"),
+        ("sim --focus x", "focus = 'x': must be a number in [-100, 100]"),
+        ("sim --seed 1.5", "seed = '1.5': must be an integer in 0..4294967295"),
+        ("sim --window 0:96,0:3", "window rows = '96': must be an integer in 0..95"),
+        ("sim --types 24", "types = '24': must be an integer in 0..23"),
+        ("sim --decimation 4", "decimation = '4': must be an integer in 0..3"),
+        ("sim --waves 380:384", "waves = '384': must be an integer in 0..383"),
+        ("sim --phase", "phase = True: needs mode 'tof'"),
+        ("sim --scene nowhere.png", "scene = 'nowhere.png': no such file"),
+        ("sim --scene nothing", "scene = 'nothing': must be an image file or one of motorcycle"),
+        ("sim --scene edge:x", "scene edge degrees = 'x': must be a number in [-360, 360]"),
+        (f"sim --scene {__file__}", "must be an image file that Pillow reads"),
+        ("sim --depth d.npy", "depth = 'd.npy': must be left out"),
+        (f"sim --out {__file__}", "must be a folder"),
+        ("sim --nothing", "unrecognized arguments: --nothing"),
+        ("sim --sce coins", "unrecognized arguments: --sce coins"),
+        ("draw", "invalid choice: 'draw'"),
+        ("decode nowhere.bin", "file = nowhere.bin: No such file"),
+        (f"decode {__file__}", "a frame starts with b'TLBT'"),
+        ("tradeoff --only speed", "only = 'speed': must be one of divider"),
+        ("sim --rows 9 --cols 9 --window 3:3,0:0", "window rows = '3': must be an integer in 0..2"),
+    ],
+)
 def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     try:
@@ -124,18 +163,41 @@ def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
 
 def started(tmp_path, rows):
     """`python -m talbot sim` of a sensor that no other test compiles, on its way, to be interrupted."""
-    words = [sys.executable, "-m", "talbot", "sim", "--scene", "coins", "--rows", str(rows), "--cols", "26", "--lanes", "2",
-             "--out", str(tmp_path / "out"), "--waves", "0:1"]
+    words = [
+        sys.executable,
+        "-m",
+        "talbot",
+        "sim",
+        "--scene",
+        "coins",
+        "--rows",
+        str(rows),
+        "--cols",
+        "26",
+        "--lanes",
+        "2",
+        "--out",
+        str(tmp_path / "out"),
+        "--waves",
+        "0:1",
+    ]
     # A job in the background (of a CI, say) ignores Ctrl-C, and so would its children
-    return subprocess.Popen(words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                            start_new_session=True, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    return subprocess.Popen(
+        words,
+        cwd=ROOT,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
 
 
 @pytest.mark.parametrize("sent, status, rows", [(signal.SIGINT, 2, 14), (signal.SIGTERM, 143, 15)])
 def test_interrupted_in_the_compiler(tmp_path, sent, status, rows):
     cache = ROOT / "build" / "simulator"
     child = started(tmp_path, rows)
-    part = f"{PART}{child.pid}-"                # other tests compile beside this one
+    part = f"{PART}{child.pid}-"  # other tests compile beside this one
     assert any("translating" in line for line in child.stderr)
     child.send_signal(sent)
     _, err = child.communicate(timeout=30)
@@ -155,9 +217,14 @@ def test_no_room_for_the_results(photograph, tmp_path):
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 
-    result = subprocess.run([sys.executable, "-m", "talbot", "sim", "--scene", photograph, *SMALL, "--out",
-                             str(tmp_path / "out")], cwd=ROOT, capture_output=True, text=True, preexec_fn=small_files,
-                            env=dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path)))
+    result = subprocess.run(
+        [sys.executable, "-m", "talbot", "sim", "--scene", photograph, *SMALL, "--out", str(tmp_path / "out")],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        preexec_fn=small_files,
+        env=dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path)),
+    )
     assert result.returncode == 2 and "File too large" in result.stderr
     assert result.stderr.splitlines()[-1].startswith("talbot: error: file = ")
     assert not (tmp_path / "out").exists()

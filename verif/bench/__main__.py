@@ -6,7 +6,7 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 
-from flow.jobs import Job, run
+from base.jobs import Job, run
 from models.parameters import ParameterError
 from rtl.icarus import MISSING, installed
 from verif.results import OUT, digest_of, write_step
@@ -33,14 +33,18 @@ def bench(block, simulator, seed):
 def in_pymtl():
     """The shown frame in PyMTL, as `bench`."""
     from .pymtl_frame import pymtl_stream
+
     return {"tests": [], "stream": pymtl_stream(FRAMES[SHOWN]).hex()}
 
 
 def jobs_of(blocks, simulators, seed):
     """dict Job -> (block, simulator)."""
     digest = digest_of(*SOURCES)
-    jobs = {Job(f"{block}.{simulator}", bench, (block, simulator, seed), (digest, seed)): (block, simulator)
-            for block in blocks for simulator in simulators}
+    jobs = {
+        Job(f"{block}.{simulator}", bench, (block, simulator, seed), (digest, seed)): (block, simulator)
+        for block in blocks
+        for simulator in simulators
+    }
     if CHIP in blocks:
         jobs[Job(f"{CHIP}.pymtl", in_pymtl, (), (digest,))] = CHIP, "pymtl"
     return jobs
@@ -92,7 +96,7 @@ def main(argv=None):
         return 2
     for job, key in jobs.items():
         if any(why for _, why in results[key]["tests"]):
-            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)      # what failed is tried again
+            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)  # what failed is tried again
     for block, here in by_block.items():
         print(f"{block}: {here['tests']['passed']} passed, {here['tests']['failed']} failed")
     for failure in failures:

@@ -32,8 +32,9 @@ class Comparators:
 
     def drive(self):
         dac, base = known(self.dut.dac), 0.5 if known(self.dut.unsigned_) else 128.5
-        self.dut.comparator.value = sum((held >= (dac >> 8 * lane & 0xFF) - base) << lane
-                                        for lane, held in enumerate(self.held))
+        self.dut.comparator.value = sum(
+            (held >= (dac >> 8 * lane & 0xFF) - base) << lane for lane, held in enumerate(self.held)
+        )
 
     def sample(self):
         if known(self.dut.hold):
@@ -67,8 +68,10 @@ class AdcBankBench(Bench):
                 held = np.array([random.choice((random.uniform(-140, 300), random.uniform(-20, 20))) for _ in lanes])
                 self.values.update({(*at, lane): float(value) for lane, value in zip(lanes, held)})
                 got = convert(held, mode != "edge", threshold)
-                out += [ScanMsg(SAMPLE, int(code) & 0xFF | (LAST if lane == lanes[-1] else 0))
-                        for lane, code in zip(lanes, got.codes)]
+                out += [
+                    ScanMsg(SAMPLE, int(code) & 0xFF | (LAST if lane == lanes[-1] else 0))
+                    for lane, code in zip(lanes, got.codes)
+                ]
                 made, left_out = made + int(got.converted.sum()), left_out + int((~got.converted).sum())
         self.source.items = [int(step.to_bits()) for step in (*steps, Step(END, 0, 0, 0, 0, 0))]
         return [int(message.to_bits()) for message in (*out, ScanMsg(END, 0))], made, left_out

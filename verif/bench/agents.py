@@ -6,7 +6,7 @@ everything settled ahead of the next edge. So a bench is the same in every simul
 
 from cocotb.triggers import Timer
 
-HALF = 5    # ns of half a clock
+HALF = 5  # ns of half a clock
 
 
 def known(handle):
@@ -155,7 +155,7 @@ class Spi:
         await self.wait(self.half)
         dut.csn.value = 1
         await self.wait(2 * self.half)
-        return bytes(sum(bit << 7 - i for i, bit in enumerate(received[n:n + 8])) for n in range(0, len(received), 8))
+        return bytes(sum(bit << 7 - i for i, bit in enumerate(received[n : n + 8])) for n in range(0, len(received), 8))
 
 
 def check(got, expected):

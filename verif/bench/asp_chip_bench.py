@@ -9,15 +9,21 @@ import cocotb
 
 from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
-from models.parameters.registers import (command, decode_status, frame_writes, register_map, status_transfers,
-                                         write_transfers)
+from models.parameters.registers import (
+    command,
+    decode_status,
+    frame_writes,
+    register_map,
+    status_transfers,
+    write_transfers,
+)
 
 from .agents import Bench, Monitor, Spi, Stopped, Stream, check, known
 from .exposure import FRAMES, FRONT_END, SENSOR, TRIMS, samples
 
 CHIP = register_map()
 LIMIT = 60_000
-SHOWN = os.environ.get("BENCH_FRAME", "edge")      # the frame whose stream is kept, in the file BENCH_STREAM
+SHOWN = os.environ.get("BENCH_FRAME", "edge")  # the frame whose stream is kept, in the file BENCH_STREAM
 
 
 class Phases:
@@ -72,8 +78,15 @@ class ChipBench(Bench):
         check(got, golden.stream)
         status = decode_status([await self.spi.transfer(transfer) for transfer in status_transfers()])
         assert status.pop("cycles") > 0
-        assert status == {"busy": False, "done": True, "cfg_err": False, "amp_err": False, "refused": False,
-                          "conversions_made": golden.made, "conversions_left_out": golden.left_out}
+        assert status == {
+            "busy": False,
+            "done": True,
+            "cfg_err": False,
+            "amp_err": False,
+            "refused": False,
+            "conversions_made": golden.made,
+            "conversions_left_out": golden.left_out,
+        }
         return bytes(got)
 
 

@@ -4,12 +4,22 @@ import numpy as np
 
 from models.afe import write_converter, write_samples
 from models.digital.chip import front_end_of
-from models.parameters import (AmpTiming, ArrayParameters, ChipParameters, ConverterParameters, FrameParameters,
-                               SensorParameters, Window)
+from models.parameters import (
+    AmpTiming,
+    ArrayParameters,
+    ChipParameters,
+    ConverterParameters,
+    FrameParameters,
+    SensorParameters,
+    Window,
+)
 
 TAPS = 4
-SENSOR = SensorParameters(array=ArrayParameters(9, 13), chip=ChipParameters(lanes=2),
-                          converter=ConverterParameters(inl=2, dnl=0.5, offset=2, noise=1, ktc=0.7, seed=6))
+SENSOR = SensorParameters(
+    array=ArrayParameters(9, 13),
+    chip=ChipParameters(lanes=2),
+    converter=ConverterParameters(inl=2, dnl=0.5, offset=2, noise=1, ktc=0.7, seed=6),
+)
 FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1)
 TRIMS = tuple((-1) ** t * (11 * t + 5) for t in range(24))
 FRONT_END = front_end_of(SENSOR, TRIMS)

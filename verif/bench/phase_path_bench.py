@@ -17,9 +17,11 @@ LAST, LIMIT = 1 << 9, 20_000
 
 def random_frame():
     """[(row, [step])]; a step is its four taps, each the samples of the enabled lanes."""
+
     def step():
         lanes = random.randint(1, CHIP.lanes)
         return [[random.choice((random.randrange(256), 0, 255, 128)) for _ in range(lanes)] for _ in range(4)]
+
     return [(random.randrange(1024), [step() for _ in range(random.randrange(4))]) for _ in range(random.randrange(4))]
 
 

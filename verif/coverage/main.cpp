@@ -1,7 +1,7 @@
 // Recorded cycles driven into verilated Verilog:
 // `program TRACE [--points FILE] [--states FILE] [--mutants FIRST LAST]`.
 //
-// TRACE: lines 'fresh inputs outputs' (verif/replay/trace.py). Writes 'number cycle' a run to stdout: the first cycle
+// TRACE: lines 'fresh inputs outputs' (rtl/replay/trace.py). Writes 'number cycle' a run to stdout: the first cycle
 // with an output that the trace does not have, or -1. Without --mutants there is one run, number 0; with it, a run for
 // every value FIRST..LAST of the input `mutant`, a fresh model each, to its first difference.
 // --points: Verilator's coverage; FILE.first has it behind the first cycle, in which constants take their values.

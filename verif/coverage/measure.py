@@ -6,8 +6,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.simulate.process import ToolError
-from verif.replay import load
+from base.tools import ToolError
+from rtl.replay import load
 
 from .ports import Recorded
 from .program import compile_program
@@ -68,8 +68,9 @@ def read_points(path, verilog):
         code = " ".join(lines[line - 1].split())
         same = kind, module, what, code
         nth = alike[same] = alike.get(same, -1) + 1
-        found[Point(kind, module, what, code, nth, line, where[line][1])] = \
-            count - (first[place] if kind == "toggle" else 0)
+        found[Point(kind, module, what, code, nth, line, where[line][1])] = count - (
+            first[place] if kind == "toggle" else 0
+        )
     return found
 
 
@@ -83,7 +84,7 @@ def read_counts(path):
         fields = dict(part.split("\x02", 1) for part in text.split("\x01") if part)
         kind, _, module = fields["page"].partition("/")
         if kind in KINDS:
-            what = fields["o"].replace("___05F", "__")      # Verilator's way to write a name's two underscores
+            what = fields["o"].replace("___05F", "__")  # Verilator's way to write a name's two underscores
             place = KINDS[kind], module, int(fields["l"]), int(fields["n"]), what
             rows[place] = rows.get(place, 0) + int(count)
     return rows

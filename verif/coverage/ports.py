@@ -17,8 +17,11 @@ class Recorded:
         rows = [line.split() for line in trace.lines]
         self.fresh = np.array([row[0] == "1" for row in rows])
         self._packed = [int(row[1], 16) for row in rows], [int(row[2], 16) for row in rows]
-        self._places = {port.name: (group, low, port.width)
-                        for group, ports in enumerate(split(trace.ports)) for port, low in places(ports).items()}
+        self._places = {
+            port.name: (group, low, port.width)
+            for group, ports in enumerate(split(trace.ports))
+            for port, low in places(ports).items()
+        }
         component = trace.component()
         component.elaborate()
         start = len(repr(component)) + 1

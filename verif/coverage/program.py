@@ -4,20 +4,31 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.simulate.cache import cached, digest
-from flow.simulate.process import run
+from base.cache import cached, digest
+from base.tools import run
 from rtl.ports import places, split, total_width, validity
 from rtl.testbench import verilator_folder
 from verif.results import ROOT
 
 CACHE = ROOT / "build" / "replay"
 MAIN = Path(__file__).parent / "main.cpp"
-VERILATE = ("--cc", "--prefix", "VDut", "--x-assign", "fast", "--x-initial", "unique", "--noassert", "--no-timing",
-            "-Wno-lint", "-Wno-fatal")
+VERILATE = (
+    "--cc",
+    "--prefix",
+    "VDut",
+    "--x-assign",
+    "fast",
+    "--x-initial",
+    "unique",
+    "--noassert",
+    "--no-timing",
+    "-Wno-lint",
+    "-Wno-fatal",
+)
 COVERAGE = ("--coverage-line", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
-CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")   # the flag is Verilator's own requirement
+CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
-SECONDS = 900           # a tool that takes longer hangs
+SECONDS = 900  # a tool that takes longer hangs
 
 
 def tool(command, seconds=SECONDS, cwd=None):
@@ -67,20 +78,33 @@ def header(top, ports, registers=(), mutant=False):
     checks = []
     for port, low in where.items():
         same = _same(port, low)
-        if port in valid:       # a message counts while it is valid
+        if port in valid:  # a message counts while it is valid
             same = f"!bits(want, {where[valid[port]]}, 1) || {same}"
         checks.append(f"  if (!({same})) return false;")
     states = [f"    case {i}: return {_joined(top, machine)};" for i, machine in enumerate(registers)]
-    return "\n".join([
-        f"constexpr int IN_BITS = {total_width(inputs)}, OUT_BITS = {total_width(outputs)}, STATES = {len(states)};",
-        "static void drive(VDut& top, const Words& from) {",
-        *(f"  {_assign(port, low)}" for port, low in places(inputs).items()), "}",
-        "static bool fits(const VDut& top, const Words& want) {", *checks, "  return true;", "}",
-        "static void show(const VDut& top, std::string& to) {",
-        *(f"  {_put(port, low)}" for port, low in where.items()), "}",
-        f"static void mutate(VDut& top, std::uint64_t number) {{ {'top.mutant = number;' if mutant else ''} }}",
-        "static std::uint64_t state(const VDut& top, int i) {", "  switch (i) {", *states,
-        "    default: return 0;", "  }", "}", ""])
+    return "\n".join(
+        [
+            f"constexpr int IN_BITS = {total_width(inputs)}, OUT_BITS = {total_width(outputs)}, STATES = {len(states)};",
+            "static void drive(VDut& top, const Words& from) {",
+            *(f"  {_assign(port, low)}" for port, low in places(inputs).items()),
+            "}",
+            "static bool fits(const VDut& top, const Words& want) {",
+            *checks,
+            "  return true;",
+            "}",
+            "static void show(const VDut& top, std::string& to) {",
+            *(f"  {_put(port, low)}" for port, low in where.items()),
+            "}",
+            f"static void mutate(VDut& top, std::uint64_t number) {{ {'top.mutant = number;' if mutant else ''} }}",
+            "static std::uint64_t state(const VDut& top, int i) {",
+            "  switch (i) {",
+            *states,
+            "    default: return 0;",
+            "  }",
+            "}",
+            "",
+        ]
+    )
 
 
 @dataclass(frozen=True)
@@ -114,8 +138,19 @@ def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=Fa
         unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]))
         include = verilator_folder() / "include"
         includes = [option for path in (runtime, model, folder, include, include / "vltstd") for option in ("-I", path)]
-        tool([*CXX, "-O0" if coverage else "-O1", f"-DVM_COVERAGE={int(coverage)}", *includes, unit,
-              *(runtime / f"{name}.o" for name in RUNTIME), "-pthread", "-o", folder / "replay"])
+        tool(
+            [
+                *CXX,
+                "-O0" if coverage else "-O1",
+                f"-DVM_COVERAGE={int(coverage)}",
+                *includes,
+                unit,
+                *(runtime / f"{name}.o" for name in RUNTIME),
+                "-pthread",
+                "-o",
+                folder / "replay",
+            ]
+        )
         shutil.rmtree(model)
         unit.unlink()
 
@@ -130,10 +165,24 @@ def _runtime(version):
     def make(folder):
         # Verilator 5.48 counts toggles of a vector's lower words for its higher ones, too, beyond 64 bits
         text = (include / "verilated_cov.h").read_text()
-        (folder / "verilated_cov.h").write_text(text.replace(
-            "j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;"))
+        (folder / "verilated_cov.h").write_text(
+            text.replace("j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;")
+        )
         for name in RUNTIME:
-            tool([*CXX, "-O1", "-DVM_COVERAGE=1", "-I", folder, "-I", include, "-c", include / f"{name}.cpp", "-o",
-                  folder / f"{name}.o"])
+            tool(
+                [
+                    *CXX,
+                    "-O1",
+                    "-DVM_COVERAGE=1",
+                    "-I",
+                    folder,
+                    "-I",
+                    include,
+                    "-c",
+                    include / f"{name}.cpp",
+                    "-o",
+                    folder / f"{name}.o",
+                ]
+            )
 
     return cached(CACHE / f"runtime-{digest(version, CXX, 'words')}", make)

@@ -34,13 +34,20 @@ def transfers(p):
     edges = np.flatnonzero(p.sclk != np.concatenate((p.sclk[1:], [0])))
     out = []
     for first, last in zip(np.flatnonzero(selected & ~before), np.flatnonzero(selected & ~behind), strict=True):
-        at = np.flatnonzero(rises[first:last + 1]) + first
+        at = np.flatnonzero(rises[first : last + 1]) + first
         bits = p.mosi[at]
         whole = len(bits) // 8
-        halves = np.diff(edges[np.searchsorted(edges, first):np.searchsorted(edges, last)])
+        halves = np.diff(edges[np.searchsorted(edges, first) : np.searchsorted(edges, last)])
         end = min(last + 1, len(selected) - 1)
-        out.append(Transfer(end, np.packbits(bits[:8 * whole].astype(np.uint8)).tobytes(), len(bits) % 8,
-                            int(halves.min()) if len(halves) else 0, bool(p.reset[end])))
+        out.append(
+            Transfer(
+                end,
+                np.packbits(bits[: 8 * whole].astype(np.uint8)).tobytes(),
+                len(bits) % 8,
+                int(halves.min()) if len(halves) else 0,
+                bool(p.reset[end]),
+            )
+        )
     return out
 
 

@@ -54,7 +54,7 @@ class Exclusion:
 class TestPlan:
     """blocks: of rtl.tops, one folder's. See the other classes here."""
 
-    __test__ = False        # not a test class
+    __test__ = False  # not a test class
     folder: str
     blocks: tuple
     promises: tuple
@@ -98,10 +98,12 @@ def load_plan(path):
         if block not in TOPS or folder_of(block) != folder:
             raise ParameterError(f"{name}: blocks = {block!r}: must be a top in rtl/{folder}")
     plan = TestPlan(
-        folder, blocks,
+        folder,
+        blocks,
         tuple(_promise(f"{name}: promises[{i}]", entry) for i, entry in enumerate(raw["promises"])),
         tuple(_machine(f"{name}: fsm[{i}]", entry, blocks) for i, entry in enumerate(raw.get("fsm") or ())),
-        tuple(_exclusion(f"{name}: exclude[{i}]", entry, blocks) for i, entry in enumerate(raw.get("exclude") or ())))
+        tuple(_exclusion(f"{name}: exclude[{i}]", entry, blocks) for i, entry in enumerate(raw.get("exclude") or ())),
+    )
     _check_tests(name, plan)
     _check_cover(name, plan)
     return plan
@@ -113,7 +115,8 @@ def _keys(field, entry, allowed, needed):
     for key in entry:
         if key not in allowed:
             raise ParameterError(
-                f"{field}.{key} = {entry[key]!r}: unknown key, must be one of {', '.join(sorted(allowed))}")
+                f"{field}.{key} = {entry[key]!r}: unknown key, must be one of {', '.join(sorted(allowed))}"
+            )
     for key in needed:
         if not entry.get(key):
             raise ParameterError(f"{field}.{key} = {entry.get(key)!r}: must be there and not empty")
@@ -136,8 +139,9 @@ def _texts(field, value):
 
 def _promise(field, entry):
     _entry(field, entry, Promise)
-    return Promise(str(entry["promise"]), _texts(f"{field}.cover", entry["cover"]),
-                   _texts(f"{field}.tests", entry["tests"]))
+    return Promise(
+        str(entry["promise"]), _texts(f"{field}.cover", entry["cover"]), _texts(f"{field}.tests", entry["tests"])
+    )
 
 
 def _blocks(field, entry, blocks):
@@ -169,8 +173,13 @@ def _exclusion(field, entry, blocks):
     _entry(field, entry, Exclusion)
     if entry["kind"] not in KINDS:
         raise ParameterError(f"{field}.kind = {entry['kind']!r}: must be one of {', '.join(KINDS)}")
-    return Exclusion(entry["kind"], _texts(f"{field}.at", entry["at"]), str(entry["reason"]),
-                     str(entry.get("what", "")), _blocks(field, entry, blocks))
+    return Exclusion(
+        entry["kind"],
+        _texts(f"{field}.at", entry["at"]),
+        str(entry["reason"]),
+        str(entry.get("what", "")),
+        _blocks(field, entry, blocks),
+    )
 
 
 @cache
@@ -180,8 +189,11 @@ def tests_in(folder):
 
 
 def _tests_of(path):
-    return {node.name for node in ast.walk(ast.parse(path.read_text()))
-            if isinstance(node, ast.FunctionDef) and node.name.startswith("test")}
+    return {
+        node.name
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.FunctionDef) and node.name.startswith("test")
+    }
 
 
 def _check_tests(name, plan):
@@ -189,8 +201,13 @@ def _check_tests(name, plan):
     for i, promise in enumerate(plan.promises):
         for test in promise.tests:
             file, _, function = test.rpartition("::")
-            there = tests_in(f"rtl/{plan.folder}/test") if not file else \
-                _tests_of(ROOT / file) if (ROOT / file).is_file() else ()
+            there = (
+                tests_in(f"rtl/{plan.folder}/test")
+                if not file
+                else _tests_of(ROOT / file)
+                if (ROOT / file).is_file()
+                else ()
+            )
             if function not in there:
                 raise ParameterError(f"{name}: promises[{i}].tests = {test!r}: no such test")
 
@@ -198,8 +215,11 @@ def _check_tests(name, plan):
 def _check_cover(name, plan):
     """Every cover point is a function of verif/coverage/points/<folder>.py, and the other way round."""
     module = importlib.import_module(f"verif.coverage.points.{plan.folder}")
-    there = {key for key, value in vars(module).items()
-             if inspect.isfunction(value) and value.__module__ == module.__name__ and not key.startswith("_")}
+    there = {
+        key
+        for key, value in vars(module).items()
+        if inspect.isfunction(value) and value.__module__ == module.__name__ and not key.startswith("_")
+    }
     for i, promise in enumerate(plan.promises):
         for point in promise.cover:
             if point not in there:

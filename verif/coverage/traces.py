@@ -3,14 +3,14 @@
 import hashlib
 from pathlib import Path
 
-from flow.jobs import Job, run
+from base.jobs import Job, run
 from models.parameters import SensorParameters
+from rtl.replay import load, record
 from rtl.tops import build_top
-from verif.replay import load, record
 from verif.results import OUT, ROOT, sources
 
 STORE = OUT / "traces"
-DECIDES = "rtl", "models", "pixels", "verif/replay"
+DECIDES = "rtl", "models", "pixels", "rtl/replay"
 
 
 def digest():
@@ -31,10 +31,12 @@ def recorded(blocks, store=STORE):
     now, store = digest(), Path(store)
     jobs = [Job(block, _record, (block, str(store / f"{block}-{now}")), (now,)) for block in blocks]
     for job in jobs:
-        if not Path(job.arguments[1]).exists():         # its files were removed: the kept result is none
+        if not Path(job.arguments[1]).exists():  # its files were removed: the kept result is none
             (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)
-    return {block: [Path(path) for path in paths]
-            for block, paths in zip(blocks, run(jobs, store, "recorded tests"), strict=True)}
+    return {
+        block: [Path(path) for path in paths]
+        for block, paths in zip(blocks, run(jobs, store, "recorded tests"), strict=True)
+    }
 
 
 def _record(block, folder):
@@ -44,4 +46,5 @@ def _record(block, folder):
     def rank(path):
         head = load(path, cycles=False)
         return repr(head.arguments) != default, -head.cycles
+
     return [str(path) for path in sorted(record(block, folder), key=rank)]

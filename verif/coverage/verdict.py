@@ -25,7 +25,7 @@ class Verdict:
 
     def count(self, kind, wanted, hit):
         """Set the percentage of a kind; wanted, hit: collections, hit within wanted."""
-        self.coverage[kind] = math.floor(1e4 * len(hit) / len(wanted)) / 100 if wanted else None     # 100: all of them
+        self.coverage[kind] = math.floor(1e4 * len(hit) / len(wanted)) / 100 if wanted else None  # 100: all of them
 
 
 def points_of(measures):
@@ -92,8 +92,11 @@ def judge(block, plan, measures):
             where = f"exclude {exclusion.kind} {at!r}{' ' + exclusion.what if exclusion.what else ''}"
             if not found:
                 verdict.errors.append(f"{where}: there is no such point")
-            verdict.errors += [f"{where}: {point.what} of {point.source} is hit {points[point]} times"
-                               for point in found if points[point]]
+            verdict.errors += [
+                f"{where}: {point.what} of {point.source} is hit {points[point]} times"
+                for point in found
+                if points[point]
+            ]
             excluded.update(found)
     verdict.excluded = len(excluded)
     for kind in KINDS:

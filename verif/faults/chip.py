@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from base.tools import ToolError, finish
 from flow.frame.hardware import build_of
-from flow.simulate.process import ToolError, finish
 from flow.simulate.verilator import bare_program
 from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
@@ -24,7 +24,7 @@ SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters
 FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1)
 OUTPUTS = 3
 HERE = Path(__file__).parent
-FRAMES = {          # test patterns: the comparators' pins rest
+FRAMES = {  # test patterns: the comparators' pins rest
     "edge": {"threshold": 4, "mask": 0x0F0F0F},
     "raw": {"mode": "raw", "mask": 0x8040A1},
     "phase": {"mode": "tof", "phase": True, "mask": 0x000103},
@@ -64,12 +64,14 @@ def run(waves, icarus=False):
         command = ["vvp", "-n", icarus_program()] if icarus else [program()]
         result = finish([*command, f"+wave={wave}", f"+trace={trace}"])
         if result.returncode or not trace.exists():
-            raise ToolError(f"the chip under a waveform stopped with status {result.returncode}: "
-                            f"{(result.stdout + result.stderr)[-800:]}")
+            raise ToolError(
+                f"the chip under a waveform stopped with status {result.returncode}: "
+                f"{(result.stdout + result.stderr)[-800:]}"
+            )
         out = _bits(trace.read_text()) if icarus else np.frombuffer(trace.read_bytes(), np.uint8)
         out = out.reshape(-1, OUTPUTS)
     ends = np.cumsum([w.size for w in waves])
-    return [Trace(w, out[end - w.size:end]) for w, end in zip(waves, ends, strict=True)]
+    return [Trace(w, out[end - w.size : end]) for w, end in zip(waves, ends, strict=True)]
 
 
 def _bits(text):
@@ -112,7 +114,7 @@ class Quiet:
 def quiet(name):
     """The frame ``name`` as it should be: Quiet."""
     before = np.concatenate([configured(name), start()])
-    trace, = run([np.concatenate([before, rest(1000)])])
+    (trace,) = run([np.concatenate([before, rest(1000)])])
     if trace.stream != golden(name).stream:
         raise ToolError(f"frame {name}: without a fault, other bytes leave the chip than the golden model's")
     return Quiet(before, int(np.flatnonzero(trace.flag(BUSY))[-1]) + 1 - before.size, trace)

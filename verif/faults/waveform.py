@@ -8,8 +8,8 @@ import numpy as np
 from models.parameters.registers import decode_status, status_transfers
 
 SCLK, CSN, MOSI, RDY, RESET, PULSE_LOW, PULSE_HIGH = (1 << bit for bit in range(7))
-REST = np.uint8(CSN | RDY)      # no transfer, the link takes every byte
-HALF = 4                        # cycles of half an SPI clock, the shortest allowed
+REST = np.uint8(CSN | RDY)  # no transfer, the link takes every byte
+HALF = 4  # cycles of half an SPI clock, the shortest allowed
 RESET_CYCLES = 4
 VAL, SYNC, BUSY, MISO, HOLD = (1 << bit for bit in range(5))
 PIXEL_RESET, SHUTTER, REF_CTL, INTEGRATE, CM_RESET, READ, SAMPLE, TAP = (1 << bit for bit in range(8))
@@ -58,7 +58,7 @@ class Trace:
 
     def reply(self, start, size):
         """What came back in the transfer of ``size`` bytes that begins at cycle ``start``: bytes."""
-        at = start + 2 * HALF - 1 + 2 * HALF * np.arange(8 * size)      # ahead of each rising edge of sclk
+        at = start + 2 * HALF - 1 + 2 * HALF * np.arange(8 * size)  # ahead of each rising edge of sclk
         return np.packbits(self.flag(MISO)[at]).tobytes()
 
     def status(self, start):

@@ -9,8 +9,8 @@ import json
 import sys
 from pathlib import Path
 
-from flow import jobs as regression
-from flow.files import staged
+from base import jobs as regression
+from base.files import staged
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 
@@ -31,7 +31,7 @@ def collect(proofs, store, workers=-1):
         engines, twins, covers = {}, {}, None
         for kind, name, job in entries:
             result = next(results)
-            if UNKNOWN in (result.get("result"), result.get("status")):      # to be tried again next time
+            if UNKNOWN in (result.get("result"), result.get("status")):  # to be tried again next time
                 (Path(store) / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)
             if kind == "proof":
                 engines[name] = result
@@ -54,12 +54,19 @@ def entries(found):
     for proof, engines, covers, twins in found:
         for label, twin in twins.items():
             for engine, result in engines.items():
-                out.append({
-                    "block": proof.block, "proof": proof.name, "name": f"{proof.name}.{label}",
-                    "engine": f"{engine} ({version(engine)}, {version('yosys')})",
-                    "depth": "unbounded" if proof.method == "induction" else proof.depth,
-                    "result": result["result"], "twin_fails": twin["fails"], "wall_s": result["wall_s"],
-                    "covers_missing": covers["missing"]})
+                out.append(
+                    {
+                        "block": proof.block,
+                        "proof": proof.name,
+                        "name": f"{proof.name}.{label}",
+                        "engine": f"{engine} ({version(engine)}, {version('yosys')})",
+                        "depth": "unbounded" if proof.method == "induction" else proof.depth,
+                        "result": result["result"],
+                        "twin_fails": twin["fails"],
+                        "wall_s": result["wall_s"],
+                        "covers_missing": covers["missing"],
+                    }
+                )
     return out
 
 
@@ -71,10 +78,15 @@ def problems(found):
             if result["result"] != PROVEN:
                 where = ", ".join(result["failing"]) or result["said"]
                 out.append(f"{proof.block}.{proof.name} = {result['result']} by {engine}: must be proven ({where})")
-        out += [f"{proof.block}.{proof.name}.{name} = not reached: every cover point must be, in "
-                f"{proof.cover_depth} steps" for name in covers["missing"]]
-        out += [f"{proof.block}.{proof.name}.{label} = {twin['status']} with its bug in the design: must fail"
-                for label, twin in twins.items() if not twin["fails"]]
+        out += [
+            f"{proof.block}.{proof.name}.{name} = not reached: every cover point must be, in {proof.cover_depth} steps"
+            for name in covers["missing"]
+        ]
+        out += [
+            f"{proof.block}.{proof.name}.{label} = {twin['status']} with its bug in the design: must fail"
+            for label, twin in twins.items()
+            if not twin["fails"]
+        ]
     return out
 
 
@@ -84,8 +96,11 @@ def summary(found):
     lines = entries(found)
     faults = problems(found)
     for block in TOPS:
-        proofs = [{k: line[k] for k in ("name", "engine", "depth", "result", "twin_fails", "wall_s")}
-                  for line in lines if line["block"] == block]
+        proofs = [
+            {k: line[k] for k in ("name", "engine", "depth", "result", "twin_fails", "wall_s")}
+            for line in lines
+            if line["block"] == block
+        ]
         if proofs:
             out[block] = {"proofs": proofs, "open_points": [f for f in faults if f.startswith(f"{block}.")]}
     return out
@@ -95,8 +110,17 @@ def table(found):
     """Block, property, engine, depth, seconds: text."""
     rows = [("block", "property", "engine", "depth", "result", "twin", "s")]
     for line in entries(found):
-        rows.append((line["block"], line["name"], line["engine"].split()[0], str(line["depth"]), line["result"],
-                     "fails" if line["twin_fails"] else "PASSES", f"{line['wall_s']:.1f}"))
+        rows.append(
+            (
+                line["block"],
+                line["name"],
+                line["engine"].split()[0],
+                str(line["depth"]),
+                line["result"],
+                "fails" if line["twin_fails"] else "PASSES",
+                f"{line['wall_s']:.1f}",
+            )
+        )
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
 
@@ -106,8 +130,11 @@ def chosen(proofs, options):
     unknown = set(options.proof or ()) - {proof.name for proof in proofs}
     if unknown:
         raise ParameterError(f"proof = {', '.join(sorted(unknown))}: must be the name of a proof")
-    found = [proof for proof in proofs if (not options.only or proof.block in options.only)
-             and (not options.proof or proof.name in options.proof)]
+    found = [
+        proof
+        for proof in proofs
+        if (not options.only or proof.block in options.only) and (not options.proof or proof.name in options.proof)
+    ]
     if not found:
         raise ParameterError(f"only = {', '.join(options.only or options.proof)}: must be a block with proofs")
     return found
@@ -132,8 +159,10 @@ def main(argv=None):
         print(table(found))
         for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
             if not tool_or_none(engine):
-                print(f"verif.formal: {engine} = not found: second engine left out; make tools installs it",
-                      file=sys.stderr)
+                print(
+                    f"verif.formal: {engine} = not found: second engine left out; make tools installs it",
+                    file=sys.stderr,
+                )
     except (ParameterError, FormalError, OSError) as error:
         print(f"verif.formal: {error}", file=sys.stderr)
         return 2

@@ -60,20 +60,35 @@ def script(designs, wrapper, top, only=None):
     designs: module -> file. only: the one assertion that stays.
     """
     lines = []
-    for module, file in designs.items():        # apart: files may share the names of their parts
-        lines += [f"read_verilog -sv {file}", f"hierarchy -check -top {module}", "proc", "flatten",
-                  f"design -stash {module}"]
+    for module, file in designs.items():  # apart: files may share the names of their parts
+        lines += [
+            f"read_verilog -sv {file}",
+            f"hierarchy -check -top {module}",
+            "proc",
+            "flatten",
+            f"design -stash {module}",
+        ]
     lines += [f"design -copy-from {module} -as {module} {module}" for module in designs]
-    lines += [f"read_verilog -sv -formal {wrapper}", f"hierarchy -check -top {top}", "proc", "flatten",
-              "select -assert-none w:* a:hierconn %i", "memory -nordff", "opt_clean"]
+    lines += [
+        f"read_verilog -sv -formal {wrapper}",
+        f"hierarchy -check -top {top}",
+        "proc",
+        "flatten",
+        "select -assert-none w:* a:hierconn %i",
+        "memory -nordff",
+        "opt_clean",
+    ]
     if yosys_number() >= (0, 40):
         lines += ["async2sync", "chformal -lower"]
     asserts = "t:$assert"
     if only:
-        lines += [f"select -assert-count 1 {asserts} c:{only} %i",
-                  f"chformal -assert -remove {asserts} c:{only} %d"]
-    lines += ["setundef -undriven -anyseq", "opt -keepdc -nodffe -nosdff", "check -assert",
-              "write_smt2 -wires proof.smt2"]
+        lines += [f"select -assert-count 1 {asserts} c:{only} %i", f"chformal -assert -remove {asserts} c:{only} %d"]
+    lines += [
+        "setundef -undriven -anyseq",
+        "opt -keepdc -nodffe -nosdff",
+        "check -assert",
+        "write_smt2 -wires proof.smt2",
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -88,7 +103,7 @@ class Workplace:
             (self.path / f"{module}.v").write_text(text)
         (self.path / "wrapper.sv").write_text(wrapper)
         (self.path / "proof.ys").write_text(script({m: f"{m}.v" for m in texts}, "wrapper.sv", top, only))
-        for name in ("boolector", "z3"):        # yosys-smtbmc looks for the bare name
+        for name in ("boolector", "z3"):  # yosys-smtbmc looks for the bare name
             if Path(tool_or_none(name) or "").name.startswith("yowasp"):
                 (self.path / name).symlink_to(tool(name))
         made = subprocess.run([tool("yosys"), "-q", "proof.ys"], cwd=self.path, capture_output=True, text=True)
@@ -104,12 +119,19 @@ class Workplace:
 
     def check(self, engine, options, timeout):
         """(status, output, seconds) of yosys-smtbmc. status: 'passed', 'failed' or 'unknown'."""
-        version(engine)         # the wheel says something else the first time it runs
+        version(engine)  # the wheel says something else the first time it runs
         command = [tool("yosys-smtbmc"), "-s", engine, "--unroll", "--noprogress", *options, "proof.smt2"]
         environment = os.environ | {"PATH": f"{self.path}{os.pathsep}{os.environ['PATH']}"}
         begin = time.monotonic()
-        process = subprocess.Popen(command, cwd=self.path, env=environment, stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, text=True, start_new_session=True)
+        process = subprocess.Popen(
+            command,
+            cwd=self.path,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            start_new_session=True,
+        )
         try:
             output, _ = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:

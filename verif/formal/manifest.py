@@ -6,10 +6,10 @@ from pathlib import Path
 
 import yaml
 
+from base.paths import ROOT
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
 from rtl.tops import TOPS
 
-ROOT = Path(__file__).parents[2]
 METHODS = ("induction", "bounded")
 ENGINES = ("boolector", "z3")
 LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
@@ -84,9 +84,12 @@ class Proof:
         given = dict(self.sensor)
         default = SensorParameters()
         array = ArrayParameters(given.pop("rows", default.array.rows), given.pop("cols", default.array.cols))
-        chip = ChipParameters(given.pop("lanes", default.chip.lanes), given.pop("divider", default.chip.divider),
-                              given.pop("n_frac", default.chip.n_frac),
-                              given.pop("iterations", default.chip.cordic_iterations))
+        chip = ChipParameters(
+            given.pop("lanes", default.chip.lanes),
+            given.pop("divider", default.chip.divider),
+            given.pop("n_frac", default.chip.n_frac),
+            given.pop("iterations", default.chip.cordic_iterations),
+        )
         if given:
             raise ParameterError(f"{self.name}.sensor = {', '.join(given)}: must be parameters of the sensor")
         return SensorParameters(array=array, chip=chip)
@@ -106,8 +109,11 @@ def labels(text):
     if len(set(names)) != len(names):
         raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
     asserts = [name for name, kind in found if kind == "assert"]
-    return ([n for n in asserts if not n.startswith("inv_")], [n for n in asserts if n.startswith("inv_")],
-            [name for name, kind in found if kind == "cover"])
+    return (
+        [n for n in asserts if not n.startswith("inv_")],
+        [n for n in asserts if n.startswith("inv_")],
+        [name for name, kind in found if kind == "cover"],
+    )
 
 
 def read(path):

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from flow.jobs import Job
+from base.jobs import Job
 
 from . import design, manifest
 from .engine import FAILED, PROVEN, UNKNOWN, Workplace, version
@@ -19,10 +19,14 @@ def prove(proof, engine, texts, wrapper):
         if result == PROVEN and proof.method == "induction":
             status, output, more = place.check(engine, ["-i", "-t", str(proof.depth)], proof.timeout)
             wall += more
-            result = PROVEN if status == "passed" else UNKNOWN      # a failed step is no counterexample
+            result = PROVEN if status == "passed" else UNKNOWN  # a failed step is no counterexample
     failing = sorted(set(re.findall(r"Assert failed in \S+: (?:.*\()?(\w+)", output)))
-    return {"result": result, "failing": failing, "wall_s": round(wall, 2),
-            "said": "" if result == PROVEN else _last_lines(output)}
+    return {
+        "result": result,
+        "failing": failing,
+        "wall_s": round(wall, 2),
+        "said": "" if result == PROVEN else _last_lines(output),
+    }
 
 
 def cover(proof, texts, wrapper):
@@ -32,8 +36,11 @@ def cover(proof, texts, wrapper):
         _, output, wall = place.check(engine, ["-c", "-t", str(proof.cover_depth)], proof.timeout)
     reached = set(re.findall(r"Reached cover statement(?: in step \d+)? at (?:\S+: )?(\w+)", output))
     named = manifest.labels(proof.text)[2]
-    return {"reached": [n for n in named if n in reached], "missing": [n for n in named if n not in reached],
-            "wall_s": round(wall, 2)}
+    return {
+        "reached": [n for n in named if n in reached],
+        "missing": [n for n in named if n not in reached],
+        "wall_s": round(wall, 2),
+    }
 
 
 def twin(proof, label, texts, wrapper):
@@ -43,8 +50,12 @@ def twin(proof, label, texts, wrapper):
     with Workplace(texts, wrapper, proof.top, only=label) as place:
         status, output, wall = place.check(engine, ["-t", str(depth)], proof.timeout)
     steps = re.findall(r"Checking assertions in step (\d+)", output)
-    return {"fails": status == "failed" and f": {label}" in output, "wall_s": round(wall, 2), "status": status,
-            "step": int(steps[-1]) if steps else None}
+    return {
+        "fails": status == "failed" and f": {label}" in output,
+        "wall_s": round(wall, 2),
+        "status": status,
+        "step": int(steps[-1]) if steps else None,
+    }
 
 
 def jobs(proof, engines):
@@ -53,13 +64,33 @@ def jobs(proof, engines):
     base = (*SOURCES, *sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout)
     found = []
     for engine in engines:
-        found.append(("proof", engine, Job(f"{proof.name}.{engine}", prove, (proof, engine, texts, wrapper),
-                                           (*base, proof.depth, version("yosys"), version(engine)))))
+        found.append(
+            (
+                "proof",
+                engine,
+                Job(
+                    f"{proof.name}.{engine}",
+                    prove,
+                    (proof, engine, texts, wrapper),
+                    (*base, proof.depth, version("yosys"), version(engine)),
+                ),
+            )
+        )
     found.append(("cover", "", Job(f"{proof.name}.cover", cover, (proof, texts, wrapper), (*base, proof.cover_depth))))
     for label, bug in proof.twins.items():
         bad, around = design.broken(proof, texts, wrapper, label)
-        found.append(("twin", label, Job(f"{proof.name}.{label}", twin, (proof, label, bad, around),
-                                         (*base, *sorted(bad.values()), around, bug.depth or proof.twin_depth))))
+        found.append(
+            (
+                "twin",
+                label,
+                Job(
+                    f"{proof.name}.{label}",
+                    twin,
+                    (proof, label, bad, around),
+                    (*base, *sorted(bad.values()), around, bug.depth or proof.twin_depth),
+                ),
+            )
+        )
     return found
 
 

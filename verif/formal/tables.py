@@ -10,8 +10,10 @@ from models.parameters.registers import register_map
 def case(name, in_bits, out_bits, values):
     """A function that looks ``values`` (integers, by index) up."""
     lines = "".join(f"    {in_bits}'d{i}: {name} = {out_bits}'d{value};\n" for i, value in enumerate(values))
-    return (f"function [{out_bits - 1}:0] {name}(input [{in_bits - 1}:0] at);\n  case (at)\n{lines}"
-            f"    default: {name} = 0;\n  endcase\nendfunction\n")
+    return (
+        f"function [{out_bits - 1}:0] {name}(input [{in_bits - 1}:0] at);\n  case (at)\n{lines}"
+        f"    default: {name} = 0;\n  endcase\nendfunction\n"
+    )
 
 
 def phase_of_ratio(proof):
@@ -21,7 +23,7 @@ def phase_of_ratio(proof):
     inside = smaller < larger
     found = quad_divide(larger[inside], smaller[inside], bits)
     table = dict(zip(found.ratio.tolist(), found.phase.tolist()))
-    top = quad_divide(1, 1, bits)           # the diagonal: octant 1, counted back from the axis at 64
+    top = quad_divide(1, 1, bits)  # the diagonal: octant 1, counted back from the axis at 64
     table[int(top.ratio)] = 64 - int(top.phase)
     return case("phase_of_ratio", bits, 8, [table.get(r, 0) for r in range(1 << bits)])
 
@@ -42,7 +44,7 @@ def registers(proof):
     """bit_address, bit_place, bit_writable, bit_reset of each bit of the configuration's struct, and macros."""
     chip, sensor = register_map(), proof.sensor_parameters
     resets = {"row1": sensor.tile_rows - 1, "col1": sensor.tile_cols - 1}
-    bits = []       # from the struct's lowest bit: (address, place, writable, reset)
+    bits = []  # from the struct's lowest bit: (address, place, writable, reset)
     writable = chip.writable()
     for f in chip.trims:
         for i in range(8 * f.size):
@@ -52,11 +54,22 @@ def registers(proof):
         for i in range(f.width):
             at = f.lsb + i
             bits.append((f.address + at // 8, at % 8, 1, resets.get(f.name, f.reset) >> i & 1))
-    columns = [case(name, 10, width, column) for (name, width), column in zip(
-        (("bit_address", 7), ("bit_place", 3), ("bit_writable", 1), ("bit_reset", 1)), zip(*bits))]
+    columns = [
+        case(name, 10, width, column)
+        for (name, width), column in zip(
+            (("bit_address", 7), ("bit_place", 3), ("bit_writable", 1), ("bit_reset", 1)), zip(*bits)
+        )
+    ]
     image = [address for address, *_ in bits]
-    macros = {"CFG_BITS": len(bits), "FIRST": min(image), "LAST": max(image), "START": chip["start"].byte,
-              "STATUS": chip["busy"].byte, "LOOP": chip["loop_back"].byte, "CYCLES": chip["cycles"].byte}
+    macros = {
+        "CFG_BITS": len(bits),
+        "FIRST": min(image),
+        "LAST": max(image),
+        "START": chip["start"].byte,
+        "STATUS": chip["busy"].byte,
+        "LOOP": chip["loop_back"].byte,
+        "CYCLES": chip["cycles"].byte,
+    }
     return "".join(f"`define {name} {value}\n" for name, value in macros.items()) + "".join(columns)
 
 

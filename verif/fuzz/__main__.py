@@ -10,16 +10,19 @@ from pathlib import Path
 
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
-from flow.jobs import Job, run
+from base.jobs import Job, run
 from models.parameters import ParameterError, check_int
 from verif.results import OUT, digest_of, write_step
 
 from .batch import BATCH, make_input, run_batch, try_input
 from .resync import AROUND, FRAMES, sweep
 
-DECIDES = ("models/digital", "models/parameters", *(f"verif/fuzz/{name}.py" for name in ("batch", "checks", "host",
-                                                                                         "streams")))
-CHANGES = 16        # wrong values tried at each byte of a real frame
+DECIDES = (
+    "models/digital",
+    "models/parameters",
+    *(f"verif/fuzz/{name}.py" for name in ("batch", "checks", "host", "streams")),
+)
+CHANGES = 16  # wrong values tried at each byte of a real frame
 SEED = 1
 
 
@@ -27,19 +30,25 @@ def batches(inputs, seed, folder):
     """Jobs for ``inputs`` inputs: list of Job."""
     code = digest_of(*DECIDES)
     counts = [BATCH] * (inputs // BATCH) + ([inputs % BATCH] if inputs % BATCH else [])
-    return [Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, str(folder)), (code, count))
-            for i, count in enumerate(counts)]
+    return [
+        Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, str(folder)), (code, count))
+        for i, count in enumerate(counts)
+    ]
 
 
 def sweeps(count, seed):
     """Jobs of the resynchronisation: list of Job."""
     code = digest_of(*DECIDES, "models", "flow/frame", "verif/fuzz/resync.py")
-    return [Job(f"resync-{name}-{around.replace(' ', '-')}", sweep, (name, around, count, seed), (code, count, seed))
-            for name in FRAMES for around in AROUND]
+    return [
+        Job(f"resync-{name}-{around.replace(' ', '-')}", sweep, (name, around, count, seed), (code, count, seed))
+        for name in FRAMES
+        for around in AROUND
+    ]
 
 
 def summarize(seed, done, swept):
     """What the batches and sweeps found, by block."""
+
     def total(key):
         return sum(d[key] for d in done)
 
@@ -48,19 +57,35 @@ def summarize(seed, done, swept):
         for kind, n in d["kinds"].items():
             kinds[kind] = kinds.get(kind, 0) + n
     failures = [(d["batch"], f) for d in done for f in d["failures"]]
-    decoder = [f"batch {b}, input {f['index']} ({f['kind']}): {f['error']}"
-               + (f": {f['file']}" if f["file"] else "") for b, f in failures if f["target"] == "decoder"]
-    host = [f"batch {b}, input {f['index']} ({f['kind']}): {f['error']}" for b, f in failures
-            if f["target"] != "decoder"]
+    decoder = [
+        f"batch {b}, input {f['index']} ({f['kind']}): {f['error']}" + (f": {f['file']}" if f["file"] else "")
+        for b, f in failures
+        if f["target"] == "decoder"
+    ]
+    host = [
+        f"batch {b}, input {f['index']} ({f['kind']}): {f['error']}" for b, f in failures if f["target"] != "decoder"
+    ]
     lost = [text for s in swept for text in s["failures"]]
     return {
-        "Decoder": {"fuzz": {"inputs": total("inputs"), "failures": len(decoder), "files": total("files"),
-                             "seconds_max": max((d["seconds_max"] for d in done), default=0.0), "seed": seed,
-                             "kinds": kinds},
-                    "resync": {"tried": sum(s["tried"] for s in swept), "failures": sum(s["failed"] for s in swept),
-                               "mended": sum(s["mended"] for s in swept), "frames": swept},
-                    "open_points": decoder[:10] + lost[:10]},
-        "Host": {"fuzz": {"inputs": total("host"), "failures": len(host), "seed": seed}, "open_points": host[:10]}}
+        "Decoder": {
+            "fuzz": {
+                "inputs": total("inputs"),
+                "failures": len(decoder),
+                "files": total("files"),
+                "seconds_max": max((d["seconds_max"] for d in done), default=0.0),
+                "seed": seed,
+                "kinds": kinds,
+            },
+            "resync": {
+                "tried": sum(s["tried"] for s in swept),
+                "failures": sum(s["failed"] for s in swept),
+                "mended": sum(s["mended"] for s in swept),
+                "frames": swept,
+            },
+            "open_points": decoder[:10] + lost[:10],
+        },
+        "Host": {"fuzz": {"inputs": total("host"), "failures": len(host), "seed": seed}, "open_points": host[:10]},
+    }
 
 
 def under_way(folder):
@@ -69,12 +94,19 @@ def under_way(folder):
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m verif.fuzz", description=__doc__.split("`: ")[1],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m verif.fuzz",
+        description=__doc__.split("`: ")[1],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--inputs", type=int, default=1_000_000, help="for the decoder; default: %(default)s")
     parser.add_argument("--seed", type=int, default=SEED, help="default: %(default)s")
-    parser.add_argument("--changes", type=int, default=CHANGES,
-                        help="wrong values at each byte of the real frames, 0..255; default: %(default)s")
+    parser.add_argument(
+        "--changes",
+        type=int,
+        default=CHANGES,
+        help="wrong values at each byte of the real frames, 0..255; default: %(default)s",
+    )
     parser.add_argument("--only", nargs=2, type=int, metavar=("BATCH", "INPUT"), help="one input, and what raises")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of fuzz.json; default: build/verify")
     return parser
@@ -98,8 +130,11 @@ def main(argv=None):
         print(f"verif.fuzz: {error}", file=sys.stderr)
         return 2
     except TerminatedWorkerError:
-        print(f"verif.fuzz: a process ended (crash, or an input that takes for ever) at: "
-              f"{'; '.join(under_way(folder))}; seed {options.seed}: see --only", file=sys.stderr)
+        print(
+            f"verif.fuzz: a process ended (crash, or an input that takes for ever) at: "
+            f"{'; '.join(under_way(folder))}; seed {options.seed}: see --only",
+            file=sys.stderr,
+        )
         return 1
     found = summarize(options.seed, done, swept)
     write_step("fuzz", found, options.out)

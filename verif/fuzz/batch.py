@@ -16,12 +16,12 @@ from .checks import check_file, check_stream
 from .host import TARGETS
 from .streams import make_case, random_frame
 
-BATCH = 10_000              # inputs of a batch
-POOL = 24                   # good frames that a batch damages
-FILE_EVERY, HOST_EVERY = 50, 5      # every so many inputs one goes through files too; one for the host is tried
-SECONDS_MAX = 10.0          # of processor time an input
-MEMORY_MAX = 512 << 20      # bytes that an input may add to the process
-HANG_S = 120                # and a group of GROUP inputs may take no longer: the process ends with a traceback
+BATCH = 10_000  # inputs of a batch
+POOL = 24  # good frames that a batch damages
+FILE_EVERY, HOST_EVERY = 50, 5  # every so many inputs one goes through files too; one for the host is tried
+SECONDS_MAX = 10.0  # of processor time an input
+MEMORY_MAX = 512 << 20  # bytes that an input may add to the process
+HANG_S = 120  # and a group of GROUP inputs may take no longer: the process ends with a traceback
 GROUP = 256
 
 
@@ -57,7 +57,7 @@ def warm_up(pool):
     """Decode the good frames, whole and damaged: what is compiled or read at the first call is no input's memory."""
     for sent in pool:
         for data in (sent.data, sent.data[:-20] + b"\x55" * 20):
-            with contextlib.suppress(Exception):    # the inputs will tell
+            with contextlib.suppress(Exception):  # the inputs will tell
                 decode_stream(data, sent.tile)
 
 
@@ -107,14 +107,27 @@ def run_batch(seed, batch, count, folder):
                 except Exception as error:
                     failures.append(_told(target, index, target, error, None))
         faulthandler.cancel_dump_traceback_later()
-    (folder / f"at.{batch}").unlink(missing_ok=True)   # a killed run's process may be at the same batch
-    return {"batch": batch, "inputs": count, "host": host, "files": files, "outcomes": dict(outcomes),
-            "kinds": dict(kinds), "seconds_max": slowest, "failures": failures}
+    (folder / f"at.{batch}").unlink(missing_ok=True)  # a killed run's process may be at the same batch
+    return {
+        "batch": batch,
+        "inputs": count,
+        "host": host,
+        "files": files,
+        "outcomes": dict(outcomes),
+        "kinds": dict(kinds),
+        "seconds_max": slowest,
+        "failures": failures,
+    }
 
 
 def _told(target, index, kind, error, file):
-    return {"target": target, "index": index, "kind": kind, "file": file and str(file),
-            "error": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"}
+    return {
+        "target": target,
+        "index": index,
+        "kind": kind,
+        "file": file and str(file),
+        "error": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}",
+    }
 
 
 def _keep(error, case, seed, batch, index, folder):

@@ -43,8 +43,10 @@ def _check_frame(frame, at, size):
     header, rows = frame.header, frame.layout.rows.tolist()
     demand(at <= frame.start < frame.stop <= size, f"bytes {frame.start}..{frame.stop} behind {at}, of {size}")
     demand(frame.samples.shape == (header.rows, header.cols, header.subs), f"samples are {frame.samples.shape}")
-    demand(set(frame.bad_rows) <= set(rows) and frame.bad_rows == sorted(set(frame.bad_rows)),
-           f"bad rows {frame.bad_rows} of {rows}")
+    demand(
+        set(frame.bad_rows) <= set(rows) and frame.bad_rows == sorted(set(frame.bad_rows)),
+        f"bad rows {frame.bad_rows} of {rows}",
+    )
     demand(frame.complete or frame.errors, "incomplete without a word")
     unread = np.ones(header.rows, bool)
     unread[rows] = False
@@ -58,7 +60,7 @@ def _check_frame(frame, at, size):
 
 
 def _check_survived(case, frames):
-    frame, = frames if len(frames) == 1 else (None,)
+    (frame,) = frames if len(frames) == 1 else (None,)
     demand(frame is not None, f"{len(frames)} frames of one")
     demand(frame.header == case.sent.header, "another header")
     demand(frame.complete, f"incomplete: {frame.errors}")

@@ -2,8 +2,15 @@
 
 from models.digital.registers import ADDRESS_MAX, RegisterBank
 from models.parameters import MODES, AmpTiming, FrameParameters, ParameterError, Window
-from models.parameters.registers import (decode_status, frame_writes, read_transfer, register_map, status_transfers,
-                                         trim_range, write_transfers)
+from models.parameters.registers import (
+    decode_status,
+    frame_writes,
+    read_transfer,
+    register_map,
+    status_transfers,
+    trim_range,
+    write_transfers,
+)
 
 from .checks import demand
 
@@ -67,9 +74,17 @@ def a_frame(rng):
     try:
         frame = FrameParameters(
             Window(*(integer(rng) for _ in range(4))) if rng.random() < 0.3 else Window(0, 5, 1, 7),
-            MODES[rng.integers(4)], integer(rng), integer(rng) % 128, int(rng.integers(4)), rng.random() < 0.2,
-            integer(rng) % 256, rng.random() < 0.5, rng.random() < 0.5, integer(rng) % 65536,
-            AmpTiming(*(1 + integer(rng) % 65536 for _ in range(6)), integer(rng) % 256))
+            MODES[rng.integers(4)],
+            integer(rng),
+            integer(rng) % 128,
+            int(rng.integers(4)),
+            rng.random() < 0.2,
+            integer(rng) % 256,
+            rng.random() < 0.5,
+            rng.random() < 0.5,
+            integer(rng) % 65536,
+            AmpTiming(*(1 + integer(rng) % 65536 for _ in range(6)), integer(rng) % 256),
+        )
         trims = rng.integers(low - 1, high + 2, rng.integers(0, 26)).tolist()
         writes = frame_writes(frame, trims)
     except ParameterError as error:
@@ -79,10 +94,25 @@ def a_frame(rng):
     for transfer in write_transfers(writes):
         for i, byte in enumerate(transfer[1:]):
             bank.write((transfer[0] & 0x7F) + i, byte, False, False)
-    held = {**vars(frame.window), **vars(frame.timing), "mode": MODES.index(frame.mode),
-            **{name: int(getattr(frame, name)) for name in
-               ("mask", "threshold", "decimation", "phase", "noise_floor", "overlap", "test_pattern", "frame_number")},
-            **{f.key: trim % (1 << f.width) for f, trim in zip(register_map().trims, trims, strict=False)}}
+    held = {
+        **vars(frame.window),
+        **vars(frame.timing),
+        "mode": MODES.index(frame.mode),
+        **{
+            name: int(getattr(frame, name))
+            for name in (
+                "mask",
+                "threshold",
+                "decimation",
+                "phase",
+                "noise_floor",
+                "overlap",
+                "test_pattern",
+                "frame_number",
+            )
+        },
+        **{f.key: trim % (1 << f.width) for f, trim in zip(register_map().trims, trims, strict=False)},
+    }
     for name, value in held.items():
         demand(bank.value(name) == value, f"{name} = {bank.value(name)} in the registers, not {value}")
 
@@ -91,8 +121,12 @@ def a_bank(rng):
     """Any bytes at any address: only writable bits of the configuration move, and none while a frame runs."""
     bank, chip = RegisterBank(), register_map()
     fixed = {a: byte for a, byte in bank.bytes.items() if a not in bank.writable}
-    for address, byte, busy, full in zip(rng.integers(0, 128, 12).tolist(), rng.integers(0, 256, 12).tolist(),
-                                         *(rng.random((2, 12)) < 0.3).tolist(), strict=True):
+    for address, byte, busy, full in zip(
+        rng.integers(0, 128, 12).tolist(),
+        rng.integers(0, 256, 12).tolist(),
+        *(rng.random((2, 12)) < 0.3).tolist(),
+        strict=True,
+    ):
         before = dict(bank.bytes)
         bank.write(address, byte, busy, full)
         start, loop = bank.take()
@@ -109,5 +143,10 @@ def a_bank(rng):
     demand(bank.read(chip["id"].byte, 0, [0, 0, 0]) == chip["id"].reset, "another id")
 
 
-TARGETS = {"status replies": status_replies, "writes": transfers_of_writes, "reads": a_read, "frames": a_frame,
-           "register bank": a_bank}
+TARGETS = {
+    "status replies": status_replies,
+    "writes": transfers_of_writes,
+    "reads": a_read,
+    "frames": a_frame,
+    "register bank": a_bank,
+}

@@ -13,9 +13,9 @@ from models.digital.stream.trailer import TRAILER_BYTES
 from models.parameters import MODES
 
 FRAMES = {**{mode: (mode, False) for mode in MODES}, "phase": ("tof", True)}
-SIZES = {"edge": (96, 144)}             # rows, cols of the array that sees the default scene
-SIZE = 24, 36                           # ... in the other modes, whose rows are plain bytes
-AROUND = "alone", "between frames", "bytes behind"      # what lies around the frame
+SIZES = {"edge": (96, 144)}  # rows, cols of the array that sees the default scene
+SIZE = 24, 36  # ... in the other modes, whose rows are plain bytes
+AROUND = "alone", "between frames", "bytes behind"  # what lies around the frame
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,5 +78,13 @@ def sweep(name, around, count, seed, size=None):
                 found[check_position(frame, position, change, around)] += 1
             except Exception as error:
                 failures.append(f"{name}: {error}")
-    return {"frame": name, "around": around, "bytes": len(frame.data), "tried": tried, "mended": found[0],
-            "row_lost": found[1], "failures": failures[:10], "failed": len(failures)}
+    return {
+        "frame": name,
+        "around": around,
+        "bytes": len(frame.data),
+        "tried": tried,
+        "mended": found[0],
+        "row_lost": found[1],
+        "failures": failures[:10],
+        "failed": len(failures),
+    }

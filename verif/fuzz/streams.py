@@ -12,8 +12,8 @@ from models.parameters import LANES, MODES, FrameParameters, ParameterError, Til
 
 SMALL_TILE = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
 TILES = TileParameters(), SMALL_TILE
-FRAMES_MAX = 3              # frames in one input
-NOISE_MAX = 400             # random bytes in one place
+FRAMES_MAX = 3  # frames in one input
+NOISE_MAX = 400  # random bytes in one place
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,12 +46,18 @@ def random_header(rng):
         mode = MODES[rng.integers(len(MODES))]
         mask = int(rng.integers(1, 1 << tile.n_types)) if rng.random() < 0.5 else (1 << tile.n_types) - 1
         frame = FrameParameters(
-            Window(row0, row1, col0, col1), mode, mask, int(rng.integers(0, 128)) if rng.random() < 0.5 else 4,
-            int(rng.integers(0, 4)), mode == "tof" and rng.random() < 0.5, frame_number=int(rng.integers(0, 65536)))
+            Window(row0, row1, col0, col1),
+            mode,
+            mask,
+            int(rng.integers(0, 128)) if rng.random() < 0.5 else 4,
+            int(rng.integers(0, 4)),
+            mode == "tof" and rng.random() < 0.5,
+            frame_number=int(rng.integers(0, 65536)),
+        )
         header = StreamHeader.from_frame(rows, cols, LANES[rng.integers(len(LANES))], frame, tile)
         try:
             header.layout(tile)
-        except ParameterError:      # nothing to read
+        except ParameterError:  # nothing to read
             continue
         return header, tile
 
@@ -115,7 +121,7 @@ def cut(sent, pool, rng):
 
 def insertion(sent, pool, rng):
     at = _place(sent.data, rng)
-    return sent.data[:at] + _noise(rng)[:int(rng.integers(1, NOISE_MAX))] + sent.data[at:]
+    return sent.data[:at] + _noise(rng)[: int(rng.integers(1, NOISE_MAX))] + sent.data[at:]
 
 
 def deletion(sent, pool, rng):
@@ -130,7 +136,7 @@ def doubled(sent, pool, rng):
 
 def splice(sent, pool, rng):
     other = _pick(pool, rng).data
-    return sent.data[:_place(sent.data, rng)] + other[_place(other, rng):]
+    return sent.data[: _place(sent.data, rng)] + other[_place(other, rng) :]
 
 
 def several(sent, pool, rng):
@@ -147,8 +153,8 @@ def hostile(sent, pool, rng):
     fields = bytearray(sent.header.to_bytes()[:FIELD_BYTES])
     for _ in range(rng.integers(1, 6)):
         at = int(rng.integers(4, FIELD_BYTES))
-        if at in (9, 11) and rng.random() < 0.5:        # rows, cols
-            fields[at:at + 2] = struct.pack(">H", int(rng.choice([0, 1, 63, 256, 1024, 1025, 1536, 1537, 65535])))
+        if at in (9, 11) and rng.random() < 0.5:  # rows, cols
+            fields[at : at + 2] = struct.pack(">H", int(rng.choice([0, 1, 63, 256, 1024, 1025, 1536, 1537, 65535])))
         else:
             fields[at] = int(rng.choice([0, 1, 2, 0x7F, 0x80, 0xFF, rng.integers(256)]))
     body = _noise(rng) if rng.random() < 0.5 else _pick(pool, rng).data[HEADER_BYTES:]
@@ -164,12 +170,21 @@ def nothing(sent, pool, rng):
     return rng.bytes(int(rng.integers(0, HEADER_BYTES + 2)))
 
 
-SURVIVED = "clean", "one wrong byte"        # of these every sample must come out
-KINDS = {      # name: (function, share of the inputs)
-    "clean": (clean, 0.03), "one wrong byte": (one_wrong_byte, 0.15), "wrong bytes": (wrong_bytes, 0.17),
-    "cut": (cut, 0.09), "insertion": (insertion, 0.09), "deletion": (deletion, 0.09), "doubled": (doubled, 0.07),
-    "splice": (splice, 0.09), "several frames": (several, 0.08), "hostile header": (hostile, 0.08),
-    "noise": (noise, 0.05), "nothing": (nothing, 0.01)}
+SURVIVED = "clean", "one wrong byte"  # of these every sample must come out
+KINDS = {  # name: (function, share of the inputs)
+    "clean": (clean, 0.03),
+    "one wrong byte": (one_wrong_byte, 0.15),
+    "wrong bytes": (wrong_bytes, 0.17),
+    "cut": (cut, 0.09),
+    "insertion": (insertion, 0.09),
+    "deletion": (deletion, 0.09),
+    "doubled": (doubled, 0.07),
+    "splice": (splice, 0.09),
+    "several frames": (several, 0.08),
+    "hostile header": (hostile, 0.08),
+    "noise": (noise, 0.05),
+    "nothing": (nothing, 0.01),
+}
 _NAMES, _SHARES = tuple(KINDS), np.cumsum([share for _, share in KINDS.values()])
 
 

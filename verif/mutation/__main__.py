@@ -10,26 +10,37 @@ import json
 import sys
 from pathlib import Path
 
-from flow.jobs import Job, run
-from flow.simulate.process import ToolError
+from base.jobs import Job, run
+from base.tools import ToolError
 from models.parameters import ParameterError
+from rtl.replay import RecordError, load
 from rtl.tops import TOPS
 from verif.coverage.program import compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
-from verif.replay import RecordError, load
 from verif.results import OUT, digest_of, write_step
 
 from .mutants import generate, with_mutants
 from .score import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
 
 SEED = 1
-NUMBERS = {"AmpCtrl": 55, "ReadoutSeq": 70, "EdgeAdc": 40, "AdcBank": 40, "QuadDividerRadix2": 32,
-           "QuadDividerRadix4": 32, "QuadDividerPipelined": 32, "Cordic": 40, "PhasePath": 48, "RunLength": 90,
-           "RegFile": 55, "AspChip": 40}
+NUMBERS = {
+    "AmpCtrl": 55,
+    "ReadoutSeq": 70,
+    "EdgeAdc": 40,
+    "AdcBank": 40,
+    "QuadDividerRadix2": 32,
+    "QuadDividerRadix4": 32,
+    "QuadDividerPipelined": 32,
+    "Cordic": 40,
+    "PhasePath": 48,
+    "RunLength": 90,
+    "RegFile": 55,
+    "AspChip": 40,
+}
 FOLDERS = sorted({folder_of(block) for block in TOPS})
-TESTS = "models", "rtl", "pixels", "verif/coverage", "verif/replay", "verif/mutation"
-JUDGES = "verif/mutation", "verif/divider", "verif/formal", *(f"rtl/{folder}/formal" for folder in FOLDERS)
+TESTS = "models", "rtl", "pixels", "verif/coverage", "rtl/replay", "verif/mutation"
+JUDGES = "verif/mutation", "flow/simulate/divider", "verif/formal", *(f"rtl/{folder}/formal" for folder in FOLDERS)
 
 
 def plant(block, path, store, number, seed):
@@ -59,7 +70,7 @@ def score(blocks, store, factor=1.0, seed=SEED):
         for mutant in made[block]:
             name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
-            judges.append(Job(name, judge, arguments, (text, judged)))      # whatever the tests are
+            judges.append(Job(name, judge, arguments, (text, judged)))  # whatever the tests are
     run(whole, store / "tests", "tests without a mutant")
     results = run(tests, store / "tests", "mutants against the tests")
     left = [i for i, result in enumerate(results) if result["result"] == SURVIVED]
@@ -72,14 +83,20 @@ def score(blocks, store, factor=1.0, seed=SEED):
 def summary(mutants, results):
     """What a block's entry in mutation.json says."""
     count = {name: sum(r["result"] == name for r in results) for name in (EQUIVALENT, KILLED, SURVIVED)}
-    left = [f"mutant {mutant} = survived, difference {result['difference']}"
-            for mutant, result in zip(mutants, results, strict=True) if result["result"] == SURVIVED]
+    left = [
+        f"mutant {mutant} = survived, difference {result['difference']}"
+        for mutant, result in zip(mutants, results, strict=True)
+        if result["result"] == SURVIVED
+    ]
     return {"mutants": {"made": len(mutants), **count}, "open_points": left}
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m verif.mutation", description=__doc__.split("`: ")[1],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m verif.mutation",
+        description=__doc__.split("`: ")[1],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
     parser.add_argument("--seed", type=int, default=SEED, help="of the sample (%(default)s)")
     parser.add_argument("--factor", type=float, default=1.0, help="of the sample's size (%(default)s)")
@@ -103,8 +120,9 @@ def main(argv=None):
         print(f"{block}: {json.dumps(entry['mutants'])}", flush=True)
         for text in entry["open_points"]:
             print(f"  {text}")
-    whole = {name: sum(entry["mutants"][name] for entry in found.values())
-             for name in ("made", EQUIVALENT, KILLED, SURVIVED)}
+    whole = {
+        name: sum(entry["mutants"][name] for entry in found.values()) for name in ("made", EQUIVALENT, KILLED, SURVIVED)
+    }
     print(f"all, seed {options.seed}: {json.dumps(whole)}")
     return int(whole[SURVIVED] > 0)
 

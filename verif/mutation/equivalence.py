@@ -4,7 +4,7 @@ import re
 import tempfile
 from pathlib import Path
 
-from flow.simulate.process import ToolTimeout
+from base.tools import ToolTimeout
 from rtl.ports import Port, split, validity
 from verif.coverage.program import tool
 from verif.results import ROOT
@@ -29,23 +29,37 @@ def miter(top, ports, number):
     """
     inputs, outputs = split(ports)
     contract = promises(top)
-    lines = ["module Miter(input clk, input reset_in" + "".join(
-        f", input [{p.width - 1}:0] {p.name}" for p in inputs if p.name != "reset") + ", output bad);",
-        "  reg started = 0;", "  wire reset = reset_in | ~started;"]
+    lines = [
+        "module Miter(input clk, input reset_in"
+        + "".join(f", input [{p.width - 1}:0] {p.name}" for p in inputs if p.name != "reset")
+        + ", output bad);",
+        "  reg started = 0;",
+        "  wire reset = reset_in | ~started;",
+    ]
     for port in outputs:
         lines.append(f"  wire [{port.width - 1}:0] {port.name}, other_{port.name};")
     for name, which, prefix in (("gold", 0, ""), ("gate", number, "other_")):
-        pins = [".clk(clk)", f".mutant({BITS}'d{which})", *(f".{p.name}({p.name})" for p in inputs),
-                *(f".{p.name}({prefix}{p.name})" for p in outputs)]
+        pins = [
+            ".clk(clk)",
+            f".mutant({BITS}'d{which})",
+            *(f".{p.name}({p.name})" for p in inputs),
+            *(f".{p.name}({prefix}{p.name})" for p in outputs),
+        ]
         lines.append(f"  {top} {name}({', '.join(pins)});")
     looked_at = {name: f"{name}_counts" for name in re.findall(r"output (\w+)_counts", contract)}
     counts = {p.name: v.name for p, v in validity(ports).items()} | looked_at
     lines += ["  wire promised;", *(f"  wire {wire};" for wire in looked_at.values())]
     lines.append(f"  {top}Promises promises(.*);" if contract else "  assign promised = 1;")
     differ = [f"({counts.get(p.name, 1)} & ({p.name} != other_{p.name}))" for p in outputs]
-    return "\n".join([
-        *lines, "  always @(posedge clk) started <= 1;",
-        f"  assign bad = started & promised & ({' | '.join(differ)});", "endmodule", contract])
+    return "\n".join(
+        [
+            *lines,
+            "  always @(posedge clk) started <= 1;",
+            f"  assign bad = started & promised & ({' | '.join(differ)});",
+            "endmodule",
+            contract,
+        ]
+    )
 
 
 def promises(top):
@@ -53,8 +67,11 @@ def promises(top):
 
     `promised`: all that its neighbours promise has been kept so far. <port>_counts: they look at that output now.
     """
-    found = [text for text in map(Path.read_text, sorted(ROOT.glob("rtl/*/formal/promises.sv")))
-             if re.search(rf"^module {top}Promises\b", text, re.MULTILINE)]
+    found = [
+        text
+        for text in map(Path.read_text, sorted(ROOT.glob("rtl/*/formal/promises.sv")))
+        if re.search(rf"^module {top}Promises\b", text, re.MULTILINE)
+    ]
     return found[0] if found else ""
 
 
@@ -62,8 +79,11 @@ def module_ports(verilog, module):
     """Ports of a module that Yosys wrote, but clk and mutant: tuple of Port."""
     text = re.search(rf"(?s)^module {module}\(.*?^endmodule", verilog, re.MULTILINE)[0]
     found = re.findall(r"^  (input|output) (?:\[(\d+):0\] )?(\w+) *;", text, re.MULTILINE)
-    return tuple(Port(name.replace("__", "."), int(high or 0) + 1, way == "output")
-                 for way, high, name in found if name not in ("clk", "mutant"))
+    return tuple(
+        Port(name.replace("__", "."), int(high or 0) + 1, way == "output")
+        for way, high, name in found
+        if name not in ("clk", "mutant")
+    )
 
 
 def the_same(verilog, module, number):

@@ -11,8 +11,8 @@ from verif.coverage.measure import sources_of
 from verif.coverage.program import tool
 
 PREPARE = "read_verilog -sv dut.v; hierarchy -check -top {top}; proc; opt_expr; opt_muxtree; opt_clean"
-BITS = 16       # of the input `mutant`
-LEAST = 4       # mutants of a module, where it has as many
+BITS = 16  # of the input `mutant`
+LEAST = 4  # mutants of a module, where it has as many
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,7 @@ def own_modules(verilog, folder):
 def cells_of(verilog, top):
     """Cells of every module behind Yosys's `proc`: dict."""
     out = yosys(f"{PREPARE.format(top=top)}; tee -q -o stat.txt stat", {"dut.v": verilog})["stat.txt"].decode()
-    return {name: int(count) for name, count in
-            re.findall(r"=== (\w+) ===.*?Number of cells:\s+(\d+)", out, re.DOTALL)}
+    return {name: int(count) for name, count in re.findall(r"=== (\w+) ===.*?Number of cells:\s+(\d+)", out, re.DOTALL)}
 
 
 def shares(cells, number):
@@ -73,8 +72,16 @@ def generate(verilog, top, folder, number, seed):
     for options in chosen:
         module = re.search(r"-module (\S+)", options)[1]
         line = _line(options)
-        found.append(Mutant(len(found) + 1, options.removeprefix("mutate "), module, line, where[line][1],
-                            " ".join(lines[line].split())))
+        found.append(
+            Mutant(
+                len(found) + 1,
+                options.removeprefix("mutate "),
+                module,
+                line,
+                where[line][1],
+                " ".join(lines[line].split()),
+            )
+        )
     return found
 
 

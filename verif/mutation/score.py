@@ -3,15 +3,15 @@
 import re
 from pathlib import Path
 
-from flow.simulate.process import ToolError
+from base.tools import ToolError
+from flow.simulate.divider import exhaustive, simulator
 from models.parameters import SensorParameters
 from rtl.quad_divider import golden, ratio_bits
+from rtl.replay import load, tests_of
 from verif.coverage.program import compile_program
-from verif.divider import exhaustive, simulator
 from verif.formal import design, manifest
 from verif.formal.engine import PROVEN
 from verif.formal.prove import prove
-from verif.replay import load, tests_of
 from verif.results import ROOT
 
 from .equivalence import DIFFERENT, EQUIVALENT, compare, the_same
@@ -19,9 +19,13 @@ from .mutants import yosys
 from .trial import attempt
 
 KILLED, SURVIVED = "killed", "survived"
-SPARE = 1000            # cycles beyond which a test that fails may go on
-VARIANTS = {"QuadDividerRadix2": "radix2", "QuadDividerRadix4": "radix4", "QuadDividerPipelined": "pipelined",
-            "Cordic": "cordic"}
+SPARE = 1000  # cycles beyond which a test that fails may go on
+VARIANTS = {
+    "QuadDividerRadix2": "radix2",
+    "QuadDividerRadix4": "radix4",
+    "QuadDividerPipelined": "pipelined",
+    "Cordic": "cordic",
+}
 
 
 def try_tests(path, folder, mutant):
@@ -75,7 +79,7 @@ def judge(path, folder, mutant):
     head, verilog = mutated(path, folder)
     number = mutant.number
     if head.cls in VARIANTS and not divides_right(verilog, head, number):
-        return {"result": KILLED, "by": "verif/divider/test/exhaustive_test.py"}
+        return {"result": KILLED, "by": "flow/simulate/divider/test/exhaustive_test.py"}
     if mutant.module != head.cls and the_same(verilog, mutant.module, number):
         return {"result": EQUIVALENT}
     if proof := broken_proof(verilog, head, number):
@@ -107,7 +111,7 @@ def divides_right(verilog, head, number):
     expected = golden(*config, x, y, 0)
     try:
         responses, _ = simulator.simulate(bench, exhaustive.pack(x, y))
-    except ToolError:        # it answers what nobody asked
+    except ToolError:  # it answers what nobody asked
         return False
     return not exhaustive.count_mismatches(exhaustive.unpack(responses, ratio_bits(*config[:2])), expected)
 
@@ -115,6 +119,9 @@ def divides_right(verilog, head, number):
 def one_mutant(verilog, top, number):
     """The Verilog of ``top`` with mutant ``number`` and without the input that picks one: text."""
     pick = f"setattr -unset keep w:mutant; connect -set mutant 16'd{number}; delete -input w:mutant"
-    text = yosys(f"read_verilog -sv mutants.v; hierarchy -check -top {top}; proc; cd {top}; {pick}; cd ..; "
-                 "write_verilog -noattr one.v", {"mutants.v": verilog})["one.v"].decode()
+    text = yosys(
+        f"read_verilog -sv mutants.v; hierarchy -check -top {top}; proc; cd {top}; {pick}; cd ..; "
+        "write_verilog -noattr one.v",
+        {"mutants.v": verilog},
+    )["one.v"].decode()
     return "/* verilator lint_off UNOPTFLAT */\n" + text

@@ -12,13 +12,22 @@ from rtl import testbench
 from rtl.export import translate_component
 from rtl.icarus import Driven
 from rtl.ports import ports_of
+from rtl.replay import whole_level
+from rtl.replay.recorder import OneLevel
 from verif.coverage.program import compile_program
-from verif.replay import whole_level
-from verif.replay.recorder import OneLevel
 from verif.results import ROOT
 
-OPTIONS = ("-x", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=1",
-           "-W", "ignore::pytest.PytestAssertRewriteWarning", "--hypothesis-profile=trial")
+OPTIONS = (
+    "-x",
+    "-p",
+    "no:cacheprovider",
+    "-p",
+    "no:xdist",
+    "--hypothesis-seed=1",
+    "-W",
+    "ignore::pytest.PytestAssertRewriteWarning",
+    "--hypothesis-profile=trial",
+)
 
 
 class Endless(AssertionError):
@@ -79,8 +88,10 @@ class Trial(OneLevel):
 def same_module(head, cls, arguments):
     """True if a component of its own is the module of that name in the traced one, parameters and all."""
     name = cls.__name__
-    alone, within = (re.search(rf"(?s)^module {name}\b.*?^endmodule", re.sub(r"(?m)^\s*//.*\n", "", text), re.MULTILINE)
-                     for text in (translate_component(cls(*arguments), name), head.verilog()))
+    alone, within = (
+        re.search(rf"(?s)^module {name}\b.*?^endmodule", re.sub(r"(?m)^\s*//.*\n", "", text), re.MULTILINE)
+        for text in (translate_component(cls(*arguments), name), head.verilog())
+    )
     return bool(within) and alone[0] == within[0]
 
 
@@ -88,9 +99,9 @@ def attempt(head, verilog, mutant, tests, cycles, alone=False):
     """Run ``tests`` (node ids, files or folders) on a mutant: Trial. Arguments: see there."""
     trial = Trial(head, verilog, mutant, cycles, alone)
     tests_loaded = [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]
-    before_trial = {name: sys.modules.pop(name) for name in tests_loaded}       # tests keep their simulators
+    before_trial = {name: sys.modules.pop(name) for name in tests_loaded}  # tests keep their simulators
     settings.register_profile("trial", phases=(Phase.explicit, Phase.generate), database=None)
-    before = settings.get_current_profile_name()        # the option loads it behind conftest.py, which has its own
+    before = settings.get_current_profile_name()  # the option loads it behind conftest.py, which has its own
     try:
         with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.chdir(ROOT):
             status = pytest.main([*OPTIONS, *map(str, tests)], [trial])

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from time import perf_counter
 
-from flow.files import staged
+from base.files import staged
 from models.parameters import ParameterError
 from verif.results import OUT
 
@@ -39,10 +39,18 @@ def outcomes(chosen, out):
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m verif.report", description=__doc__.split("`: ")[1],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--steps", nargs="+", choices=BY_NAME, metavar="NAME",
-                        help=f"run these alone, and read what the others left; of {', '.join(BY_NAME)}")
+    parser = argparse.ArgumentParser(
+        prog="python -m verif.report",
+        description=__doc__.split("`: ")[1],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--steps",
+        nargs="+",
+        choices=BY_NAME,
+        metavar="NAME",
+        help=f"run these alone, and read what the others left; of {', '.join(BY_NAME)}",
+    )
     parser.add_argument("--read", action="store_true", help="run nothing: report on what the steps left")
     return parser
 

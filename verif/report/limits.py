@@ -24,10 +24,13 @@ def read(path=FILE):
         raise ParameterError(f"limits = {path}: {error}") from None
     for group, named in limits.items():
         for figure, sides in named.items():
-            if not sides or not all(isinstance(v, str) if side == NONE else side in SIDES and type(v) in (int, float)
-                                    for side, v in sides.items()):
-                raise ParameterError(f"limits.{group}.{figure} = {sides}: must be min or max with a number, "
-                                     "or none with a reason")
+            if not sides or not all(
+                isinstance(v, str) if side == NONE else side in SIDES and type(v) in (int, float)
+                for side, v in sides.items()
+            ):
+                raise ParameterError(
+                    f"limits.{group}.{figure} = {sides}: must be min or max with a number, or none with a reason"
+                )
     return limits
 
 
@@ -47,8 +50,11 @@ def fallen(summary, limits):
     for block, entry in summary.items():
         out += check(block, figures(entry), of_block(limits, block))
     out += check(TOTAL, totals(summary), limits.get(TOTAL, {}))
-    out += [f"{block} = no results: limits.json has limits for it" for block in limits
-            if block not in (EVERY, RTL, TOTAL) and block not in summary]
+    out += [
+        f"{block} = no results: limits.json has limits for it"
+        for block in limits
+        if block not in (EVERY, RTL, TOTAL) and block not in summary
+    ]
     return out
 
 
@@ -66,8 +72,9 @@ def check(block, found, wanted):
 
 def limit_text(sides):
     """'at least 100', or the reason why there is no such figure."""
-    held = [f"{'at least' if side == 'min' else 'at most'} {number_text(sides[side])}"
-            for side in SIDES if side in sides]
+    held = [
+        f"{'at least' if side == 'min' else 'at most'} {number_text(sides[side])}" for side in SIDES if side in sides
+    ]
     return " and ".join(held) or sides[NONE]
 
 

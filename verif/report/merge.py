@@ -10,8 +10,14 @@ PROVEN = "proven"
 
 
 def empty():
-    return {"tests": {"passed": 0, "failed": 0}, "proofs": [], "coverage": dict.fromkeys(COVERAGE),
-            "mutants": dict.fromkeys(MUTANTS), "simulators": [], "open_points": []}
+    return {
+        "tests": {"passed": 0, "failed": 0},
+        "proofs": [],
+        "coverage": dict.fromkeys(COVERAGE),
+        "mutants": dict.fromkeys(MUTANTS),
+        "simulators": [],
+        "open_points": [],
+    }
 
 
 def summarize(by_steps):
@@ -51,13 +57,16 @@ def figures(entry):
     """The figures of a block that limits are set for: dict name -> number, None where nothing was measured."""
     proofs, tests, mutants = entry["proofs"], entry["tests"], entry["mutants"]
     found = {
-        "tests.passed": tests["passed"], "tests.failed": tests["failed"],
+        "tests.passed": tests["passed"],
+        "tests.failed": tests["failed"],
         "proofs.proven": sum(p["result"] == PROVEN and bool(p["twin_fails"]) for p in proofs),
         "proofs.unproven": sum(p["result"] != PROVEN for p in proofs),
         "proofs.twins_not_caught": sum(not p["twin_fails"] for p in proofs),
         **{f"coverage.{kind}": entry["coverage"].get(kind) for kind in COVERAGE},
-        **{f"mutants.{kind}": mutants.get(kind) for kind in MUTANTS}, "mutants.score": score(mutants),
-        "open_points": len(entry["open_points"])}
+        **{f"mutants.{kind}": mutants.get(kind) for kind in MUTANTS},
+        "mutants.score": score(mutants),
+        "open_points": len(entry["open_points"]),
+    }
     for name in ("fuzz", "resync"):
         if name in entry:
             found |= {f"{name}.{key}": value for key, value in entry[name].items() if isinstance(value, int)}

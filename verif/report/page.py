@@ -26,19 +26,34 @@ def row(block, entry, limits):
     """One line of the table of blocks: dict for the template."""
     found, wanted = figures(entry), of_block(limits, block)
     tests, mutants, proofs = entry["tests"], entry["mutants"], entry["proofs"]
-    cells = [cell(_of(tests["passed"], tests["passed"] + tests["failed"]), wanted, found, "tests.failed",
-                  "tests.passed"),
-             cell(_proofs(proofs), wanted, found, "proofs.proven", "proofs.unproven", "proofs.twins_not_caught"),
-             cell(_engines(proofs), {}, found), cell(_depths(proofs), {}, found),
-             cell(f"{sum(p['wall_s'] for p in proofs):.0f} s" if proofs else NOTHING, {}, found)]
+    cells = [
+        cell(_of(tests["passed"], tests["passed"] + tests["failed"]), wanted, found, "tests.failed", "tests.passed"),
+        cell(_proofs(proofs), wanted, found, "proofs.proven", "proofs.unproven", "proofs.twins_not_caught"),
+        cell(_engines(proofs), {}, found),
+        cell(_depths(proofs), {}, found),
+        cell(f"{sum(p['wall_s'] for p in proofs):.0f} s" if proofs else NOTHING, {}, found),
+    ]
     cells += [cell(_percent(entry["coverage"].get(kind)), wanted, found, f"coverage.{kind}") for kind in COVERAGE]
     killable = None if mutants["made"] is None else mutants["made"] - mutants["equivalent"]
-    cells += [cell(NOTHING if killable is None else f"{_percent(score(mutants))} of {killable}", wanted, found,
-                   "mutants.survived", "mutants.score", "mutants.made"),
-              cell(", ".join(entry["simulators"]) or NOTHING, {}, found),
-              cell(str(len(entry["open_points"])), wanted, found, "open_points")]
-    return {"block": block, "rtl": is_rtl(block), "cells": cells, "entry": entry,
-            "bad": any(c["kind"] == "bad" for c in cells)}
+    cells += [
+        cell(
+            NOTHING if killable is None else f"{_percent(score(mutants))} of {killable}",
+            wanted,
+            found,
+            "mutants.survived",
+            "mutants.score",
+            "mutants.made",
+        ),
+        cell(", ".join(entry["simulators"]) or NOTHING, {}, found),
+        cell(str(len(entry["open_points"])), wanted, found, "open_points"),
+    ]
+    return {
+        "block": block,
+        "rtl": is_rtl(block),
+        "cells": cells,
+        "entry": entry,
+        "bad": any(c["kind"] == "bad" for c in cells),
+    }
 
 
 def _of(part, whole):
@@ -82,15 +97,30 @@ def headline(summary, done, bad):
     inputs = sum(e.get("fuzz", {}).get("inputs", 0) for e in entries)
     return [
         {"value": "verified" if not bad else f"{bad} open", "label": "points", "kind": "bad" if bad else "good"},
-        {"value": _of(sum(e["tests"]["passed"] for e in entries), sum(e["tests"]["passed"] for e in entries) + failed),
-         "label": "tests passed, counted by block", "kind": "bad" if failed else "good"},
-        {"value": _of(proven, len(proofs)), "label": "properties proven, twin caught",
-         "kind": "good" if proofs and proven == len(proofs) else "bad"},
-        {"value": _percent(min(worst, default=None)), "label": "lowest coverage of any kind and block",
-         "kind": "good" if worst and min(worst) >= 100 else "bad"},
-        {"value": f"{sum(m['killed'] for m in made):,} of {killable:,}", "label": "distinguishable mutants killed",
-         "kind": "good" if made and not sum(m["survived"] for m in made) else "bad"},
-        {"value": f"{inputs:,}", "label": "fuzzed inputs", "kind": ""}]
+        {
+            "value": _of(
+                sum(e["tests"]["passed"] for e in entries), sum(e["tests"]["passed"] for e in entries) + failed
+            ),
+            "label": "tests passed, counted by block",
+            "kind": "bad" if failed else "good",
+        },
+        {
+            "value": _of(proven, len(proofs)),
+            "label": "properties proven, twin caught",
+            "kind": "good" if proofs and proven == len(proofs) else "bad",
+        },
+        {
+            "value": _percent(min(worst, default=None)),
+            "label": "lowest coverage of any kind and block",
+            "kind": "good" if worst and min(worst) >= 100 else "bad",
+        },
+        {
+            "value": f"{sum(m['killed'] for m in made):,} of {killable:,}",
+            "label": "distinguishable mutants killed",
+            "kind": "good" if made and not sum(m["survived"] for m in made) else "bad",
+        },
+        {"value": f"{inputs:,}", "label": "fuzzed inputs", "kind": ""},
+    ]
 
 
 def tools():
@@ -102,9 +132,18 @@ def tools():
 def render(summary, done, problems, fallen, limits, seconds):
     """HTML text. done: list of Outcome. problems, fallen: one-line texts. seconds: of the whole run."""
     points = sum(len(entry["open_points"]) for entry in summary.values())
-    environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True,
-                              undefined=StrictUndefined)
+    environment = Environment(
+        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
+    )
     return environment.get_template("page.html").render(
         tiles=headline(summary, done, len(problems) + len(fallen) + points),
-        rows=[row(block, entry, limits) for block, entry in summary.items()], coverage=COVERAGE, steps=done,
-        problems=problems, fallen=fallen, limits=limits, limit_text=limit_text, seconds=seconds, tools=tools())
+        rows=[row(block, entry, limits) for block, entry in summary.items()],
+        coverage=COVERAGE,
+        steps=done,
+        problems=problems,
+        fallen=fallen,
+        limits=limits,
+        limit_text=limit_text,
+        seconds=seconds,
+        tools=tools(),
+    )

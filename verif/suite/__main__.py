@@ -10,17 +10,17 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from flow.jobs import Job, run
+from base.jobs import Job, run
 from models.parameters import ParameterError
 from verif.results import OUT, ROOT, digest_of, write_step
 
 from .blocks import blocks_of, level_of
 from .run import folders, run_folder
 
-DOCUMENT = "docs/stream.md"     # its examples are tested
-SILICON = "models", "rtl", "pixels", "cells", "flow", "verif/frame"
+DOCUMENT = "docs/stream.md"  # its examples are tested
+SILICON = "models", "base", "rtl", "platforms", "pixels", "cells", "flow"
 FAILED = "failed"
-TOOLS = "iverilog", "yosys", "g++", "z3"        # where one is missing, tests are skipped
+TOOLS = "iverilog", "yosys", "g++", "z3"  # where one is missing, tests are skipped
 
 
 def decides(folder):
@@ -30,8 +30,9 @@ def decides(folder):
         return "models", DOCUMENT
     if top != "verif":
         return (*SILICON, top, DOCUMENT)
-    others = sorted(f"verif/{path.name}" for path in (ROOT / "verif").iterdir()
-                    if path.name not in ("report", "__pycache__"))
+    others = sorted(
+        f"verif/{path.name}" for path in (ROOT / "verif").iterdir() if path.name not in ("report", "__pycache__")
+    )
     return (*SILICON, DOCUMENT, *others, own)
 
 
@@ -40,8 +41,9 @@ def jobs(wanted, seconds):
     digest = cache(digest_of)
     setup = [(ROOT / name).read_bytes() for name in ("pyproject.toml", "conftest.py")] + [*map(shutil.which, TOOLS)]
     ordered = sorted(wanted, key=lambda folder: -seconds.get(folder, 1e9))
-    return [Job(folder.replace("/", "-"), run_folder, (folder,), (digest(*decides(folder)), *setup))
-            for folder in ordered]
+    return [
+        Job(folder.replace("/", "-"), run_folder, (folder,), (digest(*decides(folder)), *setup)) for folder in ordered
+    ]
 
 
 def forget(planned, done, store):
@@ -62,8 +64,12 @@ def summarize(done):
 
 
 def empty():
-    return {"tests": {"passed": 0, "failed": 0, "skipped": 0, "seconds": 0.0, "levels": {}, "failures": []},
-            "simulators": [], "faults": [], "open_points": []}
+    return {
+        "tests": {"passed": 0, "failed": 0, "skipped": 0, "seconds": 0.0, "levels": {}, "failures": []},
+        "simulators": [],
+        "faults": [],
+        "open_points": [],
+    }
 
 
 def count(entry, folder, case):
@@ -95,8 +101,11 @@ def last_seconds(store):
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m verif.suite", description=__doc__.split("`: ")[1],
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="python -m verif.suite",
+        description=__doc__.split("`: ")[1],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--folder", nargs="+", metavar="NAME", help="test folders; default: every one")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of suite.json; default: build/verify")
     return parser

@@ -2,20 +2,36 @@
 
 from rtl.tops import TOPS
 
-DIVIDERS = {"radix2": "QuadDividerRadix2", "radix4": "QuadDividerRadix4", "pipelined": "QuadDividerPipelined",
-            "cordic": "Cordic"}
+DIVIDERS = {
+    "radix2": "QuadDividerRadix2",
+    "radix4": "QuadDividerRadix4",
+    "pipelined": "QuadDividerPipelined",
+    "cordic": "Cordic",
+}
 DECODER, HOST, MODELS, FLOW = "Decoder", "Host", "Models", "Flow"
 BLOCKS = (*TOPS, DECODER, HOST, MODELS, FLOW)
 
 # The first prefix of a test file's folder that fits decides
 FOLDERS = (
-    ("rtl/amp_ctrl", ("AmpCtrl",)), ("rtl/readout_seq", ("ReadoutSeq",)), ("rtl/edge_adc", ("EdgeAdc",)),
-    ("rtl/adc_bank", ("AdcBank",)), ("rtl/quad_divider", tuple(DIVIDERS.values())),
-    ("verif/divider", tuple(DIVIDERS.values())), ("rtl/phase_path", ("PhasePath",)),
-    ("rtl/run_length", ("RunLength",)), ("rtl/reg_file", ("RegFile",)), ("rtl/asp_chip", ("AspChip",)),
-    ("verif/frame", ("AspChip",)), ("verif/faults", ("AspChip",)), ("models/digital/stream", (DECODER,)),
-    ("verif/fuzz", (DECODER,)), ("models/parameters", (HOST,)), ("models", (MODELS,)), ("pixels", (MODELS,)),
-    ("", (FLOW,)))
+    ("rtl/amp_ctrl", ("AmpCtrl",)),
+    ("rtl/readout_seq", ("ReadoutSeq",)),
+    ("rtl/edge_adc", ("EdgeAdc",)),
+    ("rtl/adc_bank", ("AdcBank",)),
+    ("rtl/quad_divider", tuple(DIVIDERS.values())),
+    ("flow/simulate/divider", tuple(DIVIDERS.values())),
+    ("rtl/phase_path", ("PhasePath",)),
+    ("rtl/run_length", ("RunLength",)),
+    ("rtl/reg_file", ("RegFile",)),
+    ("rtl/asp_chip", ("AspChip",)),
+    ("flow/simulate", ("AspChip",)),
+    ("verif/faults", ("AspChip",)),
+    ("models/digital/stream", (DECODER,)),
+    ("verif/fuzz", (DECODER,)),
+    ("models/parameters", (HOST,)),
+    ("models", (MODELS,)),
+    ("pixels", (MODELS,)),
+    ("", (FLOW,)),
+)
 
 # The first word that a test's class holds decides; a class is named after the level that it runs
 LEVELS = (("Icarus", "Icarus"), ("Verilog", "Verilator"), ("RTL", "RTL"), ("CL", "CL"), ("FL", "FL"))
@@ -23,8 +39,9 @@ LEVELS = (("Icarus", "Icarus"), ("Verilog", "Verilator"), ("RTL", "RTL"), ("CL",
 
 def blocks_of(folder, test=""):
     """Blocks that a test in ``folder`` counts for: tuple. A divider's test counts for the variants that it names."""
-    blocks = next(blocks for prefix, blocks in FOLDERS
-                  if not prefix or folder == prefix or folder.startswith(prefix + "/"))
+    blocks = next(
+        blocks for prefix, blocks in FOLDERS if not prefix or folder == prefix or folder.startswith(prefix + "/")
+    )
     if len(blocks) > 1:
         named = tuple(block for variant, block in DIVIDERS.items() if variant in test.lower())
         return named or blocks
@@ -34,12 +51,12 @@ def blocks_of(folder, test=""):
 def level_of(test):
     """Level of a test by its class ('...::TestVerilog::test_x'): a name of LEVELS, or ''.
 
-    What verif/frame and verif/faults run is Verilog in Verilator, or in Icarus where the test's name says so.
+    What flow/simulate and verif/faults run is Verilog in Verilator, or in Icarus where the test's name says so.
     """
     parts = test.split("::")
     for word, level in LEVELS if len(parts) > 2 else ():
         if word in parts[1]:
             return level
-    if parts[0].startswith(("verif/frame", "verif/faults", "verif/divider")):
+    if parts[0].startswith(("flow/simulate", "verif/faults", "flow/simulate/divider")):
         return "Icarus" if "icarus" in parts[-1].lower() else "Verilator"
     return ""

@@ -6,20 +6,24 @@ import tempfile
 from pathlib import Path
 from xml.etree import ElementTree
 
-from flow.simulate.process import ToolTimeout, finish
+from base.tools import ToolTimeout, finish
 from verif.results import ROOT
 
-TESTED = "models", "rtl", "pixels", "flow", "verif", "talbot"
+TESTED = "models", "base", "rtl", "pixels", "flow", "verif", "talbot"
 # Layouts have an environment of their own, in which `make test` runs these, too
-LAYOUTS = "flow/handoff", "flow/layout", "flow/openroad", "flow/platforms", "flow/steps"
-SECONDS = 1500          # a folder's tests that take longer hang
-NO_TESTS = 5            # pytest's exit status
+LAYOUTS = "flow/handoff", "flow/layout", "flow/openroad", "platforms", "base/steps"
+SECONDS = 1500  # a folder's tests that take longer hang
+NO_TESTS = 5  # pytest's exit status
 
 
 def folders():
     """Folders that hold tests, but those of layouts, relative to the repository: list of text, ascending."""
-    found = {str(path.parent.relative_to(ROOT)) for top in TESTED for path in (ROOT / top).rglob("*_test.py")
-             if not path.name.endswith("_bench_test.py")}
+    found = {
+        str(path.parent.relative_to(ROOT))
+        for top in TESTED
+        for path in (ROOT / top).rglob("*_test.py")
+        if not path.name.endswith("_bench_test.py")
+    }
     return sorted(folder for folder in found if not folder.startswith(LAYOUTS))
 
 
@@ -30,12 +34,25 @@ def run_folder(folder, root=ROOT, options=("--all",)):
     'passed', 'failed' or 'skipped'. Where pytest itself ends badly, that is a failed case too.
     """
     root = Path(root)
-    files = sorted(str(p.relative_to(root)) for p in (root / folder).glob("*_test.py")
-                   if not p.name.endswith("_bench_test.py"))
+    files = sorted(
+        str(p.relative_to(root)) for p in (root / folder).glob("*_test.py") if not p.name.endswith("_bench_test.py")
+    )
     with tempfile.TemporaryDirectory(prefix="talbot-") as out:
         report = Path(out) / "report.xml"
-        command = [sys.executable, "-m", "pytest", "-p", "no:xdist", "-p", "no:cacheprovider", f"--junitxml={report}",
-                   "-o", "junit_family=xunit1", *options, *files]
+        command = [
+            sys.executable,
+            "-m",
+            "pytest",
+            "-p",
+            "no:xdist",
+            "-p",
+            "no:cacheprovider",
+            f"--junitxml={report}",
+            "-o",
+            "junit_family=xunit1",
+            *options,
+            *files,
+        ]
         # Compiled models lie in a folder a worker (rtl/testbench.py): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:
@@ -45,8 +62,14 @@ def run_folder(folder, root=ROOT, options=("--all",)):
             status, said = -1, str(error)
         cases = list(read_report(report)) if report.exists() else []
     if status not in (0, 1, NO_TESTS) or not cases or status == 1 and all(c["outcome"] != "failed" for c in cases):
-        cases.append({"test": folder, "outcome": "failed", "seconds": 0.0,
-                      "message": f"pytest ended with status {status}: {said}"})
+        cases.append(
+            {
+                "test": folder,
+                "outcome": "failed",
+                "seconds": 0.0,
+                "message": f"pytest ended with status {status}: {said}",
+            }
+        )
     return {"folder": folder, "seconds": sum(c["seconds"] for c in cases), "cases": cases}
 
 
@@ -62,8 +85,12 @@ def read_report(path):
                 outcome, message = "skipped", found.get("message", "")
         file = case.get("file") or case.get("classname", "").replace(".", "/") + ".py"
         parts = [file, *([case.get("classname").rsplit(".", 1)[-1]] if in_class(case, file) else []), case.get("name")]
-        yield {"test": "::".join(parts), "outcome": outcome, "seconds": float(case.get("time", 0)),
-               "message": " ".join(message.split())[:800]}
+        yield {
+            "test": "::".join(parts),
+            "outcome": outcome,
+            "seconds": float(case.get("time", 0)),
+            "message": " ".join(message.split())[:800],
+        }
 
 
 def in_class(case, file):

@@ -3,19 +3,31 @@
 import numpy as np
 import pytest
 
-from cells.liberty.group import Group
-from cells.liberty.read import parse
-from cells.liberty.write import text
+from base.liberty.group import Group
+from base.liberty.read import parse
+from base.liberty.write import text
 from models.parameters import ParameterError
 
 
 def tree():
-    lib = Group("library", ("x",), {"time_unit": "1ns", "capacitive_load_unit": (1.0, "pf"), "nom_voltage": 1.8,
-                                    "voltage_map": [("VPWR", 1.8), ("VGND", 0.0)]})
+    lib = Group(
+        "library",
+        ("x",),
+        {
+            "time_unit": "1ns",
+            "capacitive_load_unit": (1.0, "pf"),
+            "nom_voltage": 1.8,
+            "voltage_map": [("VPWR", 1.8), ("VGND", 0.0)],
+        },
+    )
     pin = lib.add("cell", "inv_1", area=3.75).add("pin", "Y", direction="output", function="!A")
     pin.add("timing", related_pin="A", timing_sense="negative_unate").add(
-        "cell_rise", "delay", index_1=np.array([0.01, 1.5]), index_2=np.array([5e-4, 0.18]),
-        values=np.array([[0.0143656, 0.6], [0.031, 1.25]]))
+        "cell_rise",
+        "delay",
+        index_1=np.array([0.01, 1.5]),
+        index_2=np.array([5e-4, 0.18]),
+        values=np.array([[0.0143656, 0.6], [0.031, 1.25]]),
+    )
     return lib
 
 
@@ -34,8 +46,10 @@ def test_comments_continuations_and_functions_with_spaces_are_read():
     assert cell.attributes["values"] == [[1, 2], [3, 4]]
 
 
-@pytest.mark.parametrize("broken, why", [("library (a) { cell (b) {", "ends within"), ("library (a", "ends within"),
-                                         ("library a", "must be followed by")])
+@pytest.mark.parametrize(
+    "broken, why",
+    [("library (a) { cell (b) {", "ends within"), ("library (a", "ends within"), ("library a", "must be followed by")],
+)
 def test_broken_text_is_refused(broken, why):
     with pytest.raises(ParameterError, match=why):
         parse(broken)

@@ -10,7 +10,7 @@ from pathlib import Path
 import joblib
 import pytest
 
-from flow.steps import Runner, Step, StepError
+from base.steps import Runner, Step, StepError
 from models.parameters import ParameterError
 
 
@@ -50,6 +50,7 @@ class Crash(Repeat):
 
     def run(self, inputs, outputs):
         import os
+
         os._exit(3)
 
 
@@ -204,27 +205,32 @@ class Tool(Repeat):
     name = "tool"
 
     def run(self, inputs, outputs):
-        from flow.simulate.process import run
+        from base.tools import run
+
         run(["sh", "-c", f"echo $$ > {inputs['text']}; exec sleep 60"])
         return {"length": 0}
 
 
 # Ctrl-C counts also where the tests run behind a shell that ignores it
-RUN_TOOL = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); " \
-           "from flow.steps.test.runner_test import *; from pathlib import Path; " \
-           "Runner(Path({folder!r}), {{'text': Path({text!r})}}).{call}"
+RUN_TOOL = (
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
+    "from base.steps.test.runner_test import *; from pathlib import Path; "
+    "Runner(Path({folder!r}), {{'text': Path({text!r})}}).{call}"
+)
 
 
 @pytest.mark.parametrize("call", ["run(Tool())", "run_all([Tool()])"])
 @pytest.mark.parametrize("sent", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
 def test_a_killed_run_leaves_no_tool(tmp_path, text, sent, call):
     text.write_text("")
-    run = subprocess.Popen([sys.executable, "-c", RUN_TOOL.format(folder=str(tmp_path / "steps"), text=str(text),
-                                                             call=call)],
-                           stderr=subprocess.DEVNULL, start_new_session=True)
+    run = subprocess.Popen(
+        [sys.executable, "-c", RUN_TOOL.format(folder=str(tmp_path / "steps"), text=str(text), call=call)],
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
     assert waited(lambda: text.read_text().endswith("\n"))
     tool = int(text.read_text())
-    time.sleep(0.3)         # the tool speaks before Popen has returned: who is killed right there knows no tool to end
+    time.sleep(0.3)  # the tool speaks before Popen has returned: who is killed right there knows no tool to end
     run.send_signal(sent)
     run.wait(timeout=20)
     assert waited(lambda: not Path(f"/proc/{tool}").exists())

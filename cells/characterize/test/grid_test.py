@@ -55,8 +55,9 @@ def test_a_constraint_that_is_never_kept_is_an_error():
         bisect(lambda x: None, 1e-9, True, 0.1)
 
 
-@pytest.mark.parametrize("field, value", [("slews", (2e-9, 1e-9)), ("loads", 1), ("degrade", 0), ("lower", 0.6),
-                                          ("extra", -1)])
+@pytest.mark.parametrize(
+    "field, value", [("slews", (2e-9, 1e-9)), ("loads", 1), ("degrade", 0), ("lower", 0.6), ("extra", -1)]
+)
 def test_conditions_are_checked(field, value):
     with pytest.raises(ParameterError):
         Conditions(Corner("tt", 25, 1.8), **{field: value})

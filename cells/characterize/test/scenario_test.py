@@ -29,7 +29,7 @@ def test_a_latch_is_set_and_cleared_by_a_pulse_of_its_gate():
 @pytest.mark.parametrize("to", [0, 1])
 def test_setup_and_hold_expect_what_each_keeps(early, kind, to):
     """This flip-flop stores !D: with setup kept it takes the new value, with hold kept the old."""
-    found, = getattr(scenarios(FLIP_FLOP, "C D Q"), kind)("D", to)
+    (found,) = getattr(scenarios(FLIP_FLOP, "C D Q"), kind)("D", to)
     assert (found.early, found.data_to, found.expected) == (early, to, 1 - to if early else to)
 
 

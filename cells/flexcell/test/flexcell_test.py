@@ -20,8 +20,8 @@ from cells.flexcell.route import route
 from cells.flexcell.rules import broken
 from cells.flexcell.transistors import Schematic, Switch
 from cells.netlist import spice
-from flow.platforms.sky130 import process
 from models.parameters import ParameterError
+from platforms.sky130 import process
 
 CELLS = schematics()
 DRAWN = ("inv_x1", "nand3_x1", "and21nor_x1", "xor2_x1", "mux2_x1", "dff_x1")
@@ -66,8 +66,19 @@ def drawn_spice(tmp_path, name):
     """Extracted netlist of the drawn cell, from a GDS written here with plain KLayout."""
     import klayout.db as db
 
-    gds = {"difftap": (65, 20), "poly": (66, 20), "licon": (66, 44), "li": (67, 20), "mcon": (67, 44), "m1": (68, 20),
-           "nsdm": (93, 44), "psdm": (94, 20), "nwm": (64, 20), "li.pin": (67, 16), "m1.pin": (68, 16)}
+    gds = {
+        "difftap": (65, 20),
+        "poly": (66, 20),
+        "licon": (66, 44),
+        "li": (67, 20),
+        "mcon": (67, 44),
+        "m1": (68, 20),
+        "nsdm": (93, 44),
+        "psdm": (94, 20),
+        "nwm": (64, 20),
+        "li.pin": (67, 16),
+        "m1.pin": (68, 16),
+    }
     layout, made = db.Layout(), make(CELLS[name], Canvas(), recipe(name))
     cell = layout.create_cell(name)
     for shape in (Shape(**s) for s in made["shapes"]):
@@ -99,9 +110,15 @@ def drawing(name="nand2_x1"):
     return Drawing(Canvas(), made, route(task(made, Canvas(), CELLS[name].ports)))
 
 
-@pytest.mark.parametrize("shape, rule", [
-    (Shape("li", "i0", 0.3, 1.1, 0.4, 1.2), "li width"), (Shape("m1", "i0", 0.5, 1.0, 0.7, 1.2), "m1 area"),
-    (Shape("li", "i1", 0.0, 0.0, 1.0, 3.0), "li short of"), (Shape("poly", "x", 0.0, 1.0, 1.5, 1.2), "short")])
+@pytest.mark.parametrize(
+    "shape, rule",
+    [
+        (Shape("li", "i0", 0.3, 1.1, 0.4, 1.2), "li width"),
+        (Shape("m1", "i0", 0.5, 1.0, 0.7, 1.2), "m1 area"),
+        (Shape("li", "i1", 0.0, 0.0, 1.0, 3.0), "li short of"),
+        (Shape("poly", "x", 0.0, 1.0, 1.5, 1.2), "short"),
+    ],
+)
 def test_a_spoiled_drawing_breaks_a_rule(shape, rule):
     spoiled = drawing()
     assert broken(spoiled) == []
@@ -118,8 +135,13 @@ def test_diffusions_are_shared_where_they_can_be():
 
 
 def test_no_two_nets_share_a_place():
-    wiring = route(task(assemble(place(CELLS["mux2_x1"], recipe("mux2_x1").seed), recipe("mux2_x1").spread), Canvas(),
-                        CELLS["mux2_x1"].ports))
+    wiring = route(
+        task(
+            assemble(place(CELLS["mux2_x1"], recipe("mux2_x1").seed), recipe("mux2_x1").spread),
+            Canvas(),
+            CELLS["mux2_x1"].ports,
+        )
+    )
     held = [v for vertices in wiring.vertices.values() for v in vertices]
     assert len(held) == len(set(held))
 

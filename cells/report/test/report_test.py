@@ -12,25 +12,33 @@ from cells import report  # noqa: E402 - it imports KLayout
 from cells.liberty.compare import Difference, summary  # noqa: E402
 from cells.report import curve, pictures  # noqa: E402
 
-ERRORS = [{"name": curve.DEFAULT, "cell": "inv_1", "seconds": 2.0, "error": [1.0, -3.0, 2.0]},
-          {"name": curve.DEFAULT, "cell": "nand2_1", "seconds": 3.0, "error": [-4.0, 5.0]},
-          {"name": curve.DEFAULT, "cell": "dfxtp_1", "seconds": 9.0, "error": [100.0]},
-          {"name": "grid 4 x 4, not refined", "cell": "inv_1", "seconds": 1.0, "error": [-8.0]}]
+ERRORS = [
+    {"name": curve.DEFAULT, "cell": "inv_1", "seconds": 2.0, "error": [1.0, -3.0, 2.0]},
+    {"name": curve.DEFAULT, "cell": "nand2_1", "seconds": 3.0, "error": [-4.0, 5.0]},
+    {"name": curve.DEFAULT, "cell": "dfxtp_1", "seconds": 9.0, "error": [100.0]},
+    {"name": "grid 4 x 4, not refined", "cell": "inv_1", "seconds": 1.0, "error": [-8.0]},
+]
 
 
 def test_the_curve_has_the_settings_of_the_quick_cells():
-    assert curve.table(ERRORS) == [(curve.DEFAULT, 5.0, 3.0, pytest.approx(4.8)),
-                                   ("grid 4 x 4, not refined", 1.0, 8.0, 8.0)]
+    assert curve.table(ERRORS) == [
+        (curve.DEFAULT, 5.0, 3.0, pytest.approx(4.8)),
+        ("grid 4 x 4, not refined", 1.0, 8.0, 8.0),
+    ]
 
 
 def test_the_default_is_told_cell_by_cell():
     assert [(cell, values, median) for cell, values, median, _ in curve.by_cell(ERRORS)] == [
-        ("inv_1", 3, 2.0), ("nand2_1", 2, 4.5), ("dfxtp_1", 1, 100.0)]
+        ("inv_1", 3, 2.0),
+        ("nand2_1", 2, 4.5),
+        ("dfxtp_1", 1, 100.0),
+    ]
 
 
 def test_the_default_setting_is_one_of_those_compared():
     from cells.characterize.conditions import Conditions
     from cells.corner import Corner
+
     base = Conditions(Corner("tt", 25, 1.8))
     assert curve.settings(base)[curve.DEFAULT] == base
 
@@ -41,12 +49,20 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
     picture = pictures.heat_maps(found)
     assert picture.startswith("data:image/png;base64,") and picture == pictures.heat_maps(found[:1])
     told = summary(found)
-    page = {"corner": "tt", "default": curve.DEFAULT, "points": 1, "alone": told,
-            "kinds": {kind: {**e, "bound": (5, 12)} for kind, e in told["error"].items()},
-            "cells": {"c": {**told, "picture": picture}}, "variants": [("fitted", "extracted", 8, 1.0, 2.0)],
-            "curve": curve.table(ERRORS), "off_grid": curve.by_cell(ERRORS),
-            "curve_picture": pictures.error_against_time(curve.table(ERRORS), curve.DEFAULT)}
-    html = jinja2.Template((Path(report.__file__).parent / "index.html").read_text(),
-                           undefined=jinja2.StrictUndefined).render(page)
+    page = {
+        "corner": "tt",
+        "default": curve.DEFAULT,
+        "points": 1,
+        "alone": told,
+        "kinds": {kind: {**e, "bound": (5, 12)} for kind, e in told["error"].items()},
+        "cells": {"c": {**told, "picture": picture}},
+        "variants": [("fitted", "extracted", 8, 1.0, 2.0)],
+        "curve": curve.table(ERRORS),
+        "off_grid": curve.by_cell(ERRORS),
+        "curve_picture": pictures.error_against_time(curve.table(ERRORS), curve.DEFAULT),
+    }
+    html = jinja2.Template(
+        (Path(report.__file__).parent / "index.html").read_text(), undefined=jinja2.StrictUndefined
+    ).render(page)
     assert "In the reference alone: c: Y B." in html and "Here alone: nothing." in html
     assert "<td>dfxtp_1</td><td>1</td>" in html and "<td>50.0</td>" in html

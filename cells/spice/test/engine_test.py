@@ -61,16 +61,20 @@ def test_a_busy_machine_is_no_time_out():
 
 
 def test_crossings_are_between_the_points_and_the_last_counts():
-    wave = Wave(np.array([0.0, 1.0, 2.0, 3.0, 4.0]), {"y": np.array([0.0, 1.0, 0.0, 1.0, 1.0])},
-                {"s": np.array([0.0, 2.0, 2.0, 0.0, 0.0])})
+    wave = Wave(
+        np.array([0.0, 1.0, 2.0, 3.0, 4.0]),
+        {"y": np.array([0.0, 1.0, 0.0, 1.0, 1.0])},
+        {"s": np.array([0.0, 2.0, 2.0, 0.0, 0.0])},
+    )
     assert wave.cross("y", 0.25, True) == pytest.approx(2.25)
     assert wave.cross("y", 0.25, False) == pytest.approx(1.75)
     assert wave.cross("y", 0.25, True, after=3.5) is None
     assert wave.charge("s", 0.5, 2.5) == pytest.approx(0.75 + 2 + 0.75)
 
 
-@pytest.mark.parametrize("field, value", [("reltol", 0), ("trtol", 0), ("steps", 0), ("timeout", 0),
-                                          ("method", "euler")])
+@pytest.mark.parametrize(
+    "field, value", [("reltol", 0), ("trtol", 0), ("steps", 0), ("timeout", 0), ("method", "euler")]
+)
 def test_settings_are_checked(field, value):
     with pytest.raises(ParameterError, match=field):
         Settings(**{field: value})

@@ -32,15 +32,17 @@ def test_every_order_has_every_sample_once(name):
 
 def test_tiles_follow_each_other():
     assert segments_of("tile by tile", 8, 12)[1][:26].tolist() == [
-        row * 12 + col for row in range(4, 8) for col in range(6)] + [54, 55]
+        row * 12 + col for row in range(4, 8) for col in range(6)
+    ] + [54, 55]
 
 
 @pytest.mark.parametrize("threshold", [0, 12])
 def test_the_chosen_format_in_the_chip_s_order_is_the_stream(codes, threshold):
     header = StreamHeader.from_frame(22, 45, 8, FrameParameters(Window(0, 5, 0, 7), threshold=threshold))
     sent = thresholded(codes[0], threshold)
-    assert frame_bytes(sent, threshold, FORMATS[CHOSEN][0], segments_of(CHIP, 22, 45)) \
-        == len(encode_frame(header, sent[..., None], 0, 0))
+    assert frame_bytes(sent, threshold, FORMATS[CHOSEN][0], segments_of(CHIP, 22, 45)) == len(
+        encode_frame(header, sent[..., None], 0, 0)
+    )
 
 
 def test_formats_on_a_known_row():
@@ -92,14 +94,21 @@ def test_command(tmp_path, codes, capsys, monkeypatch):
 @pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
 def test_gates_rank_the_packers():
     from flow.formats.__main__ import gates_of_packers
+
     gates = gates_of_packers()
     assert list(gates) == list(FORMATS)
     assert gates["byte pairs"] < gates["nibbles"] < gates["Golomb-Rice, fixed"] < gates[CHOSEN] < 2500
 
 
-@pytest.mark.parametrize("content", [
-    {}, {"codes": np.zeros(3, int)}, {"codes": np.zeros((2, 2)), "ideal": np.zeros((2, 2))},
-    {"codes": np.full((2, 2), 300), "ideal": np.zeros((2, 2))}])
+@pytest.mark.parametrize(
+    "content",
+    [
+        {},
+        {"codes": np.zeros(3, int)},
+        {"codes": np.zeros((2, 2)), "ideal": np.zeros((2, 2))},
+        {"codes": np.full((2, 2), 300), "ideal": np.zeros((2, 2))},
+    ],
+)
 def test_bad_codes_are_named(tmp_path, content):
     np.savez(tmp_path / "c.npz", **content)
     with pytest.raises(ParameterError, match="c.npz"):

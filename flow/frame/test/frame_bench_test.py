@@ -5,7 +5,7 @@ import subprocess
 
 from flow.frame import hardware, job
 from flow.frame.request import request
-from flow.simulate.run import host_script
+from flow.simulate.frame import host_script
 from flow.simulate.verilator import bare_program
 from models.parameters import FrameParameters
 from models.parameters.registers import command, frame_writes, write_transfers
@@ -38,8 +38,10 @@ def test_default_frame(benchmark, tmp_path):
         return found["cycles"] / found["seconds"]
 
     bench_speed, bare_speed = best(frame), best(bare)
-    benchmark.extra_info.update(bench_cycles_per_s=bench_speed, bare_cycles_per_s=bare_speed,
-                                bare_over_bench=bare_speed / bench_speed)
-    print(f"\nbench {bench_speed / 1e6:.2f} M cycles/s, bare {bare_speed / 1e6:.2f}, "
-          f"ratio {bare_speed / bench_speed:.2f}")
+    benchmark.extra_info.update(
+        bench_cycles_per_s=bench_speed, bare_cycles_per_s=bare_speed, bare_over_bench=bare_speed / bench_speed
+    )
+    print(
+        f"\nbench {bench_speed / 1e6:.2f} M cycles/s, bare {bare_speed / 1e6:.2f}, ratio {bare_speed / bench_speed:.2f}"
+    )
     benchmark(frame)

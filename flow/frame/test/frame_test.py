@@ -4,16 +4,17 @@ import shutil
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from flow.frame import hardware
 from flow.frame.request import request
 from flow.simulate.icarus import icarus_program
 from models.digital.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
-from models.parameters import ConverterParameters, MODES, SensorParameters, Window
+from models.parameters import MODES, ConverterParameters, SensorParameters, Window
 
-SIZES = {"odd": (13, 50, 4), "row": (1, 37, 8), "tile": (4, 6, 1)}      # rows, cols, lanes
+SIZES = {"odd": (13, 50, 4), "row": (1, 37, 8), "tile": (4, 6, 1)}  # rows, cols, lanes
 TAPS = 4
 
 
@@ -32,7 +33,7 @@ def check(program, asked, front_end, samples, stall=0):
     assert chip.status["conversions_made"] == golden.made
     assert chip.status["conversions_left_out"] == golden.left_out
     assert not chip.status["cfg_err"] and not chip.status["refused"]
-    frame, = decode_stream(chip.stream, asked.sensor.tile)
+    (frame,) = decode_stream(chip.stream, asked.sensor.tile)
     assert frame.complete and (frame.samples == golden.sent).all() and (frame.read == golden.read).all()
     return chip
 
@@ -58,14 +59,29 @@ def test_every_mode_at_odd_sizes(programs, size, mode, phase):
 
 
 @settings(max_examples=30, deadline=None)
-@given(data=st.data(), mode=st.sampled_from(MODE_CASES), threshold=st.integers(0, 127), decimation=st.integers(0, 3),
-       types=st.sets(st.integers(0, 23), min_size=1), overlap=st.booleans(), stall=st.integers(0, 240),
-       seed=st.integers(0, 99))
+@given(
+    data=st.data(),
+    mode=st.sampled_from(MODE_CASES),
+    threshold=st.integers(0, 127),
+    decimation=st.integers(0, 3),
+    types=st.sets(st.integers(0, 23), min_size=1),
+    overlap=st.booleans(),
+    stall=st.integers(0, 240),
+    seed=st.integers(0, 99),
+)
 def test_windows_masks_and_back_pressure(programs, data, mode, threshold, decimation, types, overlap, stall, seed):
     row0, row1 = sorted(data.draw(st.tuples(st.integers(0, 2), st.integers(0, 2))))
     col0, col1 = sorted(data.draw(st.tuples(st.integers(0, 7), st.integers(0, 7))))
-    asked = asked_of("odd", window=lambda full: Window(row0, row1, col0, col1), mode=mode[0], phase=mode[1],
-                     mask=sum(1 << t for t in types), threshold=threshold, decimation=decimation, overlap=overlap)
+    asked = asked_of(
+        "odd",
+        window=lambda full: Window(row0, row1, col0, col1),
+        mode=mode[0],
+        phase=mode[1],
+        mask=sum(1 << t for t in types),
+        threshold=threshold,
+        decimation=decimation,
+        overlap=overlap,
+    )
     front_end = front_end_of(asked.sensor, np.random.default_rng(seed).integers(-512, 512, 24))
     check(programs["odd"], asked, front_end, exposure(asked.sensor, seed), stall)
 

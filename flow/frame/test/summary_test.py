@@ -21,8 +21,8 @@ def test_psnr():
 
 def test_a_phase_error_goes_the_short_way_round():
     frame = FrameParameters(ONE, mode="tof", phase=True)
-    ideal = np.array([[[100.0, 50, 0, 51], [100, 50, 0, 50]]])      # phases just over 0, and 0
-    sent = np.array([[[255, 100], [77, 0]]])                        # just under a turn; not valid
+    ideal = np.array([[[100.0, 50, 0, 51], [100, 50, 0, 50]]])  # phases just over 0, and 0
+    sent = np.array([[[255, 100], [77, 0]]])  # just under a turn; not valid
     error = decoding_error(sent, ideal, np.ones((1, 2), bool), frame)
     assert -2 < error[0, 0] < -1
     assert error[1, 0] == 0
@@ -30,5 +30,5 @@ def test_a_phase_error_goes_the_short_way_round():
 
 def test_ideal_phase_has_both_signs():
     frame = FrameParameters(ONE, mode="tof", phase=True)
-    taps = np.array([[[0.0, 50, 100, 50], [50, 100, 50, 0]]])       # half a turn; three quarters
+    taps = np.array([[[0.0, 50, 100, 50], [50, 100, 50, 0]]])  # half a turn; three quarters
     assert ideal_samples(taps, frame)[0, :, 0] == pytest.approx([128, 192])

@@ -8,12 +8,12 @@ import time
 
 import pytest
 
+from base.lef import pins, size
 from flow.handoff import __main__ as command
 from flow.handoff import contents
-from flow.lef import pins, size
 from flow.handoff.power import powered
 from flow.layout.design import design
-from flow.layout.summary import RULES
+from flow.layout.report.metrics import RULES
 from models.parameters import ParameterError
 
 NAME, TOP = "quad_divider", "QuadDividerRadix4"
@@ -94,11 +94,20 @@ def test_the_manifest_has_every_file_with_its_hash(layouts, tmp_path):
         data = {entry.name.removeprefix(f"{NAME}/"): tar.extractfile(entry).read() for entry in tar}
     listed = json.loads(data.pop("manifest.json"))
     assert {name: hashlib.sha256(text).hexdigest() for name, text in data.items()} == {
-        name: entry["sha256"] for name, entry in listed["files"].items()}
+        name: entry["sha256"] for name, entry in listed["files"].items()
+    }
     assert listed["versions"]["yosys"] == "0.23" and set(listed["substitutes"]) == set(contents.OPTIONAL)
-    assert {"layout/quad_divider.gds", "layout/quad_divider.lef", "rtl/QuadDividerRadix4.v", "netlist/quad_divider.v",
-            "netlist/quad_divider.power.v", "pinout.md", "datasheet.md", "waivers.json",
-            "reports/picture.png"} <= set(data)
+    assert {
+        "layout/quad_divider.gds",
+        "layout/quad_divider.lef",
+        "rtl/QuadDividerRadix4.v",
+        "netlist/quad_divider.v",
+        "netlist/quad_divider.power.v",
+        "pinout.md",
+        "datasheet.md",
+        "waivers.json",
+        "reports/picture.png",
+    } <= set(data)
     assert "| x[10] | input | signal | met2 | 1.2 | 0.4 |" in data["pinout.md"].decode()
     assert "120 x 98.6 um" in data["datasheet.md"].decode()
 
@@ -114,7 +123,8 @@ def test_timing_of_every_corner_goes_along(layouts, tmp_path):
         listed = json.load(tar.extractfile(f"{NAME}/manifest.json"))
         assert "| setup slack, ns (ss) | 0.5 |" in tar.extractfile(f"{NAME}/datasheet.md").read().decode()
     assert {name for name in names if name.endswith(".sdf")} == {
-        f"{NAME}/timing/{NAME}.{corner}.sdf" for corner in ("tt", "ss")}
+        f"{NAME}/timing/{NAME}.{corner}.sdf" for corner in ("tt", "ss")
+    }
     assert "sdf" not in listed["substitutes"] and "spef" in listed["substitutes"]
 
 

@@ -19,6 +19,7 @@ def main(request):
     from .dump import instances, shapes, wires
     from .macros import make_macros
     from .short import draw_short
+
     make_macros(request)
     cell = load(request["cell"])
     block = make_block(cell, request, database)
@@ -29,9 +30,18 @@ def main(request):
     print(f"short wires drawn: {draw_short(cell)}")
     block.save()
     Path("shapes.json").write_text(json.dumps(shapes(cell)))
-    Path("result.json").write_text(json.dumps({
-        "routed": bool(routed), "straps": block.straps, "pins": block.pins, "instances": instances(cell),
-        "wires": wires(cell), "times": times | {"save": time.perf_counter() - begin}}))
+    Path("result.json").write_text(
+        json.dumps(
+            {
+                "routed": bool(routed),
+                "straps": block.straps,
+                "pins": block.pins,
+                "instances": instances(cell),
+                "wires": wires(cell),
+                "times": times | {"save": time.perf_counter() - begin},
+            }
+        )
+    )
     return 0
 
 

@@ -17,7 +17,7 @@ SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": 
 # Tracks (horizontal, vertical) of a cell of the global router that it leaves to what ends there: most, least; around
 # blocks, where wires from far away gather, twice as many
 RESERVED = {False: ((6, 3), (3, 1)), True: ((11, 9), (6, 4))}
-SPARE_ROWS = 8          # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
+SPARE_ROWS = 8  # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
 
 
 def make_block(cell, request, framework):
@@ -33,8 +33,9 @@ def make_block(cell, request, framework):
     cfg.etesian.antennaGateMaxWL = u(40000.0)
     cfg.etesian.antennaDiodeMaxWL = u(80000.0)
     # of the global router around a net's pins, in heights of a row: there must be a way around a block
-    cfg.katana.searchHalo = 1 + ceil(max((max(macro["width_um"], macro["height_um"]) for macro in request["macros"]),
-                                         default=0) / request["row_um"])
+    cfg.katana.searchHalo = 1 + ceil(
+        max((max(macro["width_um"], macro["height_um"]) for macro in request["macros"]), default=0) / request["row_um"]
+    )
     cfg.anabatic.globalIterations = 20
     cfg.anabatic.topRoutingLayer = request["wires"][-1]["name"]
     local, least = RESERVED[bool(request["macros"])]
@@ -58,7 +59,7 @@ class TalbotBlock(Block):
         super().__init__(conf)
         self.request, self.times, self.straps, self.pins = request, {}, [], []
         self.power = Straps(conf.cell, request)
-        self.setUnexpandPins(IoPin.WEST | IoPin.EAST | IoPin.SOUTH | IoPin.NORTH)      # else some come off their wires
+        self.setUnexpandPins(IoPin.WEST | IoPin.EAST | IoPin.SOUTH | IoPin.NORTH)  # else some come off their wires
 
     def _timed(self, phase, call):
         begin = time.perf_counter()
@@ -71,7 +72,7 @@ class TalbotBlock(Block):
             self.pins += spread(side, nets, self.request, [x for _, x, _ in self.power.even()])
         self.conf.ioPins = [IoPin(SIDES[side], net, u(at), 0, 1) for side, net, at in self.pins]
         super().placeIoPins()
-        self.conf.placeArea = Box(*map(u, self.request["tree"]))        # of the clock's tree, which is built next
+        self.conf.placeArea = Box(*map(u, self.request["tree"]))  # of the clock's tree, which is built next
 
     def addHTrees(self):
         """Sinks beyond the tree's area hang from its leaves too, but not blocks laid out before: these have a tree of
@@ -98,8 +99,11 @@ def spread(side, nets, request, straps):
     across = side in ("west", "east")
     length = request["height_um" if across else "width_um"]
     pitch = request["pin_pitch_um"]["horizontal" if across else "vertical"]
-    tracks = [k for k in range(6, int(length / pitch) - 6)
-              if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)][::2]
+    tracks = [
+        k
+        for k in range(6, int(length / pitch) - 6)
+        if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)
+    ][::2]
     if len(nets) > len(tracks):
         raise SystemExit(f"coriolis: {len(nets)} pins do not fit on the {side} side of {length:.1f} um")
     step = len(tracks) / max(1, len(nets))

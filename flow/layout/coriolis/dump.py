@@ -12,10 +12,21 @@ def instances(cell):
     made = []
     for instance in cell.getInstances():
         where = instance.getTransformation()
-        pins = {plug.getMasterNet().getName(): plug.getNet().getName()
-                for plug in instance.getPlugs() if plug.getNet() is not None}
-        made.append([instance.getName(), instance.getMasterCell().getName(), _um(where.getTx()), _um(where.getTy()),
-                     str(where.getOrientation()), pins])
+        pins = {
+            plug.getMasterNet().getName(): plug.getNet().getName()
+            for plug in instance.getPlugs()
+            if plug.getNet() is not None
+        }
+        made.append(
+            [
+                instance.getName(),
+                instance.getMasterCell().getName(),
+                _um(where.getTx()),
+                _um(where.getTy()),
+                str(where.getOrientation()),
+                pins,
+            ]
+        )
     return made
 
 
@@ -31,11 +42,12 @@ def wires(cell):
 
 def _wire(component):
     layer = component.getLayer().getName() if component.getLayer() is not None else ".block"
-    if layer.endswith(".block"):            # the router's own
+    if layer.endswith(".block"):  # the router's own
         return None
     if isinstance(component, (Horizontal, Vertical)):
-        length = abs(component.getTargetX() - component.getSourceX()) + abs(component.getTargetY()
-                                                                            - component.getSourceY())
+        length = abs(component.getTargetX() - component.getSourceX()) + abs(
+            component.getTargetY() - component.getSourceY()
+        )
         return [layer, _um(length), _um(component.getWidth())]
     return [layer, 0, 0] if isinstance(component, Contact) and "_" in layer else None
 
@@ -58,8 +70,12 @@ def shapes(cell):
                 made["cuts"].append([component.getLayer().getName(), _um(component.getX()), _um(component.getY())])
         for plug in net.getPlugs():
             place = plug.getInstance().getTransformation()
-            made["pins"].append([_box(part.getLayer(), place.getBox(part.getBoundingBox()))
-                                 for part in plug.getMasterNet().getExternalComponents()])
+            made["pins"].append(
+                [
+                    _box(part.getLayer(), place.getBox(part.getBoundingBox()))
+                    for part in plug.getMasterNet().getExternalComponents()
+                ]
+            )
     return nets
 
 

@@ -5,7 +5,7 @@ from math import ceil
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-SHARE = 1.25            # of the mean: most sinks of a leaf; with less, sinks hang from leaves farther away
+SHARE = 1.25  # of the mean: most sinks of a leaf; with less, sinks hang from leaves farther away
 
 
 def shared(sinks, leaves):

@@ -6,13 +6,24 @@ highest wire: whatever is joined to it outside is no antenna to the gate inside 
 
 from coriolis import CRL
 from coriolis.helpers import u
-from coriolis.Hurricane import (Box, Cell, DataBase, Horizontal, Instance, Library, Net, NetExternalComponents, Pad,
-                                Transformation, UpdateSession)
+from coriolis.Hurricane import (
+    Box,
+    Cell,
+    DataBase,
+    Horizontal,
+    Instance,
+    Library,
+    Net,
+    NetExternalComponents,
+    Pad,
+    Transformation,
+    UpdateSession,
+)
 
 GAUGE = "StdCellLib"
-HOP_PADS = 2.0, 6.5     # from the edge of the block, in pads: where the wire goes up, where it comes down
-PAD_LENGTH = 2.0        # of a pad between two cuts by its width: what the least area of a wire asks
-MEET_UM = 0.8, 2.4      # beyond what the block keeps free: the piece that the router meets
+HOP_PADS = 2.0, 6.5  # from the edge of the block, in pads: where the wire goes up, where it comes down
+PAD_LENGTH = 2.0  # of a pad between two cuts by its width: what the least area of a wire asks
+MEET_UM = 0.8, 2.4  # beyond what the block keeps free: the piece that the router meets
 
 
 def make_macros(request):
@@ -45,15 +56,26 @@ def _make(cell, macro, request):
         net.setDirection(Net.Direction.IN if direction == "input" else Net.Direction.OUT)
         middle, west = y + (down + up) / 2, low <= 0
         if leads:
-            _lead(net, layer, request, wire, up - down, direction == "input", edges[0 if west else 1],
-                  -1 if west else 1, middle, _track(layer(wire), bottom + middle) - bottom)
-        else:                   # every pin must have a piece to be met; this one stays inside
+            _lead(
+                net,
+                layer,
+                request,
+                wire,
+                up - down,
+                direction == "input",
+                edges[0 if west else 1],
+                -1 if west else 1,
+                middle,
+                _track(layer(wire), bottom + middle) - bottom,
+            )
+        else:  # every pin must have a piece to be met; this one stays inside
             NetExternalComponents.setExternal(_bar(net, layer(wire), middle, up - down, x + low, x + high))
     cell.setTerminalNetlist(True)
 
 
 def _lead(net, layer, request, wire, width, hop, edge, way, y, track):
     """From a pin at ``y`` on the edge at x = ``edge`` out of the block, which is ``way`` (-1 or 1), on to the track."""
+
     def bar(at, begin, end):
         return _bar(net, layer(wire), at, width, *sorted(edge + way * value for value in (begin, end)))
 
@@ -74,7 +96,7 @@ def _hop(net, layer, request, wire, y, ends, pad):
     names = [made["name"] for made in request["wires"]]
     first = names.index(wire)
     for x in ends:
-        for name in names[first + 1:-1]:
+        for name in names[first + 1 : -1]:
             Pad.create(net, layer(name), _around(x, y, PAD_LENGTH * pad, pad))
         for cut in request["cuts"][first:]:
             Pad.create(net, layer(cut["name"]), _around(x, y, cut["size_um"], cut["size_um"]))

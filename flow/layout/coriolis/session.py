@@ -3,7 +3,7 @@
 import re
 import sys
 
-CLOCK = "clk"      # name of the clock net in the netlist given to Coriolis
+CLOCK = "clk"  # name of the clock net in the netlist given to Coriolis
 
 
 def configure(request):
@@ -12,6 +12,7 @@ def configure(request):
     from coriolis import CRL, Cfg
     from coriolis.helpers import overlay
     from exported import StdCellLib, techno
+
     techno.setup()
     StdCellLib.setup()
     with overlay.CfgCache(priority=Cfg.Parameter.Priority.UserFile) as cfg:
@@ -32,6 +33,7 @@ def configure(request):
 def load(name):
     """The netlist <name>.blif of the working directory as a Hurricane cell."""
     from coriolis import CRL
+
     cell = CRL.Blif.load(name)
     if cell is None:
         raise SystemExit(f"coriolis: {name}.blif could not be read")

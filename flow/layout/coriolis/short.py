@@ -3,7 +3,7 @@
 from coriolis.helpers import u
 from coriolis.Hurricane import Box, Contact, Horizontal, Pad, UpdateSession, Vertical
 
-REACH_UM = 0.6          # from such a wire to a contact at its end: more than half a track
+REACH_UM = 0.6  # from such a wire to a contact at its end: more than half a track
 
 
 def draw_short(cell):
@@ -13,8 +13,13 @@ def draw_short(cell):
         if not net.isSupply():
             parts = list(net.getComponents())
             contacts = [part for part in parts if isinstance(part, Contact) and part.getLayer() is not None]
-            found += [(net, wire, box) for wire in parts if isinstance(wire, (Horizontal, Vertical))
-                      for box in [_joined(wire, contacts)] if box]
+            found += [
+                (net, wire, box)
+                for wire in parts
+                if isinstance(wire, (Horizontal, Vertical))
+                for box in [_joined(wire, contacts)]
+                if box
+            ]
     UpdateSession.open()
     for net, wire, box in found:
         Pad.create(net, wire.getLayer(), Box(*box))

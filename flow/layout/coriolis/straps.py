@@ -17,8 +17,9 @@ class Straps:
         self.layer = DataBase.getDB().getTechnology().getLayer
         self.names = [wire["name"] for wire in request["wires"]]
         self.outer = sorted(macro["outer"] for macro in request["macros"])
-        self.inner = [(m["x_um"], m["y_um"], m["x_um"] + m["width_um"], m["y_um"] + m["height_um"])
-                      for m in request["macros"]]
+        self.inner = [
+            (m["x_um"], m["y_um"], m["x_um"] + m["width_um"], m["y_um"] + m["height_um"]) for m in request["macros"]
+        ]
         self.through = [(net, macro["x_um"] + x) for macro in request["macros"] for net, x in macro["straps"]]
 
     def even(self):
@@ -27,8 +28,10 @@ class Straps:
         found = []
         for left, right in zip(edges[::2], edges[1::2], strict=True):
             count = 2 * max(1, round((right - left) / self.request["strap_pitch_um"]))
-            found += [(SUPPLIES[k % 2], left + (right - left) * (k + 0.5) / count, (right - left) / count)
-                      for k in range(count)]
+            found += [
+                (SUPPLIES[k % 2], left + (right - left) * (k + 0.5) / count, (right - left) / count)
+                for k in range(count)
+            ]
         return found
 
     def positions(self, pins):
@@ -45,9 +48,17 @@ class Straps:
                 raise SystemExit(f"coriolis: no place for a strap near x = {ideal:.1f} um")
             self.x.append((net, round(self._on_grid(x), 3), []))
         for net, x in self.through:
-            self.x.append((net, x, _merged((bottom - CLEARANCE_UM, top + CLEARANCE_UM) for left, bottom, right, top
-                                           in self._signals(self.names[-1])
-                                           if left - CLEARANCE_UM < x + half and x - half < right + CLEARANCE_UM)))
+            self.x.append(
+                (
+                    net,
+                    x,
+                    _merged(
+                        (bottom - CLEARANCE_UM, top + CLEARANCE_UM)
+                        for left, bottom, right, top in self._signals(self.names[-1])
+                        if left - CLEARANCE_UM < x + half and x - half < right + CLEARANCE_UM
+                    ),
+                )
+            )
         self.x.sort(key=lambda strap: strap[1])
         return self.x
 
@@ -63,13 +74,14 @@ class Straps:
             ends = [0.0, *(y for gap in gaps for y in gap), height]
             for low, high in zip(ends[::2], ends[1::2], strict=True):
                 if high > low:
-                    Vertical.create(net, self.layer(self.names[-1]), u(x), u(width), u(self._on_grid(low)),
-                                    u(self._on_grid(high)))
+                    Vertical.create(
+                        net, self.layer(self.names[-1]), u(x), u(width), u(self._on_grid(low)), u(self._on_grid(high))
+                    )
             for row in range(odd, rows + 1, 2):
                 y, overlap = row * self.request["row_um"], self.request["rail_overlap_um"]
                 if any(left < x < right and low - 1e-6 <= y <= high + 1e-6 for left, low, right, high in self.inner):
                     continue
-                if row in (0, rows):            # half a rail at the edge
+                if row in (0, rows):  # half a rail at the edge
                     overlap *= 2 / 3
                     y += overlap / 2 if row == 0 else -overlap / 2
                 box = (x - width / 2, y - overlap / 2, x + width / 2, y + overlap / 2)
@@ -85,8 +97,9 @@ class Straps:
                 Vertical.create(net, self.layer(name), u(x), u(width), u(y - height / 2), u(y + height / 2))
         for cut in self.request["cuts"]:
             size, pitch = cut["size_um"], cut["size_um"] + cut["space_um"]
-            across, along = (int((side - 2 * cut["enclosure_um"] + cut["space_um"]) / pitch + 1e-9)
-                             for side in (width, height))
+            across, along = (
+                int((side - 2 * cut["enclosure_um"] + cut["space_um"]) / pitch + 1e-9) for side in (width, height)
+            )
             for i in range(across):
                 for j in range(along):
                     left = u(self._on_grid(x + (i - (across - 1) / 2) * pitch - size / 2))
@@ -106,14 +119,22 @@ class Straps:
                 layer = component.getLayer()
                 if layer is not None and layer.getMask().intersect(wanted):
                     box = component.getBoundingBox()
-                    boxes.append(tuple(DbU.toPhysical(v, DbU.UnitPowerMicro) for v in
-                                       (box.getXMin(), box.getYMin(), box.getXMax(), box.getYMax())))
+                    boxes.append(
+                        tuple(
+                            DbU.toPhysical(v, DbU.UnitPowerMicro)
+                            for v in (box.getXMin(), box.getYMin(), box.getXMax(), box.getYMax())
+                        )
+                    )
         return boxes
 
 
 def _meet(a, b):
-    return (a[0] - CLEARANCE_UM < b[2] and b[0] < a[2] + CLEARANCE_UM
-            and a[1] - CLEARANCE_UM < b[3] and b[1] < a[3] + CLEARANCE_UM)
+    return (
+        a[0] - CLEARANCE_UM < b[2]
+        and b[0] < a[2] + CLEARANCE_UM
+        and a[1] - CLEARANCE_UM < b[3]
+        and b[1] < a[3] + CLEARANCE_UM
+    )
 
 
 def _merged(intervals):

@@ -2,12 +2,11 @@
 
 import re
 
+from flow.layout.netlist.netlist import SUPPLIES
+from flow.layout.steps.antenna import connected
 from models.parameters import ParameterError
 
-from .netlist import SUPPLIES
-from .steps.antenna import connected
-
-EDGE_UM = 0.3           # how far from the edge a pin is taken for one
+EDGE_UM = 0.3  # how far from the edge a pin is taken for one
 USES = dict(zip(SUPPLIES, ("POWER", "GROUND"), strict=True))
 
 
@@ -23,17 +22,18 @@ def ports(verilog):
 def abstract(gds, directions, known, names):
     """Text of the LEF of the GDS's top cell.
 
-    directions: dict pin -> 'input' or 'output'; the supplies are pins too. known: flow.platforms.embedded.Embedded.
+    directions: dict pin -> 'input' or 'output'; the supplies are pins too. known: platforms.coriolis.Embedded.
     names: dict (GDS layer, datatype) -> name of the layer in LEF, where it is not that of the wire. Raises
     ParameterError for a port without metal.
     """
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(gds))
-    top, = layout.top_cells()
+    (top,) = layout.top_cells()
     site, row = (round(size / layout.dbu) for size in (known.site_um, known.row_um))
     box = top.bbox()
-    die = db.Box(0, 0, box.right // site * site, box.top // row * row)     # wells reach farther
+    die = db.Box(0, 0, box.right // site * site, box.top // row * row)  # wells reach farther
     found = {}
     for wire in known.wires:
         for net, pin in _pins(layout, top, die, wire, known, strap=wire is known.wires[-1]):
@@ -49,12 +49,24 @@ def abstract(gds, directions, known, names):
             corners = (part.left, part.bottom, part.right, part.top)
             yield f"{indent}  RECT {' '.join(f'{value * layout.dbu:.3f}' for value in corners)} ;"
 
-    lines = ["VERSION 5.8 ;", 'BUSBITCHARS "[]" ;', 'DIVIDERCHAR "/" ;', f"MACRO {top.name}", "  CLASS BLOCK ;",
-             f"  SIZE {die.width() * layout.dbu:.3f} BY {die.height() * layout.dbu:.3f} ;", "  SYMMETRY X Y ;"]
+    lines = [
+        "VERSION 5.8 ;",
+        'BUSBITCHARS "[]" ;',
+        'DIVIDERCHAR "/" ;',
+        f"MACRO {top.name}",
+        "  CLASS BLOCK ;",
+        f"  SIZE {die.width() * layout.dbu:.3f} BY {die.height() * layout.dbu:.3f} ;",
+        "  SYMMETRY X Y ;",
+    ]
     for name in sorted(found):
         direction = directions.get(name, "inout").upper()
-        lines += [f"  PIN {name}", f"    DIRECTION {direction} ;", f"    USE {USES.get(name, 'SIGNAL')} ;",
-                  *_antenna(charged.get(name), names), "    PORT"]
+        lines += [
+            f"  PIN {name}",
+            f"    DIRECTION {direction} ;",
+            f"    USE {USES.get(name, 'SIGNAL')} ;",
+            *_antenna(charged.get(name), names),
+            "    PORT",
+        ]
         for wire, pin in found[name]:
             lines += rectangles(wire, [pin], "      ")
         lines += ["    END", f"  END {name}"]
@@ -71,18 +83,21 @@ def antennas(layout, top, known, found, signals):
     """What the nets of the pins ``found`` gather and bear: dict net -> (um2 of gates, um2 of diffusions, list of
     (Wire, um2 of side walls)), all wires joined. signals: nets that are asked for."""
     import klayout.db as db
+
     l2n, gate, diffusion, wires = next(connected(layout, top, known, [len(known.wires) - 1]))
 
     def area(net, region):
-        return l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu ** 2
+        return l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu**2
 
     made = {}
     for name in sorted(signals & set(found)):
         wire, pin = found[name][0]
         net = l2n.probe_net(wires[known.wires.index(wire)], pin.center())
         if net is not None:
-            sides = [(of, l2n.shapes_of_net(net, metal, True).merged().perimeter() * layout.dbu * of.thickness_um)
-                     for of, metal in zip(known.wires, wires, strict=True)]
+            sides = [
+                (of, l2n.shapes_of_net(net, metal, True).merged().perimeter() * layout.dbu * of.thickness_um)
+                for of, metal in zip(known.wires, wires, strict=True)
+            ]
             made[name] = area(net, gate), area(net, diffusion), [(of, side) for of, side in sides if side]
     return made
 
@@ -107,6 +122,7 @@ def read_back(lef, gds, directions, known, names):
     nearer to a pin than obstructions come.
     """
     import klayout.db as db
+
     layout, drawn = db.Layout(), db.Layout()
     layout.read(str(lef))
     drawn.read(str(gds))
@@ -135,10 +151,15 @@ def read_back(lef, gds, directions, known, names):
 def _pins(layout, top, die, wire, known, strap):
     """Pairs (net, Box) of a wire's metal: signals where it reaches the west or east edge, supplies on the straps."""
     import klayout.db as db
+
     edge = round(EDGE_UM / layout.dbu)
     beyond = die.enlarged(edge, 0)
-    bands = db.Region([db.Box(beyond.left, die.bottom, die.left + edge, die.top),
-                       db.Box(die.right - edge, die.bottom, beyond.right, die.top)])
+    bands = db.Region(
+        [
+            db.Box(beyond.left, die.bottom, die.left + edge, die.top),
+            db.Box(die.right - edge, die.bottom, beyond.right, die.top),
+        ]
+    )
     metal = db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype))).merged()
     texts = db.Texts(top.shapes(layout.layer(wire.layer, known.pin_datatype)))
     for polygon in metal.each():
@@ -149,6 +170,6 @@ def _pins(layout, top, die, wire, known, strap):
                     yield net, polygon.bbox() & die
             else:
                 for part in (shape & bands).decompose_trapezoids_to_region(db.Polygon.TD_htrapezoids).each():
-                    pin = part.bbox()       # of an L, which a mended net may have there, both arms
+                    pin = part.bbox()  # of an L, which a mended net may have there, both arms
                     if pin.left <= die.left or pin.right >= die.right:
                         yield net, pin & die

@@ -13,16 +13,17 @@ def grow(layout, top, wires, rules):
     One that has no room stays, and the design rules find it.
     """
     import klayout.db as db
+
     grown = 0
     for wire in wires:
-        least = round(rules[wire.name]["area"] / layout.dbu ** 2)
+        least = round(rules[wire.name]["area"] / layout.dbu**2)
         space = round(rules[wire.name]["space"] / layout.dbu)
         layer = layout.layer(wire.layer, wire.datatype)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
-        for polygon in (metal.with_area(1, least, False).each() if least else ()):
+        for polygon in metal.with_area(1, least, False).each() if least else ():
             others = metal - db.Region(polygon)
             for box in longer(polygon.bbox(), least):
-                new = db.Region(box) - db.Region(polygon)           # its neighbours are as near as tracks are
+                new = db.Region(box) - db.Region(polygon)  # its neighbours are as near as tracks are
                 if (others & new.sized(space)).is_empty():
                     top.shapes(layer).insert(box)
                     metal += box
@@ -36,7 +37,7 @@ def longer(box, area):
     import klayout.db as db
 
     def lack(length, width):
-        return -(-max(0, -(-area // width) - length) // (2 * GRID_NM)) * 2 * GRID_NM      # even in grids
+        return -(-max(0, -(-area // width) - length) // (2 * GRID_NM)) * 2 * GRID_NM  # even in grids
 
     across, along = lack(box.width(), box.height()), lack(box.height(), box.width())
     for left, right in ((across // 2, across // 2), (across, 0), (0, across)):

@@ -1,6 +1,6 @@
 """A layout with blocks that were laid out before, as one without: their cells and wires among its own."""
 
-from .netlist import Instance, Netlist
+from flow.layout.netlist.netlist import Instance, Netlist
 
 
 def flat(netlist, blocks):
@@ -15,9 +15,14 @@ def flat(netlist, blocks):
         else:
             instances.append(instance)
     for name, block in blocks.items():
-        instances += [Instance(f"{name}.{i.name}", i.cell, {pin: outside[name].get(net, f"{name}.{net}")
-                                                             for pin, net in i.pins.items()})
-                      for i in block.instances]
+        instances += [
+            Instance(
+                f"{name}.{i.name}",
+                i.cell,
+                {pin: outside[name].get(net, f"{name}.{net}") for pin, net in i.pins.items()},
+            )
+            for i in block.instances
+        ]
     return Netlist(netlist.name, netlist.ports, tuple(instances))
 
 
@@ -26,13 +31,18 @@ def together(netlist, placement, blocks, places):
 
     blocks: dict instance -> (Netlist, placement of the block). places: dict instance -> (x, y) of it, um.
     """
-    kept = [where for instance, where in zip(netlist.instances, placement["instances"], strict=True)
-            if instance.name not in blocks]
+    kept = [
+        where
+        for instance, where in zip(netlist.instances, placement["instances"], strict=True)
+        if instance.name not in blocks
+    ]
     wires, pins = dict(placement["wires"]), {i.name: i.pins for i in netlist.instances if i.name in blocks}
     for name, (_, inside) in blocks.items():
         dx, dy = places[name]
-        kept += [[number, cell, round(x + dx, 4), round(y + dy, 4), orientation]
-                 for number, cell, x, y, orientation in inside["instances"]]
+        kept += [
+            [number, cell, round(x + dx, 4), round(y + dy, 4), orientation]
+            for number, cell, x, y, orientation in inside["instances"]
+        ]
         for net, made in inside["wires"].items():
             outer = pins[name].get(net, f"{name}.{net}")
             wires[outer] = wires.get(outer, []) + made

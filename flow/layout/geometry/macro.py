@@ -3,17 +3,11 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow import lef
-from flow.platforms import openroad
+from base import lef
+from flow.layout.netlist.netlist import SUPPLIES
+from platforms import openroad
 
 from .abstract import EDGE_UM
-from .netlist import SUPPLIES
-
-
-def layer_names(pdk):
-    """dict (GDS layer, datatype) -> name of the layer in LEF, where it is not that of the wire."""
-    known = openroad.process(pdk).gds if pdk in openroad.PROCESSES else {}
-    return {numbers: name for name, numbers in known.items()}
 
 
 @dataclass(frozen=True)
@@ -35,19 +29,30 @@ class Macro:
         wires = {names.get((wire.layer, wire.datatype), wire.name): wire.name for wire in known.wires}
         found = {pin.name: pin for pin in lef.pins(text)}
         straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found[net].boxes)
-        pieces = {pin: [(wires[layer], box) for layer, box in made.boxes] for pin, made in found.items()
-                  if pin not in SUPPLIES}
-        pins = {pin: (found[pin].direction.lower(),
-                      *_best(boxes, [box for other in pieces if other != pin for _, box in pieces[other]]))
-                for pin, boxes in pieces.items()}
+        pieces = {
+            pin: [(wires[layer], box) for layer, box in made.boxes]
+            for pin, made in found.items()
+            if pin not in SUPPLIES
+        }
+        pins = {
+            pin: (
+                found[pin].direction.lower(),
+                *_best(boxes, [box for other in pieces if other != pin for _, box in pieces[other]]),
+            )
+            for pin, boxes in pieces.items()
+        }
         return cls(lef.name(text), *lef.size(text), pins, tuple((net, round(x, 4)) for x, net in straps))
 
 
 def _best(boxes, others):
     """Of pairs (wire, box) of one pin that which ends at the edge, not one along it, and is farthest from others."""
+
     def rank(piece):
         left, bottom, right, top = piece[1]
-        away = min((abs(bottom + top - low - high) for west, low, east, high in others if (west <= 0) == (left <= 0)),
-                   default=0)
+        away = min(
+            (abs(bottom + top - low - high) for west, low, east, high in others if (west <= 0) == (left <= 0)),
+            default=0,
+        )
         return top - bottom < 2 * EDGE_UM, round(away, 3), right - left
+
     return max(boxes, key=rank)

@@ -6,13 +6,14 @@ taken from either side; whether that was right, the design rules and the layout-
 """
 
 GRID_NM = 5
-MOST_NM = 25        # that an end may lose: what pads have over the least enclosure of a cut
-END_NM = 500        # a longer edge is a side, which stays as it is
+MOST_NM = 25  # that an end may lose: what pads have over the least enclosure of a cut
+END_NM = 500  # a longer edge is a side, which stays as it is
 
 
 def trim(layout, top, wires, spaces):
     """Trim in the top cell ``top``; wires: of the process; spaces: dict wire -> least space (um). Returns ends cut."""
     import klayout.db as db
+
     cuts = 0
     for wire in wires:
         layer = layout.layer(wire.layer, wire.datatype)
@@ -33,6 +34,7 @@ def trim(layout, top, wires, spaces):
 def _strip(edge, other, depth):
     """The box ``depth`` deep behind ``edge``, away from ``other``."""
     import klayout.db as db
+
     a, b = edge.bbox(), other.bbox()
     if edge.p1.x == edge.p2.x:
         left = a.left < b.left
@@ -44,6 +46,7 @@ def _strip(edge, other, depth):
 def _subtract(shapes, boxes):
     """Take ``boxes`` out of ``shapes`` where they meet."""
     import klayout.db as db
+
     for box in boxes:
         touched = [shape for shape in shapes.each_overlapping(box) if not shape.is_text()]
         left = db.Region()

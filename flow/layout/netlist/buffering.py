@@ -12,8 +12,8 @@ from scipy.sparse.linalg import cg
 
 from .netlist import OUTPUT_PINS, Instance
 
-PULL = 1e-4             # of every cell to the middle, a wire's being 1: what hangs on no port needs a place, too
-TOLERANCE = 1e-8        # of the equations' right side
+PULL = 1e-4  # of every cell to the middle, a wire's being 1: what hangs on no port needs a place, too
+TOLERANCE = 1e-8  # of the equations' right side
 
 
 def buffered(netlist, sides, buffer, most):
@@ -31,8 +31,13 @@ def buffered(netlist, sides, buffer, most):
     large = {net: ends for net, ends in sinks.items() if len(ends) > most}
     places = guessed(instances, sides, {*large, *clocks}) if large else None
     for net, ends in large.items():
-        instances += _tree(net, [(instances[number].pins, pin) for number, pin in ends],
-                           places[[number for number, _ in ends]], buffer, most)
+        instances += _tree(
+            net,
+            [(instances[number].pins, pin) for number, pin in ends],
+            places[[number for number, _ in ends]],
+            buffer,
+            most,
+        )
     return replace(netlist, instances=tuple(instances))
 
 
@@ -40,10 +45,16 @@ def driven(netlist, buffer):
     """The Netlist with a buffer of its own behind every output: what it leads to outside slows nothing within."""
     outputs = {net: f"{net}_within" for port in netlist.ports if port.direction == "output" for net in port.bits()}
     cell, taken, given = buffer
-    instances = [replace(i, pins={pin: outputs.get(net, net) for pin, net in i.pins.items()})
-                 for i in netlist.instances]
-    return replace(netlist, instances=(*instances, *(Instance(f"{net}_driver", cell, {taken: within, given: net})
-                                                     for net, within in outputs.items())))
+    instances = [
+        replace(i, pins={pin: outputs.get(net, net) for pin, net in i.pins.items()}) for i in netlist.instances
+    ]
+    return replace(
+        netlist,
+        instances=(
+            *instances,
+            *(Instance(f"{net}_driver", cell, {taken: within, given: net}) for net, within in outputs.items()),
+        ),
+    )
 
 
 def _tree(net, ends, places, buffer, most):
@@ -55,7 +66,7 @@ def _tree(net, ends, places, buffer, most):
         groups, above = parted(places, most), []
         for group in groups:
             name = f"{net}_fan{len(made)}"
-            made.append(Instance(f"{name}_buffer", cell, {taken: net, given: name}))     # OpenSTA mixes up equal names
+            made.append(Instance(f"{name}_buffer", cell, {taken: net, given: name}))  # OpenSTA mixes up equal names
             above.append((made[-1].pins, taken))
             for pins, pin in (ends[k] for k in group):
                 pins[pin] = name
@@ -85,10 +96,16 @@ def guessed(instances, sides, left_out=()):
 
     A net is a star around a node of its own. Solves Laplacian x = pull of the ports by conjugate gradients.
     """
-    ports = {net: (side, (k + 0.5) / len(nets)) for side, nets in enumerate(sides.values()) for k, net in enumerate(nets)}
+    ports = {
+        net: (side, (k + 0.5) / len(nets)) for side, nets in enumerate(sides.values()) for k, net in enumerate(nets)
+    }
     nets = {}
-    wires = [(number, len(instances) + nets.setdefault(net, len(nets))) for number, instance in enumerate(instances)
-             for net in instance.pins.values() if net not in left_out]
+    wires = [
+        (number, len(instances) + nets.setdefault(net, len(nets)))
+        for number, instance in enumerate(instances)
+        for net in instance.pins.values()
+        if net not in left_out
+    ]
     size = len(instances) + len(nets)
     held = {len(instances) + number: ports[net] for net, number in nets.items() if net in ports}
     one, other = np.array(wires).T
@@ -100,4 +117,4 @@ def guessed(instances, sides, left_out=()):
     right[list(held)] += np.array(list(held.values())).reshape(-1, 2)
     matrix = diags_array(pulls.sum(axis=1) + anchor) - pulls
     inverse = diags_array(1 / matrix.diagonal())
-    return np.stack([cg(matrix, b, M=inverse, rtol=TOLERANCE)[0] for b in right.T], 1)[:len(instances)]
+    return np.stack([cg(matrix, b, M=inverse, rtol=TOLERANCE)[0] for b in right.T], 1)[: len(instances)]

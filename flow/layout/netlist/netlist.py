@@ -5,11 +5,11 @@ import re
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from flow.steps import StepError
+from base.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
-OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")       # of the library's cells
-REGISTER = "_reg"           # behind a register's name: its flip-flop
+OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")  # of the library's cells
+REGISTER = "_reg"  # behind a register's name: its flip-flop
 
 
 def register_names(path, top):
@@ -58,8 +58,9 @@ class Netlist:
     @classmethod
     def read(cls, path):
         data = json.loads(Path(path).read_text())
-        return cls(data["name"], tuple(Port(**p) for p in data["ports"]),
-                   tuple(Instance(**i) for i in data["instances"]))
+        return cls(
+            data["name"], tuple(Port(**p) for p in data["ports"]), tuple(Instance(**i) for i in data["instances"])
+        )
 
     def write(self, path):
         Path(path).write_text(json.dumps(asdict(self), indent=0) + "\n")
@@ -99,9 +100,14 @@ class Netlist:
                     pins[net] = names.setdefault(bit, f"n{bit}")
             for pin, port in modules[cell["type"]]["ports"].items() if cell["type"] in macros else ():
                 for net in Port(pin, "", len(port["bits"])).bits():
-                    pins.setdefault(net, f"{called}.{net}")          # an output that nothing takes
-            name = (registers[cell["connections"]["q"][0]] + REGISTER if is_register(cell["type"])
-                    else called if cell["type"] in macros else f"u{number}")
+                    pins.setdefault(net, f"{called}.{net}")  # an output that nothing takes
+            name = (
+                registers[cell["connections"]["q"][0]] + REGISTER
+                if is_register(cell["type"])
+                else called
+                if cell["type"] in macros
+                else f"u{number}"
+            )
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 
@@ -113,10 +119,15 @@ class Netlist:
         inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
         shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
         behind = {net: f"{net}_inside" for net in shared}
-        instances = [Instance(i.name, i.cell, {pin: behind.get(net, net) for pin, net in i.pins.items()})
-                     if i.cell in macros else i for i in self.instances]
-        instances += [Instance(f"inside{k}", buffer[0], {buffer[1]: net, buffer[2]: behind[net]})
-                      for k, net in enumerate(shared)]
+        instances = [
+            Instance(i.name, i.cell, {pin: behind.get(net, net) for pin, net in i.pins.items()})
+            if i.cell in macros
+            else i
+            for i in self.instances
+        ]
+        instances += [
+            Instance(f"inside{k}", buffer[0], {buffer[1]: net, buffer[2]: behind[net]}) for k, net in enumerate(shared)
+        ]
         return Netlist(self.name, self.ports, tuple(instances))
 
     def verilog(self):
@@ -128,7 +139,7 @@ class Netlist:
             bus = f"[{port.width - 1}:0] " if port.width > 1 else ""
             lines.append(f"  {port.direction} {bus}{port.name};")
         lines += [f"  wire {_escaped(net)};" for net in nets]
-        for i in filter(lambda instance: instance.pins, self.instances):      # what only fills gaps has none
+        for i in filter(lambda instance: instance.pins, self.instances):  # what only fills gaps has none
             pins = {pin: net if net in declared else _escaped(net) for pin, net in i.pins.items()}
             joined = ", ".join(f".{pin}({net})" for pin, net in sorted(_buses(pins).items()))
             lines.append(f"  {i.cell} {_escaped(i.name)} ({joined});")
@@ -155,8 +166,9 @@ class Netlist:
             lines.append(f"{word} {' '.join(nets)}")
         for i in self.instances:
             cell, pins = (blocks or {}).get(i.name, (i.cell, {}))
-            lines.append(f".gate {cell} " + " ".join(f"{pins.get(pin, pin)}={net_names[net]}"
-                                                     for pin, net in i.pins.items()))
+            lines.append(
+                f".gate {cell} " + " ".join(f"{pins.get(pin, pin)}={net_names[net]}" for pin, net in i.pins.items())
+            )
         return "\n".join([*lines, ".end", ""])
 
 
@@ -169,8 +181,9 @@ def _buses(pins):
             made[name] = net
         else:
             buses.setdefault(name, {})[int(bit)] = net
-    return made | {name: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}"
-                   for name, bits in buses.items()}
+    return made | {
+        name: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}" for name, bits in buses.items()
+    }
 
 
 def is_register(cell):

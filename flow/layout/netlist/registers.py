@@ -9,22 +9,27 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
 
-from flow.steps import StepError
+from base.steps import StepError
 
 from .netlist import named_bits
 
 # Yosys's simple gates: their pins, rows of BLIF's .names, and what they compute with all lanes of a number at once
 GATES = {
-    "$_BUF_": ("A", ["1 1"], lambda a: a), "$_NOT_": ("A", ["0 1"], lambda a: ~a),
-    "$_AND_": ("AB", ["11 1"], lambda a, b: a & b), "$_NAND_": ("AB", ["11 0"], lambda a, b: ~(a & b)),
-    "$_OR_": ("AB", ["00 0"], lambda a, b: a | b), "$_NOR_": ("AB", ["00 1"], lambda a, b: ~(a | b)),
-    "$_XOR_": ("AB", ["10 1", "01 1"], lambda a, b: a ^ b), "$_XNOR_": ("AB", ["11 1", "00 1"], lambda a, b: ~(a ^ b)),
-    "$_ANDNOT_": ("AB", ["10 1"], lambda a, b: a & ~b), "$_ORNOT_": ("AB", ["01 0"], lambda a, b: a | ~b),
+    "$_BUF_": ("A", ["1 1"], lambda a: a),
+    "$_NOT_": ("A", ["0 1"], lambda a: ~a),
+    "$_AND_": ("AB", ["11 1"], lambda a, b: a & b),
+    "$_NAND_": ("AB", ["11 0"], lambda a, b: ~(a & b)),
+    "$_OR_": ("AB", ["00 0"], lambda a, b: a | b),
+    "$_NOR_": ("AB", ["00 1"], lambda a, b: ~(a | b)),
+    "$_XOR_": ("AB", ["10 1", "01 1"], lambda a, b: a ^ b),
+    "$_XNOR_": ("AB", ["11 1", "00 1"], lambda a, b: ~(a ^ b)),
+    "$_ANDNOT_": ("AB", ["10 1"], lambda a, b: a & ~b),
+    "$_ORNOT_": ("AB", ["01 0"], lambda a, b: a | ~b),
     "$_MUX_": ("ABS", ["1-0 1", "-11 1"], lambda a, b, s: (a & ~s) | (b & s)),
 }
 REGISTER = "$_DFF_P_"
-LANES, RESET_CYCLES = 1 << 16, 4            # of the simulation that looks for constant registers, and for doubles
-TURNS, SURE = 60, 5                         # at most; without a change, the last
+LANES, RESET_CYCLES = 1 << 16, 4  # of the simulation that looks for constant registers, and for doubles
+TURNS, SURE = 60, 5  # at most; without a change, the last
 ALL = (1 << LANES) - 1
 
 
@@ -56,9 +61,11 @@ class Cut:
     @cached_property
     def gates(self):
         """dict output bit -> (type, input bits)."""
-        return {cell["connections"]["Y"][0]: (cell["type"], [cell["connections"][pin][0]
-                                                             for pin in GATES[cell["type"]][0]])
-                for cell in self.module["cells"].values() if cell["type"] != REGISTER}
+        return {
+            cell["connections"]["Y"][0]: (cell["type"], [cell["connections"][pin][0] for pin in GATES[cell["type"]][0]])
+            for cell in self.module["cells"].values()
+            if cell["type"] != REGISTER
+        }
 
     @cached_property
     def registers(self):
@@ -82,14 +89,22 @@ class Cut:
     @cached_property
     def inputs(self):
         """dict bit -> name of every input but the clock."""
-        return {bit: _bit(name, index, port) for name, port in self.module["ports"].items()
-                if port["direction"] == "input" and name != self.clock for index, bit in enumerate(port["bits"])}
+        return {
+            bit: _bit(name, index, port)
+            for name, port in self.module["ports"].items()
+            if port["direction"] == "input" and name != self.clock
+            for index, bit in enumerate(port["bits"])
+        }
 
     @cached_property
     def outputs(self):
         """dict name -> bit of every output."""
-        return {_bit(name, index, port): bit for name, port in self.module["ports"].items()
-                if port["direction"] == "output" for index, bit in enumerate(port["bits"])}
+        return {
+            _bit(name, index, port): bit
+            for name, port in self.module["ports"].items()
+            if port["direction"] == "output"
+            for index, bit in enumerate(port["bits"])
+        }
 
     @cached_property
     def order(self):
@@ -120,8 +135,9 @@ class Cut:
             bit = stack.pop()
             if bit not in seen:
                 seen.add(bit)
-                stack += self.gates[bit][1] if bit in self.gates else [self.registers[bit]] \
-                    if bit in self.registers else []
+                stack += (
+                    self.gates[bit][1] if bit in self.gates else [self.registers[bit]] if bit in self.registers else []
+                )
         return seen & set(self.registers)
 
     def substitutes(self, missing, present, reset):
@@ -149,9 +165,16 @@ class Cut:
                     wrong[bit].add(held)
                     held = None
                 better[bit] = held or min(
-                    (other for other in present if other not in wrong[bit] and behind[bit] == behind[other]
-                     and not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other])), default=None,
-                    key=lambda other, bit=bit: len(self._cone(bit) ^ self._cone(other)))
+                    (
+                        other
+                        for other in present
+                        if other not in wrong[bit]
+                        and behind[bit] == behind[other]
+                        and not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other])
+                    ),
+                    default=None,
+                    key=lambda other, bit=bit: len(self._cone(bit) ^ self._cone(other)),
+                )
             kept = kept + 1 if better == guess and None not in guess.values() else 0
             guess = better
             if kept == SURE:
@@ -186,8 +209,11 @@ class Cut:
         found = set()
         for name, bit in self.outputs.items():
             cone = self._behind_all(bit)
-            if any(not isinstance(pin, int) and pin not in ("0", "1") for here in cone & set(self.gates)
-                   for pin in self.gates[here][1]):
+            if any(
+                not isinstance(pin, int) and pin not in ("0", "1")
+                for here in cone & set(self.gates)
+                for pin in self.gates[here][1]
+            ):
                 found.add(name)
         return found
 
@@ -226,9 +252,20 @@ class Cut:
             lines += [f".names {net(bit)} {name}", "1 1"]
         inputs = [*self.inputs.values(), *states.values(), *(f"any{k}" for k in range(max(used, unknown)))]
         outputs = [*checked, *(name for name, _ in more)]
-        return used, "\n".join([".model cut", ".inputs " + " ".join(inputs), ".outputs " + " ".join(outputs),
-                                ".names const0", ".names const1", "1", *lines,
-                                *(line for _, made in more for line in made), ".end", ""])
+        return used, "\n".join(
+            [
+                ".model cut",
+                ".inputs " + " ".join(inputs),
+                ".outputs " + " ".join(outputs),
+                ".names const0",
+                ".names const1",
+                "1",
+                *lines,
+                *(line for _, made in more for line in made),
+                ".end",
+                "",
+            ]
+        )
 
 
 def _bit(name, index, port):

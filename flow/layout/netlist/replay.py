@@ -1,6 +1,6 @@
 """A recorded trace driven into a netlist in Icarus at its clock's full rate, with delays; transitions are counted.
 
-A trace (verif/replay's): lines 'fresh inputs outputs', hexadecimal, packed port by port, the first lowest; fresh marks
+A trace (rtl/replay's): lines 'fresh inputs outputs', hexadecimal, packed port by port, the first lowest; fresh marks
 a simulator's first cycle, where registers hold anything.
 """
 
@@ -9,12 +9,12 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.simulate.process import ToolError, finish, run
-from flow.steps import StepError
+from base.steps import StepError
+from base.tools import ToolError, finish, run
+from flow.layout.steps.place_route import plain_names
+from flow.layout.timing.delays import constrained, icarus, specified
 
-from .delays import constrained, icarus, specified
 from .netlist import Instance, Netlist
-from .steps.place_route import plain_names
 
 BENCH = """`timescale 1ns/1ps
 module Replay;
@@ -83,7 +83,7 @@ module Count (input a);
   end
 endmodule
 """
-SETTLED = 8         # cycles after which a reset has been taken, and transitions count
+SETTLED = 8  # cycles after which a reset has been taken, and transitions count
 
 
 @dataclass(frozen=True)
@@ -124,8 +124,18 @@ def replay(netlist, cells, trace, timing, folder, delays=None, count=False):
     if delays:
         (folder / "delays.log").write_text(icarus(delays, netlist, names))
     program = folder / "replay.log"
-    run(["iverilog", "-g2012", "-gspecify", "-s", "Replay", "-o", program,
-         *(folder / f"{name}.log" for name in ("bench", "netlist", "cells"))])
+    run(
+        [
+            "iverilog",
+            "-g2012",
+            "-gspecify",
+            "-s",
+            "Replay",
+            "-o",
+            program,
+            *(folder / f"{name}.log" for name in ("bench", "netlist", "cells")),
+        ]
+    )
     done = finish(["vvp", "-n", program, f"+trace={Path(trace).with_suffix('.trace')}"])
     program.unlink()
     if "SDF ERROR" in done.stdout + done.stderr or "SDF WARNING" in done.stdout + done.stderr:
@@ -138,23 +148,34 @@ def replay(netlist, cells, trace, timing, folder, delays=None, count=False):
     back = {plain: net for net, plain in nets.items()}
     found = re.findall(r"^NET Replay\.dut\.n(w\d+) (\d+) (\S+)$", done.stdout, re.M)
     cycles = int(end[1]) - SETTLED
-    return Replayed(int(end[1]), int(end[2]), tuple(re.findall(r"^WRONG .*$", done.stdout, re.M)),
-                    (float(margin[1]), float(margin[2])) if delays else None,
-                    tuple(re.findall(r"^(?:SETUP|HOLD) .*$", done.stdout, re.M)),
-                    {back[plain]: (int(changes) / cycles, float(high)) for plain, changes, high in found})
+    return Replayed(
+        int(end[1]),
+        int(end[2]),
+        tuple(re.findall(r"^WRONG .*$", done.stdout, re.M)),
+        (float(margin[1]), float(margin[2])) if delays else None,
+        tuple(re.findall(r"^(?:SETUP|HOLD) .*$", done.stdout, re.M)),
+        {back[plain]: (int(changes) / cycles, float(high)) for plain, changes, high in found},
+    )
 
 
 def _netlist(netlist, nets, names, delays, count):
     """The netlist with short names, the checks of its registers and counters of its nets."""
     ports = {net for port in netlist.ports for net in port.bits()}
     short = {net: net if net in ports else plain for net, plain in nets.items()}
-    renamed = Netlist(netlist.name, netlist.ports, tuple(
-        Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}) for i in netlist.instances))
+    renamed = Netlist(
+        netlist.name,
+        netlist.ports,
+        tuple(
+            Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}) for i in netlist.instances
+        ),
+    )
     lines = []
     for k, (instance, pin, setup, hold) in enumerate(constrained(delays, netlist) if delays else ()):
         clock = instance.pins[CLOCK_PIN]
-        lines.append(f"  Check #(.SETUP({setup:.4f}), .HOLD({hold:.4f})) k{k} (.clk({short[clock]}), "
-                     f".d({short[instance.pins[pin]]}));")
+        lines.append(
+            f"  Check #(.SETUP({setup:.4f}), .HOLD({hold:.4f})) k{k} (.clk({short[clock]}), "
+            f".d({short[instance.pins[pin]]}));"
+        )
     if count:
         lines += [f"  Count n{plain} (.a({short[net]}));" for net, plain in nets.items()]
     return renamed.verilog().replace("endmodule", "\n".join([*lines, "endmodule"]))
@@ -174,12 +195,25 @@ def _bench(top, ports, timing, folder):
             valid[name] = widths[vector]
             cares.append((name, port["width"]))
         widths[vector] += port["width"]
-    care = [f"{{{width}{{want[{valid[name[:-3] + 'val']}]}}}}" if name.endswith("__msg") and name[:-3] + "val" in valid
-            else f"{{{width}{{1'b1}}}}" for name, width in reversed(cares)]
+    care = [
+        f"{{{width}{{want[{valid[name[:-3] + 'val']}]}}}}"
+        if name.endswith("__msg") and name[:-3] + "val" in valid
+        else f"{{{width}{{1'b1}}}}"
+        for name, width in reversed(cares)
+    ]
     period = timing.period_ns
     arrive, sample = period * timing.input_delay, period * (1 - timing.output_delay)
     return BENCH.format(
-        top=top, pins=", ".join(pins), in_top=widths["in"] - 1, out_top=widths["got"] - 1, out_bits=widths["got"],
-        care=", ".join(care), annotate=f'$sdf_annotate("{folder / "delays.log"}", dut);' if folder else "",
-        input_ns=f"{arrive:.4f}", fall_ns=f"{period / 2 - arrive:.4f}", sample_ns=f"{sample - period / 2:.4f}",
-        edge_ns=f"{period - sample:.4f}", settled=SETTLED)
+        top=top,
+        pins=", ".join(pins),
+        in_top=widths["in"] - 1,
+        out_top=widths["got"] - 1,
+        out_bits=widths["got"],
+        care=", ".join(care),
+        annotate=f'$sdf_annotate("{folder / "delays.log"}", dut);' if folder else "",
+        input_ns=f"{arrive:.4f}",
+        fall_ns=f"{period / 2 - arrive:.4f}",
+        sample_ns=f"{sample - period / 2:.4f}",
+        edge_ns=f"{period - sample:.4f}",
+        settled=SETTLED,
+    )

@@ -10,11 +10,10 @@ from functools import cached_property
 
 import numpy as np
 
-from flow.steps import StepError
+from base.steps import StepError
+from flow.layout.netlist.netlist import OUTPUT_PINS, is_register
 
-from .netlist import OUTPUT_PINS, is_register
-
-SLEW_NS = 0.1       # of a pin that OpenSTA has no slew for: constants
+SLEW_NS = 0.1  # of a pin that OpenSTA has no slew for: constants
 
 
 @dataclass(frozen=True)
@@ -48,8 +47,10 @@ class Cells:
         key = cell, pin
         if key not in self._energies:
             group = self.pins.get(key)
-            self._energies[key] = [(power.attributes.get("related_pin"), _mean(power))
-                                   for power in (group.all("internal_power") if group else ())]
+            self._energies[key] = [
+                (power.attributes.get("related_pin"), _mean(power))
+                for power in (group.all("internal_power") if group else ())
+            ]
         return self._energies[key]
 
     @cached_property
@@ -74,6 +75,7 @@ def _interpolated(table):
     def at(slew, load):
         load = min(max(load, loads[0]), loads[-1])
         return float(np.interp(slew, slews, [np.interp(load, loads, row) for row in grid]))
+
     return at
 
 
@@ -103,9 +105,12 @@ def powers(netlist, cells, activity, wire_pf, slews, period_ns):
     lost = sorted({net for i in netlist.instances for net in i.pins.values()} - set(activity))
     if lost:
         raise StepError(f"power: no activity of the nets {', '.join(lost[:5])}")
-    mega = 1000 / period_ns             # cycles a us: pJ a cycle to uW
-    return {instance.name: _power(instance, cells, activity, load, slews, mega)
-            for instance in netlist.instances if instance.pins}
+    mega = 1000 / period_ns  # cycles a us: pJ a cycle to uW
+    return {
+        instance.name: _power(instance, cells, activity, load, slews, mega)
+        for instance in netlist.instances
+        if instance.pins
+    }
 
 
 def _power(instance, cells, activity, load, slews, mega):
@@ -123,7 +128,7 @@ def _power(instance, cells, activity, load, slews, mega):
             slew = slews.get((instance.name, related or pin), SLEW_NS)
             internal += toggles * share * energy(slew, load[net] if output else 0.0) * mega
         if output:
-            switching += 0.5 * load[net] * cells.supply_v ** 2 * toggles * mega
+            switching += 0.5 * load[net] * cells.supply_v**2 * toggles * mega
     return Power(internal, switching, cells.leakage_nw(instance.cell) / 1000)
 
 
@@ -137,8 +142,9 @@ def blocks(netlist):
         for pin, net in instance.pins.items():
             if pin not in OUTPUT_PINS:
                 sinks.setdefault(net, []).append((instance, pin))
-    found = {i.name: i.name.partition(".")[0] if "." in i.name else "top" for i in netlist.instances
-             if is_register(i.cell)}
+    found = {
+        i.name: i.name.partition(".")[0] if "." in i.name else "top" for i in netlist.instances if is_register(i.cell)
+    }
     for start in netlist.instances:
         stack = [start] if start.pins else []
         while stack:

@@ -21,8 +21,10 @@ def metal(known):
     low, high = known.wires[0], known.wires[-1]
     stack = 0.0
     for cut in known.cuts:
-        across, along = (int((side - 2 * cut.enclosure_um + cut.space_um) / (cut.size_um + cut.space_um) + 1e-9)
-                         for side in (known.strap_um, known.rail_overlap_um))
+        across, along = (
+            int((side - 2 * cut.enclosure_um + cut.space_um) / (cut.size_um + cut.space_um) + 1e-9)
+            for side in (known.strap_um, known.rail_overlap_um)
+        )
         stack += cut.ohm / (across * along)
     return Metal(low.ohm / known.rail_um, high.ohm / known.strap_um, stack)
 
@@ -35,26 +37,32 @@ def drops(rails, straps, height, taps, metal, breaks=(), gaps=()):
     bottom, right, top) in which there are no rails. gaps: (x, bottom, top) in which a strap is cut.
     """
     rails, straps = np.asarray(rails, float), np.asarray(straps, float)
-    crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))     # nodes of the straps
+    crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))  # nodes of the straps
     nodes, edges, currents, where = crossing.size, [], [], []
-    for k in range(len(straps)):            # up a strap; half a um of it, at least, to a pad at its end
+    for k in range(len(straps)):  # up a strap; half a um of it, at least, to a pad at its end
         for r, (a, b) in enumerate(zip(crossing[k], crossing[k][1:])):
             if not any(x == straps[k] and rails[r] < top and bottom < rails[r + 1] for x, bottom, top in gaps):
                 edges.append((a, b, metal.strap * float(rails[r + 1] - rails[r])))
-    pads = [(crossing[k][end], metal.strap * max(0.5, gap)) for k in range(len(straps))
-            for end, gap in ((0, rails[0]), (-1, height - rails[-1]))]
-    for r in range(len(rails)):             # along a rail: its taps, and where straps meet it
-        own = sorted([(x, "tap", k) for k, (rail, x, _) in enumerate(taps) if rail == r]
-                     + [(x, "strap", k) for k, x in enumerate(straps)])
-        before, edge = None, 2 if rails[r] in (0, height) else 1        # half a rail at the edge of the block
+    pads = [
+        (crossing[k][end], metal.strap * max(0.5, gap))
+        for k in range(len(straps))
+        for end, gap in ((0, rails[0]), (-1, height - rails[-1]))
+    ]
+    for r in range(len(rails)):  # along a rail: its taps, and where straps meet it
+        own = sorted(
+            [(x, "tap", k) for k, (rail, x, _) in enumerate(taps) if rail == r]
+            + [(x, "strap", k) for k, x in enumerate(straps)]
+        )
+        before, edge = None, 2 if rails[r] in (0, height) else 1  # half a rail at the edge of the block
         for x, kind, k in own:
             if kind == "strap":
                 edges.append((nodes, int(crossing[k][r]), metal.stack))
             else:
                 where.append((k, nodes))
                 currents.append((nodes, taps[k][2]))
-            if before is not None and not any(bottom <= rails[r] <= top and before <= left and right <= x
-                                              for left, bottom, right, top in breaks):
+            if before is not None and not any(
+                bottom <= rails[r] <= top and before <= left and right <= x for left, bottom, right, top in breaks
+            ):
                 edges.append((nodes - 1, nodes, edge * metal.rail * max(x - before, 1e-3)))
             before, nodes = x, nodes + 1
     matrix = _laplacian(nodes, edges, pads)
@@ -74,9 +82,14 @@ def drops(rails, straps, height, taps, metal, breaks=(), gaps=()):
 def _laplacian(nodes, edges, pads):
     a, b, ohm = (np.array(column) for column in zip(*edges))
     g = 1.0 / ohm.astype(float)
-    matrix = sparse.coo_matrix((np.concatenate((g, g, -g, -g)), (np.concatenate((a, b, a, b)).astype(int),
-                                                                  np.concatenate((a, b, b, a)).astype(int))),
-                               shape=(nodes, nodes))
-    ends = sparse.coo_matrix(([1 / ohm for _, ohm in pads], ([p for p, _ in pads], [p for p, _ in pads])),
-                             shape=(nodes, nodes))
+    matrix = sparse.coo_matrix(
+        (
+            np.concatenate((g, g, -g, -g)),
+            (np.concatenate((a, b, a, b)).astype(int), np.concatenate((a, b, b, a)).astype(int)),
+        ),
+        shape=(nodes, nodes),
+    )
+    ends = sparse.coo_matrix(
+        ([1 / ohm for _, ohm in pads], ([p for p, _ in pads], [p for p, _ in pads])), shape=(nodes, nodes)
+    )
     return matrix + ends

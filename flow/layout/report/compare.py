@@ -1,4 +1,4 @@
-"""`python -m flow.layout.compare DESIGN DESIGN`: finished layouts beside one another, in build/layout/hierarchy/."""
+"""`python -m flow.layout.report.compare DESIGN DESIGN`: finished layouts beside one another, in build/layout/hierarchy/."""
 
 import argparse
 import json
@@ -8,28 +8,42 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader
 
-from flow.files import staged
+from base.files import staged
+from base.paths import ROOT
+from flow.layout.design import DESIGNS, design
+from flow.layout.macros import inner
 from models.parameters import ParameterError
 
-from .blocks import inner
-from .design import DESIGNS, design
-from .summary import broken
+from .metrics import broken
 
-ROOT = Path(__file__).parents[2]
-PAIR = "asp_chip", "asp_chip_macros"        # of the thesis (B.3.2): flat, and around its two blocks
-ROWS = (("area_um2", "area, um2"), ("cells", "cells, clock's buffers too"), ("flip_flops", "flip-flops"),
-        ("utilization", "utilization beside blocks"), ("wire_um", "wire, um"),
-        ("wire_pf", "wire, pF"), ("f_max_mhz", "MHz at most"), ("wns_ns", "setup slack, ns"),
-        ("whs_ns", "hold slack, ns"), ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
-        ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"),
-        ("power_uw", "power, uW"), ("ir_drop_percent", "voltage drop, %"), ("open_nets", "open nets"),
-        ("mended", "nets mended"), ("hopped", "nets with an antenna, routed anew"),
-        ("drc_violations", "rules broken"), ("antenna_violations", "antennas"), ("lvs_match", "layout = netlist"),
-        ("equivalence", "netlist = Verilog"), ("gate_tests", "tests of the netlist passed, failed"))
+PAIR = "asp_chip", "asp_chip_macros"  # of the thesis (B.3.2): flat, and around its two blocks
+ROWS = (
+    ("area_um2", "area, um2"),
+    ("cells", "cells, clock's buffers too"),
+    ("flip_flops", "flip-flops"),
+    ("utilization", "utilization beside blocks"),
+    ("wire_um", "wire, um"),
+    ("wire_pf", "wire, pF"),
+    ("f_max_mhz", "MHz at most"),
+    ("wns_ns", "setup slack, ns"),
+    ("whs_ns", "hold slack, ns"),
+    ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
+    ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"),
+    ("power_uw", "power, uW"),
+    ("ir_drop_percent", "voltage drop, %"),
+    ("open_nets", "open nets"),
+    ("mended", "nets mended"),
+    ("hopped", "nets with an antenna, routed anew"),
+    ("drc_violations", "rules broken"),
+    ("antenna_violations", "antennas"),
+    ("lvs_match", "layout = netlist"),
+    ("equivalence", "netlist = Verilog"),
+    ("gate_tests", "tests of the netlist passed, failed"),
+)
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m flow.layout.compare", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m flow.layout.report.compare", description=__doc__.splitlines()[0])
     parser.add_argument("designs", nargs="*", default=PAIR, metavar="DESIGN", help=f"default: {' '.join(PAIR)}")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of layouts (%(default)s)")
     return parser
@@ -41,7 +55,7 @@ def read(folder, name):
     if not path.is_file():
         raise ParameterError(f"design = {name}: must have been laid out: no {path}; make layout DESIGN={name}")
     found = json.loads(path.read_text())
-    if not found.get("macros"):         # where there are blocks, their and all clocks' buffers are among the cells
+    if not found.get("macros"):  # where there are blocks, their and all clocks' buffers are among the cells
         found["cells"] += found.get("clock_buffers") or 0
     return found
 
@@ -55,8 +69,13 @@ def columns(names, summaries):
 
 def seconds(summary, blocks, summaries):
     """Of all steps of a design, its blocks' too (the cells' timing, measured once for all, left out)."""
-    return round(sum(sum(s for step, s in made["wall_s"].items() if step != "timing")
-                     for made in (summary, *(summaries[block] for block in blocks))), 1)
+    return round(
+        sum(
+            sum(s for step, s in made["wall_s"].items() if step != "timing")
+            for made in (summary, *(summaries[block] for block in blocks))
+        ),
+        1,
+    )
 
 
 def table(made, summaries):
@@ -88,18 +107,28 @@ def main(argv=None):
         summaries = {name: read(options.out, name) for name in wanted}
         made = columns(names, summaries)
         rows, folder = table(made, summaries), options.out / "hierarchy"
-        pictures = [(name, os.path.relpath(path, folder)) for name in names
-                    for path in (options.out / name / f"{name}.blocks.png", options.out / name / f"{name}.png")
-                    if path.is_file()]
+        pictures = [
+            (name, os.path.relpath(path, folder))
+            for name in names
+            for path in (options.out / name / f"{name}.blocks.png", options.out / name / f"{name}.png")
+            if path.is_file()
+        ]
         environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
         with staged(folder, ["table.json", "report.html"]) as part:
-            (part / "table.json").write_text(json.dumps({words: dict(zip((name for name, *_ in made), values,
-                                                                         strict=True)) for words, values in rows},
-                                                        indent=1) + "\n")
-            (part / "report.html").write_text(environment.get_template("compare.html").render(
-                names=[name for name, *_ in made], rows=rows, pictures=pictures))
+            (part / "table.json").write_text(
+                json.dumps(
+                    {words: dict(zip((name for name, *_ in made), values, strict=True)) for words, values in rows},
+                    indent=1,
+                )
+                + "\n"
+            )
+            (part / "report.html").write_text(
+                environment.get_template("compare.html").render(
+                    names=[name for name, *_ in made], rows=rows, pictures=pictures
+                )
+            )
     except (ParameterError, OSError) as error:
-        print(f"flow.layout.compare: {error}", file=sys.stderr)
+        print(f"flow.layout.report.compare: {error}", file=sys.stderr)
         return 2
     width = max(len(words) for words, _ in rows)
     for words, values in [("", [name for name, *_ in made]), *rows]:

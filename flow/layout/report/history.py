@@ -4,14 +4,26 @@ import json
 from datetime import UTC, datetime
 
 # Names in summary.json; of a dict by corner the least counts, of power, its first
-FIGURES = {"area_um2": "area, um2", "utilization": "utilization", "cells": "cells", "wire_um": "wires, um",
-           "f_max_mhz": "MHz at most", "wns_ns": "setup slack, ns", "whs_ns": "hold slack, ns", "power_uw": "power, uW",
-           "open_nets": "open nets", "drc_violations": "rules broken", "antenna_violations": "antennas",
-           "lvs_match": "layout and netlist", "equivalence": "netlist = Verilog"}
+FIGURES = {
+    "area_um2": "area, um2",
+    "utilization": "utilization",
+    "cells": "cells",
+    "wire_um": "wires, um",
+    "f_max_mhz": "MHz at most",
+    "wns_ns": "setup slack, ns",
+    "whs_ns": "hold slack, ns",
+    "power_uw": "power, uW",
+    "open_nets": "open nets",
+    "drc_violations": "rules broken",
+    "antenna_violations": "antennas",
+    "lvs_match": "layout and netlist",
+    "equivalence": "netlist = Verilog",
+}
 
 
 def figures(summary):
     """dict of FIGURES from the summary, a number a name."""
+
     def one(name, value):
         if not isinstance(value, dict):
             return value

@@ -20,31 +20,44 @@ def summarize(design, options, runner, tried):
         return records[step]["metrics"].get(name) if step in records else None
 
     def by_corner(name, step="sta"):
-        return {corner: metric(f"{step}_{corner}", name) for corner in options.corners
-                if f"{step}_{corner}" in records} or None
+        return {
+            corner: metric(f"{step}_{corner}", name) for corner in options.corners if f"{step}_{corner}" in records
+        } or None
 
     area, first = metric("floorplan", "core_area_um2"), next(iter(options.corners), "")
-    slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9        # the chip's clock by that of the layout
-    cells = "assemble" if design.macros else "synthesis"        # with those of its blocks and all buffers, or alone
+    slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9  # the chip's clock by that of the layout
+    cells = "assemble" if design.macros else "synthesis"  # with those of its blocks and all buffers, or alone
     tools = {}
     for record in records.values():
         tools |= record["tools"]
     return {
-        "design": design.name, "top": design.top, "backend": "coriolis", "pdk": options.pdk,
-        "cells": metric(cells, "cells"), "flip_flops": metric(cells, "flip_flops"),
-        "cell_area_um2": metric(cells, "cell_area_um2"), "area_um2": metric("stream_out", "area_um2") or area,
-        "utilization": tried[-1]["utilization"], "tried": tried,
+        "design": design.name,
+        "top": design.top,
+        "backend": "coriolis",
+        "pdk": options.pdk,
+        "cells": metric(cells, "cells"),
+        "flip_flops": metric(cells, "flip_flops"),
+        "cell_area_um2": metric(cells, "cell_area_um2"),
+        "area_um2": metric("stream_out", "area_um2") or area,
+        "utilization": tried[-1]["utilization"],
+        "tried": tried,
         "macros": {hard.instance: hard.design for hard in design.macros} or None,
-        "wire_um": metric("assemble", "wire_um") or metric("mend", "wire_um"), "open_nets": metric("mend", "open_nets"),
-        "mended": metric("mend", "mended"), "hopped": metric("mend", "hopped"),
+        "wire_um": metric("assemble", "wire_um") or metric("mend", "wire_um"),
+        "open_nets": metric("mend", "open_nets"),
+        "mended": metric("mend", "mended"),
+        "hopped": metric("mend", "hopped"),
         "clock_buffers": metric("place_route", "clock_buffers"),
-        "drc_violations": metric("drc", "drc_violations"), "lvs_match": metric("lvs", "lvs_match"),
+        "drc_violations": metric("drc", "drc_violations"),
+        "lvs_match": metric("lvs", "lvs_match"),
         "foundry_drc_violations": metric("foundry_drc", "foundry_drc_violations"),
         "magic_drc_violations": metric("magic_drc", "magic_drc_violations"),
-        "antenna_violations": metric("antenna", "antenna_violations"), "density": metric("fill", "after"),
-        "density_violations": metric("fill", "density_violations"), "fill_squares": metric("fill", "squares"),
+        "antenna_violations": metric("antenna", "antenna_violations"),
+        "density": metric("fill", "after"),
+        "density_violations": metric("fill", "density_violations"),
+        "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),
-        "timing_rests_on": timing(options), **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
+        "timing_rests_on": timing(options),
+        **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
         **{name: by_corner(name, "sta_blocks") for name in ("blocks_wns_ns", "blocks_whs_ns")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
@@ -53,7 +66,8 @@ def summarize(design, options, runner, tried):
         "power_by_block_uw": metric(f"power_{first}", "by_block"),
         "power_by_kind_uw": metric(f"power_{first}", "by_kind"),
         **{name: by_corner(name, "ir_drop") for name in ("supply_drop_mv", "ground_rise_mv", "ir_drop_percent")},
-        "stimulus": metric("stimulus", "source"), "stimulus_cycles": metric("stimulus", "cycles"),
+        "stimulus": metric("stimulus", "source"),
+        "stimulus_cycles": metric("stimulus", "cycles"),
         **{name: by_corner(name, "gate_delays") for name in ("setup_margin_ns", "hold_margin_ns")},
         "model_error_ns": by_corner("model_error_ns", "block_liberty"),
         "wire_pf": metric("extraction", "wire_pf"),
@@ -61,7 +75,8 @@ def summarize(design, options, runner, tried):
         "gate_tests": gate_tests(records),
         "wall_s": {name: record["wall_s"] for name, record in records.items()},
         "peak_mib": {name: record["peak_mib"] for name, record in records.items()},
-        "tools": dict(sorted(tools.items()))}
+        "tools": dict(sorted(tools.items())),
+    }
 
 
 def at_chip_clock(energies):
@@ -74,17 +89,24 @@ def table_6_1(by_block, slowed):
     the clock of the thesis's chip. Its parts are first, then what is here besides: the clock's tree, other blocks."""
     if by_block is None:
         return None
-    found = {part: [round(getattr(EnergyParameters(), part) * 1e6, 3),
-                    round(slowed * sum(by_block.get(block, 0.0) for block in blocks), 3) if blocks else None]
-             for part, blocks in TABLE_6_1.items()}
+    found = {
+        part: [
+            round(getattr(EnergyParameters(), part) * 1e6, 3),
+            round(slowed * sum(by_block.get(block, 0.0) for block in blocks), 3) if blocks else None,
+        ]
+        for part, blocks in TABLE_6_1.items()
+    }
     counted = {block for blocks in TABLE_6_1.values() for block in blocks}
     return found | {block: [None, round(slowed * uw, 3)] for block, uw in by_block.items() if block not in counted}
 
 
 def gate_tests(records):
     """passed, failed: of all simulations of netlists; of each of them what it passed and failed. None without one."""
-    runs = {name: {kind: record["metrics"][kind] for kind in ("passed", "failed")} for name, record in records.items()
-            if name.startswith("gate_")}
+    runs = {
+        name: {kind: record["metrics"][kind] for kind in ("passed", "failed")}
+        for name, record in records.items()
+        if name.startswith("gate_")
+    }
     return {kind: sum(run[kind] for run in runs.values()) for kind in ("passed", "failed")} | runs if runs else None
 
 
@@ -93,8 +115,10 @@ def timing(options):
     if not options.corners:
         return "no timing: cells by area alone"
     cells = ", ".join(path.name for path in options.liberty) or f"measured at {', '.join(options.corners)}"
-    return (f"cells: {cells}; wires: area and edge capacitance to the substrate and resistance from the router's "
-            "wires, no coupling; power: transitions of the netlist in its recorded trace")
+    return (
+        f"cells: {cells}; wires: area and edge capacitance to the substrate and resistance from the router's "
+        "wires, no coupling; power: transitions of the netlist in its recorded trace"
+    )
 
 
 def broken(summary, rules=RULES):
@@ -111,12 +135,19 @@ def broken(summary, rules=RULES):
         if value is None and rule.get("if_measured"):
             continue
         if not all(_keeps(one, rule) for one in (value.values() if isinstance(value, dict) else [value])):
-            wanted = " and ".join(f"{'at ' if word != 'is' else ''}{word} {rule[word]}".removeprefix("is ")
-                                  for word in ("is", "least", "most") if word in rule)
+            wanted = " and ".join(
+                f"{'at ' if word != 'is' else ''}{word} {rule[word]}".removeprefix("is ")
+                for word in ("is", "least", "most")
+                if word in rule
+            )
             found.append(f"{name} = {value}: must be {wanted}")
     return found
 
 
 def _keeps(value, rule):
-    return (value is not None and ("is" not in rule or value == rule["is"])
-            and ("most" not in rule or value <= rule["most"]) and ("least" not in rule or value >= rule["least"]))
+    return (
+        value is not None
+        and ("is" not in rule or value == rule["is"])
+        and ("most" not in rule or value <= rule["most"])
+        and ("least" not in rule or value >= rule["least"])
+    )

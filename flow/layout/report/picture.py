@@ -1,12 +1,13 @@
 """A layout as a picture: KLayout's own rendering, without its window."""
 
-PALETTE = (0x2e7d32, 0xc62828, 0x1e88e5, 0x8e24aa, 0xf9a825, 0xef6c00)      # wires, from the lowest up
+PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # wires, from the lowest up
 BACKGROUND = "#101014"
 
 
 def render(gds, png, known, side=2400):
     """Write the layout ``gds`` as a picture of ``side`` x ``side`` pixels. known: Embedded, whose wires are drawn."""
     import klayout.lay as lay
+
     view = lay.LayoutView()
     view.set_config("background-color", BACKGROUND)
     view.set_config("grid-visible", "false")
@@ -35,6 +36,7 @@ def by_block(png, netlist, placed, areas, known, found, plan):
     from matplotlib.collections import PatchCollection
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
+
     figure = Figure(figsize=(8, 6), layout="constrained")
     axes = figure.subplots()
     groups = {}
@@ -42,7 +44,8 @@ def by_block(png, netlist, placed, areas, known, found, plan):
         if instance.name in found and instance.pins:
             width, down, left = areas[cell] / known.row_um, orientation in ("6", "2"), orientation in ("4", "2")
             groups.setdefault(found[instance.name], []).append(
-                Rectangle((x - width * left, y - known.row_um * down), width, known.row_um))
+                Rectangle((x - width * left, y - known.row_um * down), width, known.row_um)
+            )
     for k, (block, boxes) in enumerate(sorted(groups.items(), key=lambda item: -len(item[1]))):
         axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))
         axes.plot([], [], "s", color=f"C{k % 10}", label=f"{block} ({len(boxes)})")

@@ -3,9 +3,9 @@
 import numpy as np
 from numba import njit
 
-from ..boxes import boxes
+from ..geometry.boxes import boxes
 
-BOX_AND_NET = 5         # columns
+BOX_AND_NET = 5  # columns
 
 
 class Board:
@@ -53,6 +53,7 @@ class Board:
     def _standing(self, name):
         """Boxes (n, 4) of what is left on a layer, in the cells, too."""
         import klayout.db as db
+
         return boxes(db.Region(self.top.begin_shapes_rec(self.layers[name])))
 
     def take(self, net):
@@ -76,6 +77,7 @@ class Board:
     def drawn(self):
         """A layout of its own with the wires of all nets in it."""
         import klayout.db as db
+
         layout = self.layout.dup()
         shapes = {name: layout.top_cell().shapes(layer) for name, layer in self.layers.items()}
         for net in self.nets:
@@ -86,12 +88,14 @@ class Board:
     def part(self, nets):
         """The same with the wires of ``nets``, what of others comes near to these, and the cells below alone."""
         import klayout.db as db
+
         layout, found = self.layout.dup(), {}
         top, reach = layout.top_cell(), max(layer.space for layer in self.wiring.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
         outlines = [inst.bbox() for inst in top.each_inst()]
-        places = np.array([(box.left, box.bottom, box.right, box.top, number) for number, box in enumerate(outlines)],
-                          int).reshape(-1, BOX_AND_NET)
+        places = np.array(
+            [(box.left, box.bottom, box.right, box.top, number) for number, box in enumerate(outlines)], int
+        ).reshape(-1, BOX_AND_NET)
         kept = set()
         for name, box in (made for net in nets for made in self.boxes[net]):
             around = box[0] - reach, box[1] - reach, box[2] + reach, box[3] + reach
@@ -112,8 +116,13 @@ class Board:
 
     def beside(self, nets):
         """Names of all nets with a wire that meets one of ``nets``, these too."""
-        return {self.nets[number] for net in nets for name, box in self.boxes[net] if name in self.levels
-                for number in self.owners(self.there, self.levels[name], box)}
+        return {
+            self.nets[number]
+            for net in nets
+            for name, box in self.boxes[net]
+            if name in self.levels
+            for number in self.owners(self.there, self.levels[name], box)
+        }
 
     def owners(self, there, level, box):
         """Numbers of the nets with a wire that meets ``box``; there: this board's, of now or of before."""
@@ -122,10 +131,14 @@ class Board:
     def at(self, there, level, polygon):
         """Names of the nets with a box whose middle lies in the ``polygon``, as KLayout writes one; there: as above."""
         import klayout.db as db
+
         polygon = db.Polygon.from_s(polygon)
         box = polygon.bbox()
-        return {self.nets[number] for *ends, number in near(there[level], (box.left, box.bottom, box.right, box.top))
-                if polygon.inside(db.Point(*map(int, middle(ends))))}
+        return {
+            self.nets[number]
+            for *ends, number in near(there[level], (box.left, box.bottom, box.right, box.top))
+            if polygon.inside(db.Point(*map(int, middle(ends))))
+        }
 
 
 def near(there, reach):

@@ -31,20 +31,23 @@ class Marks:
 def marks(layout, wiring, known, levels=None):
     """Marks of KLayout's ``layout`` on ``levels``, all without; known: Embedded."""
     import klayout.db as db
+
     top, close = layout.top_cell(), []
     levels = range(len(wiring.layers)) if levels is None else levels
-    for level in filter(None, levels):              # the lowest is that of the cells' pins
+    for level in filter(None, levels):  # the lowest is that of the cells' pins
         wire = wiring.layers[level]
         metal = db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype)))
         close += [(level, _ends(pair.first), _ends(pair.second)) for pair in metal.space_check(wire.space).each()]
-    charged = [(level, str(polygon)) for level, bad in violations(layout, top, known, levels).items()
-               for polygon in bad.each()]
+    charged = [
+        (level, str(polygon)) for level, bad in violations(layout, top, known, levels).items() for polygon in bad.each()
+    ]
     return Marks(tuple(close), tuple(charged))
 
 
 def marks_of(path, wiring, known, levels):
     """The same of the GDS file ``path``."""
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(path))
     return marks(layout, wiring, known, levels)

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from .board import nanometres
 from .nets import routed
 
-PATIENCE = 20           # nets that lose their places for every one that is asked for, at most
-HOPS = 3                # times that a net is routed with hops; then it goes without, and keeps its antenna
+PATIENCE = 20  # nets that lose their places for every one that is asked for, at most
+HOPS = 3  # times that a net is routed with hops; then it goes without, and keeps its antenna
 
 
 @dataclass

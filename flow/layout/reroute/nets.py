@@ -8,12 +8,12 @@ import numpy as np
 from .search import search
 from .window import Site, Window
 
-MARGINS_NM = (10_000, 40_000, 120_000)      # of the window around two places to be joined: of a try, of the next
-DETOUR_NM = 240_000                         # the same where there was no way at all: round a block
-AROUND_PIN_NM = 12_000                      # of that around a pin
-HIGHEST = 8                                 # price of the highest wire where it is to be short
-HOP_NM, REACH = 1500, 40                    # length of a piece of it; its distance from a pin, in steps of the grid
-CELL_PINS = 0                               # level of the layer of the cells' pins, on which nothing is routed
+MARGINS_NM = (10_000, 40_000, 120_000)  # of the window around two places to be joined: of a try, of the next
+DETOUR_NM = 240_000  # the same where there was no way at all: round a block
+AROUND_PIN_NM = 12_000  # of that around a pin
+HIGHEST = 8  # price of the highest wire where it is to be short
+HOP_NM, REACH = 1500, 40  # length of a piece of it; its distance from a pin, in steps of the grid
+CELL_PINS = 0  # level of the layer of the cells' pins, on which nothing is routed
 
 
 @dataclass
@@ -60,8 +60,7 @@ def routed(board, pins, hops=False):
 
 
 def _connected(site, accesses, margin, hops):
-    """Shapes that join the pins that are met by ``accesses``, always the one next to what is joined; None without a way.
-    """
+    """Shapes that join the pins that are met by ``accesses``, always the one next to what is joined; None without a way."""
     dear = {len(site.wiring.layers) - 1: HIGHEST} if hops else None
     shapes, tree = Shapes(), {}
     waiting = [list(access) for access in accesses]
@@ -81,8 +80,9 @@ def _connected(site, accesses, margin, hops):
         _draw(shapes, window, way)
         tree |= dict.fromkeys(way)
         for other in left:
-            nearest[other] = min(nearest[other], _nearest(site, waiting[other], np.array(way)),
-                                 key=lambda found: found[0])
+            nearest[other] = min(
+                nearest[other], _nearest(site, waiting[other], np.array(way)), key=lambda found: found[0]
+            )
     return shapes
 
 
@@ -120,9 +120,13 @@ def _hop(window, accesses):
             for row in range(max(up, j - REACH), min(window.shape[1] - up, j + REACH)):
                 if cuts[column, row]:
                     for x, y in ((column + right, row + up), (column - right, row - up)):
-                        if cuts[x, y] and free[min(x, column):max(x, column) + 1, min(y, row):max(y, row) + 1].all():
-                            here, end = ((highest, a + window.first[0], b + window.first[1])
-                                         for a, b in ((column, row), (x, y)))
+                        if (
+                            cuts[x, y]
+                            and free[min(x, column) : max(x, column) + 1, min(y, row) : max(y, row) + 1].all()
+                        ):
+                            here, end = (
+                                (highest, a + window.first[0], b + window.first[1]) for a, b in ((column, row), (x, y))
+                            )
                             places[here] = end
     way = search(window, accesses, places) if places else None
     if way is None:
@@ -196,8 +200,11 @@ def _draw(shapes, window, way):
 
 def _corners(way):
     """Its places where it begins, turns, has a cut or ends."""
-    turns = [here for before, here, after in zip(way, way[1:], way[2:], strict=False)
-             if before[0] != after[0] or any(y - x != z - y for x, y, z in zip(before, here, after, strict=True))]
+    turns = [
+        here
+        for before, here, after in zip(way, way[1:], way[2:], strict=False)
+        if before[0] != after[0] or any(y - x != z - y for x, y, z in zip(before, here, after, strict=True))
+    ]
     return [way[0], *turns, *way[1:][-1:]]
 
 
@@ -205,6 +212,7 @@ def enlarged(site, shapes, alone=False):
     """Whether every piece of wire has, or could be given, the least area; gaps within the net are closed. alone: no
     other net is to make room for that."""
     import klayout.db as db
+
     for level, boxes in shapes.wires.items():
         layer = site.wiring.layers[level]
         region = db.Region([db.Box(*box) for box in boxes]).merged()
@@ -213,7 +221,7 @@ def enlarged(site, shapes, alone=False):
             box = polygon.bbox()
             boxes.append((box.left, box.bottom, box.right, box.top))
         for pair in db.Region([db.Box(*box) for box in boxes]).merged().width_check(layer.width).each():
-            wider = _at_least(pair.bbox(), layer.width)         # where two pieces overlap by less than a wire's width
+            wider = _at_least(pair.bbox(), layer.width)  # where two pieces overlap by less than a wire's width
             if not site.clear(level, wider):
                 return False
             boxes.append(wider)
@@ -238,9 +246,17 @@ def _longer(site, level, box, lack, alone):
     ``alone``, must; else None."""
     wide = -(-lack // box.height()) // 10 * 10 + 10
     high = -(-lack // box.width()) // 10 * 10 + 10
-    tries = [(wide, 0, 0, 0), (0, 0, wide, 0), (wide // 2, 0, wide // 2, 0),
-             (0, high, 0, 0), (0, 0, 0, high), (0, high // 2, 0, high // 2)]
-    made = [(box.left - left, box.bottom - bottom, box.right + right, box.top + top)
-            for left, bottom, right, top in tries]
-    return next((one for others in ([True] if alone else [True, False]) for one in made
-                 if site.clear(level, one, others)), None)
+    tries = [
+        (wide, 0, 0, 0),
+        (0, 0, wide, 0),
+        (wide // 2, 0, wide // 2, 0),
+        (0, high, 0, 0),
+        (0, 0, 0, high),
+        (0, high // 2, 0, high // 2),
+    ]
+    made = [
+        (box.left - left, box.bottom - bottom, box.right + right, box.top + top) for left, bottom, right, top in tries
+    ]
+    return next(
+        (one for others in ([True] if alone else [True, False]) for one in made if site.clear(level, one, others)), None
+    )

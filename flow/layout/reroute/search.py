@@ -5,8 +5,8 @@ import heapq
 import numpy as np
 from numba import njit
 
-AGAINST = 3         # cost of a step against the direction of a layer's wires, in steps along it
-CUT_NM = 2000       # cost of a cut, as that of so long a wire
+AGAINST = 3  # cost of a step against the direction of a layer's wires, in steps along it
+CUT_NM = 2000  # cost of a cut, as that of so long a wire
 
 
 def search(window, sources, targets, prices=None):
@@ -24,15 +24,25 @@ def search(window, sources, targets, prices=None):
         x, y = (1, AGAINST) if across else (AGAINST, 1)
         steps[level - first] = window.dx * price * x, window.dy * price * y
     corner = np.array((first, *window.first))
-    begins, ends = (np.array(sorted(filter(window.inside, places))) - corner if places else np.empty((0, 3), int)
-                    for places in (sources, targets))
+    begins, ends = (
+        np.array(sorted(filter(window.inside, places))) - corner if places else np.empty((0, 3), int)
+        for places in (sources, targets)
+    )
     if not len(begins) or not len(ends):
         return None
     wanted = np.zeros(wires.size, np.bool_)
     wanted[np.ravel_multi_index(ends.T, shape)] = True
     box = np.array((ends[:, 1].min(), ends[:, 1].max(), ends[:, 2].min(), ends[:, 2].max()))
-    way = _search(wires.ravel(), cuts.ravel(), np.array(shape), np.ravel_multi_index(begins.T, shape), wanted, box,
-                  steps, np.array((window.dx, window.dy)))
+    way = _search(
+        wires.ravel(),
+        cuts.ravel(),
+        np.array(shape),
+        np.ravel_multi_index(begins.T, shape),
+        wanted,
+        box,
+        steps,
+        np.array((window.dx, window.dy)),
+    )
     return [tuple(map(int, place)) for place in np.transpose(np.unravel_index(way[::-1], shape)) + corner] or None
 
 

@@ -6,7 +6,7 @@ from numba import njit
 from .board import near
 
 BLOCKED = -1
-PRICE_NM = 1500         # of a place that a net has, or that was fought over, as that of so long a wire
+PRICE_NM = 1500  # of a place that a net has, or that was fought over, as that of so long a wire
 DEAREST = 1 << 24
 
 
@@ -18,8 +18,9 @@ class Site:
         for level, boxes in own.items():
             for left, bottom, right, top in boxes:
                 there = self.fixed[level]
-                self.fixed[level] = there[(there[:, 0] >= right) | (there[:, 2] <= left)
-                                          | (there[:, 1] >= top) | (there[:, 3] <= bottom)]
+                self.fixed[level] = there[
+                    (there[:, 0] >= right) | (there[:, 2] <= left) | (there[:, 1] >= top) | (there[:, 3] <= bottom)
+                ]
 
     def block(self, level, box):
         """From now on the net's other wires come nowhere near ``box`` (nm) of its own."""
@@ -41,8 +42,9 @@ class Site:
                 reach = self.reach(level, box)
                 for left, bottom, right, top, number in near(there, reach).tolist():
                     nets.add(self.board.nets[number])
-                    places.append((level, (max(left, reach[0]), max(bottom, reach[1]),
-                                           min(right, reach[2]), min(top, reach[3]))))
+                    places.append(
+                        (level, (max(left, reach[0]), max(bottom, reach[1]), min(right, reach[2]), min(top, reach[3])))
+                    )
         return nets, places
 
     def reach(self, level, box):
@@ -61,7 +63,7 @@ class Window:
 
     def __init__(self, site, box):
         self.site, self.wiring, (self.dx, self.dy) = site, site.wiring, site.wiring.step
-        die = site.board.top.bbox().enlarged(self.dx, self.dy)          # so that no port is at the window's edge
+        die = site.board.top.bbox().enlarged(self.dx, self.dy)  # so that no port is at the window's edge
         left, bottom = max(box[0], die.left), max(box[1], die.bottom)
         right, top = min(box[2], die.right), min(box[3], die.top)
         self.first = left // self.dx, bottom // self.dy
@@ -69,11 +71,15 @@ class Window:
         reach = left - 1000, bottom - 1000, right + 1000, top + 1000
         levels = range(1, len(self.wiring.layers))
         self._fixed = {level: near(site.fixed[level], reach) for level in levels}
-        self._others = {level: near(np.vstack([site.board.there[level][:, :4], site.board.scars[level]]), reach)
-                        for level in levels}
+        self._others = {
+            level: near(np.vstack([site.board.there[level][:, :4], site.board.scars[level]]), reach) for level in levels
+        }
         self.wires = {level: self._prices([(level, self._half(level))]) for level in levels}
-        self.cuts = {level: self._prices([(level, cut.below), (level + 1, cut.above)])
-                     for level, cut in enumerate(self.wiring.cuts) if level}
+        self.cuts = {
+            level: self._prices([(level, cut.below), (level + 1, cut.above)])
+            for level, cut in enumerate(self.wiring.cuts)
+            if level
+        }
 
     def clear(self, level, box):
         """Whether nothing fixed is nearer to ``box`` (nm), which is in the window, than wires must be."""
@@ -94,8 +100,11 @@ class Window:
 
     def near(self, x, y):
         """Places (i, j) around a point: at most four."""
-        return [(x // self.dx + a, y // self.dy + b) for a in range(1 + bool(x % self.dx))
-                for b in range(1 + bool(y % self.dy))]
+        return [
+            (x // self.dx + a, y // self.dy + b)
+            for a in range(1 + bool(x % self.dx))
+            for b in range(1 + bool(y % self.dy))
+        ]
 
     def _half(self, level):
         return (self.wiring.layers[level].width // 2,) * 2

@@ -40,12 +40,31 @@ class Wiring:
     def of(cls, known, rules):
         """known: Embedded. rules: of the library step, "wires" and "cuts" in um."""
         asked = [rules["wires"][wire.name] for wire in known.wires]
-        layers = tuple(Layer(w.name, w.layer, w.datatype, round(a["width"] * 1e3), round(a["space"] * 1e3),
-                             round(a["area"] * 1e6), across=level % 2 == 1)
-                       for level, (w, a) in enumerate(zip(known.wires, asked, strict=True)))
-        cuts = tuple(Cut(c.name, c.layer, c.datatype, round(c.size_um * 1000),
-                         *(_pad(layers[level + above], c, rules["cuts"][c.name][side])
-                           for above, side in enumerate(("below", "above")))) for level, c in enumerate(known.cuts))
+        layers = tuple(
+            Layer(
+                w.name,
+                w.layer,
+                w.datatype,
+                round(a["width"] * 1e3),
+                round(a["space"] * 1e3),
+                round(a["area"] * 1e6),
+                across=level % 2 == 1,
+            )
+            for level, (w, a) in enumerate(zip(known.wires, asked, strict=True))
+        )
+        cuts = tuple(
+            Cut(
+                c.name,
+                c.layer,
+                c.datatype,
+                round(c.size_um * 1000),
+                *(
+                    _pad(layers[level + above], c, rules["cuts"][c.name][side])
+                    for above, side in enumerate(("below", "above"))
+                ),
+            )
+            for level, c in enumerate(known.cuts)
+        )
         pitch = known.pin_pitch_um
         return cls(layers, cuts, (round(pitch["vertical"] * 500), round(pitch["horizontal"] * 500)))
 

@@ -3,13 +3,13 @@
 import sys
 from pathlib import Path
 
-from flow import lef
-from flow.simulate.process import run
+from base import lef
+from base.paths import ROOT
+from base.tools import run
 from models.parameters import ParameterError
 
 from .plan import BLOCKS
 
-ROOT = Path(__file__).parents[3]
 KINDS = "lef", "gds"
 
 
@@ -35,19 +35,25 @@ def _theirs(folder):
     there = [block for block in BLOCKS if any((folder / f"{block}.{kind}").is_file() for kind in KINDS)]
     lacking = [f"{block}.{kind}" for block in there for kind in KINDS if not (folder / f"{block}.{kind}").is_file()]
     if lacking or not there:
-        raise ParameterError(f"analog = {folder}: must have " + (", ".join(lacking) or "<block>.lef and <block>.gds of "
-                             f"{', '.join(BLOCKS)}, or of some of them"))
+        raise ParameterError(
+            f"analog = {folder}: must have "
+            + (", ".join(lacking) or f"<block>.lef and <block>.gds of {', '.join(BLOCKS)}, or of some of them")
+        )
     return there
 
 
 def check(path, frame):
     """Names of the pins that the LEF ``path`` has more than ``frame``. Raises ParameterError unless it has those of
     ``frame`` with their directions."""
-    (own, asked) = ({pin.name: pin.direction.upper() for pin in lef.pins(file.read_text(errors="replace"))}
-                    for file in (path, frame))
+    (own, asked) = (
+        {pin.name: pin.direction.upper() for pin in lef.pins(file.read_text(errors="replace"))}
+        for file in (path, frame)
+    )
     if lacking := [pin for pin in asked if pin not in own]:
-        raise ParameterError(f"analog = {path}: must have the pins {', '.join(lacking[:5])}"
-                             + (f" and {len(lacking) - 5} more" if len(lacking) > 5 else ""))
+        raise ParameterError(
+            f"analog = {path}: must have the pins {', '.join(lacking[:5])}"
+            + (f" and {len(lacking) - 5} more" if len(lacking) > 5 else "")
+        )
     if other := [pin for pin in asked if own[pin] != asked[pin]]:
         raise ParameterError(f"analog = {path}: its pin {other[0]} must be of DIRECTION {asked[other[0]]}")
     return [pin for pin in own if pin not in asked]

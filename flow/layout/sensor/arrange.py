@@ -32,8 +32,10 @@ def arranged(blocks, die, tracks, layers, extra=()):
     layers: names in LEF of the wires of the chip's and of the analog blocks' pins. extra: as of `plan.nets`. Raises
     ParameterError, StepError.
     """
-    return min((arranged_as_is(blocks | {CORE: blocks[CORE].turned(way)}, die, tracks, layers, extra)
-                for way in ORIENTATIONS), key=lambda made: made.wire)
+    return min(
+        (arranged_as_is(blocks | {CORE: blocks[CORE].turned(way)}, die, tracks, layers, extra) for way in ORIENTATIONS),
+        key=lambda made: made.wire,
+    )
 
 
 def arranged_as_is(blocks, die, tracks, layers, extra=()):
@@ -50,6 +52,12 @@ def arranged_as_is(blocks, die, tracks, layers, extra=()):
     numbers, begin = trunks(routes, tracks), nm(die.edge_um + die.gap_um)
     count = max(numbers.values()) + 1
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)
-    return Arranged(with_core(placed, blocks[CORE], die, room, height), found, raised(routes, height),
-                    {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()}, len(abutted),
-                    (begin, height), count)
+    return Arranged(
+        with_core(placed, blocks[CORE], die, room, height),
+        found,
+        raised(routes, height),
+        {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()},
+        len(abutted),
+        (begin, height),
+        count,
+    )

@@ -4,7 +4,7 @@ Every pin of a net reaches the channel on a vertical of its own, no two of which
 forces another above or below it: any order of the tracks is a routing.
 """
 
-from flow.steps import StepError
+from base.steps import StepError
 
 
 def left_edge(trunks, gap):
@@ -15,7 +15,7 @@ def left_edge(trunks, gap):
     tracks, ends = {}, []
     for net, (low, high) in sorted(trunks.items(), key=lambda item: (item[1], item[0])):
         track = next((k for k, end in enumerate(ends) if low - end >= gap), len(ends))
-        ends[track:track + 1] = [high]
+        ends[track : track + 1] = [high]
         tracks[net] = track
     return tracks
 
@@ -23,8 +23,10 @@ def left_edge(trunks, gap):
 def free(wanted, taken, pitch):
     """The place nearest to ``wanted`` that is ``pitch`` or more from all in ``taken``."""
     near = [wanted, *(place + way * pitch for place in taken for way in (-1, 1))]
-    return min((place for place in near if all(abs(place - other) >= pitch for other in taken)),
-               key=lambda place: (abs(place - wanted), place))
+    return min(
+        (place for place in near if all(abs(place - other) >= pitch for other in taken)),
+        key=lambda place: (abs(place - wanted), place),
+    )
 
 
 def check_apart(verticals, pitch):
@@ -32,5 +34,7 @@ def check_apart(verticals, pitch):
     ranked = sorted(verticals.items(), key=lambda item: item[1])
     for (one, x), (other, x_other) in zip(ranked, ranked[1:]):
         if x_other - x < pitch:
-            raise StepError(f"channel: the pins {' '.join(one)} and {' '.join(other)} are {x_other - x} nm from one "
-                            f"another in x; {pitch} nm are needed")
+            raise StepError(
+                f"channel: the pins {' '.join(one)} and {' '.join(other)} are {x_other - x} nm from one "
+                f"another in x; {pitch} nm are needed"
+            )

@@ -9,9 +9,10 @@ def nets(gds, cells, known, thick):
     ('block', '?...'). KLayout extracts the wires and cuts of all cells, transistors aside.
     """
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(gds))
-    top, = layout.top_cells()
+    (top,) = layout.top_cells()
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
     metal = []
     for wire in (*known.wires, thick.wire):

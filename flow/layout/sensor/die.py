@@ -5,32 +5,44 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
-from flow.files import staged
-from flow.layout.picture import render
-from flow.layout.run import laid_out, tell
+from base.files import staged
+from base.steps import Runner, StepError
+from flow.layout.block import laid_out, tell
+from flow.layout.report.metrics import broken
+from flow.layout.report.picture import render
 from flow.layout.steps.antenna import AntennaParameters
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.sta import StaParameters
-from flow.layout.summary import broken
-from flow.platforms.die import thick
-from flow.platforms.embedded import process
-from flow.steps import Runner, StepError
+from platforms.coriolis import process
+from platforms.die import thick
 
 from . import analog as analog_module
 from .antenna import DieAntenna
+from .metrics import RULES, summarize
 from .picture import by_block
 from .sta import DieSta
-from .steps import DieGds, DieMatch, DieGdsParameters, DiePlan, DiePlanParameters
-from .summary import RULES, summarize
+from .steps import DieGds, DieGdsParameters, DieMatch, DiePlan, DiePlanParameters
 from .wires import DieWires, DieWiresParameters
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Of the chip's run, what the die is given
-PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.verilog": "stream_out.verilog",
-         "core.spef": "extraction.spef", "core.sdc": "sdc", "library.rules": "library.rules",
-         "library.drc": "library.drc"}
-RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "drc.lyrdb": "drc.report", "connectivity.json":
-           "die_match.report", "wires.json": "die_wires.nets", "sdc": "die_wires.sdc"}
+PARTS = {
+    "core.lef": "lef.lef",
+    "core.gds": "fill.gds",
+    "core.verilog": "stream_out.verilog",
+    "core.spef": "extraction.spef",
+    "core.sdc": "sdc",
+    "library.rules": "library.rules",
+    "library.drc": "library.drc",
+}
+RESULTS = {
+    "gds": "die_gds.gds",
+    "v": "die_plan.verilog",
+    "drc.lyrdb": "drc.report",
+    "connectivity.json": "die_match.report",
+    "wires.json": "die_wires.nets",
+    "sdc": "die_wires.sdc",
+}
 
 
 def sensor_steps(chip, settings, extra=()):
@@ -38,33 +50,44 @@ def sensor_steps(chip, settings, extra=()):
     pdk, clock, around = settings.pdk, chip.clock, chip.surroundings
     drc = Drc(DrcParameters(pdk))
     drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
-    wires = DieWiresParameters(pdk, clock.port, load_pf=around.load_pf, input_ns=around.input_delay * clock.period_ns,
-                               output_ns=around.output_delay * clock.period_ns)
-    return [DiePlan(DiePlanParameters(pdk, extra=extra)), DieGds(DieGdsParameters(pdk)),
-            DieMatch(DieGdsParameters(pdk)), DieWires(wires),
-            *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),
-            drc, DieAntenna(AntennaParameters(pdk))]
+    wires = DieWiresParameters(
+        pdk,
+        clock.port,
+        load_pf=around.load_pf,
+        input_ns=around.input_delay * clock.period_ns,
+        output_ns=around.output_delay * clock.period_ns,
+    )
+    return [
+        DiePlan(DiePlanParameters(pdk, extra=extra)),
+        DieGds(DieGdsParameters(pdk)),
+        DieMatch(DieGdsParameters(pdk)),
+        DieWires(wires),
+        *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),
+        drc,
+        DieAntenna(AntennaParameters(pdk)),
+    ]
 
 
 def laid_out_sensor(chip, settings, analog, out, note):
     """(path of summary.json, limits broken). analog: folder of a user's blocks, or None; out: folder of all designs.
     Raises ParameterError, StepError for a chip that breaks a limit."""
-    thick(settings.pdk)             # a process without one is told before anything runs
+    thick(settings.pdk)  # a process without one is told before anything runs
     folder = Path(out) / SENSOR
     blocks, frames, extra = analog_module.files(folder / "frames", settings.pdk, analog)
     core, summary = laid_out(chip, settings, out, lambda text: note(f"{CHIP}: {text}"))
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} is not whole: {wrong[0]}")
     given = {name: core.paths[source] for name, source in PARTS.items()} | {
-        f"timing.{corner}": core.paths[f"timing.{corner}"] for corner in settings.corners}
+        f"timing.{corner}": core.paths[f"timing.{corner}"] for corner in settings.corners
+    }
     return die(chip, settings, blocks | given, frames, extra, folder, note)
 
 
 def die(chip, settings, given, frames, extra, folder, note):
     """As `laid_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
     names of the blocks that are no circuits; extra: pins of the others that lead to the die's."""
-    platform = Path(__file__).parents[2] / "platforms" / settings.pdk.replace("-", "_")
-    given = given | {"platform": platform / "embedded.py", "thick": platform / "die.py"}
+    platform = ROOT / "platforms" / settings.pdk.replace("-", "_")
+    given = given | {"platform": platform / "coriolis.py", "thick": platform / "die.py"}
     runner = Runner(folder / "steps", given, note)
     runner.run_all(sensor_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)
@@ -76,6 +99,13 @@ def die(chip, settings, given, frames, extra, folder, note):
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         by_block(part / f"{SENSOR}.blocks.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
         render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", known)
-        tell(part, folder, summary, lines, known, f"{SENSOR}.png",
-             [(f"{SENSOR}.blocks.png", "The blocks; hatched: a frame, no circuit")])
+        tell(
+            part,
+            folder,
+            summary,
+            lines,
+            known,
+            f"{SENSOR}.png",
+            [(f"{SENSOR}.blocks.png", "The blocks; hatched: a frame, no circuit")],
+        )
     return folder / "summary.json", lines

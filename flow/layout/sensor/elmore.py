@@ -22,12 +22,12 @@ def delays(edges, root, loads):
             if there not in before:
                 before[there] = node, ohm
                 order.append(there)
-    for node in reversed(order[1:]):        # what is charged through its edge
+    for node in reversed(order[1:]):  # what is charged through its edge
         charge[before[node][0]] += charge[node]
     found = {root: 0.0}
     for node in order[1:]:
         parent, ohm = before[node]
-        found[node] = found[parent] + ohm * charge[node] * 1e-6       # Ohm fF = 1e-6 ns
+        found[node] = found[parent] + ohm * charge[node] * 1e-6  # Ohm fF = 1e-6 ns
     return found
 
 
@@ -46,6 +46,7 @@ def net(reaches, y, driver, tracks, known, pin_pf):
 def tree(reaches, y, tracks, known):
     """(list of edges as of `delays`, dict (block, pin) -> its node): a trunk, from it a cut and a vertical to every
     pin, and of the chip's pins three cuts and a stub."""
+
     def wire(level, length, width, cuts=()):
         parts = [(known.wires[level].name, length / 1000, width / 1000)]
         parts += [(f"{known.wires[cut].name}_{known.cuts[cut].name}_{known.wires[cut + 1].name}", 0, 0) for cut in cuts]

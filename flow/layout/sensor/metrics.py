@@ -3,13 +3,13 @@
 import json
 from pathlib import Path
 
-from flow.layout.summary import timing
+from flow.layout.report.metrics import timing
 
 from .plan import BLOCKS
 from .sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
-SHOWN = 12          # nets in the summary, those with the largest loads
+SHOWN = 12  # nets in the summary, those with the largest loads
 NOT_CHECKED = (
     "insides of the frames: they are outlines with pins, no circuit; no rule, netlist or current of theirs exists",
     "pads, ESD protection and the seal ring: there are none",
@@ -17,14 +17,19 @@ NOT_CHECKED = (
     "antennas on the highest wire of the channel: whether a net's driver has the diffusion for it; in the frames",
     "coupling between the die's wires; wires to the abutting rows, columns and lanes have no length here",
     "voltage drop on the die's bars",
-    "hold at the analog blocks, and their setup: the constraints leave them a share of the period")
+    "hold at the analog blocks, and their setup: the constraints leave them a share of the period",
+)
 
 
 def summarize(name, settings, runner, frames):
     """The contract of summary.json, as a dict; what a die does not have is None. frames: blocks without a circuit."""
     records = runner.records
-    metrics = {key: value for record in records.values() for key, value in record["metrics"].items()
-               if key not in DieSta.metrics}
+    metrics = {
+        key: value
+        for record in records.values()
+        for key, value in record["metrics"].items()
+        if key not in DieSta.metrics
+    }
     sta = {corner: records[f"die_sta_{corner}"]["metrics"] for corner in settings.corners}
     tools = {}
     for record in records.values():
@@ -32,31 +37,65 @@ def summarize(name, settings, runner, frames):
     plan = json.loads(runner.paths["die_plan.plan"].read_text())
     nets = json.loads(runner.paths["die_wires.nets"].read_text())
     return {
-        "design": name, "top": name, "backend": "channel", "pdk": settings.pdk, "cells": None,
-        "area_um2": metrics["area_um2"], "utilization": metrics["utilization"], "tried": [],
+        "design": name,
+        "top": name,
+        "backend": "channel",
+        "pdk": settings.pdk,
+        "cells": None,
+        "area_um2": metrics["area_um2"],
+        "utilization": metrics["utilization"],
+        "tried": [],
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
-        "frames": frames, "circuits": [block for block in BLOCKS if block not in frames],
-        **{key: metrics[key] for key in ("nets", "routed", "abutted", "tracks", "wire_um", "open_nets", "shorts",
-                                         "drc_violations", "lvs_match", "antenna_violations", "wire_pf",
-                                         "worst_load_pf", "worst_load",
-                                         "worst_delay_ns", "worst_delay", "loads_over")},
-        "equivalence": None, "gate_tests": None, "power_uw": None,
+        "frames": frames,
+        "circuits": [block for block in BLOCKS if block not in frames],
+        **{
+            key: metrics[key]
+            for key in (
+                "nets",
+                "routed",
+                "abutted",
+                "tracks",
+                "wire_um",
+                "open_nets",
+                "shorts",
+                "drc_violations",
+                "lvs_match",
+                "antenna_violations",
+                "wire_pf",
+                "worst_load_pf",
+                "worst_load",
+                "worst_delay_ns",
+                "worst_delay",
+                "loads_over",
+            )
+        },
+        "equivalence": None,
+        "gate_tests": None,
+        "power_uw": None,
         "timing_rests_on": f"the chip, its ports with the die's wires{extrapolated(sta)}; {timing(settings)}",
-        **{key: {corner: found[key] for corner, found in sta.items()} or None for key in DieSta.metrics
-           if key != "f_max_mhz"},
+        **{
+            key: {corner: found[key] for corner, found in sta.items()} or None
+            for key in DieSta.metrics
+            if key != "f_max_mhz"
+        },
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
-        "largest_loads": dict(sorted(((net, found["load_pf"]) for net, found in nets.items()),
-                                     key=lambda item: -item[1])[:SHOWN]),
+        "largest_loads": dict(
+            sorted(((net, found["load_pf"]) for net, found in nets.items()), key=lambda item: -item[1])[:SHOWN]
+        ),
         "not_checked": list(NOT_CHECKED),
         "wall_s": {step: record["wall_s"] for step, record in records.items()},
         "peak_mib": {step: record["peak_mib"] for step, record in records.items()},
-        "tools": dict(sorted(tools.items()))}
+        "tools": dict(sorted(tools.items())),
+    }
 
 
 def extrapolated(sta):
     """Words of what the slacks are where slews are longer than any that was measured. sta: dict corner -> metrics."""
-    return ", delays EXTRAPOLATED where slews are beyond the cells' tables (slews_over)" if any(
-        found["slews_over"] for found in sta.values()) else ""
+    return (
+        ", delays EXTRAPOLATED where slews are beyond the cells' tables (slews_over)"
+        if any(found["slews_over"] for found in sta.values())
+        else ""
+    )
 
 
 def placed(block):

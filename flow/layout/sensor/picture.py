@@ -1,7 +1,12 @@
 """The die as a picture: its blocks, wires, bars and pins."""
 
-COLORS = {"pixel_array": "#7fb3d5", "row_driver": "#f5b041", "column_amplifiers": "#82c99a", "adc_lanes": "#c39bd3",
-          "core": "#e6837a"}
+COLORS = {
+    "pixel_array": "#7fb3d5",
+    "row_driver": "#f5b041",
+    "column_amplifiers": "#82c99a",
+    "adc_lanes": "#c39bd3",
+    "core": "#e6837a",
+}
 WORDS = {"core": "digital chip"}
 
 
@@ -10,20 +15,44 @@ def by_block(png, plan, frames):
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
+
     figure = Figure(figsize=(9, 9), layout="constrained")
     axes = figure.subplots()
     for net, _, _, *box in plan["shapes"]:
         if net not in plan["routes"] and min(box[2] - box[0], box[3] - box[1]) > 2000:
-            axes.add_patch(Rectangle((box[0] / 1e3, box[1] / 1e3), (box[2] - box[0]) / 1e3, (box[3] - box[1]) / 1e3,
-                                     facecolor="0.75" if net in ("vss", "vssa") else "0.55", linewidth=0))
+            axes.add_patch(
+                Rectangle(
+                    (box[0] / 1e3, box[1] / 1e3),
+                    (box[2] - box[0]) / 1e3,
+                    (box[3] - box[1]) / 1e3,
+                    facecolor="0.75" if net in ("vss", "vssa") else "0.55",
+                    linewidth=0,
+                )
+            )
     for name, block in plan["blocks"].items():
         left, bottom, right, top = (size / 1e3 for size in block["box"])
-        axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, facecolor=COLORS[name], alpha=0.85,
-                                 edgecolor="0.3", hatch="//" if name in frames else None, linewidth=0.6))
+        axes.add_patch(
+            Rectangle(
+                (left, bottom),
+                right - left,
+                top - bottom,
+                facecolor=COLORS[name],
+                alpha=0.85,
+                edgecolor="0.3",
+                hatch="//" if name in frames else None,
+                linewidth=0.6,
+            )
+        )
         upright = top - bottom > 3 * (right - left)
-        axes.annotate(f"{WORDS.get(name, name).replace('_', ' ')}\n{right - left:g} x {top - bottom:g} um",
-                      ((left + right) / 2, (bottom + top) / 2), ha="center", va="center", fontsize=8,
-                      rotation=90 if upright else 0, bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8})
+        axes.annotate(
+            f"{WORDS.get(name, name).replace('_', ' ')}\n{right - left:g} x {top - bottom:g} um",
+            ((left + right) / 2, (bottom + top) / 2),
+            ha="center",
+            va="center",
+            fontsize=8,
+            rotation=90 if upright else 0,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
+        )
     lines = [line for route in plan["routes"].values() for line in _lines(route)]
     axes.add_collection(LineCollection(lines, colors="#17202a", linewidths=0.25))
     axes.set(xlim=(0, plan["die"][0] / 1e3), ylim=(0, plan["die"][1] / 1e3), aspect="equal", xlabel="um", ylabel="um")

@@ -2,21 +2,34 @@
 
 from dataclasses import dataclass, field, replace
 
-from flow import lef
-from flow.steps import StepError
+from base import lef
+from base.steps import StepError
 from models.parameters import ParameterError, check_real
 
 CORE = "core"
 BLOCKS = "pixel_array", "row_driver", "column_amplifiers", "adc_lanes"
 # (block that lies, block that is put to it, its side towards the first, pin at which they meet)
-MEETINGS = (("pixel_array", "row_driver", "east", "pixel_reset_row[0]"),
-            ("pixel_array", "column_amplifiers", "north", "column_a[0]"),
-            ("column_amplifiers", "adc_lanes", "north", "lane_a[0]"))
+MEETINGS = (
+    ("pixel_array", "row_driver", "east", "pixel_reset_row[0]"),
+    ("pixel_array", "column_amplifiers", "north", "column_a[0]"),
+    ("column_amplifiers", "adc_lanes", "north", "lane_a[0]"),
+)
 DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vssa")
 SUPPLIES = DIGITAL + ANALOG
 # Pins of the die, beside the supplies, from the west
-SIGNALS = ("clk", "reset", "sclk", "csn", "mosi", "miso", "busy", "frame_sync", *(f"link_data[{k}]" for k in range(8)),
-           "link_val", "link_rdy")
+SIGNALS = (
+    "clk",
+    "reset",
+    "sclk",
+    "csn",
+    "mosi",
+    "miso",
+    "busy",
+    "frame_sync",
+    *(f"link_data[{k}]" for k in range(8)),
+    "link_val",
+    "link_rdy",
+)
 
 
 @dataclass(frozen=True)
@@ -34,8 +47,14 @@ class DieParameters:
     bars: int = 2
 
     def __post_init__(self):
-        for name, low, high in (("width_um", 50, 3e4), ("height_um", 50, 3e4), ("edge_um", 2, 200), ("bar_um", 4, 30),
-                                ("gap_um", 4, 200), ("pad_um", 2, 500)):
+        for name, low, high in (
+            ("width_um", 50, 3e4),
+            ("height_um", 50, 3e4),
+            ("edge_um", 2, 200),
+            ("bar_um", 4, 30),
+            ("gap_um", 4, 200),
+            ("pad_um", 2, 500),
+        ):
             check_real(name, getattr(self, name), low, high)
 
 
@@ -62,18 +81,30 @@ class Block:
     def read(cls, name, text):
         """From a LEF, at the origin."""
         pins = lef.pins(text)
-        return cls(name, lef.name(text), 0, 0, *(nm(size) for size in lef.size(text)),
-                   {pin.name: tuple((of, tuple(map(nm, box))) for of, box in pin.boxes) for pin in pins},
-                   {pin.name: pin.direction.lower() for pin in pins})
+        return cls(
+            name,
+            lef.name(text),
+            0,
+            0,
+            *(nm(size) for size in lef.size(text)),
+            {pin.name: tuple((of, tuple(map(nm, box))) for of, box in pin.boxes) for pin in pins},
+            {pin.name: pin.direction.lower() for pin in pins},
+        )
 
     @property
     def box(self):
         return self.x, self.y, self.x + self.width, self.y + self.height
 
     def moved(self, dx, dy):
-        return replace(self, x=self.x + dx, y=self.y + dy, pins={
-            pin: tuple((of, (box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy)) for of, box in boxes)
-            for pin, boxes in self.pins.items()})
+        return replace(
+            self,
+            x=self.x + dx,
+            y=self.y + dy,
+            pins={
+                pin: tuple((of, (box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy)) for of, box in boxes)
+                for pin, boxes in self.pins.items()
+            },
+        )
 
     def turned(self, orientation):
         """The block, at the origin and not yet turned, in one of ORIENTATIONS."""
@@ -86,14 +117,22 @@ class Block:
             if upright:
                 bottom, top = self.height - top, self.height - bottom
             return left, bottom, right, top
-        return replace(self, orientation=orientation, pins={
-            pin: tuple((of, turn(box)) for of, box in boxes) for pin, boxes in self.pins.items()})
+
+        return replace(
+            self,
+            orientation=orientation,
+            pins={pin: tuple((of, turn(box)) for of, box in boxes) for pin, boxes in self.pins.items()},
+        )
 
     def at(self, side):
         """Boxes of pins that reach ``side``: list of (pin, layer, box)."""
         place = {"west": 0, "south": 1, "east": 2, "north": 3}[side]
-        return [(pin, of, box) for pin, boxes in self.pins.items() for of, box in boxes
-                if (box[place] <= self.box[place] if place < 2 else box[place] >= self.box[place])]
+        return [
+            (pin, of, box)
+            for pin, boxes in self.pins.items()
+            for of, box in boxes
+            if (box[place] <= self.box[place] if place < 2 else box[place] >= self.box[place])
+        ]
 
 
 def nm(um):
@@ -105,8 +144,11 @@ def stack(blocks, die):
     """dict name -> Block, the analog ones put to the array, which is in the middle of the die with its row driver;
     the column amplifiers' bottom is at y = 0. Raises ParameterError."""
     array, driver = blocks["pixel_array"], blocks["row_driver"]
-    placed = {"pixel_array": array.moved((nm(die.width_um) - array.width + driver.width) // 2 // 5 * 5,
-                                         blocks["column_amplifiers"].height)}
+    placed = {
+        "pixel_array": array.moved(
+            (nm(die.width_um) - array.width + driver.width) // 2 // 5 * 5, blocks["column_amplifiers"].height
+        )
+    }
     for there, name, side, pin in MEETINGS:
         placed[name] = meet(placed[there], blocks[name], side, pin)
     return placed
@@ -114,8 +156,8 @@ def stack(blocks, die):
 
 def meet(there, block, side, pin):
     """``block`` with its ``side`` at ``there``'s opposite one, so that ``pin`` of both meets."""
-    (_, own), = [piece for piece in block.pins[pin]]
-    (_, other), = [piece for piece in there.pins[pin]]
+    ((_, own),) = [piece for piece in block.pins[pin]]
+    ((_, other),) = [piece for piece in there.pins[pin]]
     if side == "east":
         return block.moved(there.x - block.width, other[1] - own[1])
     return block.moved(other[0] - own[0], there.y - block.height)
@@ -129,13 +171,19 @@ def with_core(placed, core, die, side_nm, channel_nm):
     shifted = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
     made = shifted | {CORE: core.moved((lanes.x - gap - side_nm - core.width) // 10 * 10, channel_nm)}
     bars = nm(die.edge_um + len(SUPPLIES) * (die.bar_um + die.gap_um))
-    spans = [(min(block.box[low] for block in made.values()), max(block.box[low + 2] for block in made.values()))
-             for low in (0, 1)]
-    for name, size, (begin, end), free in (("width_um", die.width_um, spans[0], 2 * bars),
-                                           ("height_um", die.height_um, (0, spans[1][1]), bars)):
+    spans = [
+        (min(block.box[low] for block in made.values()), max(block.box[low + 2] for block in made.values()))
+        for low in (0, 1)
+    ]
+    for name, size, (begin, end), free in (
+        ("width_um", die.width_um, spans[0], 2 * bars),
+        ("height_um", die.height_um, (0, spans[1][1]), bars),
+    ):
         if end - begin + free > nm(size):
-            raise ParameterError(f"{name} = {size:g}: must be at least {(end - begin + free) / 1000:g}, for the blocks "
-                                 "and the supplies' bars")
+            raise ParameterError(
+                f"{name} = {size:g}: must be at least {(end - begin + free) / 1000:g}, for the blocks "
+                "and the supplies' bars"
+            )
     return made
 
 
@@ -168,8 +216,11 @@ def touching(blocks, ends):
     if len(ends) != 2 or any(name not in blocks for name, _ in ends):
         return False
     (one, first), (other, second) = [(name, blocks[name].pins[pin]) for name, pin in ends]
-    return any(of == of_other and a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
-               for of, a in first for of_other, b in second)
+    return any(
+        of == of_other and a[0] <= b[2] and b[0] <= a[2] and a[1] <= b[3] and b[1] <= a[3]
+        for of, a in first
+        for of_other, b in second
+    )
 
 
 def check_way(blocks, name, pin, box, side):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from flow.steps import StepError
+from base.steps import StepError
 
 from .channel import check_apart, free, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, check_way, nm, touching
@@ -39,8 +39,10 @@ class Tracks:
         cut = wiring.cuts[TRUNK]
         vertical = 2 * max(cut.above[0], -(-wiring.layers[VERTICAL].width // 2))
         trunk = 2 * max(cut.below[1], -(-wiring.layers[TRUNK].width // 2))
-        pitches = [max(2 * width, width + wiring.layers[level].space)
-                   for width, level in ((vertical, VERTICAL), (trunk, TRUNK))]
+        pitches = [
+            max(2 * width, width + wiring.layers[level].space)
+            for width, level in ((vertical, VERTICAL), (trunk, TRUNK))
+        ]
         return cls(*(-(-pitch // 10) * 10 for pitch in pitches), vertical, trunk)
 
 
@@ -72,8 +74,9 @@ def reaches(blocks, routed, die, tracks, layers):
         made[net].append(reach)
     for net, reach in _pads(made, routed, die, tracks):
         made[net].append(reach)
-    check_apart({(reach.block, reach.pin): reach.x for found in made.values() for reach in found},
-                tracks.vertical_pitch)
+    check_apart(
+        {(reach.block, reach.pin): reach.x for found in made.values() for reach in found}, tracks.vertical_pitch
+    )
     return made
 
 
@@ -115,11 +118,13 @@ def trunks(made, tracks):
 
 def raised(made, dy):
     """The routes with all but the die's pins ``dy`` higher."""
+
     def up(reach):
         if reach.block == "die":
             return reach
         box = reach.box and (reach.box[0], reach.box[1] + dy, reach.box[2], reach.box[3] + dy)
         return replace(reach, end=reach.end + dy, box=box)
+
     return {net: [up(reach) for reach in found] for net, found in made.items()}
 
 

@@ -57,6 +57,9 @@ def pad(reach, die, tracks, wiring):
 def via(net, x, y, level, wiring):
     """A cut between layers[level] and the next, with its pads."""
     cut = wiring.cuts[level]
-    for wire, (width, height) in ((wiring.layers[level], cut.below), (wiring.layers[level + 1], cut.above),
-                                  (cut, (cut.size // 2, cut.size // 2))):
+    for wire, (width, height) in (
+        (wiring.layers[level], cut.below),
+        (wiring.layers[level + 1], cut.above),
+        (cut, (cut.size // 2, cut.size // 2)),
+    ):
         yield drawn(wire, net, x - width, y - height, x + width, y + height)

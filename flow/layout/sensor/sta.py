@@ -2,9 +2,9 @@
 
 import re
 
-from flow.layout import opensta
 from flow.layout.steps import sta
 from flow.layout.steps.sta import Sta
+from flow.layout.timing import opensta
 
 
 class DieSta(Sta):

@@ -3,14 +3,14 @@
 import json
 from dataclasses import asdict, dataclass, field
 
-from flow.gds import write_gds
-from flow.layout.macro import layer_names
-from flow.layout.mend import wiring as wiring_module
-from flow.layout.mend.wiring import Wiring
-from flow.platforms import openroad
-from flow.platforms.die import thick
-from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from base.gds import write_gds
+from base.steps import Step, StepError
+from flow.layout.reroute import wiring as wiring_module
+from flow.layout.reroute.wiring import Wiring
+from platforms import openroad
+from platforms.coriolis import process
+from platforms.die import thick
+from platforms.openroad import layer_names
 
 from . import arrange, channel, connectivity, plan, routing, shapes, supplies, verilog
 from .plan import BLOCKS, CORE, Block, DieParameters, nm
@@ -35,18 +35,30 @@ class DiePlan(Step):
 
     name = "die_plan"
     inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {
-        "rules": "library.rules", "platform": "platform", "thick": "thick"}
+        "rules": "library.rules",
+        "platform": "platform",
+        "thick": "thick",
+    }
     outputs = {"plan": "plan.json", "verilog": f"{TOP}.v"}
     Parameters = DiePlanParameters
-    metrics = {"area_um2": "um2", "utilization": "", "nets": "", "routed": "", "abutted": "", "tracks": "",
-               "wire_um": "um"}
+    metrics = {
+        "area_um2": "um2",
+        "utilization": "",
+        "nets": "",
+        "routed": "",
+        "abutted": "",
+        "tracks": "",
+        "wire_um": "um",
+    }
     uses = (arrange, channel, plan, routing, shapes, supplies, verilog, wiring_module)
 
     def run(self, inputs, outputs):
         p, known = self.parameters, process(self.parameters.pdk)[0]
         wiring, names = Wiring.of(known, json.loads(inputs["rules"].read_text())), layer_names(p.pdk)
-        layers = [names.get((wire.layer, wire.datatype), wire.name)
-                  for wire in (wiring.layers[routing.STUB], wiring.layers[routing.VERTICAL])]
+        layers = [
+            names.get((wire.layer, wire.datatype), wire.name)
+            for wire in (wiring.layers[routing.STUB], wiring.layers[routing.VERTICAL])
+        ]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(wiring)
         made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
@@ -55,22 +67,35 @@ class DiePlan(Step):
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
         area = p.die.width_um * p.die.height_um
         covered = sum(block.width * block.height for block in made.blocks.values()) / 1e6
-        return {"area_um2": area, "utilization": round(covered / area, 4), "nets": len(made.nets),
-                "routed": len(made.routes), "abutted": made.abutted, "tracks": made.count,
-                "wire_um": round(made.wire / 1000, 1)}
+        return {
+            "area_um2": area,
+            "utilization": round(covered / area, 4),
+            "nets": len(made.nets),
+            "routed": len(made.routes),
+            "abutted": made.abutted,
+            "tracks": made.count,
+            "wire_um": round(made.wire / 1000, 1),
+        }
 
 
 def described(made, metal, pins, die, tracks):
     """The plan as a dict for JSON, nm. made: Arranged; metal: list of Shape; pins: dict net -> those at the edge."""
-    return {"die": [nm(die.width_um), nm(die.height_um)],
-            "blocks": {name: {"cell": block.cell, "orientation": block.orientation, "box": block.box}
-                       for name, block in made.blocks.items()},
-            "nets": made.nets, "drivers": {net: plan.driver(made.blocks, made.nets[net]) for net in made.routes},
-            "channel": made.channel, "tracks": asdict(tracks),
-            "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},
-            "shapes": [_plain(shape) for shape in metal],
-            "routes": {net: {"y": made.y[net], "reaches": [asdict(reach) for reach in found]}
-                       for net, found in made.routes.items()}}
+    return {
+        "die": [nm(die.width_um), nm(die.height_um)],
+        "blocks": {
+            name: {"cell": block.cell, "orientation": block.orientation, "box": block.box}
+            for name, block in made.blocks.items()
+        },
+        "nets": made.nets,
+        "drivers": {net: plan.driver(made.blocks, made.nets[net]) for net in made.routes},
+        "channel": made.channel,
+        "tracks": asdict(tracks),
+        "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},
+        "shapes": [_plain(shape) for shape in metal],
+        "routes": {
+            net: {"y": made.y[net], "reaches": [asdict(reach) for reach in found]} for net, found in made.routes.items()
+        },
+    }
 
 
 def _plain(shape):
@@ -89,7 +114,9 @@ class DieGds(Step):
 
     name = "die_gds"
     inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {
-        "plan": "die_plan.plan", "platform": "platform"}
+        "plan": "die_plan.plan",
+        "platform": "platform",
+    }
     outputs = {"gds": f"{TOP}.gds"}
     Parameters = DieGdsParameters
     metrics = {"rectangles": ""}
@@ -97,6 +124,7 @@ class DieGds(Step):
 
     def run(self, inputs, outputs):
         import klayout.db as db
+
         made, layout = json.loads(inputs["plan"].read_text()), db.Layout()
         known, _ = process(self.parameters.pdk)
         layout.dbu = 0.001
@@ -106,9 +134,11 @@ class DieGds(Step):
             source = db.Layout()
             source.read(str(inputs[f"{name}.gds"]))
             if [cell.name for cell in source.top_cells()] != [block["cell"]]:
-                raise StepError(f"die_gds: {inputs[f'{name}.gds'].name} has the top cells "
-                                f"{', '.join(cell.name for cell in source.top_cells())}; its LEF is of {block['cell']}")
-            cells[name].copy_tree(source.top_cell())        # cells in it of a name that is taken get another
+                raise StepError(
+                    f"die_gds: {inputs[f'{name}.gds'].name} has the top cells "
+                    f"{', '.join(cell.name for cell in source.top_cells())}; its LEF is of {block['cell']}"
+                )
+            cells[name].copy_tree(source.top_cell())  # cells in it of a name that is taken get another
             top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
         for _, layer, datatype, *box in made["shapes"]:
             top.shapes(layout.layer(layer, datatype)).insert(db.Box(*box))
@@ -126,10 +156,15 @@ class DieGds(Step):
 def placed(block):
     """klayout.db.Trans of a block of the plan."""
     import klayout.db as db
+
     left, bottom, right, top = block["box"]
     sideways, upright = plan.ORIENTATIONS[block["orientation"]]
-    turn = {(False, False): db.Trans.R0, (True, False): db.Trans.M90, (False, True): db.Trans.M0,
-            (True, True): db.Trans.R180}[sideways, upright]
+    turn = {
+        (False, False): db.Trans.R0,
+        (True, False): db.Trans.M90,
+        (False, True): db.Trans.M0,
+        (True, True): db.Trans.R180,
+    }[sideways, upright]
     return db.Trans(turn, right if sideways else left, top if upright else bottom)
 
 

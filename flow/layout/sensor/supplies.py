@@ -1,6 +1,6 @@
 """The die's supplies on the thick wire, and with them all metal of the die. All in nm."""
 
-from flow.steps import StepError
+from base.steps import StepError
 
 from . import shapes
 from .plan import ANALOG, CORE, DIGITAL, SUPPLIES, check_way, nm
@@ -66,8 +66,12 @@ def _over_core(core, straps, die):
 def _from_blocks(blocks, die, thick):
     """(net, side, box) of the thick wires from the analog blocks' supply pins. Raises StepError."""
     for name in (name for name in blocks if name != CORE):
-        found = [(pin, side, box) for side in ("west", "east") for pin, of, box in blocks[name].at(side)
-                 if pin in ANALOG and of == thick.lef]
+        found = [
+            (pin, side, box)
+            for side in ("west", "east")
+            for pin, of, box in blocks[name].at(side)
+            if pin in ANALOG and of == thick.lef
+        ]
         if lacking := set(ANALOG) - {pin for pin, *_ in found}:
             raise StepError(f"{name}: its pin {min(lacking)} reaches neither its west nor its east side on {thick.lef}")
         for pin, side, box in found:
@@ -92,6 +96,15 @@ def cuts(net, box, thick):
         count = max((high - low - 2 * nm(room) + space) // pitch, 0)
         counts.append(count)
         starts.append((low + high - count * pitch + space) // 10 * 5)
-    return [shapes.drawn(thick.cut, net, starts[0] + i * pitch, starts[1] + j * pitch,
-                  starts[0] + i * pitch + size, starts[1] + j * pitch + size)
-            for i in range(counts[0]) for j in range(counts[1])]
+    return [
+        shapes.drawn(
+            thick.cut,
+            net,
+            starts[0] + i * pitch,
+            starts[1] + j * pitch,
+            starts[0] + i * pitch + size,
+            starts[1] + j * pitch + size,
+        )
+        for i in range(counts[0])
+        for j in range(counts[1])
+    ]

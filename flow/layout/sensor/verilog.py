@@ -26,8 +26,14 @@ def top(name, blocks, nets):
     for block in blocks.values():
         if block.name != CORE:
             pins = [pin for pin in block.pins if pin not in SUPPLIES]
-            lines += ["(* blackbox *)", *_module(block.cell, {bus: (bits, block.directions[_first(bus, bits)])
-                                                              for bus, bits in buses(pins).items()}), "endmodule", ""]
+            lines += [
+                "(* blackbox *)",
+                *_module(
+                    block.cell, {bus: (bits, block.directions[_first(bus, bits)]) for bus, bits in buses(pins).items()}
+                ),
+                "endmodule",
+                "",
+            ]
     lines += _module(name, {bus: (bits, _way(nets[_first(bus, bits)], blocks)) for bus, bits in ports.items()})
     lines += [f"  wire {_range(bits)}{bus};" for bus, bits in buses(nets).items() if bus not in ports]
     for block in blocks.values():
@@ -38,8 +44,10 @@ def top(name, blocks, nets):
 
 def _module(name, ports):
     """Lines of a module's head. ports: dict bus -> (bits, direction)."""
-    return [f"module {name} ({', '.join(ports)});",
-            *(f"  {way} {_range(bits)}{bus};" for bus, (bits, way) in ports.items())]
+    return [
+        f"module {name} ({', '.join(ports)});",
+        *(f"  {way} {_range(bits)}{bus};" for bus, (bits, way) in ports.items()),
+    ]
 
 
 def _first(bus, bits):
@@ -52,5 +60,6 @@ def _range(bits):
 
 def _way(ends, blocks):
     """'output' where a block drives the die's pin, else 'input'."""
-    return "output" if any(blocks[block].directions[pin] == "output" for block, pin in ends if block != "die") else \
-        "input"
+    return (
+        "output" if any(blocks[block].directions[pin] == "output" for block, pin in ends if block != "die") else "input"
+    )

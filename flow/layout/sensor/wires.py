@@ -3,9 +3,9 @@
 import json
 from dataclasses import dataclass, field
 
+from base.steps import Step
 from flow.layout.steps import extraction
-from flow.platforms.embedded import process
-from flow.steps import Step
+from platforms.coriolis import process
 
 from . import elmore
 from .plan import CORE
@@ -37,8 +37,14 @@ class DieWires(Step):
     inputs = {"plan": "die_plan.plan", "sdc": "core.sdc", "platform": "platform"}
     outputs = {"nets": "wires.json", "sdc": "die.sdc"}
     Parameters = DieWiresParameters
-    metrics = {"wire_pf": "pF", "worst_load_pf": "pF", "worst_load": "", "worst_delay_ns": "ns", "worst_delay": "",
-               "loads_over": ""}
+    metrics = {
+        "wire_pf": "pF",
+        "worst_load_pf": "pF",
+        "worst_load": "",
+        "worst_delay_ns": "ns",
+        "worst_delay": "",
+        "loads_over": "",
+    }
     uses = (elmore, extraction)
 
     def run(self, inputs, outputs):
@@ -48,17 +54,25 @@ class DieWires(Step):
         for net, route in plan["routes"].items():
             driver = tuple(plan["drivers"][net])
             femto, found = elmore.net(route["reaches"], route["y"], driver, plan["tracks"], known, p.pin_pf)
-            nets[net] = {"driver": driver[0], "wire_ff": round(femto, 3),
-                         "load_pf": round(femto / 1000 + len(found) * p.pin_pf, 6),
-                         "delay_ns": {f"{block}.{pin}": round(ns, 6) for (block, pin), ns in found.items()}}
+            nets[net] = {
+                "driver": driver[0],
+                "wire_ff": round(femto, 3),
+                "load_pf": round(femto / 1000 + len(found) * p.pin_pf, 6),
+                "delay_ns": {f"{block}.{pin}": round(ns, 6) for (block, pin), ns in found.items()},
+            }
         outputs["nets"].write_text(json.dumps(nets, indent=1) + "\n")
         outputs["sdc"].write_text(inputs["sdc"].read_text() + "\n".join(self.constraints(nets)) + "\n")
         driven = {net: found["load_pf"] for net, found in nets.items() if found["driver"] == CORE}
         slow = {net: max(found["delay_ns"].values()) for net, found in nets.items()}
         load, delay = max(driven, key=driven.get), max(slow, key=slow.get)
-        return {"wire_pf": round(sum(found["wire_ff"] for found in nets.values()) / 1000, 3),
-                "worst_load_pf": round(driven[load], 4), "worst_load": load, "worst_delay_ns": round(slow[delay], 4),
-                "worst_delay": delay, "loads_over": sum(pf > p.load_pf for pf in driven.values())}
+        return {
+            "wire_pf": round(sum(found["wire_ff"] for found in nets.values()) / 1000, 3),
+            "worst_load_pf": round(driven[load], 4),
+            "worst_load": load,
+            "worst_delay_ns": round(slow[delay], 4),
+            "worst_delay": delay,
+            "loads_over": sum(pf > p.load_pf for pf in driven.values()),
+        }
 
     def constraints(self, nets):
         """Lines of SDC: what the chip's own say of its ports, with the die's wires."""
@@ -69,5 +83,7 @@ class DieWires(Step):
                 yield f"set_load {found['load_pf']:.6f} {port}"
                 yield f"set_output_delay {p.output_ns + max(found['delay_ns'].values()):.6f} -clock {p.clock} {port}"
             elif net != p.clock:
-                yield (f"set_input_delay {p.input_ns + found['delay_ns'][f'{CORE}.{net}']:.6f} -max -clock {p.clock} "
-                       f"{port}")
+                yield (
+                    f"set_input_delay {p.input_ns + found['delay_ns'][f'{CORE}.{net}']:.6f} -max -clock {p.clock} "
+                    f"{port}"
+                )

@@ -7,8 +7,8 @@ on a net, by the area of the net's gates, must stay under the process's ratio; a
 import json
 from dataclasses import dataclass
 
-from flow.platforms.embedded import process
-from flow.steps import Step
+from base.steps import Step
+from platforms.coriolis import process
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,13 @@ class Antenna(Step):
 
     def run(self, inputs, outputs):
         import klayout.db as db
+
         known, layout = self.known(), db.Layout()
         layout.read(str(inputs["gds"]))
-        found = {known.wires[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
-                 for level, bad in violations(layout, layout.top_cell(), known).items()}
+        found = {
+            known.wires[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+            for level, bad in violations(layout, layout.top_cell(), known).items()
+        }
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
 
@@ -48,8 +51,10 @@ def connected(layout, top, known, levels):
     import klayout.db as db
 
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
-    layers = {name: l2n.make_polygon_layer(layout.layer(*pair), name) for name, pair in
-              (("poly", known.poly), ("active", known.active), ("contact", known.contact))}
+    layers = {
+        name: l2n.make_polygon_layer(layout.layer(*pair), name)
+        for name, pair in (("poly", known.poly), ("active", known.active), ("contact", known.contact))
+    }
     gate, diffusion = layers["poly"] & layers["active"], layers["active"] - layers["poly"]
     for name, made in (("gate", gate), ("diffusion", diffusion)):
         l2n.register(made, name)
@@ -77,15 +82,16 @@ def violations(layout, top, known, levels=None):
     """dict level -> klayout.db.Region, known.wires[level] of the nets on which it is too large for their gates, for
     ``levels``, all without."""
     import klayout.db as db
-    found, safe = {}, 1e9           # for what has a diffusion, in the check of what has none
+
+    found, safe = {}, 1e9  # for what has a diffusion, in the check of what has none
     levels = range(len(known.wires)) if levels is None else levels
     for l2n, gate, diffusion, wires in connected(layout, top, known, levels):
         level = len(wires) - 1
         wire = known.wires[level]
         base, more = wire.antenna_diffusion
-        factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)       # of the metal's area, its edges
+        factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)  # of the metal's area, its edges
         bad = db.Region()
         for ratio, by_diffusion in ((wire.antenna_ratio, safe), (base, more)):
             bad += l2n.antenna_check(gate, 1.0, 0.0, wires[-1], *factors, ratio, [[diffusion, by_diffusion]])
-        found[level] = db.Region(list(bad.each()))          # no longer of the extraction, which goes on
+        found[level] = db.Region(list(bad.each()))  # no longer of the extraction, which goes on
     return found

@@ -5,18 +5,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flow.simulate.process import run
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
+from base.tools import run
 
-from .. import boundary as boundary_module
-from .. import energy as energy_module
-from .. import opensta as opensta_module
-from ..boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
-from ..energy import Cells
-from ..netlist import Netlist, SUPPLIES
+from ..netlist.netlist import SUPPLIES, Netlist
+from ..power import energy as energy_module
+from ..power.energy import Cells
+from ..timing import boundary as boundary_module
+from ..timing import opensta as opensta_module
+from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
 
-SLEWS = 0.02, 0.07, 0.25, 1.0        # ns
-LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2        # pF
+SLEWS = 0.02, 0.07, 0.25, 1.0  # ns
+LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2  # pF
 EDGES = "rise", "fall"
 COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
 
@@ -51,8 +51,11 @@ class BlockLiberty(Step):
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
         files = {name: inputs[name] for name in ("liberty", "verilog", "spef")} | {"folder": folder}
         found = measure(netlist, clock, files, SLEWS, LOADS)
-        outputs["liberty"].write_text(liberty(netlist, clock, found, self.parameters.corner, inputs["liberty"],
-                                              plan["width_um"] * plan["height_um"]))
+        outputs["liberty"].write_text(
+            liberty(
+                netlist, clock, found, self.parameters.corner, inputs["liberty"], plan["width_um"] * plan["height_um"]
+            )
+        )
         error = self.checked(netlist, files, outputs["liberty"], folder)
         return {"model_error_ns": error, "arcs": len(found.delays) + len(found.checks)}
 
@@ -63,8 +66,12 @@ class BlockLiberty(Step):
         wrapper.write_text(_wrapper(netlist))
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
-        model = measure(netlist, self.parameters.clock, {"liberty": made, "verilog": wrapper, "folder": folder,
-                                                         "top": "Wrapper"}, *point)
+        model = measure(
+            netlist,
+            self.parameters.clock,
+            {"liberty": made, "verilog": wrapper, "folder": folder, "top": "Wrapper"},
+            *point,
+        )
         differences = []
         for name in ("delays", "checks"):
             one, other = getattr(own, name), getattr(model, name)
@@ -75,40 +82,82 @@ class BlockLiberty(Step):
 
 
 def _wrapper(netlist):
-    ports = [f"  {port.direction} {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};"
-             for port in netlist.ports]
+    ports = [
+        f"  {port.direction} {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};" for port in netlist.ports
+    ]
     names = [port.name for port in netlist.ports]
-    return "\n".join([f"module Wrapper ({', '.join(names)});", *ports,
-                      f"  {netlist.name} block ({', '.join(f'.{name}({name})' for name in names)});", "endmodule", ""])
+    return "\n".join(
+        [
+            f"module Wrapper ({', '.join(names)});",
+            *ports,
+            f"  {netlist.name} block ({', '.join(f'.{name}({name})' for name in names)});",
+            "endmodule",
+            "",
+        ]
+    )
 
 
 def liberty(netlist, clock, found, corner, source, area):
     """Text of the Liberty file. found: Boundary; source: the cells' Liberty, whose units and thresholds it has."""
-    from cells.liberty.group import Group
-    from cells.liberty.read import read
-    from cells.liberty.write import text
+    from base.liberty.group import Group
+    from base.liberty.read import read
+    from base.liberty.write import text
+
     cells = read(source)
-    library = Group("library", (f"{netlist.name}__{corner}",), {
-        name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
-        | {"voltage_map": list(zip(SUPPLIES, (cells.attributes["nom_voltage"], 0.0), strict=True))})
+    library = Group(
+        "library",
+        (f"{netlist.name}__{corner}",),
+        {name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
+        | {"voltage_map": list(zip(SUPPLIES, (cells.attributes["nom_voltage"], 0.0), strict=True))},
+    )
     if conditions := cells.one("operating_conditions"):
         library.groups.append(conditions)
     leakage = round(sum(map(Cells(cells).leakage_nw, (i.cell for i in netlist.instances))), 4)
     slews, loads = np.array(SLEWS), np.array(LOADS)
-    library.add("lu_table_template", "delay", variable_1="input_net_transition",
-                variable_2="total_output_net_capacitance", index_1=slews, index_2=loads)
-    library.add("lu_table_template", "constraint", variable_1="related_pin_transition",
-                variable_2="constrained_pin_transition", index_1=slews, index_2=slews)
+    library.add(
+        "lu_table_template",
+        "delay",
+        variable_1="input_net_transition",
+        variable_2="total_output_net_capacitance",
+        index_1=slews,
+        index_2=loads,
+    )
+    library.add(
+        "lu_table_template",
+        "constraint",
+        variable_1="related_pin_transition",
+        variable_2="constrained_pin_transition",
+        index_1=slews,
+        index_2=slews,
+    )
     for width in sorted({port.width for port in netlist.ports if port.width > 1}):
-        library.add("type", f"bus{width}", base_type="array", data_type="bit", bit_width=width, bit_from=width - 1,
-                    bit_to=0, downto=True)
-    cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=leakage,
-                       dont_touch=True, dont_use=True, interface_timing=True)      # else OpenSTA sees latches
+        library.add(
+            "type",
+            f"bus{width}",
+            base_type="array",
+            data_type="bit",
+            bit_width=width,
+            bit_from=width - 1,
+            bit_to=0,
+            downto=True,
+        )
+    cell = library.add(
+        "cell",
+        netlist.name,
+        area=round(area, 4),
+        cell_leakage_power=leakage,
+        dont_touch=True,
+        dont_use=True,
+        interface_timing=True,
+    )  # else OpenSTA sees latches
     for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
         cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
     for port in netlist.ports:
-        group = cell if port.width == 1 else cell.add("bus", port.name, bus_type=f"bus{port.width}",
-                                                      direction=port.direction)
+        group = (
+            cell
+            if port.width == 1
+            else cell.add("bus", port.name, bus_type=f"bus{port.width}", direction=port.direction)
+        )
         for net in port.bits():
             pin = group.add("pin", net, direction=port.direction)
             if port.direction == "input":
@@ -126,8 +175,13 @@ def _constraints(pin, net, clock, found):
             timing = pin.add("timing", related_pin=clock, timing_type=timing_type)
             for edge in EDGES:
                 table = found.checks[net, kind, edge]
-                timing.add(f"{edge}_constraint", "constraint", index_1=np.array(SLEWS), index_2=np.array(SLEWS),
-                           values=np.array([[table[a, b] for b in SLEWS] for a in SLEWS]))
+                timing.add(
+                    f"{edge}_constraint",
+                    "constraint",
+                    index_1=np.array(SLEWS),
+                    index_2=np.array(SLEWS),
+                    values=np.array([[table[a, b] for b in SLEWS] for a in SLEWS]),
+                )
 
 
 def _delays(pin, net, clock, found):
@@ -135,7 +189,14 @@ def _delays(pin, net, clock, found):
         more = {"timing_type": "rising_edge"} if source == clock else COMBINATIONAL
         timing = pin.add("timing", related_pin=source, **more)
         for edge in EDGES:
-            for name, tables in ((f"cell_{edge}", found.delays[source, net, edge]),
-                                 (f"{edge}_transition", found.slews[net, edge])):
-                timing.add(name, "delay", index_1=np.array(SLEWS), index_2=np.array(LOADS),
-                           values=np.array([[tables[a, b] for b in LOADS] for a in SLEWS]))
+            for name, tables in (
+                (f"cell_{edge}", found.delays[source, net, edge]),
+                (f"{edge}_transition", found.slews[net, edge]),
+            ):
+                timing.add(
+                    name,
+                    "delay",
+                    index_1=np.array(SLEWS),
+                    index_2=np.array(LOADS),
+                    values=np.array([[tables[a, b] for b in LOADS] for a in SLEWS]),
+                )

@@ -4,8 +4,8 @@ import json
 import re
 from dataclasses import dataclass
 
-from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
+from platforms.coriolis import process
 
 from . import klayout_decks
 from .klayout_decks import run_deck, violations
@@ -39,12 +39,17 @@ class Drc(Step):
         log = outputs["report"].with_suffix(".log")
         deck = with_flat_spaces(inputs["deck"].read_text())
         outputs["deck"].write_text("\n".join([deck, *holes(process(self.parameters.pdk)[0])]) + "\n")
-        status = run_deck(outputs["deck"], {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "",
-                                           "REPORT_FILE": outputs["report"].resolve()}, log)
+        status = run_deck(
+            outputs["deck"],
+            {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "", "REPORT_FILE": outputs["report"].resolve()},
+            log,
+        )
         if status:
             told = log.read_text().strip().splitlines()
-            raise StepError(f"drc: KLayout failed with status {status}: "
-                            f"{next((line for line in told if 'ERROR' in line), told[-1:])}")
+            raise StepError(
+                f"drc: KLayout failed with status {status}: "
+                f"{next((line for line in told if 'ERROR' in line), told[-1:])}"
+            )
         found = violations(outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}
@@ -71,5 +76,7 @@ def holes(known):
     for wire in known.wires:
         if wire.hole_um2:
             yield f"{wire.name} = input({wire.layer}, {wire.datatype})"
-            yield (f"{wire.name}.holes.with_area(nil, {wire.hole_um2}).output(\"{wire.name} hole\", "
-                   f"\"{wire.name} minimum area of a hole\")")
+            yield (
+                f'{wire.name}.holes.with_area(nil, {wire.hole_um2}).output("{wire.name} hole", '
+                f'"{wire.name} minimum area of a hole")'
+            )

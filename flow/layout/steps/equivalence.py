@@ -5,19 +5,23 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.simulate.process import run
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
+from base.tools import run
 
-from .. import netlist as netlist_module
-from .. import registers
-from ..netlist import REGISTER, Netlist, is_register
-from ..registers import Cut
+from ..netlist import netlist as netlist_module
+from ..netlist import registers
+from ..netlist.netlist import REGISTER, Netlist, is_register
+from ..netlist.registers import Cut
 
 # Registers that nothing reads stay: a block that was laid out before has those, too, that its surroundings leave alone
-GOLD = ("read_verilog -sv {rtl}; hierarchy -top {top}; proc; flatten; setattr -set keep 1 t:$dff; memory; techmap; "
-        "simplemap; dffunmap; setattr -set keep 1 t:$_DFF_P_; opt_clean; write_json {out}")
-GATE = "read_liberty {liberty}; read_verilog {netlist}; hierarchy -top {top}; proc; flatten; techmap; simplemap; " \
-       "setattr -set keep 1 t:$_DFF_P_; opt_clean; write_json {out}"
+GOLD = (
+    "read_verilog -sv {rtl}; hierarchy -top {top}; proc; flatten; setattr -set keep 1 t:$dff; memory; techmap; "
+    "simplemap; dffunmap; setattr -set keep 1 t:$_DFF_P_; opt_clean; write_json {out}"
+)
+GATE = (
+    "read_liberty {liberty}; read_verilog {netlist}; hierarchy -top {top}; proc; flatten; techmap; simplemap; "
+    "setattr -set keep 1 t:$_DFF_P_; opt_clean; write_json {out}"
+)
 PROOF = "cec -T {seconds} -C 100000000 {gold} {gate}"
 
 
@@ -41,8 +45,12 @@ class Equivalence(Step):
     """
 
     name = "equivalence"
-    inputs = {"rtl": "rtl", "netlist": "place_route.netlist", "verilog": "stream_out.verilog",
-              "liberty": "library.liberty"}
+    inputs = {
+        "rtl": "rtl",
+        "netlist": "place_route.netlist",
+        "verilog": "stream_out.verilog",
+        "liberty": "library.liberty",
+    }
     outputs = {"summary": "equivalence.json"}
     Parameters = EquivalenceParameters
     metrics = {"equivalence": "", "registers": "", "constant_registers": "", "double_registers": ""}
@@ -63,25 +71,49 @@ class Equivalence(Step):
         verdicts = {}
         if set(missing) == set(held):
             kept = {f"kept({k})": gold.registers[bit] for k, bit in enumerate(held)}
-            as_held = {f"kept({k})": value if value in ("0", "1") else gate.registers[gate_bits[states[value]]]
-                       for k, value in enumerate(held.values())}
+            as_held = {
+                f"kept({k})": value if value in ("0", "1") else gate.registers[gate_bits[states[value]]]
+                for k, value in enumerate(held.values())
+            }
             loose = gold.open_outputs()
             wanted, made = (
                 {name: bit for name, bit in cut.outputs.items() if name not in loose}
                 | {f"next({name})": cut.registers[bit] for bit, name in own.items()}
-                for cut, own in ((gold, states), (gate, gate_states)))
+                for cut, own in ((gold, states), (gate, gate_states))
+            )
             verdicts["same"] = self.proof(folder, wanted | kept, made | as_held, gold, gate, states, gate_states, held)
             verdicts["open"] = self.loose(folder, sorted(loose), gold, gate, states, gate_states, held)
             verdicts["reset"] = not kept or self.proof(
-                folder, kept, as_held, gold, gate, states | {bit: f"c{k}" for k, bit in enumerate(held)},
-                gate_states | {f"c{k}": f"c{k}" for k in range(len(held))}, {}, {p.reset: "1"})
-        outputs["summary"].write_text(json.dumps({
-            "proofs": verdicts, "missing": {gold.names[bit][0]: gold.names.get(held.get(bit), [held.get(bit)])[0]
-                                            for bit in missing}}, indent=1) + "\n")
+                folder,
+                kept,
+                as_held,
+                gold,
+                gate,
+                states | {bit: f"c{k}" for k, bit in enumerate(held)},
+                gate_states | {f"c{k}": f"c{k}" for k in range(len(held))},
+                {},
+                {p.reset: "1"},
+            )
+        outputs["summary"].write_text(
+            json.dumps(
+                {
+                    "proofs": verdicts,
+                    "missing": {
+                        gold.names[bit][0]: gold.names.get(held.get(bit), [held.get(bit)])[0] for bit in missing
+                    },
+                },
+                indent=1,
+            )
+            + "\n"
+        )
         proven = bool(verdicts) and all(verdicts.values())
         constants = sum(value in ("0", "1") for value in held.values())
-        return {"equivalence": "proven" if proven else "failed", "registers": len(states),
-                "constant_registers": constants, "double_registers": len(held) - constants}
+        return {
+            "equivalence": "proven" if proven else "failed",
+            "registers": len(states),
+            "constant_registers": constants,
+            "double_registers": len(held) - constants,
+        }
 
     def cut(self, script, path, **names):
         """The design as a Cut, made by the Yosys commands ``script``."""
@@ -89,8 +121,7 @@ class Equivalence(Step):
         return Cut.read(path, self.parameters.top, self.parameters.clock)
 
     def proof(self, folder, checked, expected, gold, gate, states, gate_states, given, fixed=None):
-        """Whether the outputs ``checked`` of ``gold`` are ``expected`` of ``gate``. Raises StepError without a verdict.
-        """
+        """Whether the outputs ``checked`` of ``gold`` are ``expected`` of ``gate``. Raises StepError without a verdict."""
         unknown, text = gold.blif(states, given, {_net(name): bit for name, bit in checked.items()}, fixed)
         _, other = gate.blif(gate_states, {}, {_net(name): bit for name, bit in expected.items()}, fixed, unknown)
         return self.equal(folder, text, other)
@@ -105,19 +136,29 @@ class Equivalence(Step):
         for name in names:
             bit = gold.outputs[name]
             gold_lines.append((_net(name), [f".names {of_low(bit)} {_net(name)}", "1 1"]))
-            gate_lines.append((_net(name), [
-                f".names {of_low(bit)} {of_high(bit)} {of_gate(gate.outputs[name])} {_net(name)}",
-                "10- 1", "111 1", "001 1"]))                                    # of the gates where the two agree
-        return not names or self.equal(folder, *(gold.blif(states, given, {}, more=lines)[1]
-                                                 for lines in (gold_lines, gate_lines)))
+            gate_lines.append(
+                (
+                    _net(name),
+                    [
+                        f".names {of_low(bit)} {of_high(bit)} {of_gate(gate.outputs[name])} {_net(name)}",
+                        "10- 1",
+                        "111 1",
+                        "001 1",
+                    ],
+                )
+            )  # of the gates where the two agree
+        return not names or self.equal(
+            folder, *(gold.blif(states, given, {}, more=lines)[1] for lines in (gold_lines, gate_lines))
+        )
 
     def equal(self, folder, text, other):
         """Whether two networks in BLIF are. Raises StepError without a verdict."""
         files = folder / "gold.blif", folder / "gate.blif"
         for path, blif in zip(files, (text, other), strict=True):
             path.write_text(blif)
-        said = run(["yosys-abc", "-s", "-c", PROOF.format(seconds=self.parameters.seconds, gold=files[0],
-                                                          gate=files[1])])
+        said = run(
+            ["yosys-abc", "-s", "-c", PROOF.format(seconds=self.parameters.seconds, gold=files[0], gate=files[1])]
+        )
         if ("are equivalent" in said) == ("NOT EQUIVALENT" in said):
             raise StepError(f"equivalence: ABC gave no verdict: {' '.join(said.split())[-200:]}")
         return "are equivalent" in said

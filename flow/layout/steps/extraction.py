@@ -8,11 +8,11 @@ which is more than any single path of a branched net has.
 import json
 from dataclasses import dataclass
 
-from flow.platforms.embedded import process
-from flow.steps import Step
+from base.steps import Step
+from platforms.coriolis import process
 
-from .. import netlist as netlist_module
-from ..netlist import OUTPUT_PINS, Netlist
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import OUTPUT_PINS, Netlist
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,12 @@ class Extraction(Step):
     """From lengths and widths in the router's database and the process's coefficients per layer."""
 
     name = "extraction"
-    inputs = {"netlist": "place_route.netlist", "placement": "mend.placement", "platform": "platform",
-              "liberty": "library.liberty"}
+    inputs = {
+        "netlist": "place_route.netlist",
+        "placement": "mend.placement",
+        "platform": "platform",
+        "liberty": "library.liberty",
+    }
     outputs = {"spef": "wires.spef"}
     Parameters = ExtractionParameters
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
@@ -40,9 +44,11 @@ class Extraction(Step):
         there = {net for instance in netlist.instances for net in instance.pins.values()}
         nets = {net: parasitics(parts, known) for net, parts in wires.items() if net in there}
         outputs["spef"].write_text(spef(netlist, nets))
-        return {"wire_pf": round(sum(c for c, _ in nets.values()) / 1000, 3),
-                "largest_ff": round(max(c for c, _ in nets.values()), 2),
-                "largest_ohm": round(max(r for _, r in nets.values()), 1)}
+        return {
+            "wire_pf": round(sum(c for c, _ in nets.values()) / 1000, 3),
+            "largest_ff": round(max(c for c, _ in nets.values()), 2),
+            "largest_ohm": round(max(r for _, r in nets.values()), 1),
+        }
 
 
 def parasitics(parts, known):
@@ -67,17 +73,39 @@ def spef(netlist, nets):
         for pin, net in instance.pins.items():
             pins.setdefault(net, []).append((f"{_name(instance.name, ())}:{pin}", pin))
     ports = {net: port.direction for port in netlist.ports for net in port.bits()}
-    lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.name}"', '*DATE ""', '*VENDOR ""', '*PROGRAM "talbot"',
-             '*VERSION ""', '*DESIGN_FLOW ""', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER [ ]", "*T_UNIT 1 NS",
-             "*C_UNIT 1 FF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY"]
+    lines = [
+        '*SPEF "IEEE 1481-1998"',
+        f'*DESIGN "{netlist.name}"',
+        '*DATE ""',
+        '*VENDOR ""',
+        '*PROGRAM "talbot"',
+        '*VERSION ""',
+        '*DESIGN_FLOW ""',
+        "*DIVIDER /",
+        "*DELIMITER :",
+        "*BUS_DELIMITER [ ]",
+        "*T_UNIT 1 NS",
+        "*C_UNIT 1 FF",
+        "*R_UNIT 1 OHM",
+        "*L_UNIT 1 HENRY",
+    ]
     for net, (femtofarad, ohm) in sorted(nets.items()):
         ends = [f"*I {pin} {'O' if name in OUTPUT_PINS else 'I'}" for pin, name in pins.get(net, [])]
         if net in ports:
             ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
         center = f"{_name(net, ports)}:1"
         branches = (f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1))
-        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends, "*CAP",
-                  f"1 {center} {femtofarad:.4f}", "*RES", *branches, "*END"]
+        lines += [
+            "",
+            f"*D_NET {_name(net, ports)} {femtofarad:.4f}",
+            "*CONN",
+            *ends,
+            "*CAP",
+            f"1 {center} {femtofarad:.4f}",
+            "*RES",
+            *branches,
+            "*END",
+        ]
     return "\n".join(lines) + "\n"
 
 

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flow.gds import write_gds
-from flow.platforms.embedded import process
-from flow.steps import Step
+from base.gds import write_gds
+from base.steps import Step
+from platforms.coriolis import process
 
-from .. import boxes as boxes_module
-from ..boxes import boxes
+from ..geometry import boxes as boxes_module
+from ..geometry.boxes import boxes
 
-GRID = 200          # nm, of what is free
+GRID = 200  # nm, of what is free
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,7 @@ class Fill(Step):
 
     def run(self, inputs, outputs):
         import klayout.db as db
+
         known, _ = process(self.parameters.pdk)
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
@@ -57,6 +58,7 @@ class Fill(Step):
 def fill(layout, top, wire, rules):
     """Draw the squares of one wire's layer into the cell ``top``; returns how many."""
     import klayout.db as db
+
     layer, die = layout.layer(wire.layer, wire.datatype), top.bbox()
     metal = db.Region(top.begin_shapes_rec(layer)).merged()
     wanted = rules.density * die.area() - metal.area()
@@ -65,12 +67,12 @@ def fill(layout, top, wire, rules):
     room.take(boxes(metal), clearance)
     for side in (round(side / layout.dbu) for side in rules.sides_um):
         places = room.squares(side, side + space, space)
-        count = min(len(places), max(0, -(-round(wanted) // side ** 2)))
-        chosen = places[np.arange(count) * len(places) // max(1, count)]        # evenly over the layer
+        count = min(len(places), max(0, -(-round(wanted) // side**2)))
+        chosen = places[np.arange(count) * len(places) // max(1, count)]  # evenly over the layer
         for box in chosen.tolist():
             top.shapes(layer).insert(db.Box(*box))
         room.take(chosen, space)
-        wanted -= count * side ** 2
+        wanted -= count * side**2
         drawn += count
     return drawn
 
@@ -89,8 +91,10 @@ class Room:
 
     def take(self, places, around):
         """Take the boxes ``places`` (n, 4) and what is nearer to them than ``around``."""
-        first, last = (np.clip(at, 0, self.taken.shape) for at in
-                       self._pixels(places + np.array((-around, -around, around, around))))
+        first, last = (
+            np.clip(at, 0, self.taken.shape)
+            for at in self._pixels(places + np.array((-around, -around, around, around)))
+        )
         change = np.zeros(np.array(self.taken.shape) + 1, np.int32)
         for (x, y), sign in (((first, first), 1), ((last, first), -1), ((first, last), -1), ((last, last), 1)):
             np.add.at(change, (x[:, 0], y[:, 1]), sign)
@@ -99,8 +103,10 @@ class Room:
     def squares(self, side, pitch, margin):
         """Boxes (n, 4) of the free squares on a grid of ``pitch``, ``margin`` from the edge, in rows from below."""
         sums = np.pad(self.taken.cumsum(0, np.int32).cumsum(1, np.int32), ((1, 0), (1, 0)))
-        x, y = (np.arange(-(-margin // pitch) * pitch, end - begin - side - margin + 1, pitch) + begin
-                for begin, end in ((self.box[0], self.box[2]), (self.box[1], self.box[3])))
+        x, y = (
+            np.arange(-(-margin // pitch) * pitch, end - begin - side - margin + 1, pitch) + begin
+            for begin, end in ((self.box[0], self.box[2]), (self.box[1], self.box[3]))
+        )
         x, y = (at.ravel() for at in np.meshgrid(x, y))
         places = np.stack((x, y, x + side, y + side), 1)
         (left, bottom), (right, top) = (at.T for at in self._pixels(places))
@@ -110,6 +116,7 @@ class Room:
 def densest(layout, top, wire, rules):
     """Covered share of a wire's layer in the window of the cell where it is largest; windows overlap by half."""
     import klayout.db as db
+
     box, size = top.bbox(), round(rules.window_um / layout.dbu)
     metal, found = db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype))).merged(), []
     for left in range(box.left, max(box.left + 1, box.right - size // 2), size // 2):

@@ -5,20 +5,21 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
-from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
 from models.parameters import ParameterError, check_real
+from platforms.coriolis import process
+from platforms.openroad import layer_names
 
-from .. import macro as macro_module
-from .. import netlist as netlist_module
-from ..macro import Macro, layer_names
-from ..netlist import Netlist
+from ..geometry import macro as macro_module
+from ..geometry.macro import Macro
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import Netlist
 
-SIDES = ("west", "east")          # the router gives up on some pins on the other two
-CLOCK_CELLS_SHARE = 0.06        # of the cells' area, for the clock tree's buffers to come
-BESIDE_UM = 15.0            # least width of rows beside a block: a strap of either supply must find a place there
-TREE_ASPECT = 1.8           # Coriolis cuts a longer box in two halves, whose wires then lie on one another
-HALO_ROWS = 3, 2            # heights of a row that are left free beside a block, where its pins are met, and above it
+SIDES = ("west", "east")  # the router gives up on some pins on the other two
+CLOCK_CELLS_SHARE = 0.06  # of the cells' area, for the clock tree's buffers to come
+BESIDE_UM = 15.0  # least width of rows beside a block: a strap of either supply must find a place there
+TREE_ASPECT = 1.8  # Coriolis cuts a longer box in two halves, whose wires then lie on one another
+HALO_ROWS = 3, 2  # heights of a row that are left free beside a block, where its pins are met, and above it
 
 
 @dataclass(frozen=True)
@@ -51,8 +52,14 @@ class Floorplan(Step):
     inputs = {"netlist": "synthesis.netlist", "areas": "library.areas", "geometry": "library.geometry"}
     outputs = {"floorplan": "floorplan.json"}
     Parameters = FloorplanParameters
-    metrics = {"rows": "", "columns": "", "width_um": "um", "height_um": "um", "core_area_um2": "um2",
-               "macro_area_um2": "um2"}
+    metrics = {
+        "rows": "",
+        "columns": "",
+        "width_um": "um",
+        "height_um": "um",
+        "core_area_um2": "um2",
+        "macro_area_um2": "um2",
+    }
     uses = (macro_module, netlist_module)
 
     def __init__(self, parameters):
@@ -63,38 +70,47 @@ class Floorplan(Step):
         p = self.parameters
         known, _ = process(p.pdk)
         netlist, areas = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
-        macros = [(name, Macro.read(inputs[module], known, layer_names(p.pdk)), at)
-                  for name, module, *at in p.macros]
+        macros = [(name, Macro.read(inputs[module], known, layer_names(p.pdk)), at) for name, module, *at in p.macros]
         modules = {macro.name for _, macro, _ in macros}
         unknown = sorted({i.cell for i in netlist.instances} - set(areas) - modules)
         if unknown:
-            raise StepError(f"floorplan: no layout of the cells {', '.join(unknown[:5])}: LIBERTY must be of the cells "
-                            "that are laid out")
+            raise StepError(
+                f"floorplan: no layout of the cells {', '.join(unknown[:5])}: LIBERTY must be of the cells "
+                "that are laid out"
+            )
         lost = {i.name for i in netlist.instances if i.cell in modules} ^ {name for name, *_ in macros}
         if lost:
-            raise StepError(f"floorplan: the places given for blocks and the blocks in the Verilog differ by "
-                            f"{', '.join(sorted(lost))}")
+            raise StepError(
+                f"floorplan: the places given for blocks and the blocks in the Verilog differ by "
+                f"{', '.join(sorted(lost))}"
+            )
         above = HALO_ROWS[1] * known.row_um
         blocks = sum(_with_halo(macro, known) * (macro.height_um + above) for _, macro, _ in macros)
-        area = blocks + (sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE)
-                         / p.utilization)
-        rows = max(4, 2 * round(math.sqrt(area / p.aspect) / known.row_um / 2))     # even: the top rail is ground too
+        area = blocks + (sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE) / p.utilization)
+        rows = max(4, 2 * round(math.sqrt(area / p.aspect) / known.row_um / 2))  # even: the top rail is ground too
         columns = math.ceil(area / (rows * known.row_um) / known.site_um)
-        made = {"rows": rows, "columns": columns, "width_um": round(columns * known.site_um, 4),
-                "height_um": round(rows * known.row_um, 4), "pins": pins(netlist.ports)}
+        made = {
+            "rows": rows,
+            "columns": columns,
+            "width_um": round(columns * known.site_um, 4),
+            "height_um": round(rows * known.row_um, 4),
+            "pins": pins(netlist.ports),
+        }
         made["macros"] = placed(macros, made["width_um"], made["height_um"], known)
         made["tree"] = free(made)
         outputs["floorplan"].write_text(json.dumps(made, indent=1))
-        return {"core_area_um2": round(made["width_um"] * made["height_um"], 2),
-                "macro_area_um2": round(sum(macro.width_um * macro.height_um for _, macro, _ in macros), 2),
-                **{name: made[name] for name in ("rows", "columns", "width_um", "height_um")}}
+        return {
+            "core_area_um2": round(made["width_um"] * made["height_um"], 2),
+            "macro_area_um2": round(sum(macro.width_um * macro.height_um for _, macro, _ in macros), 2),
+            **{name: made[name] for name in ("rows", "columns", "width_um", "height_um")},
+        }
 
 
 def pins(ports):
     """dict side -> nets of the pins on it."""
     nets = [net for port in sorted(ports, key=lambda port: port.direction) for net in port.bits()]
     share = math.ceil(len(nets) / len(SIDES))
-    return {side: nets[k * share:(k + 1) * share] for k, side in enumerate(SIDES)}
+    return {side: nets[k * share : (k + 1) * share] for k, side in enumerate(SIDES)}
 
 
 def _with_halo(macro, known):
@@ -112,16 +128,26 @@ def placed(macros, width, height, known):
     for name, macro, (across, along) in macros:
         wide = _with_halo(macro, known)
         left = round(across * (width - wide) / row) * row
-        bottom = round(along * (height - macro.height_um) / row / 2) * 2 * row     # even: rails in line with rows'
+        bottom = round(along * (height - macro.height_um) / row / 2) * 2 * row  # even: rails in line with rows'
         top = bottom + macro.height_um
         if left < 0 or bottom < 0 or top > height + 1e-6:
-            raise ParameterError(f"utilization: {name} of {macro.width_um} x {macro.height_um} um does not fit into "
-                                 f"{width} x {height} um")
+            raise ParameterError(
+                f"utilization: {name} of {macro.width_um} x {macro.height_um} um does not fit into "
+                f"{width} x {height} um"
+            )
         beside, above = (rows * row for rows in HALO_ROWS)
         outer = left, max(0, bottom - above), left + wide, min(height, top + above)
-        made.append({"instance": name, "cell": macro.name, "x_um": round(left + beside, 4), "y_um": round(bottom, 4),
-                     "width_um": macro.width_um, "height_um": macro.height_um,
-                     "outer": [round(value, 4) for value in outer]})
+        made.append(
+            {
+                "instance": name,
+                "cell": macro.name,
+                "x_um": round(left + beside, 4),
+                "y_um": round(bottom, 4),
+                "width_um": macro.width_um,
+                "height_um": macro.height_um,
+                "outer": [round(value, 4) for value in outer],
+            }
+        )
     ends = sorted((block["outer"][0], block["outer"][2], block["instance"]) for block in made)
     edges = [(0, 0, "the west edge"), *ends, (width, 0, "the east edge")]
     for (_, end, name), (begin, _, other) in pairwise(edges):
@@ -136,8 +162,16 @@ def free(plan):
     outer = [block["outer"] for block in plan["macros"]]
     x = sorted({0.0, plan["width_um"], *(v for box in outer for v in (box[0], box[2]))})
     y = sorted({0.0, plan["height_um"], *(v for box in outer for v in (box[1], box[3]))})
-    boxes = [_shorter(a, b, c, d) for a in x for c in x if c > a for b in y for d in y if d > b
-             if not any(a < o[2] and o[0] < c and b < o[3] and o[1] < d for o in outer)]
+    boxes = [
+        _shorter(a, b, c, d)
+        for a in x
+        for c in x
+        if c > a
+        for b in y
+        for d in y
+        if d > b
+        if not any(a < o[2] and o[0] < c and b < o[3] and o[1] < d for o in outer)
+    ]
     return max(boxes, key=lambda box: (box[2] - box[0]) * (box[3] - box[1]))
 
 

@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.platforms.foundry import foundry
-from flow.simulate.process import finish
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
+from base.tools import finish
+from platforms.foundry import foundry
 
 from . import klayout_decks
 from .klayout_decks import run_deck, violations
@@ -55,8 +55,12 @@ class FoundryDrc(Step):
     tools = ("klayout",)
 
     def run(self, inputs, outputs):
-        said = {"input": inputs["gds"].resolve(), "topcell": self.parameters.top,
-                "report": outputs["report"].resolve(), **dict(foundry(self.parameters.pdk).defines)}
+        said = {
+            "input": inputs["gds"].resolve(),
+            "topcell": self.parameters.top,
+            "report": outputs["report"].resolve(),
+            **dict(foundry(self.parameters.pdk).defines),
+        }
         log = outputs["report"].with_suffix(".log")
         if run_deck(inputs["deck"].resolve(), {}, log, said):
             raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_telling(log.read_text())}")
@@ -80,10 +84,14 @@ class MagicDrc(Step):
         magic = inputs["magic"].resolve()
         root = Path(str(magic).removesuffix(known.magic))
         script = folder / "drc.tcl"
-        script.write_text(MAGIC.format(gds=inputs["gds"].resolve(), top=self.parameters.top,
-                                       report=outputs["report"].resolve()))
-        done = finish(["magic", "-dnull", "-noconsole", "-rcfile", magic / known.rc, script], cwd=folder,
-                      env={"PDK_ROOT": str(root), "HOME": os.environ.get("HOME", "/tmp")})
+        script.write_text(
+            MAGIC.format(gds=inputs["gds"].resolve(), top=self.parameters.top, report=outputs["report"].resolve())
+        )
+        done = finish(
+            ["magic", "-dnull", "-noconsole", "-rcfile", magic / known.rc, script],
+            cwd=folder,
+            env={"PDK_ROOT": str(root), "HOME": os.environ.get("HOME", "/tmp")},
+        )
         lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
         if done.returncode or lines[-1:] != ["end"]:
             raise StepError(f"magic_drc: Magic failed: {_telling(done.stdout + done.stderr)}")

@@ -3,17 +3,17 @@
 import json
 from dataclasses import dataclass, field
 
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
 from models.parameters import check_real
 
-from .. import delays as delays_module
-from .. import netlist as netlist_module
-from .. import replay as replay_module
-from ..delays import read
-from ..netlist import Netlist
-from ..replay import Timing, replay
+from ..netlist import netlist as netlist_module
+from ..netlist import replay as replay_module
+from ..netlist.netlist import Netlist
+from ..netlist.replay import Timing, replay
+from ..timing import delays as delays_module
+from ..timing.delays import read
 
-CONSTANTS = {"zero", "one"}     # pins of cells without a path
+CONSTANTS = {"zero", "one"}  # pins of cells without a path
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,12 @@ class GateDelays(Step):
     The activity: transitions a cycle and share of time at 1 of every net, glitches among them.
     """
 
-    inputs = {"netlist": "place_route.netlist", "cells": "library.verilog", "head": "stimulus.head",
-              "trace": "stimulus.trace"}
+    inputs = {
+        "netlist": "place_route.netlist",
+        "cells": "library.verilog",
+        "head": "stimulus.head",
+        "trace": "stimulus.trace",
+    }
     outputs = {"activity": "activity.json"}
     Parameters = GateDelaysParameters
     metrics = {"passed": "", "failed": "", "cycles": "", "paths": "", "setup_margin_ns": "ns", "hold_margin_ns": "ns"}
@@ -58,14 +62,25 @@ class GateDelays(Step):
         lacking = [i.name for i in netlist.instances if set(i.pins) - CONSTANTS and i.name not in delays.paths]
         if lacking:
             raise StepError(f"{self.name}: the SDF has no delay of {', '.join(lacking[:5])}")
-        found = replay(netlist, inputs["cells"].read_text(), inputs["head"],
-                       Timing(p.period_ns, p.input_delay, p.output_delay), folder, delays, count=True)
+        found = replay(
+            netlist,
+            inputs["cells"].read_text(),
+            inputs["head"],
+            Timing(p.period_ns, p.input_delay, p.output_delay),
+            folder,
+            delays,
+            count=True,
+        )
         (folder / "verdict.log").write_text("\n".join((*found.first, *found.late[:100])) + "\n")
         for name in ("cells", "netlist", "delays", "bench"):
             (folder / f"{name}.log").unlink()
         outputs["activity"].write_text(json.dumps(found.activity, indent=0) + "\n")
         good = not found.wrong and not found.late
-        return {"passed": int(good), "failed": int(not good), "cycles": found.cycles,
-                "paths": sum(map(len, delays.paths.values())), "setup_margin_ns": round(found.margins[0], 4),
-                "hold_margin_ns": round(found.margins[1], 4)}
-
+        return {
+            "passed": int(good),
+            "failed": int(not good),
+            "cycles": found.cycles,
+            "paths": sum(map(len, delays.paths.values())),
+            "setup_margin_ns": round(found.margins[0], 4),
+            "hold_margin_ns": round(found.margins[1], 4),
+        }

@@ -2,11 +2,11 @@
 
 import tempfile
 
+from base.steps import Step
 from flow.simulate import icarus
 from flow.simulate.icarus import icarus_program
-from flow.steps import Step
 
-MODES = (("edge", False), ("image", False), ("tof", True))      # mode, whether the chip's divider makes phases
+MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip's divider makes phases
 SEED, TAPS = 1, 4
 
 
@@ -24,6 +24,7 @@ class GateFrames(Step):
         from flow.frame.hardware import build_of, simulate
         from models.digital.chip import front_end_of, golden_frame
         from models.parameters import FrameParameters, SensorParameters, Window
+
         sensor = SensorParameters()
         front_end, samples = front_end_of(sensor, [7] * 24), exposure(sensor)
         lines, cycles, sent = [], 0, 0
@@ -33,11 +34,15 @@ class GateFrames(Step):
                 frame = FrameParameters(Window(3, 4, 5, 8), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)
                 golden = golden_frame(samples, sensor, frame, front_end)
-                same = (chip.stream == golden.stream and chip.status["conversions_made"] == golden.made
-                        and not chip.status["cfg_err"])
+                same = (
+                    chip.stream == golden.stream
+                    and chip.status["conversions_made"] == golden.made
+                    and not chip.status["cfg_err"]
+                )
                 cycles, sent = cycles + chip.cycles, sent + len(chip.stream)
-                lines.append(f"{mode}: {len(chip.stream)} bytes in {chip.cycles} cycles: "
-                             f"{'equal' if same else 'DIFFERENT'}")
+                lines.append(
+                    f"{mode}: {len(chip.stream)} bytes in {chip.cycles} cycles: {'equal' if same else 'DIFFERENT'}"
+                )
         outputs["log"].write_text("\n".join(lines) + "\n")
         failed = sum(line.endswith("DIFFERENT") for line in lines)
         return {"passed": len(lines) - failed, "failed": failed, "cycles": cycles, "bytes": sent}
@@ -46,7 +51,7 @@ class GateFrames(Step):
 def exposure(sensor):
     """Random diode pairs (4, rows, cols, 2), their differences now and then beyond the converters' range."""
     import numpy as np
+
     rng = np.random.default_rng(SEED)
     common = rng.uniform(0, 128, (TAPS, sensor.array.rows, sensor.array.cols, 1))
     return common + rng.normal(0, 20.0, (*common.shape[:3], 2)) * (rng.random(common.shape) < 0.3)
-

@@ -6,11 +6,11 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.simulate.process import finish
-from flow.steps import Step, StepError
+from base.paths import ROOT
+from base.steps import Step, StepError
+from base.tools import finish
 from models.parameters import check_choice
 
-ROOT = Path(__file__).parents[3]
 NETLISTS = {"final": "stream_out.verilog", "synthesized": "synthesis.verilog"}
 
 
@@ -48,9 +48,24 @@ class GateTests(Step):
         p = self.parameters
         netlists = [f"--netlist={name}={inputs['verilog'].resolve()}:{p.top}" for name in p.names]
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-            done = finish([sys.executable, "-m", "pytest", f"rtl/{p.folder}", "-p", "no:xdist", "-p",
-                           "no:cacheprovider", f"--basetemp={folder}/tmp", f"--junitxml={folder}/tests.xml", *netlists,
-                           f"--netlist-in={p.simulator}", f"--cells={inputs['cells'].resolve()}"], cwd=ROOT)
+            done = finish(
+                [
+                    sys.executable,
+                    "-m",
+                    "pytest",
+                    f"rtl/{p.folder}",
+                    "-p",
+                    "no:xdist",
+                    "-p",
+                    "no:cacheprovider",
+                    f"--basetemp={folder}/tmp",
+                    f"--junitxml={folder}/tests.xml",
+                    *netlists,
+                    f"--netlist-in={p.simulator}",
+                    f"--cells={inputs['cells'].resolve()}",
+                ],
+                cwd=ROOT,
+            )
             outputs["report"].with_suffix(".log").write_text(done.stdout + done.stderr)
             report = Path(folder) / "tests.xml"
             if done.returncode not in (0, 1) or not report.exists():

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from flow.platforms.embedded import process
-from flow.steps import Step
+from base.steps import Step
+from platforms.coriolis import process
 
-from .. import mesh as mesh_module
-from ..mesh import drops, metal
-from ..netlist import Netlist
+from ..netlist.netlist import Netlist
+from ..power import mesh as mesh_module
+from ..power.mesh import drops, metal
 
-MIRRORED = {"6", "2"}         # orientations of Hurricane (MY, R2) in which a cell hangs from its origin
-LEFTWARDS = {"4", "2"}        # ... (MX, R2) in which it extends to the left of it
+MIRRORED = {"6", "2"}  # orientations of Hurricane (MY, R2) in which a cell hangs from its origin
+LEFTWARDS = {"4", "2"}  # ... (MX, R2) in which it extends to the left of it
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,22 @@ class IrDrop(Step):
     ir_drop_percent: the largest sum of both drops at a cell, of the supply. current_lost: by the solver, as a share.
     """
 
-    inputs = {"netlist": "place_route.netlist", "placement": "place_route.placement", "plan": "floorplan.floorplan",
-              "areas": "library.areas", "platform": "platform"}
+    inputs = {
+        "netlist": "place_route.netlist",
+        "placement": "place_route.placement",
+        "plan": "floorplan.floorplan",
+        "areas": "library.areas",
+        "platform": "platform",
+    }
     outputs = {"picture": "ir_drop.png", "cells": "ir_drop.json"}
     Parameters = IrDropParameters
-    metrics = {"supply_drop_mv": "mV", "ground_rise_mv": "mV", "ir_drop_percent": "%", "current_ua": "uA",
-               "current_lost": ""}
+    metrics = {
+        "supply_drop_mv": "mV",
+        "ground_rise_mv": "mV",
+        "ir_drop_percent": "%",
+        "current_ua": "uA",
+        "current_lost": "",
+    }
     uses = (mesh_module,)
 
     def __init__(self, parameters):
@@ -47,28 +57,45 @@ class IrDrop(Step):
         known, _ = process(self.parameters.pdk)
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text())
         placed = json.loads(inputs["placement"].read_text())
-        cells = drawing(netlist, placed["instances"], json.loads(inputs["areas"].read_text()),
-                        json.loads(inputs["power"].read_text()), known)
+        cells = drawing(
+            netlist,
+            placed["instances"],
+            json.loads(inputs["areas"].read_text()),
+            json.loads(inputs["power"].read_text()),
+            known,
+        )
         rows = round(plan["height_um"] / known.row_um)
         found, lost = [], []
-        for net, odd in (("vdd", 1), ("vss", 0)):       # rails of even rows are ground
+        for net, odd in (("vdd", 1), ("vss", 0)):  # rails of even rows are ground
             rails = list(range(odd, rows + 1, 2))
             straps = [x for supply, x, _ in placed["straps"] if supply == net]
             gaps = [(x, *gap) for supply, x, cut in placed["straps"] if supply == net for gap in cut]
             taps = [(rails.index(row if row % 2 == odd else row + 1), x, current) for row, x, current in cells]
-            drop, share = drops([row * known.row_um for row in rails], straps, plan["height_um"], taps, metal(known),
-                                breaks(plan["macros"]), gaps)
+            drop, share = drops(
+                [row * known.row_um for row in rails],
+                straps,
+                plan["height_um"],
+                taps,
+                metal(known),
+                breaks(plan["macros"]),
+                gaps,
+            )
             found.append(drop * 1000)
             lost.append(share)
         total = found[0] + found[1]
         at = [(x, (row + 0.5) * known.row_um) for row, x, _ in cells]
-        outputs["cells"].write_text(json.dumps([[round(x, 3), round(y, 3), float(mv)] for (x, y), mv
-                                                in zip(at, total, strict=True)], indent=0) + "\n")
+        outputs["cells"].write_text(
+            json.dumps([[round(x, 3), round(y, 3), float(mv)] for (x, y), mv in zip(at, total, strict=True)], indent=0)
+            + "\n"
+        )
         picture(outputs["picture"], at, total, placed["straps"], plan)
-        return {"supply_drop_mv": float(f"{found[0].max():.4g}"), "ground_rise_mv": float(f"{found[1].max():.4g}"),
-                "ir_drop_percent": float(f"{total.max() / known.supply_v / 10:.4g}"),
-                "current_ua": round(sum(current for *_, current in cells) * 1e6, 3),
-                "current_lost": float(f"{max(lost):.1e}")}
+        return {
+            "supply_drop_mv": float(f"{found[0].max():.4g}"),
+            "ground_rise_mv": float(f"{found[1].max():.4g}"),
+            "ir_drop_percent": float(f"{total.max() / known.supply_v / 10:.4g}"),
+            "current_ua": round(sum(current for *_, current in cells) * 1e6, 3),
+            "current_lost": float(f"{max(lost):.1e}"),
+        }
 
 
 def drawing(netlist, placed, areas, power, known):
@@ -86,13 +113,17 @@ def drawing(netlist, placed, areas, power, known):
 
 def breaks(macros):
     """Boxes in which there are no rails: on the west and the east of the floorplan's blocks."""
-    return [(left, m["y_um"], right, m["y_um"] + m["height_um"]) for m in macros
-            for left, right in ((m["outer"][0], m["x_um"]), (m["x_um"] + m["width_um"], m["outer"][2]))]
+    return [
+        (left, m["y_um"], right, m["y_um"] + m["height_um"])
+        for m in macros
+        for left, right in ((m["outer"][0], m["x_um"]), (m["x_um"] + m["width_um"], m["outer"][2]))
+    ]
 
 
 def picture(path, at, drop, straps, plan):
     """Cells by the sum of their drops, mV; straps as lines."""
     from matplotlib.figure import Figure
+
     figure = Figure(figsize=(7, 6), layout="constrained")
     axes = figure.subplots()
     x, y = np.transpose(at)

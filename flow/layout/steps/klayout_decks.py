@@ -5,15 +5,18 @@ import os
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from flow.simulate.process import ToolError, finish
+from base.tools import ToolError, finish
 
 
 def run_deck(deck, environment, log, variables=None):
     """Run ``deck`` with ``environment`` and what it reads as ``variables`` (dicts), apart from the user's own settings;
     its words go to the file ``log``. Returns its exit status."""
     said = [word for name, value in (variables or {}).items() for word in ("-rd", f"{name}={value}")]
-    done = finish(["klayout", "-b", "-r", deck, *said], env={name: str(value) for name, value in environment.items()}
-                  | {"HOME": os.environ.get("HOME", "/tmp"), "KLAYOUT_HOME": str(Path(log).parent / ".klayout.log")})
+    done = finish(
+        ["klayout", "-b", "-r", deck, *said],
+        env={name: str(value) for name, value in environment.items()}
+        | {"HOME": os.environ.get("HOME", "/tmp"), "KLAYOUT_HOME": str(Path(log).parent / ".klayout.log")},
+    )
     Path(log).write_text(done.stdout + done.stderr)
     return done.returncode
 

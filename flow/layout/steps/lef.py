@@ -2,13 +2,13 @@
 
 from dataclasses import dataclass
 
-from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
+from platforms.coriolis import process
+from platforms.openroad import layer_names
 
-from .. import abstract as abstract_module
-from .. import macro
-from ..abstract import abstract, ports, read_back
-from ..macro import layer_names
+from ..geometry import abstract as abstract_module
+from ..geometry import macro
+from ..geometry.abstract import abstract, ports, read_back
 
 
 @dataclass(frozen=True)

@@ -6,18 +6,28 @@ import math
 import re
 from dataclasses import asdict, dataclass, field
 
-from flow.gds import write_gds
-from flow.platforms.embedded import modules, process
-from flow.simulate.process import run
-from flow.steps import Step, StepError
+from base.gds import write_gds
+from base.steps import Step, StepError
+from base.tools import run
+from platforms.coriolis import modules, process
 
-from .. import liberty
-from ..netlist import SUPPLIES
+from ..netlist.netlist import SUPPLIES
+from ..timing import liberty
 
-GRID_UM = 0.005     # on which pads are drawn
-UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")      # by synthesis
-DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground", "q": "out", "nq": "out",
-              "one": "out", "zero": "out", "co": "out", "s": "out"}
+GRID_UM = 0.005  # on which pads are drawn
+UNUSED = ("fill", "tie", "decap", "diode", "nsnrlatch")  # by synthesis
+DIRECTIONS = {
+    "vdd": "supply",
+    "iovdd": "supply",
+    "vss": "ground",
+    "iovss": "ground",
+    "q": "out",
+    "nq": "out",
+    "one": "out",
+    "zero": "out",
+    "co": "out",
+    "s": "out",
+}
 
 
 @dataclass(frozen=True)
@@ -32,9 +42,18 @@ class Library(Step):
 
     name = "library"
     inputs = {"platform": "platform"}
-    outputs = {"coriolis": "coriolis", "gds": "cells.gds", "spice": "cells.spi", "drc": "process.drc",
-               "lvs": "process.lvs", "areas": "areas.json", "liberty": "cells.lib", "verilog": "cells.v",
-               "rules": "rules.json", "geometry": "geometry.json"}
+    outputs = {
+        "coriolis": "coriolis",
+        "gds": "cells.gds",
+        "spice": "cells.spi",
+        "drc": "process.drc",
+        "lvs": "process.lvs",
+        "areas": "areas.json",
+        "liberty": "cells.lib",
+        "verilog": "cells.v",
+        "rules": "rules.json",
+        "geometry": "geometry.json",
+    }
     Parameters = LibraryParameters
     metrics = {"cells": ""}
     uses = (liberty,)
@@ -57,10 +76,19 @@ class Library(Step):
         models, layers = modules(self.parameters.pdk)
         logic = [name for name in ports if not name.startswith(UNUSED)]
         found = liberty.functions(outputs["gds"], logic, models, layers)
-        outputs["liberty"].write_text(liberty.liberty({
-            name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas))
-        run(["yosys", "-q", "-p",
-             f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"])
+        outputs["liberty"].write_text(
+            liberty.liberty(
+                {name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas
+            )
+        )
+        run(
+            [
+                "yosys",
+                "-q",
+                "-p",
+                f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}",
+            ]
+        )
         return {"cells": len(cells)}
 
 
@@ -76,17 +104,26 @@ def geometry(known):
 
 def wiring_rules(known, primitives):
     """What PDKMaster's ``primitives`` say of the wires and cuts of ``known``, in um: a dict for JSON."""
+
     def enclosure(made):
         return [float(made.first), float(made.second)]
 
     wires = {wire.name: primitives[wire.name] for wire in known.wires}
     cuts = {cut.name: (primitives[cut.name], level) for level, cut in enumerate(known.cuts)}
-    return {"space_um": {name: float(wire.min_space) for name, wire in wires.items()},
-            "wires": {name: {"width": float(wire.min_width), "space": float(wire.min_space),
-                             "area": float(wire.min_area or 0)} for name, wire in wires.items()},
-            "cuts": {name: {"below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.wires[level])),
-                            "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.wires[level + 1]))}
-                     for name, (cut, level) in cuts.items()}}
+    return {
+        "space_um": {name: float(wire.min_space) for name, wire in wires.items()},
+        "wires": {
+            name: {"width": float(wire.min_width), "space": float(wire.min_space), "area": float(wire.min_area or 0)}
+            for name, wire in wires.items()
+        },
+        "cuts": {
+            name: {
+                "below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.wires[level])),
+                "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.wires[level + 1])),
+            }
+            for name, (cut, level) in cuts.items()
+        },
+    }
 
 
 def _of(layers, enclosures, wire):
@@ -101,6 +138,7 @@ def _area(cell):
 
 def _coriolis(folder, description, library, known):
     from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
+
     spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
     export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
     package = folder / "exported"
@@ -119,12 +157,15 @@ def narrowed(text, known, primitives):
     begin = text.index(f"metal = tech.getLayer('{wire.name}')")
     head, gauge = text[:begin], text[begin:]
     around = f"u({cut.enclosure_um})"
-    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, ({around}, {around}))",
-                                gauge, count=1)
-    gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge,
-                            count=1)
-    head, pads = with_short_pads(head, known.wires[-2].name, known.wires[-1].name, cut,
-                                  float(primitives[known.wires[-2].name].min_area or 0))
+    gauge, enclosures = re.subn(
+        r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, ({around}, {around}))", gauge, count=1
+    )
+    gauge, tracks = re.subn(
+        r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge, count=1
+    )
+    head, pads = with_short_pads(
+        head, known.wires[-2].name, known.wires[-1].name, cut, float(primitives[known.wires[-2].name].min_area or 0)
+    )
     if not enclosures or not tracks or not pads:
         raise StepError(f"library: PDKMaster's export has no gauge of {wire.name} that could be narrowed")
     return head + gauge
@@ -134,29 +175,37 @@ def with_short_pads(text, below, above, cut, area):
     """(the export, whether it has them) with the pads of the wire ``below`` at cuts to the highest, ``above``, only as
     long as the least ``area`` (um2) asks: PDKMaster's are 1.18 um long in SKY130, and two of them on one track are too
     near where they lie two tracks of the highest wire apart."""
+
     def shorter(match):
         long, wide = float(match[2]), float(match[3])
         least = area / (cut.size_um + 2 * wide) - cut.size_um
         needed = max(cut.enclosure_um, math.ceil(least / 2 / GRID_UM - 1e-9) * GRID_UM)
         return f"{match[1]}u({min(long, needed):g}), u({wide:g})"
-    pattern = (rf"(via = tech\.getLayer\('{below}_{cut.name}_{above}'\)\n\s+setEnclosures\(via, metal, \()"
-               r"u\(([\d.]+)\), u\(([\d.]+)\)")
+
+    pattern = (
+        rf"(via = tech\.getLayer\('{below}_{cut.name}_{above}'\)\n\s+setEnclosures\(via, metal, \()"
+        r"u\(([\d.]+)\), u\(([\d.]+)\)"
+    )
     return re.subn(pattern, shorter, text, count=1)
 
 
 def _klayout(outputs, description, package, library):
     from pdkmaster.io.klayout import FileExporter, export2db
     from pdkmaster.io.spice import SpiceNetlistFactory
+
     devices = package.prims_spiceparams
     decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
     # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide wires farther
     outputs["drc"].write_text(decks["drc"].replace(", Projection)", ", projection)"))
     outputs["lvs"].write_text(decks["lvs"])
-    write_gds(export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False, add_pin_label=True),
-              outputs["gds"])
+    write_gds(
+        export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False, add_pin_label=True),
+        outputs["gds"],
+    )
     netlists = SpiceNetlistFactory(params=devices)
-    outputs["spice"].write_text(transistors("".join(netlists.export_circuit(cell.circuit) for cell in library.cells
-                                                    if cell.name != "Gallery")))
+    outputs["spice"].write_text(
+        transistors("".join(netlists.export_circuit(cell.circuit) for cell in library.cells if cell.name != "Gallery"))
+    )
 
 
 def transistors(spice):
@@ -165,4 +214,5 @@ def transistors(spice):
 
     def device(match):
         return match[0] if match[2] in cells else f"M{match[1]}{match[2]}{match[3]}"
+
     return re.sub(r"(?m)^X(\S+ (?:\S+ ){4})(\w+)((?: \w+=\S+)+)$", device, spice)

@@ -3,11 +3,11 @@
 import re
 from dataclasses import dataclass
 
-from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
+from platforms.coriolis import process
 
-from .. import netlist as netlist_module
-from ..netlist import SUPPLIES, Netlist
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import SUPPLIES, Netlist
 from . import klayout_decks
 from .klayout_decks import run_deck
 
@@ -27,8 +27,7 @@ class Lvs(Step):
     """
 
     name = "lvs"
-    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "place_route.netlist",
-              "deck": "library.lvs"}
+    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "place_route.netlist", "deck": "library.lvs"}
     outputs = {"report": "lvs.lvsdb", "deck": "ports.lvs"}
     Parameters = LvsParameters
     metrics = {"lvs_match": ""}
@@ -40,9 +39,16 @@ class Lvs(Step):
         deck = hierarchical(inputs["deck"].read_text(), known.active)
         outputs["deck"].write_text(with_ports(deck, Netlist.read(inputs["netlist"])))
         log = outputs["report"].with_suffix(".log")
-        run_deck(outputs["deck"], {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "",
-                                   "SPICE_FILE": inputs["spice"].resolve(),
-                                   "REPORT_FILE": outputs["report"].resolve()}, log)
+        run_deck(
+            outputs["deck"],
+            {
+                "SOURCE_FILE": inputs["gds"].resolve(),
+                "CELL_NAME": "",
+                "SPICE_FILE": inputs["spice"].resolve(),
+                "REPORT_FILE": outputs["report"].resolve(),
+            },
+            log,
+        )
         said = log.read_text()
         if not outputs["report"].exists() or ("LVS OK" in said) == ("LVS Failed" in said):
             raise StepError(f"lvs: KLayout gave no verdict: {said.strip().splitlines()[-1:]}")
@@ -55,8 +61,11 @@ def hierarchical(deck, active):
     The substrate must then be in every cell and not around all of them: it is where something active lies on it, and
     one net everywhere, as the wafer is.
     """
-    changes = ((r"^flat$", "deep"), (r"^_wafer = extent.*$", f"_wafer = input{active}"),
-               (r"^connect\((substrate__\w+), _wafer\)$", r'connect_global(\1, "SUBSTRATE")'))
+    changes = (
+        (r"^flat$", "deep"),
+        (r"^_wafer = extent.*$", f"_wafer = input{active}"),
+        (r"^connect\((substrate__\w+), _wafer\)$", r'connect_global(\1, "SUBSTRATE")'),
+    )
     for pattern, text in changes:
         deck, found = re.subn(pattern, text, deck, flags=re.M)
         if found != 1:

@@ -8,22 +8,23 @@ from collections import Counter
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from flow.gds import write_gds
-from flow.platforms.embedded import process
-from flow.simulate.process import finish
-from flow.steps import Step, StepError
+from base.gds import write_gds
+from base.paths import ROOT
+from base.steps import Step, StepError
+from base.tools import finish
 from models.parameters import check_int, check_real
+from platforms.coriolis import process
+from platforms.openroad import layer_names
 
 from ..coriolis.session import CLOCK
-from .. import macro as macro_module
-from .. import netlist as netlist_module
-from ..macro import Macro, layer_names
-from ..netlist import SUPPLIES, Instance, Netlist
+from ..geometry import macro as macro_module
+from ..geometry.macro import Macro
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import SUPPLIES, Instance, Netlist
 
-ROOT = Path(__file__).parents[3]
-OVER_UM = 0.4                   # that wires of a block may lie over its edge: half a wire on a track there
-MODEL = "talbot_block"          # Coriolis works in lower case
-BLOCK = "macro"                 # and a number: a block's cell in Coriolis
+OVER_UM = 0.4  # that wires of a block may lie over its edge: half a wire on a track there
+MODEL = "talbot_block"  # Coriolis works in lower case
+BLOCK = "macro"  # and a number: a block's cell in Coriolis
 PHASES = ("clock_tree", "placement", "power", "routing")
 
 
@@ -54,14 +55,31 @@ class PlaceRoute(Step):
     """Everything between a floorplan and a routed layout happens in one database, which Coriolis cannot store."""
 
     name = "place_route"
-    inputs = {"netlist": "synthesis.netlist", "floorplan": "floorplan.floorplan", "coriolis": "library.coriolis",
-              "geometry": "library.geometry", "scripts": "coriolis_scripts"}
+    inputs = {
+        "netlist": "synthesis.netlist",
+        "floorplan": "floorplan.floorplan",
+        "coriolis": "library.coriolis",
+        "geometry": "library.geometry",
+        "scripts": "coriolis_scripts",
+    }
     uses = (macro_module, netlist_module)
-    outputs = {"gds": "routed.gds", "netlist": "netlist.json", "placement": "placement.json",
-               "shapes": "shapes.json", "log": "coriolis.log"}
+    outputs = {
+        "gds": "routed.gds",
+        "netlist": "netlist.json",
+        "placement": "placement.json",
+        "shapes": "shapes.json",
+        "log": "coriolis.log",
+    }
     Parameters = PlaceRouteParameters
-    metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "vias": "", "clock_buffers": "",
-               **{f"{name}_s": "s" for name in PHASES}}
+    metrics = {
+        "routed": "",
+        "stopped": "",
+        "open_segments": "",
+        "wire_um": "um",
+        "vias": "",
+        "clock_buffers": "",
+        **{f"{name}_s": "s" for name in PHASES},
+    }
     tools = ("python coriolis-eda", "python klayout")
 
     def __init__(self, parameters):
@@ -86,17 +104,23 @@ class PlaceRoute(Step):
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
         wires = [wire for net in result["wires"].values() for wire in net]
         cells = sum(bool(instance.pins) for instance in final.instances)
-        return {"routed": result["routed"], "stopped": None, "open_segments": open_segments(outputs["log"].read_text()),
-                "wire_um": round(sum(wire[1] for wire in wires), 1),
-                "vias": sum(not wire[1] for wire in wires), "clock_buffers": cells - len(netlist.instances),
-                **{f"{name}_s": round(result["times"].get(name, 0), 2) for name in PHASES}}
+        return {
+            "routed": result["routed"],
+            "stopped": None,
+            "open_segments": open_segments(outputs["log"].read_text()),
+            "wire_um": round(sum(wire[1] for wire in wires), 1),
+            "vias": sum(not wire[1] for wire in wires),
+            "clock_buffers": cells - len(netlist.instances),
+            **{f"{name}_s": round(result["times"].get(name, 0), 2) for name in PHASES},
+        }
 
     def coriolis(self, work, blif, request, outputs):
         """Run it in the folder ``work``; returns its result (dict), {"stopped": its last words} if it gave up."""
         (work / f"{MODEL}.blif").write_text(blif)
         (work / "request.json").write_text(json.dumps(request))
-        done = finish([sys.executable, "-m", "flow.layout.coriolis", "request.json"], cwd=work,
-                      env={"PYTHONPATH": str(ROOT)})
+        done = finish(
+            [sys.executable, "-m", "flow.layout.coriolis", "request.json"], cwd=work, env={"PYTHONPATH": str(ROOT)}
+        )
         outputs["log"].write_text(done.stdout + done.stderr)
         if done.returncode or not (work / "result.json").exists():
             said = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
@@ -109,16 +133,24 @@ class PlaceRoute(Step):
         """What Coriolis is asked for."""
         p = self.parameters
         known, _ = process(p.pdk)
-        return {"cell": MODEL, "library": str(inputs["coriolis"].resolve()), "clock_tree": bool(p.clock),
-                **{name: plan[name] for name in ("width_um", "height_um", "tree")},
-                "macros": [self.macro(inputs, block, netlist, *blocks[block["instance"]], known)
-                           for block in plan["macros"]],
-                "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
-                "wires": [asdict(wire) for wire in known.wires], "cuts": [asdict(cut) for cut in known.cuts],
-                **{name: getattr(known, name) for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um",
-                                                           "pin_pitch_um")},
-                "over_um": OVER_UM, **{name: getattr(p, name) for name in ("effort", "density_variation",
-                                                       "strap_pitch_um", "events")}}
+        return {
+            "cell": MODEL,
+            "library": str(inputs["coriolis"].resolve()),
+            "clock_tree": bool(p.clock),
+            **{name: plan[name] for name in ("width_um", "height_um", "tree")},
+            "macros": [
+                self.macro(inputs, block, netlist, *blocks[block["instance"]], known) for block in plan["macros"]
+            ],
+            "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
+            "wires": [asdict(wire) for wire in known.wires],
+            "cuts": [asdict(cut) for cut in known.cuts],
+            **{
+                name: getattr(known, name)
+                for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
+            },
+            "over_um": OVER_UM,
+            **{name: getattr(p, name) for name in ("effort", "density_variation", "strap_pitch_um", "events")},
+        }
 
     def macro(self, inputs, block, netlist, name, pins, known):
         """A block laid out before, by its LEF, as Coriolis is told of it; its pins as [pin, whether it leads anywhere,
@@ -127,9 +159,12 @@ class PlaceRoute(Step):
         ends = Counter(net for instance in netlist.instances for net in instance.pins.values())
         ends.update(net for port in netlist.ports for net in port.bits())
         nets = next(instance.pins for instance in netlist.instances if instance.name == block["instance"])
-        return {"name": name, "straps": macro.straps,
-                **{key: block[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
-                "pins": [[pins[pin], ends[nets[pin]] > 1, *piece] for pin, piece in macro.pins.items()]}
+        return {
+            "name": name,
+            "straps": macro.straps,
+            **{key: block[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
+            "pins": [[pins[pin], ends[nets[pin]] > 1, *piece] for pin, piece in macro.pins.items()],
+        }
 
 
 def plain_names(netlist, clock):
@@ -142,14 +177,17 @@ def plain_names(netlist, clock):
 def plain_blocks(netlist, placed):
     """dict instance -> (cell, dict pin -> name) as Coriolis knows a block of the floorplan's list ``placed``."""
     found = {instance.name: instance for instance in netlist.instances}
-    return {block["instance"]: (f"{BLOCK}{k}", {pin: f"p{j}" for j, pin in enumerate(found[block["instance"]].pins)})
-            for k, block in enumerate(placed)}
+    return {
+        block["instance"]: (f"{BLOCK}{k}", {pin: f"p{j}" for j, pin in enumerate(found[block["instance"]].pins)})
+        for k, block in enumerate(placed)
+    }
 
 
 def make_solid(gds, blocks, known):
     """In the file ``gds``, make the cells of ``blocks`` (their entries for Coriolis) solid on all wires but the lowest,
     but for the wires at their pins: for who routes after Coriolis, there is no way through a block."""
     import klayout.db as db
+
     if not blocks:
         return
     layout = db.Layout()
@@ -198,9 +236,12 @@ def _number(name):
 def placement(names, result):
     """What reports and the extraction want to know of the layout, nets by their own names."""
     nets = {plain: net for net, plain in names.items()}
-    return {"straps": result["straps"], "pins": [[side, nets[net], at] for side, net, at in result["pins"]],
-            "instances": [[number, *rest[:4]] for number, rest in ((_number(i[0]), i[1:]) for i in result["instances"])],
-            "wires": {nets.get(net, f"cts_{net}"): wires for net, wires in result["wires"].items()}}
+    return {
+        "straps": result["straps"],
+        "pins": [[side, nets[net], at] for side, net, at in result["pins"]],
+        "instances": [[number, *rest[:4]] for number, rest in ((_number(i[0]), i[1:]) for i in result["instances"])],
+        "wires": {nets.get(net, f"cts_{net}"): wires for net, wires in result["wires"].items()},
+    }
 
 
 def open_segments(log):

@@ -6,27 +6,27 @@ from dataclasses import dataclass
 
 import joblib
 
-from flow.gds import write_gds
-from flow.platforms.embedded import process
-from flow.steps import Step
+from base.gds import write_gds
+from base.steps import Step
 from models.parameters import check_int
+from platforms.coriolis import process
 
-from .. import boxes as boxes_module
-from .. import netlist as netlist_module
-from ..mend import bargain as bargain_module
-from ..mend import board as board_module
-from ..mend import marks as marks_module
-from ..mend import nets, search, window, wiring
-from ..mend.bargain import bargain
-from ..mend.board import Board
-from ..mend.marks import Marks, marks, marks_of, shared_out
-from ..mend.wiring import Wiring
-from ..netlist import Netlist
+from ..geometry import boxes as boxes_module
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import Netlist
+from ..reroute import board as board_module
+from ..reroute import marks as marks_module
+from ..reroute import negotiate as bargain_module
+from ..reroute import nets, search, window, wiring
+from ..reroute.board import Board
+from ..reroute.marks import Marks, marks, marks_of, shared_out
+from ..reroute.negotiate import bargain
+from ..reroute.wiring import Wiring
 from . import antenna
 from .place_route import plain_names
 
-JOBS = 2            # in which the router's layout is looked at
-ROUNDS = 5          # who is moved for one net's sake may get an antenna by it
+JOBS = 2  # in which the router's layout is looked at
+ROUNDS = 5  # who is moved for one net's sake may get an antenna by it
 
 
 @dataclass(frozen=True)
@@ -47,18 +47,35 @@ class Mend(Step):
     were in the way. Wires of the clock's tree are left alone, but for the one from the port to its root."""
 
     name = "mend"
-    inputs = {"gds": "place_route.gds", "placement": "place_route.placement", "shapes": "place_route.shapes",
-              "log": "place_route.log", "synthesized": "synthesis.netlist", "rules": "library.rules",
-              "geometry": "library.geometry"}
+    inputs = {
+        "gds": "place_route.gds",
+        "placement": "place_route.placement",
+        "shapes": "place_route.shapes",
+        "log": "place_route.log",
+        "synthesized": "synthesis.netlist",
+        "rules": "library.rules",
+        "geometry": "library.geometry",
+    }
     outputs = {"gds": "mended.gds", "placement": "placement.json"}
     Parameters = MendParameters
     metrics = {"open_nets": "", "mended": "", "hopped": "", "parted": "", "moved": "", "wire_um": "um"}
-    uses = (antenna, bargain_module, boxes_module, board_module, marks_module, nets, search, window, wiring,
-            netlist_module)
+    uses = (
+        antenna,
+        bargain_module,
+        boxes_module,
+        board_module,
+        marks_module,
+        nets,
+        search,
+        window,
+        wiring,
+        netlist_module,
+    )
     tools = ("python klayout",)
 
     def run(self, inputs, outputs):
         import klayout.db as db
+
         p, (known, _) = self.parameters, process(self.parameters.pdk)
         placement = json.loads(inputs["placement"].read_text())
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
@@ -72,14 +89,18 @@ class Mend(Step):
         pins = {net: shapes[net]["pins"] for net in order}
         found, near, hopping = negotiated(board, pins, left, p.most, inputs["gds"], known)
         made = found.made if found else {}
-        placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(rules, shapes)
-                               for net, shapes in made.items()}
+        placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(rules, shapes) for net, shapes in made.items()}
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         mended, hopped = set(made) & set(left), set(made) & hopping
-        return {"open_nets": len(found.open if found else left), "mended": len(mended), "hopped": len(hopped - mended),
-                "parted": len(near - mended - hopped), "moved": len(set(made) - mended - hopped - near),
-                "wire_um": round(sum(wire[1] for net in placement["wires"].values() for wire in net), 1)}
+        return {
+            "open_nets": len(found.open if found else left),
+            "mended": len(mended),
+            "hopped": len(hopped - mended),
+            "parted": len(near - mended - hopped),
+            "moved": len(set(made) - mended - hopped - near),
+            "wire_um": round(sum(wire[1] for net in placement["wires"].values() for wire in net), 1),
+        }
 
 
 def open_nets(log):
@@ -96,7 +117,8 @@ def negotiated(board, pins, left, most, gds, known):
         return None, close, charged
     before, shorted = dict(board.there), board.beside(left)
     first = joblib.Parallel(n_jobs=JOBS, return_as="generator")(
-        [joblib.delayed(marks_of)(gds, board.wiring, known, levels) for levels in shared_out(board.wiring, JOBS)])
+        [joblib.delayed(marks_of)(gds, board.wiring, known, levels) for levels in shared_out(board.wiring, JOBS)]
+    )
     found = bargain(board, pins, left)
     rest = [net for net in board.nets if net not in {*found.made, *shorted}]
     asked = sum(first, Marks((), ())).nets(board, before, rest)
@@ -114,8 +136,11 @@ def negotiated(board, pins, left, most, gds, known):
 
 def _wires(rules, shapes):
     """[[layer, length_um, width_um], ...] of a net, a cut with length 0: what the extraction reads."""
-    made = [[rules.layers[level].name, nm / 1000, rules.layers[level].width / 1000]
-            for level, nm in shapes.lengths.items()]
-    return made + [["_".join((rules.layers[level].name, rules.cuts[level].name, rules.layers[level + 1].name)), 0, 0]
-                   for level, middles in shapes.cuts.items() for _ in middles]
-
+    made = [
+        [rules.layers[level].name, nm / 1000, rules.layers[level].width / 1000] for level, nm in shapes.lengths.items()
+    ]
+    return made + [
+        ["_".join((rules.layers[level].name, rules.cuts[level].name, rules.layers[level + 1].name)), 0, 0]
+        for level, middles in shapes.cuts.items()
+        for _ in middles
+    ]

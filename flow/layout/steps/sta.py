@@ -3,10 +3,10 @@
 import re
 from dataclasses import dataclass
 
-from flow.steps import Step, StepError
+from base.steps import Step, StepError
 
-from .. import opensta as opensta_module
-from ..opensta import opensta
+from ..timing import opensta as opensta_module
+from ..timing.opensta import opensta
 
 SCRIPT = """
 read_liberty {liberty}
@@ -53,8 +53,11 @@ class Sta(Step):
         said = opensta(outputs["report"].with_name("sta.log"), SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
         outputs["report"].write_text(said)
         worst = worst_slacks(said, "sta")
-        return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4),
-                "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2)}
+        return {
+            "wns_ns": round(worst["setup"], 4),
+            "whs_ns": round(worst["hold"], 4),
+            "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2),
+        }
 
 
 def worst_slacks(said, step):

@@ -4,13 +4,13 @@ them would see it: beside `sta`, which sees all of their cells and wires."""
 import json
 from dataclasses import dataclass
 
-from flow.platforms.embedded import process
-from flow.steps import Step
+from base.steps import Step
+from platforms.coriolis import process
 
-from .. import netlist as netlist_module
-from .. import opensta as opensta_module
-from ..netlist import Netlist
-from ..opensta import opensta
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import Netlist
+from ..timing import opensta as opensta_module
+from ..timing.opensta import opensta
 from . import extraction, sta
 from .extraction import parasitics, spef
 from .sta import SCRIPT, worst_slacks
@@ -40,8 +40,11 @@ class StaBlocks(Step):
         super().__init__(parameters)
         corner = parameters.corner
         self.name = f"sta_blocks_{corner}"
-        self.inputs = self.inputs | {"liberty": f"timing.{corner}"} | {module: f"macro.{module}.{corner}"
-                                                                       for module in parameters.macros}
+        self.inputs = (
+            self.inputs
+            | {"liberty": f"timing.{corner}"}
+            | {module: f"macro.{module}.{corner}" for module in parameters.macros}
+        )
 
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["report"].parent
@@ -50,8 +53,9 @@ class StaBlocks(Step):
         there = {net for instance in netlist.instances for net in instance.pins.values()}
         files = {name: folder / f"{name}.log" for name in ("verilog", "spef", "sdf")}
         files["verilog"].write_text(netlist.verilog())
-        files["spef"].write_text(spef(netlist, {net: parasitics(parts, known) for net, parts in wires.items()
-                                                if net in there}))
+        files["spef"].write_text(
+            spef(netlist, {net: parasitics(parts, known) for net, parts in wires.items() if net in there})
+        )
         libraries = "\nread_liberty ".join(str(inputs[name]) for name in ("liberty", *p.macros))
         said = opensta(folder / "sta.log", SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files))
         outputs["report"].write_text(said)

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
+from base.paths import ROOT
+from base.steps import Step, StepError
+from base.tools import ToolError, finish, run
 from flow.simulate import icarus
 from flow.simulate.icarus import icarus_program
-from flow.simulate.process import ToolError, finish, run
-from flow.steps import Step, StepError
 
 from .gate_frames import TAPS
 
-ROOT = Path(__file__).parents[3]
 CHIP = "AspChip"
 TAP = """module Tap;
   integer file;
@@ -31,8 +31,8 @@ TAP = """module Tap;
   end
 endmodule
 """
-OF_A_TRACE = "import sys; from verif.replay import load; print(load(sys.argv[1]).verilog())"
-SCENE, SIZE = "motorcycle", (12, 18)        # of `make sim`'s own scene; pixels of the chip's array
+OF_A_TRACE = "import sys; from rtl.replay import load; print(load(sys.argv[1]).verilog())"
+SCENE, SIZE = "motorcycle", (12, 18)  # of `make sim`'s own scene; pixels of the chip's array
 
 
 @dataclass(frozen=True)
@@ -70,8 +70,9 @@ class Stimulus(Step):
         top = self.parameters.top
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
-            run([sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options],
-                cwd=ROOT)
+            run(
+                [sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options], cwd=ROOT
+            )
             chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
             if set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])
@@ -93,16 +94,23 @@ def in_frame(parameters, folder, trace):
     from flow.frame.job import expose, see
     from flow.frame.request import request
     from models.digital.chip import golden_frame
+
     design = folder / "hierarchy.json"
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
     top = parameters.top
     path = instance_of(tree, CHIP, top)
-    ports = [{"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
-             for name, port in tree[next(name for name in tree if name.lstrip("\\") == top)]["ports"].items()
-             if name != "clk"]
-    names = {out: ", ".join(".".join(("Clock.bench.chip", *path, port["path"]))
-                            for port in reversed(ports) if port["output"] == out) for out in (False, True)}
+    ports = [
+        {"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
+        for name, port in tree[next(name for name in tree if name.lstrip("\\") == top)]["ports"].items()
+        if name != "clk"
+    ]
+    names = {
+        out: ", ".join(
+            ".".join(("Clock.bench.chip", *path, port["path"])) for port in reversed(ports) if port["output"] == out
+        )
+        for out in (False, True)
+    }
     (folder / "tap.v").write_text(TAP.format(inputs=names[False], outputs=names[True]))
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
     asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True, window=window)
@@ -111,15 +119,22 @@ def in_frame(parameters, folder, trace):
     scene, todo = see(asked)
     exposed = expose(asked, scene, todo)
     program = icarus_program(build_of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
-    seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end,
-                    more=(f"+tap={folder / 'tap.trace'}",))
+    seen = simulate(
+        program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=(f"+tap={folder / 'tap.trace'}",)
+    )
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
         raise StepError("stimulus: the chip's frame is not the golden chip's")
     lines = [line for line in (folder / "tap.trace").read_text().splitlines() if "x" not in line.partition(" ")[2]]
     lines[0] = "1" + lines[0][1:]
     trace.write_text("\n".join(lines) + "\n")
-    return {"source": "frame", "scene": SCENE, "instance": ".".join(path), "ports": ports, "cycles": len(lines),
-            "results": results(lines, ports)}
+    return {
+        "source": "frame",
+        "scene": SCENE,
+        "instance": ".".join(path),
+        "ports": ports,
+        "cycles": len(lines),
+        "results": results(lines, ports),
+    }
 
 
 def middle(full, tiles):
@@ -154,15 +169,19 @@ def instance_of(tree, module, wanted):
 
 def in_tests(top, own, folder, trace):
     """Record the tests of the block; the trace whose Verilog is ``own`` goes to the file ``trace``: head."""
-    done = finish([sys.executable, "-m", "verif.replay", "record", top, "--out", folder / "traces"], cwd=ROOT)
+    done = finish([sys.executable, "-m", "rtl.replay", "record", top, "--out", folder / "traces"], cwd=ROOT)
     if done.returncode:
-        raise ToolError(f"verif.replay: {done.stderr.strip().splitlines()[-1]}")
+        raise ToolError(f"rtl.replay: {done.stderr.strip().splitlines()[-1]}")
     heads = sorted((folder / "traces").glob("*.json"), key=lambda path: -path.with_suffix(".trace").stat().st_size)
     for path in heads:
         text = run([sys.executable, "-c", OF_A_TRACE, path], cwd=ROOT)
         if modules(text) == modules(own):
             trace.write_bytes(path.with_suffix(".trace").read_bytes())
             head = json.loads(path.read_text())
-            return {"source": "tests", "ports": head["ports"], "cycles": head["cycles"],
-                    "results": results(trace.read_text().splitlines(), head["ports"])}
+            return {
+                "source": "tests",
+                "ports": head["ports"],
+                "cycles": head["cycles"],
+                "results": results(trace.read_text().splitlines(), head["ports"]),
+            }
     raise StepError(f"stimulus: no test of {top} builds it with the parameters that are laid out")

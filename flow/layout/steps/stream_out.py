@@ -3,13 +3,13 @@
 import json
 from dataclasses import dataclass
 
-from flow.gds import write_gds
-from flow.platforms.embedded import process
-from flow.steps import Step, StepError
+from base.gds import write_gds
+from base.steps import Step, StepError
+from platforms.coriolis import process
 
-from .. import area, notch, trim
-from .. import netlist as netlist_module
-from ..netlist import SUPPLIES, Netlist
+from ..geometry import area, notch, trim
+from ..netlist import netlist as netlist_module
+from ..netlist.netlist import SUPPLIES, Netlist
 from .place_route import plain_names
 
 
@@ -27,12 +27,25 @@ class StreamOut(Step):
     the SPICE a block is a subcircuit."""
 
     name = "stream_out"
-    inputs = {"gds": "mend.gds", "netlist": "place_route.netlist", "synthesized": "synthesis.netlist",
-              "cells": "library.spice", "rules": "library.rules", "geometry": "library.geometry"}
+    inputs = {
+        "gds": "mend.gds",
+        "netlist": "place_route.netlist",
+        "synthesized": "synthesis.netlist",
+        "cells": "library.spice",
+        "rules": "library.rules",
+        "geometry": "library.geometry",
+    }
     outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
     Parameters = StreamOutParameters
-    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", "instances": "", "trimmed": "", "grown": "",
-               "notches": ""}
+    metrics = {
+        "width_um": "um",
+        "height_um": "um",
+        "area_um2": "um2",
+        "instances": "",
+        "trimmed": "",
+        "grown": "",
+        "notches": "",
+    }
     uses = (area, netlist_module, notch, trim)
     tools = ("python klayout",)
 
@@ -52,8 +65,12 @@ class StreamOut(Step):
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
         outputs["verilog"].write_text(flat.verilog())
         outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
-        return {"width_um": round(box.width(), 3), "height_um": round(box.height(), 3),
-                "area_um2": round(box.width() * box.height(), 2), "instances": len(flat.instances)} | changed
+        return {
+            "width_um": round(box.width(), 3),
+            "height_um": round(box.height(), 3),
+            "area_um2": round(box.width() * box.height(), 2),
+            "instances": len(flat.instances),
+        } | changed
 
 
 def relabel(source, target, top_name, names, ports, known, rules):
@@ -65,9 +82,10 @@ def relabel(source, target, top_name, names, ports, known, rules):
     were, and fill may come there. Coriolis's blockages go. Raises StepError when a port has no label.
     """
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(source))
-    top, = layout.top_cells()
+    (top,) = layout.top_cells()
     top.name = top_name
     found, edges = {}, top.bbox()
     for wire in known.wires:
@@ -81,7 +99,7 @@ def relabel(source, target, top_name, names, ports, known, rules):
                 found.setdefault(net, []).append((_from_edge(edges, shape.text), (label, pin), shape.text.trans))
         for shape in labels:
             shape.delete()
-        if wire.datatype:           # else it is where the wires themselves are
+        if wire.datatype:  # else it is where the wires themselves are
             texts.clear()
     if ports - set(found):
         raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - set(found))[:5])}")
@@ -95,9 +113,11 @@ def relabel(source, target, top_name, names, ports, known, rules):
         _clear_pins(top.shapes(layer), places)
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
         layout.clear_layer(layout.layer(info))
-    changed = {"notches": notch.fill(layout, top, known.wires, rules["space_um"]),
-               "trimmed": trim.trim(layout, top, known.wires, rules["space_um"]),
-               "grown": area.grow(layout, top, known.wires, rules["wires"])}
+    changed = {
+        "notches": notch.fill(layout, top, known.wires, rules["space_um"]),
+        "trimmed": trim.trim(layout, top, known.wires, rules["space_um"]),
+        "grown": area.grow(layout, top, known.wires, rules["wires"]),
+    }
     write_gds(layout, target)
     return top.dbbox(), changed
 
@@ -106,9 +126,12 @@ def _clear_pins(shapes, places):
     """Leave of the boxes ``shapes`` of a pins' layer, for each of ``places``, the least one around it. Coriolis marks all
     wires of a port's net as pins, also where `mend` has moved them away, and decks take a pin for metal."""
     import klayout.db as db
+
     boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]
-    least = [min((box for box in boxes if box.contains(db.Point() + place)), key=db.Box.area, default=None)
-             for place in places]
+    least = [
+        min((box for box in boxes if box.contains(db.Point() + place)), key=db.Box.area, default=None)
+        for place in places
+    ]
     for shape in list(shapes.each(db.Shapes.SAll - db.Shapes.STexts)):
         shape.delete()
     for box in filter(None, least):

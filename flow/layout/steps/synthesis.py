@@ -3,20 +3,20 @@
 import re
 from dataclasses import dataclass, field
 
-from flow.simulate.process import run
-from flow.steps import Step
+from base.steps import Step
+from base.tools import run
 from models.parameters import check_int, check_real
 
-from .. import buffering as buffering_module
-from .. import netlist as netlist_module
-from ..buffering import buffered, driven
-from ..netlist import Netlist, is_register, register_names
+from ..netlist import buffering as buffering_module
+from ..netlist import netlist as netlist_module
+from ..netlist.buffering import buffered, driven
+from ..netlist.netlist import Netlist, is_register, register_names
 from . import floorplan
 from .floorplan import pins
 
 BUFFER, DRIVER = ("buf_x1", "i", "q"), ("buf_x4", "i", "q")
-BARE_PF = 0.1           # load of an output above which it has a buffer of its own
-AIM = 0.25              # share of the period that the mapper is asked for: it knows one corner and no wires
+BARE_PF = 0.1  # load of an output above which it has a buffer of its own
+AIM = 0.25  # share of the period that the mapper is asked for: it knows one corner and no wires
 SCRIPT = """
 read_verilog -sv {rtl}
 {blocks}
@@ -76,17 +76,28 @@ class Synthesis(Step):
         p, folder = self.parameters, outputs["netlist"].parent
         files = {name: folder / f"{name}.log" for name in ("mapping", "json", "registers", "script")}
         aim = AIM * p.period_ns * 1000
-        limit = [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {aim:.0f}",
-                 f"dnsize -D {aim:.0f}"] if p.fan_out else []
-        files["mapping"].write_text("\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo",
-                                               *limit, "print_stats"]) + "\n")
-        files["script"].write_text(SCRIPT.format(
-            rtl=inputs["rtl"], top=p.top, blocks="\n".join(f"blackbox {name}" for name in p.macros),
-            liberty=inputs["liberty"],
-            timing=inputs.get("timing", inputs["liberty"]), aim=aim, **files))
+        limit = (
+            [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {aim:.0f}", f"dnsize -D {aim:.0f}"] if p.fan_out else []
+        )
+        files["mapping"].write_text(
+            "\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo", *limit, "print_stats"])
+            + "\n"
+        )
+        files["script"].write_text(
+            SCRIPT.format(
+                rtl=inputs["rtl"],
+                top=p.top,
+                blocks="\n".join(f"blackbox {name}" for name in p.macros),
+                liberty=inputs["liberty"],
+                timing=inputs.get("timing", inputs["liberty"]),
+                aim=aim,
+                **files,
+            )
+        )
         run(["yosys", "-q", "-s", files["script"]])
-        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros,
-                                     register_names(files["registers"], p.top)).apart(p.macros, BUFFER)
+        netlist = Netlist.from_yosys(
+            files["json"], p.top, BUFFER, p.macros, register_names(files["registers"], p.top)
+        ).apart(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
             netlist = driven(netlist, DRIVER)
         if p.fan_out:
@@ -97,8 +108,11 @@ class Synthesis(Step):
         area = sum(float(areas[i.cell]) for i in netlist.instances if i.cell not in p.macros)
         for name in ("json", "registers"):
             files[name].unlink()
-        return {"cells": len(netlist.instances), "cell_area_um2": round(area, 2),
-                "flip_flops": sum(is_register(i.cell) for i in netlist.instances)}
+        return {
+            "cells": len(netlist.instances),
+            "cell_area_um2": round(area, 2),
+            "flip_flops": sum(is_register(i.cell) for i in netlist.instances),
+        }
 
 
 class TimedSynthesis(Synthesis):

@@ -5,12 +5,12 @@ import json
 import re
 from dataclasses import dataclass, field
 
-from flow import jobs
-from flow.platforms.embedded import modules, process
-from flow.steps import Step, StepError
+from base import jobs
+from base.steps import Step, StepError
+from platforms.coriolis import modules, process
 
 NS = 1e-9
-MEASURES = "characterize", "spice", "netlist", "liberty", "extract"         # of cells/: whose text decides the result
+MEASURES = "characterize", "spice", "netlist", "liberty", "extract"  # of cells/: whose text decides the result
 
 
 @dataclass(frozen=True)
@@ -31,8 +31,12 @@ class Timing(Step):
     """Each cell with its stray capacitances in ngspice, as in `make cells`; a cell measured once is kept by itself."""
 
     name = "timing"
-    inputs = {"gds": "library.gds", "areas": "library.areas", "functions": "library.liberty",
-              **{part: f"cells.{part}" for part in MEASURES}}
+    inputs = {
+        "gds": "library.gds",
+        "areas": "library.areas",
+        "functions": "library.liberty",
+        **{part: f"cells.{part}" for part in MEASURES},
+    }
     Parameters = TimingParameters
     metrics = {"cells": "", "simulations": "", "failed": ""}
     shared = True
@@ -43,36 +47,63 @@ class Timing(Step):
         self.outputs = {corner: f"{corner}.lib" for corner in parameters.corners}
 
     def run(self, inputs, outputs):
+        from base.liberty import write
         from cells.characterize.conditions import Conditions
         from cells.corner import Corner
-        from cells.liberty import build, write
+        from cells.liberty import build
         from cells.run import cell_of, job
+
         p = self.parameters
         models, layers = modules(p.pdk)
         sources = found(inputs, layers)
-        conditions = [Conditions(Corner.parse(corner), p.models, extra=0, loads=p.loads,
-                                 slews=tuple(NS * slew for slew in p.slews_ns),
-                                 constraint_slews=tuple(NS * slew for slew in p.constraint_slews_ns))
-                      for corner in p.corners]
+        conditions = [
+            Conditions(
+                Corner.parse(corner),
+                p.models,
+                extra=0,
+                loads=p.loads,
+                slews=tuple(NS * slew for slew in p.slews_ns),
+                constraint_slews=tuple(NS * slew for slew in p.constraint_slews_ns),
+            )
+            for corner in p.corners
+        ]
         todo = [(source, condition) for condition in conditions for source in sources]
-        todo.sort(key=lambda pair: -len(pair[0].netlist))               # what takes longest goes first
+        todo.sort(key=lambda pair: -len(pair[0].netlist))  # what takes longest goes first
         store = next(iter(outputs.values())).parents[1] / "cells"
-        measured = dict(zip(((s.name, c.corner.name) for s, c in todo),
-                            jobs.run([job(source, condition, models) for source, condition in todo], store, "cells"),
-                            strict=True))
-        failed = [f"{name} {corner}: {f['what']}: {f['why']}" for (name, corner), made in measured.items()
-                  for f in made["failed"]]
+        measured = dict(
+            zip(
+                ((s.name, c.corner.name) for s, c in todo),
+                jobs.run([job(source, condition, models) for source, condition in todo], store, "cells"),
+                strict=True,
+            )
+        )
+        failed = [
+            f"{name} {corner}: {f['what']}: {f['why']}"
+            for (name, corner), made in measured.items()
+            for f in made["failed"]
+        ]
         if failed:
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
         cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
-        constants = {name: ({pin: int(level)}, areas[name]) for name, pin, level in
-                     re.findall(r'cell\((\w+)\) \{[^\n]*\n +pin\((\w+)\) \{ direction : output; function : "([01])"',
-                                inputs["functions"].read_text())}
+        constants = {
+            name: ({pin: int(level)}, areas[name])
+            for name, pin, level in re.findall(
+                r'cell\((\w+)\) \{[^\n]*\n +pin\((\w+)\) \{ direction : output; function : "([01])"',
+                inputs["functions"].read_text(),
+            )
+        }
         for condition in conditions:
             corner = condition.corner.name
-            tree = build.library(f"{p.pdk}__{corner}", condition, [
-                (cell, measured[source.name, corner], source.area)
-                for cell, source in zip(cells, sources, strict=True)], models, constants)
+            tree = build.library(
+                f"{p.pdk}__{corner}",
+                condition,
+                [
+                    (cell, measured[source.name, corner], source.area)
+                    for cell, source in zip(cells, sources, strict=True)
+                ],
+                models,
+                constants,
+            )
             outputs[corner].write_text(write.text(tree) + "\n")
         return {"cells": len(cells), "simulations": sum(made["simulations"] for made in measured.values()), "failed": 0}
 
@@ -81,7 +112,8 @@ def found(inputs, layers):
     """cells.sources.Source of every cell with an input that the library's functions name."""
     from cells.extract import extract
     from cells.sources import Source
+
     areas = json.loads(inputs["areas"].read_text())
     groups = re.split(r"(?m)^ cell\(", inputs["functions"].read_text())[1:]
-    names = [group[:group.index(")")] for group in groups if "direction : input" in group]
+    names = [group[: group.index(")")] for group in groups if "direction : input" in group]
     return [Source(name, extract(inputs["gds"], name, layers), areas[name]) for name in names]

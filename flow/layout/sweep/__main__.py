@@ -6,30 +6,39 @@ import sys
 from dataclasses import asdict
 from pathlib import Path
 
-from flow.charts import save
-from flow.files import check_folder, staged
-from flow.jobs import Job, run
+from base.charts import save
+from base.files import check_folder, staged
+from base.jobs import Job, run
+from base.paths import ROOT
+from base.steps import StepError
+from base.tools import ToolError
 from flow.layout.design import flat_design
-from flow.simulate.process import ToolError
-from flow.steps import StepError
 from models.parameters import ParameterError
 
 from .plots import effort_plot, pareto_plot
 from .points import candidates, effort_point, variant_point
 
-ROOT = Path(__file__).parents[3]
 EFFORTS, VARIATIONS, UTILIZATIONS = (1, 2, 3), (0.05, 0.15, 0.3), (0.76, 0.84, 0.92)
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="python -m flow.layout.sweep", description=__doc__.splitlines()[0])
     parser.add_argument("what", choices=("pareto", "effort"), help="variants of the divider; effort of the placer")
-    parser.add_argument("--liberty", type=Path, action="append", required=True,
-                        help="characterized cells at a corner (again for further corners)")
+    parser.add_argument(
+        "--liberty",
+        type=Path,
+        action="append",
+        required=True,
+        help="characterized cells at a corner (again for further corners)",
+    )
     parser.add_argument("--only", action="append", help="of pareto: names of points, radix4_8 (again for more)")
     parser.add_argument("--design", default="quad_divider", help="of effort (%(default)s)")
-    parser.add_argument("--utilization", type=float, action="append",
-                        help=f"of effort (again for more; {', '.join(map(str, UTILIZATIONS))})")
+    parser.add_argument(
+        "--utilization",
+        type=float,
+        action="append",
+        help=f"of effort (again for more; {', '.join(map(str, UTILIZATIONS))})",
+    )
     parser.add_argument("--workers", type=int, default=1, help="layouts at a time, -1 for all cores (%(default)s)")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout" / "sweep", help="folder (%(default)s)")
     return parser
@@ -42,16 +51,26 @@ def jobs(options):
     inputs = (*options.liberty, *(path for path in code if "test" not in path.parts))
     if options.what == "effort":
         chosen = flat_design(options.design)
-        return [Job(f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}", effort_point,
-                    (chosen, liberty, str(options.out), effort, variation, utilization), inputs)
-                for utilization in options.utilization or UTILIZATIONS
-                for effort in EFFORTS for variation in VARIATIONS]
+        return [
+            Job(
+                f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}",
+                effort_point,
+                (chosen, liberty, str(options.out), effort, variation, utilization),
+                inputs,
+            )
+            for utilization in options.utilization or UTILIZATIONS
+            for effort in EFFORTS
+            for variation in VARIATIONS
+        ]
     found = {made.name: made for made in candidates()}
     for name in options.only or ():
         if name not in found:
             raise ParameterError(f"only = {name!r}: must be one of {', '.join(found)}")
-    return [Job(name, variant_point, (made, liberty, str(options.out)), (*inputs, json.dumps(asdict(made))))
-            for name, made in found.items() if not options.only or name in options.only]
+    return [
+        Job(name, variant_point, (made, liberty, str(options.out)), (*inputs, json.dumps(asdict(made))))
+        for name, made in found.items()
+        if not options.only or name in options.only
+    ]
 
 
 def main(argv=None):

@@ -4,16 +4,25 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatter
 
-from flow.charts import COLOURS
+from base.charts import COLOURS
 
 QUALITY = ("area_um2", "area, um2"), ("wire_um", "wires, um"), ("wns_ns", "worst setup slack, ns")
-MARKS = {1: "o", 2: "s", 3: "^"}        # of an effort
+MARKS = {1: "o", 2: "s", 3: "^"}  # of an effort
 
 
 def front(points, small, large):
     """Points that no other beats in both: ``small`` not smaller and ``large`` not larger. Sorted by ``small``."""
-    best = [p for p in points if not any(q is not p and q[small] <= p[small] and q[large] >= p[large]
-                                         and (q[small], q[large]) != (p[small], p[large]) for q in points)]
+    best = [
+        p
+        for p in points
+        if not any(
+            q is not p
+            and q[small] <= p[small]
+            and q[large] >= p[large]
+            and (q[small], q[large]) != (p[small], p[large])
+            for q in points
+        )
+    ]
     return sorted(best, key=lambda p: p[small])
 
 
@@ -29,8 +38,9 @@ def pareto_plot(points):
             mine = [point for point in shown if point["variant"] == name]
             axes.plot([p["area_um2"] for p in mine], [p[key] for p in mine], "o", color=colour[name], label=name)
         for point in shown:
-            axes.annotate(point["bits"], (point["area_um2"], point[key]), fontsize=8, xytext=(5, 3),
-                          textcoords="offset points")
+            axes.annotate(
+                point["bits"], (point["area_um2"], point[key]), fontsize=8, xytext=(5, 3), textcoords="offset points"
+            )
         line = front(shown, "area_um2", "f_max_mhz" if axes is left else "results_uj")
         axes.plot([p["area_um2"] for p in line], [p[key] for p in line], color="0.6", linewidth=1, zorder=0)
         axes.set_xlabel("routed area, um2")
@@ -51,21 +61,40 @@ def effort_plot(points):
     for axes, (key, words) in zip(figure.subplots(1, 3), QUALITY, strict=True):
         for point in points:
             if not point["closed"]:
-                axes.plot(point["seconds"], 0, "x", color=colour[point["utilization"]],
-                          transform=axes.get_xaxis_transform(), clip_on=False)
+                axes.plot(
+                    point["seconds"],
+                    0,
+                    "x",
+                    color=colour[point["utilization"]],
+                    transform=axes.get_xaxis_transform(),
+                    clip_on=False,
+                )
         for (value, effort, share), same in alike(points, key).items():
             axes.plot([point["seconds"] for point in same], [value] * len(same), MARKS[effort], color=colour[share])
-            if key != "area_um2":           # which follows from the utilization
-                axes.annotate(", ".join(f"{point['variation']:g}" for point in same), (same[-1]["seconds"], value),
-                              fontsize=7, xytext=(6, -3), textcoords="offset points")
+            if key != "area_um2":  # which follows from the utilization
+                axes.annotate(
+                    ", ".join(f"{point['variation']:g}" for point in same),
+                    (same[-1]["seconds"], value),
+                    fontsize=7,
+                    xytext=(6, -3),
+                    textcoords="offset points",
+                )
         axes.set(xlabel="seconds of placing, routing and mending", ylabel=words)
         axes.margins(0.08)
-    marks = [Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")
-             for effort, mark in MARKS.items()]
-    marks += [Line2D([], [], linestyle="", marker="o", color=colour[share], label=f"utilization {share:g}")
-              for share in shares]
-    figure.legend(handles=[*marks, Line2D([], [], linestyle="", marker="x", color="0.5", label="did not close")],
-                  loc="outside upper center", ncols=len(marks) + 1, fontsize=8)
+    marks = [
+        Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")
+        for effort, mark in MARKS.items()
+    ]
+    marks += [
+        Line2D([], [], linestyle="", marker="o", color=colour[share], label=f"utilization {share:g}")
+        for share in shares
+    ]
+    figure.legend(
+        handles=[*marks, Line2D([], [], linestyle="", marker="x", color="0.5", label="did not close")],
+        loc="outside upper center",
+        ncols=len(marks) + 1,
+        fontsize=8,
+    )
     return figure
 
 

@@ -3,19 +3,22 @@
 from dataclasses import replace
 from pathlib import Path
 
+from base.steps import Runner
+from flow.layout.chain import Options, files, front, judged, layout, timed, tries
 from flow.layout.design import divider
-from flow.layout.embedded import Options, files, front, judged, layout, timed, tries
 from flow.layout.steps.extraction import Extraction, ExtractionParameters
-from flow.steps import Runner
 
 VARIANTS = ("radix2", "radix4", "pipelined", "cordic")
-WIDTHS = 4, 8, 12           # fraction bits; CORDIC has none
+WIDTHS = 4, 8, 12  # fraction bits; CORDIC has none
 
 
 def candidates():
     """Designs of the divider: every variant, and the dividing ones at every width."""
-    return [divider(f"{variant}_{bits}", variant, bits) for variant in VARIANTS
-            for bits in (WIDTHS if variant != "cordic" else (8,))]
+    return [
+        divider(f"{variant}_{bits}", variant, bits)
+        for variant in VARIANTS
+        for bits in (WIDTHS if variant != "cordic" else (8,))
+    ]
 
 
 def variant_point(design, liberty, out, pdk="sky130"):
@@ -27,18 +30,29 @@ def variant_point(design, liberty, out, pdk="sky130"):
     options = Options(pdk, design.utilization, tuple(map(Path, liberty)))
     runner = _runner(design, options, out)
     tried = layout(design, options, runner, _measured)
-    made = {"name": design.name, "variant": design.divider, "bits": design.n_frac, "tries": len(tried),
-            "utilization": tried[-1]["utilization"], "closed": tried[-1]["rules_broken"] == 0}
+    made = {
+        "name": design.name,
+        "variant": design.divider,
+        "bits": design.n_frac,
+        "tries": len(tried),
+        "utilization": tried[-1]["utilization"],
+        "closed": tried[-1]["rules_broken"] == 0,
+    }
     if not made["closed"]:
         return made
     first, metric = next(iter(options.corners)), {name: record["metrics"] for name, record in runner.records.items()}
     cycles, results = (metric["stimulus"][name] for name in ("cycles", "results"))
     energy = metric[f"power_{first}"]["energy_pj_cycle"]
-    return made | {"area_um2": metric["stream_out"]["area_um2"], "cells": metric["synthesis"]["cells"],
-                   "f_max_mhz": min(metric[f"sta_{corner}"]["f_max_mhz"] for corner in options.corners),
-                   "power_uw": metric[f"power_{first}"]["power_uw"], "results": results, "cycles": cycles,
-                   "pj_result": round(energy * cycles / results, 3) if results else None,
-                   "right": all(metric[f"gate_delays_{corner}"]["failed"] == 0 for corner in options.corners)}
+    return made | {
+        "area_um2": metric["stream_out"]["area_um2"],
+        "cells": metric["synthesis"]["cells"],
+        "f_max_mhz": min(metric[f"sta_{corner}"]["f_max_mhz"] for corner in options.corners),
+        "power_uw": metric[f"power_{first}"]["power_uw"],
+        "results": results,
+        "cycles": cycles,
+        "pj_result": round(energy * cycles / results, 3) if results else None,
+        "right": all(metric[f"gate_delays_{corner}"]["failed"] == 0 for corner in options.corners),
+    }
 
 
 def _measured(design, options):
@@ -55,8 +69,14 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
     for step in (*front(design, options), floorplan):
         runner.run(step)
     found = runner.run(place_route)
-    made = {"effort": effort, "variation": variation, "utilization": utilization, "seconds": found["wall_s"],
-            "stopped": found["metrics"]["stopped"], "closed": False}
+    made = {
+        "effort": effort,
+        "variation": variation,
+        "utilization": utilization,
+        "seconds": found["wall_s"],
+        "stopped": found["metrics"]["stopped"],
+        "closed": False,
+    }
     if found["metrics"]["stopped"] is not None:
         return made
     mend, *others = judged(design, options)
@@ -67,11 +87,14 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
     broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
     runner.run(Extraction(ExtractionParameters(pdk)))
     slack = [runner.run(step)["metrics"]["wns_ns"] for step in timed(design, options) if step.name.startswith("sta_")]
-    return made | {"closed": not broken, "wns_ns": min(slack), "wire_um": wires["metrics"]["wire_um"],
-                   "area_um2": runner.records["stream_out"]["metrics"]["area_um2"]}
+    return made | {
+        "closed": not broken,
+        "wns_ns": min(slack),
+        "wire_um": wires["metrics"]["wire_um"],
+        "area_um2": runner.records["stream_out"]["metrics"]["area_um2"],
+    }
 
 
 def _runner(design, options, out):
     folder = Path(out) / design.name
     return Runner(folder / "steps", files(design, options, folder), shared=Path(out).parent / "shared")
-

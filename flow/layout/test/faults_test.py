@@ -2,16 +2,20 @@
 
 import pytest
 
-from flow.layout import embedded
+from base.steps import Runner
+from flow.layout import chain
 from flow.layout.design import Design
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.lvs import Lvs, LvsParameters
-from flow.steps import Runner
 
 from . import counter
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not "
-                                                   "found; make tools, make layout")]
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not found; make tools, make layout"
+    ),
+]
 
 
 @pytest.fixture(scope="module")
@@ -20,13 +24,13 @@ def runner(tmp_path_factory):
     folder = tmp_path_factory.mktemp("counter")
     design = Design("counter", "Counter", "")
     made = Runner(folder / "steps", counter.files(design, counter.VERILOG, folder))
-    options = embedded.Options(utilization=0.4, untimed=True)
-    for step in embedded.front(design, options):
+    options = chain.Options(utilization=0.4, untimed=True)
+    for step in chain.front(design, options):
         made.run(step)
-    floorplan, place_route = next(embedded.tries(design, options))
+    floorplan, place_route = next(chain.tries(design, options))
     made.run(floorplan)
     assert made.run(place_route)["metrics"]["routed"]
-    for step in embedded.judged(design, options)[:3]:           # mended, streamed out, filled
+    for step in chain.judged(design, options)[:3]:  # mended, streamed out, filled
         made.run(step)
     return made
 
@@ -41,6 +45,7 @@ def lvs(runner, gds, folder):
 def changed(runner, folder, change):
     """The layout with ``change`` (called with layout and top cell) applied: path."""
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(runner.paths["fill.gds"]))
     change(layout, layout.top_cell())
@@ -56,15 +61,26 @@ def test_the_layout_is_clean_and_matches(runner, tmp_path):
 def test_a_short_between_a_strap_and_a_signal_is_found(runner, tmp_path):
     def short(layout, top):
         import klayout.db as db
-        pin = next(s.text.trans.disp for s in top.shapes(layout.layer(68, 16)).each()
-                   if s.is_text() and s.text.string == "step[0]" and s.text.x < 1000)
+
+        pin = next(
+            s.text.trans.disp
+            for s in top.shapes(layout.layer(68, 16)).each()
+            if s.is_text() and s.text.string == "step[0]" and s.text.x < 1000
+        )
         strap = min(s.bbox().left for s in top.shapes(layout.layer(71, 20)).each() if s.bbox().height() > 20_000)
-        patch = min((s.bbox() for s in top.shapes(layout.layer(68, 20)).each()
-                     if s.bbox().left == strap and s.bbox().height() > 600),
-                    key=lambda box: abs(box.center().y - pin.y))
+        patch = min(
+            (
+                s.bbox()
+                for s in top.shapes(layout.layer(68, 20)).each()
+                if s.bbox().left == strap and s.bbox().height() > 600
+            ),
+            key=lambda box: abs(box.center().y - pin.y),
+        )
         top.shapes(layout.layer(68, 20)).insert(db.Box(pin.x, pin.y - 100, strap + 400, pin.y + 100))
-        top.shapes(layout.layer(68, 20)).insert(db.Box(strap + 200, min(pin.y, patch.bottom), strap + 400,
-                                                       max(pin.y, patch.top)))
+        top.shapes(layout.layer(68, 20)).insert(
+            db.Box(strap + 200, min(pin.y, patch.bottom), strap + 400, max(pin.y, patch.top))
+        )
+
     assert not lvs(runner, changed(runner, tmp_path, short), tmp_path)
 
 
@@ -72,14 +88,17 @@ def test_a_cut_net_is_found(runner, tmp_path):
     def cut(layout, top):
         wires = [s for s in top.shapes(layout.layer(69, 20)).each() if s.is_box() or s.is_path() or s.is_polygon()]
         max(wires, key=lambda shape: shape.bbox().height() * (shape.bbox().width() < 500)).delete()
+
     assert not lvs(runner, changed(runner, tmp_path, cut), tmp_path)
 
 
 def test_wires_too_near_are_found(runner, tmp_path):
     def near(layout, top):
         import klayout.db as db
+
         box = next(s.bbox() for s in top.shapes(layout.layer(69, 20)).each() if s.bbox().height() > 3000)
         top.shapes(layout.layer(69, 20)).insert(box.moved(box.width() + 100, 0) & db.Box(top.bbox()))
+
     gds, step = changed(runner, tmp_path, near), Drc(DrcParameters())
     inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
     assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] > 0
@@ -87,11 +106,16 @@ def test_wires_too_near_are_found(runner, tmp_path):
 
 def test_a_hole_that_is_too_small_is_found(runner, tmp_path):
     """A rule that PDKMaster's deck does not have."""
+
     def ring(layout, top):
         import klayout.db as db
+
         right = top.bbox().right + 5000
-        metal = db.Region(db.Box(right, 0, right + 2000, 2000)) - db.Region(db.Box(right + 800, 800, right + 1100, 1200))
+        metal = db.Region(db.Box(right, 0, right + 2000, 2000)) - db.Region(
+            db.Box(right + 800, 800, right + 1100, 1200)
+        )
         top.shapes(layout.layer(69, 20)).insert(metal)
+
     gds, step = changed(runner, tmp_path, ring), Drc(DrcParameters())
     inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
     assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] == 1

@@ -4,11 +4,16 @@
 def gate(layout, known):
     """A cell of KLayout's ``layout`` with a gate of 0.075 um2 below a piece of the second wire of ``known`` (Embedded)."""
     import klayout.db as db
+
     cell = layout.create_cell("gate")
     low, wire, cut = known.wires[0], known.wires[1], known.cuts[0]
-    for layer, *box in ((known.active, 0, 0, 1, 0.5), (known.poly, 0.4, -1, 0.55, 1),
-                        (known.contact, 0.4, -0.9, 0.55, -0.8), ((low.layer, low.datatype), 0.3, -1, 0.7, -0.5),
-                        ((cut.layer, cut.datatype), 0.4, -0.7, 0.5, -0.6),
-                        ((wire.layer, wire.datatype), 0.3, -0.8, 0.7, -0.5)):
+    for layer, *box in (
+        (known.active, 0, 0, 1, 0.5),
+        (known.poly, 0.4, -1, 0.55, 1),
+        (known.contact, 0.4, -0.9, 0.55, -0.8),
+        ((low.layer, low.datatype), 0.3, -1, 0.7, -0.5),
+        ((cut.layer, cut.datatype), 0.4, -0.7, 0.5, -0.6),
+        ((wire.layer, wire.datatype), 0.3, -0.8, 0.7, -0.5),
+    ):
         cell.shapes(layout.layer(*layer)).insert(db.DBox(*box))
     return cell

@@ -2,20 +2,26 @@
 
 import pytest
 
-from flow.layout import embedded
-from flow.layout.blocks import check_same, given
+from base.steps import Runner, StepError
+from flow.layout import chain
 from flow.layout.design import DESIGNS, Design, Hard
+from flow.layout.macros import check_same, given
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from flow.layout.steps.lef import Lef, LefParameters
 from flow.layout.steps.lvs import Lvs, LvsParameters
-from flow.steps import Runner, StepError
 
 from . import counter
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not "
-                                                   "found; make tools, make layout")]
-PAIR = counter.VERILOG + """
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(
+        bool(counter.LACKING), reason=f"{', '.join(counter.LACKING)}: not found; make tools, make layout"
+    ),
+]
+PAIR = (
+    counter.VERILOG
+    + """
 module Pair(input clk, input reset, input [3:0] step, output reg [8:0] sum);
   wire [7:0] one;
   reg [3:0] last;
@@ -28,7 +34,8 @@ module Pair(input clk, input reset, input [3:0] step, output reg [8:0] sum);
   end
 endmodule
 """
-OPTIONS = embedded.Options(utilization=0.4, untimed=True)
+)
+OPTIONS = chain.Options(utilization=0.4, untimed=True)
 INNER = Design("counter", "Counter", "")
 OUTER = Design("pair", "Pair", "", macros=(Hard("first", "counter", (0.5, 0.0)),))
 
@@ -36,7 +43,7 @@ OUTER = Design("pair", "Pair", "", macros=(Hard("first", "counter", (0.5, 0.0)),
 def closed(design, verilog, folder, more):
     """The Runner behind a layout of ``design`` that keeps the rules."""
     runner = Runner(folder / design.name, counter.files(design, verilog, folder) | more, shared=folder / "shared")
-    tried = embedded.layout(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
+    tried = chain.layout(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
     assert tried[-1]["rules_broken"] == 0, tried
     return runner
 
@@ -56,13 +63,18 @@ def test_it_is_clean_matches_and_is_proven(runners):
     assert runner.run(Drc(DrcParameters()))["metrics"] == {"drc_violations": 0}
     assert runner.run(Lvs(LvsParameters()))["metrics"]["lvs_match"]
     proof = Equivalence(EquivalenceParameters("Pair"))
-    proof.inputs = {name: embedded.ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
-    assert runner.run(proof)["metrics"] == {"equivalence": "proven", "registers": 85, "constant_registers": 0,
-                                          "double_registers": 0}
+    proof.inputs = {name: chain.ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
+    assert runner.run(proof)["metrics"] == {
+        "equivalence": "proven",
+        "registers": 85,
+        "constant_registers": 0,
+        "double_registers": 0,
+    }
 
 
 def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):
     import klayout.db as db
+
     layout = db.Layout()
     layout.read(str(runners["pair"].paths["fill.gds"]))
     block = next(i for i in layout.top_cell().each_inst() if i.cell.name == "Counter")
@@ -70,7 +82,8 @@ def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):
     layout.write(str(tmp_path / "moved.gds"))
     step = Lvs(LvsParameters())
     inputs = {name: runners["pair"].paths[source] for name, source in step.inputs.items()} | {
-        "gds": tmp_path / "moved.gds"}
+        "gds": tmp_path / "moved.gds"
+    }
     assert not step.run(inputs, {name: tmp_path / file for name, file in step.outputs.items()})["lvs_match"]
 
 

@@ -6,11 +6,12 @@ Debian's OpenSTA (2.0.17) has no `write_timing_model`: its slacks at a grid of s
 import re
 from dataclasses import dataclass
 
-from .netlist import OUTPUT_PINS, is_register
+from flow.layout.netlist.netlist import OUTPUT_PINS, is_register
+
 from .opensta import opensta
 
-FAR_NS = 100.0          # clock period of the measurement; OpenSTA computes in single precision
-CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027      # beside every grid: where a model made from one is held to its source
+FAR_NS = 100.0  # clock period of the measurement; OpenSTA computes in single precision
+CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027  # beside every grid: where a model made from one is held to its source
 LOAD = """
 read_liberty {liberty}
 read_verilog {verilog}
@@ -118,12 +119,21 @@ def measure(netlist, clock, files, slews, loads):
     there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. Raises
     StepError, ToolError."""
     pairs, registered = reach(netlist, clock)
-    nets = {way: [net for port in netlist.ports if port.direction == way for net in port.bits()]
-            for way in ("input", "output")}
-    words = {"clock": clock, "top": files.get("top", netlist.name), "period": FAR_NS, "liberty": files["liberty"],
-             "verilog": files["verilog"], "spef": f"read_spef {files['spef']}" if files.get("spef") else "",
-             "slews": " ".join(map(str, slews)), "loads": " ".join(map(str, loads)),
-             "pairs": " ".join(f"{{{a}}} {{{b}}}" for a, b in pairs)}
+    nets = {
+        way: [net for port in netlist.ports if port.direction == way for net in port.bits()]
+        for way in ("input", "output")
+    }
+    words = {
+        "clock": clock,
+        "top": files.get("top", netlist.name),
+        "period": FAR_NS,
+        "liberty": files["liberty"],
+        "verilog": files["verilog"],
+        "spef": f"read_spef {files['spef']}" if files.get("spef") else "",
+        "slews": " ".join(map(str, slews)),
+        "loads": " ".join(map(str, loads)),
+        "pairs": " ".join(f"{{{a}}} {{{b}}}" for a, b in pairs),
+    }
 
     def ask(script, folder, **more):
         lists = {name: " ".join(f"{{{net}}}" for net in value) for name, value in more.items()}
@@ -150,12 +160,13 @@ def _boundary(said):
         elif word == "CHECK" and rest[-1] != "none":
             port, kind, edge, clock_slew, slew, slack = rest
             checks.setdefault((port, kind, edge), {})[float(clock_slew), float(slew)] = (
-                FAR_NS - float(slack) if kind == "max" else -float(slack))
+                FAR_NS - float(slack) if kind == "max" else -float(slack)
+            )
         elif word in ("SLEW", "PORT"):
             at = tuple(map(float, rest)) if word == "SLEW" else rest[0]
         elif found := re.match(r"(\S+) \^ \S+?:(\S+) v \S+?:(\S+)", line):
             for edge, value in (("rise", found[2]), ("fall", found[3])):
                 slews.setdefault((found[1], edge), {})[at] = float(value)
-        elif line.startswith(" Total capacitance:"):        # one number, a range, or these for rise and fall
+        elif line.startswith(" Total capacitance:"):  # one number, a range, or these for rise and fall
             capacitance[at] = max(map(float, re.findall(r"\d+\.\d+", line)))
     return Boundary(capacitance, delays, slews, checks)

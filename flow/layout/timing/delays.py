@@ -10,7 +10,7 @@ time of both edges.
 import re
 from dataclasses import dataclass
 
-from .netlist import is_register
+from flow.layout.netlist.netlist import is_register
 
 TOKEN = re.compile(r'\(|\)|"[^"]*"|[^\s()]+')
 
@@ -52,8 +52,12 @@ def icarus(delays, netlist, names):
     for instance in netlist.instances:
         paths = delays.paths.get(instance.name)
         if paths:
-            lines += [" (CELL", f'  (CELLTYPE "{instance.cell}")', f"  (INSTANCE {names[instance.name]})",
-                      "  (DELAY (ABSOLUTE"]
+            lines += [
+                " (CELL",
+                f'  (CELLTYPE "{instance.cell}")',
+                f"  (INSTANCE {names[instance.name]})",
+                "  (DELAY (ABSOLUTE",
+            ]
             for source, target, rise, fall in paths:
                 more = delays.wires.get((instance.name, target), (0.0, 0.0))
                 triples = (f"({value:.4f}:{value:.4f}:{value:.4f})" for value in (rise + more[0], fall + more[1]))
@@ -67,18 +71,24 @@ def specified(cells, delays, netlist):
     paths = {}
     for instance in netlist.instances:
         paths.setdefault(instance.cell, {}).update(
-            {(source, target): None for source, target, *_ in delays.paths.get(instance.name, ())})
+            {(source, target): None for source, target, *_ in delays.paths.get(instance.name, ())}
+        )
 
     def add(match):
         arcs = "".join(f" ({source} => {target}) = (0, 0);" for source, target in paths.get(match[1], ()))
         return f"{match[0].removesuffix('endmodule')}specify{arcs} endspecify\nendmodule" if arcs else match[0]
+
     return re.sub(r"(?ms)^module (\w+)\b.*?^endmodule", add, cells)
 
 
 def constrained(delays, netlist):
     """(instance, data pin, setup, hold) of every register's inputs."""
-    return [(instance, pin, *values) for instance in netlist.instances if is_register(instance.cell)
-            for pin, values in delays.checks.get(instance.name, {}).items()]
+    return [
+        (instance, pin, *values)
+        for instance in netlist.instances
+        if is_register(instance.cell)
+        for pin, values in delays.checks.get(instance.name, {}).items()
+    ]
 
 
 def _tree(tokens):

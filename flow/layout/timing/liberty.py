@@ -15,6 +15,7 @@ def functions(gds, names, models, layers):
     from cells.extract import extract
     from cells.netlist.function import understand
     from cells.netlist.spice import parse
+
     found = {}
     for name in names:
         netlist = parse(extract(gds, name, layers, strays=False, wires=False), origin=name)
@@ -36,8 +37,12 @@ def liberty(cells, ports, areas):
         lines.append(f" cell({cell}) {{ area : {areas[cell]};")
         if storage:
             lines.append(_flip_flop(storage))
-        lines += [f'  pin({pin}) {{ direction : output; function : "{outputs[pin]}"; }}' if pin in outputs else
-                  f"  pin({pin}) {{ direction : input; }}" for pin in ports[cell]]
+        lines += [
+            f'  pin({pin}) {{ direction : output; function : "{outputs[pin]}"; }}'
+            if pin in outputs
+            else f"  pin({pin}) {{ direction : input; }}"
+            for pin in ports[cell]
+        ]
         lines.append(" }")
     return "\n".join([*lines, "}", ""])
 
@@ -45,6 +50,10 @@ def liberty(cells, ports, areas):
 def _flip_flop(storage):
     """Its Liberty group. storage: cells.netlist.function.Storage of kind 'ff'."""
     clock = storage.clock if storage.active else f"!{storage.clock}"
-    forced = "".join(f' {name} : "{pin if level else "!" + pin}";' for name, value in
-                     (("clear", storage.clear), ("preset", storage.preset)) if value for pin, level in [value])
+    forced = "".join(
+        f' {name} : "{pin if level else "!" + pin}";'
+        for name, value in (("clear", storage.clear), ("preset", storage.preset))
+        if value
+        for pin, level in [value]
+    )
     return f'  ff(IQ,IQN) {{ clocked_on : "{clock}"; next_state : "{storage.data}";{forced} }}'

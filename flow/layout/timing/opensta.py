@@ -2,8 +2,8 @@
 
 import re
 
-from flow.simulate.process import ToolError, finish
-from flow.steps import StepError
+from base.steps import StepError
+from base.tools import ToolError, finish
 
 
 def opensta(path, script):

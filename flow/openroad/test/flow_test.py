@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from flow.layout.constraints import sdc
+from base.tools import ToolError, finish
 from flow.layout.design import DESIGNS, design
+from flow.layout.timing.constraints import sdc
 from flow.openroad import __main__ as command
 from flow.openroad.liberty import without
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
@@ -15,10 +16,9 @@ from flow.openroad.test import stub
 from flow.openroad.test.commands import COMMANDS, OLDER
 from flow.openroad.variables import variables
 from flow.openroad.write import write
-from flow.platforms.openroad import CORNERS, process
-from flow.platforms.sky130 import functional
-from flow.simulate.process import ToolError, finish
 from models.parameters import ParameterError
+from platforms.openroad import CORNERS, process
+from platforms.sky130 import functional
 
 KNOWN = process("sky130")
 SPEF = """*SPEF "IEEE 1481-1998"
@@ -89,18 +89,33 @@ def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monk
     assert "sky130_fd_sc_hd__dfxtp_1" in (folder / "netlist.v").read_text()
     assert summary["area_um2"] == 600
     assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc")} <= {
-        path.name for path in folder.iterdir()}
+        path.name for path in folder.iterdir()
+    }
     called = [line.split()[0] for line in (folder / "calls.txt").read_text().splitlines()]
-    order = ["initialize_floorplan", "pdngen", "place_pins", "clock_tree_synthesis", "global_route", "detailed_route",
-             "write_spef", "read_spef"]
+    order = [
+        "initialize_floorplan",
+        "pdngen",
+        "place_pins",
+        "clock_tree_synthesis",
+        "global_route",
+        "detailed_route",
+        "write_spef",
+        "read_spef",
+    ]
     assert [called.index(name) for name in order] == sorted(called.index(name) for name in order)
     assert called.count("write_db") == 6 and called.count("write_sdf") == len(CORNERS)
 
 
 @needs_tclsh
-@pytest.mark.parametrize("line, said", [
-    ("global_placement -densty 0.5", "unknown option"), ("place_pin_s", "invalid command"), ("write_def", "arguments"),
-    ("read_db nowhere.odb", "no file")])
+@pytest.mark.parametrize(
+    "line, said",
+    [
+        ("global_placement -densty 0.5", "unknown option"),
+        ("place_pin_s", "invalid command"),
+        ("write_def", "arguments"),
+        ("read_db nowhere.odb", "no file"),
+    ],
+)
 def test_the_stand_in_refuses_what_openroad_does_not_have(line, said, openroad, tmp_path):
     (tmp_path / "wrong.tcl").write_text(line + "\n")
     done = finish([tmp_path / "openroad", "-exit", "wrong.tcl"], cwd=tmp_path)
@@ -109,15 +124,19 @@ def test_the_stand_in_refuses_what_openroad_does_not_have(line, said, openroad, 
 
 @needs_tclsh
 @needs_cells
-@pytest.mark.parametrize("commands, called, other", [
-    (COMMANDS, "set_extraction_rules_file", "-ext_model_file"),
-    (OLDER, "-ext_model_file", "set_extraction_rules_file")])
+@pytest.mark.parametrize(
+    "commands, called, other",
+    [
+        (COMMANDS, "set_extraction_rules_file", "-ext_model_file"),
+        (OLDER, "-ext_model_file", "set_extraction_rules_file"),
+    ],
+)
 def test_older_releases_get_the_options_that_they_want(commands, called, other, pdk, openroad, tmp_path, monkeypatch):
     stub.install(tmp_path, commands)
     chosen = design("quad_divider")
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])  # without Yosys's
     assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["drc_violations"] == 0
     calls = (tmp_path / "calls.txt").read_text()
     assert called in calls and other not in calls and f"{pdk}/{KNOWN.rcx_rules[-1]}" in calls
@@ -126,14 +145,21 @@ def test_older_releases_get_the_options_that_they_want(commands, called, other, 
 @needs_tclsh
 @needs_cells
 @pytest.mark.parametrize("violations, diodes, routed", [("0", "0", 1), ("1", "0", 1), ("1", "2", 4)])
-def test_routes_are_made_anew_while_diodes_help_then_fillers(violations, diodes, routed, pdk, openroad, tmp_path,
-                                                             monkeypatch):
-    stub.install(tmp_path, COMMANDS | {"check_antennas": replace(COMMANDS["check_antennas"], says=violations),
-                                       "repair_antennas": replace(COMMANDS["repair_antennas"], says=diodes)})
+def test_routes_are_made_anew_while_diodes_help_then_fillers(
+    violations, diodes, routed, pdk, openroad, tmp_path, monkeypatch
+):
+    stub.install(
+        tmp_path,
+        COMMANDS
+        | {
+            "check_antennas": replace(COMMANDS["check_antennas"], says=violations),
+            "repair_antennas": replace(COMMANDS["repair_antennas"], says=diodes),
+        },
+    )
     chosen = design("quad_divider")
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])  # without Yosys's
     assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["antenna_violations"] == float(violations)
     called = [line.split()[0] for line in (tmp_path / "calls.txt").read_text().splitlines()]
     assert called.count("detailed_route") == routed
@@ -147,7 +173,7 @@ def test_a_stage_that_fails_is_named(pdk, openroad, tmp_path, monkeypatch):
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
     (tmp_path / "cts.tcl").write_text("clock_tree\n")
-    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])     # without Yosys's
+    monkeypatch.setattr("flow.openroad.stages.stages", lambda top: stages(top)[1:])  # without Yosys's
     seen = []
     with pytest.raises(ToolError, match='openroad cts: status 1, cts.odb not written:\ninvalid command name "clock_tr'):
         run(tmp_path, chosen.top, KNOWN, pdk, seen.append)
@@ -174,8 +200,9 @@ def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     assert done.returncode == 0, done.stderr
     (folder / "netlist.v").rename(folder / f"{chosen.top}.v")
     (folder / f"{chosen.top}.spef").write_text(SPEF)
-    done = finish(["sta", "-no_init", "-no_splash", "-exit", "sta.tcl"], cwd=folder,
-                  env={"PDK_ROOT": str(pdk), "CORNER": "slow"})
+    done = finish(
+        ["sta", "-no_init", "-no_splash", "-exit", "sta.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk), "CORNER": "slow"}
+    )
     said = done.stdout + done.stderr
     errors = [line for line in said.splitlines() if line.startswith(("Error", "Warning"))]
     # OpenSTA 2.0 (Debian's) does not know this option yet, which OpenROAD's does
@@ -204,7 +231,7 @@ def test_without_leaves_the_other_cells_as_they_were():
     assert without(text, ["a_*"]) == "library(x) {\n cell (b_1) { area : 2; }\n}\n"
     assert without(text, ["c_*"]) == text
     with pytest.raises(ParameterError, match="must end with a brace"):
-        without('cell (a_1) { pin(y) {', ["a_1"])
+        without("cell (a_1) { pin(y) {", ["a_1"])
 
 
 def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):

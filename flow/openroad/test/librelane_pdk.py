@@ -9,29 +9,37 @@ import re
 import shutil
 from pathlib import Path
 
-from flow.platforms.openroad import process
-from flow.platforms.sky130 import functional
+from platforms.openroad import process
+from platforms.sky130 import functional
 
 KNOWN = process("sky130")
 CORNERS = {"tt_025C_1v80": "typical", "ss_100C_1v60": "slow", "ff_n40C_1v95": "fast"}
 TABLE = 'index_1("0.01, 0.5"); index_2("0.001, 0.1");'
-UNITS = ('voltage_unit : "1V"; current_unit : "1mA"; pulling_resistance_unit : "1kohm"; leakage_power_unit : "1nW"; '
-         "nom_voltage : 1.8; nom_temperature : 25; nom_process : 1; default_max_transition : 1.5; lu_table_template(t) "
-         f"{{ variable_1 : input_net_transition; variable_2 : total_output_net_capacitance; {TABLE} }}")
+UNITS = (
+    'voltage_unit : "1V"; current_unit : "1mA"; pulling_resistance_unit : "1kohm"; leakage_power_unit : "1nW"; '
+    "nom_voltage : 1.8; nom_temperature : 25; nom_process : 1; default_max_transition : 1.5; lu_table_template(t) "
+    f"{{ variable_1 : input_net_transition; variable_2 : total_output_net_capacitance; {TABLE} }}"
+)
 
 
 def make(root):
     """Write the folder sky130A into ``root``. Raises ToolError where the wheel is missing."""
     tech, cells = root / KNOWN.pdk / "libs.tech" / "librelane", root / KNOWN.pdk / "libs.ref" / KNOWN.library
     library = tech / KNOWN.library
-    for folder in (library, cells / "verilog", *((root / path).parent for path in (KNOWN.cell_lef, KNOWN.tech_lef,
-                                                                                  KNOWN.liberty["slow"]))):
+    for folder in (
+        library,
+        cells / "verilog",
+        *((root / path).parent for path in (KNOWN.cell_lef, KNOWN.tech_lef, KNOWN.liberty["slow"])),
+    ):
         folder.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(functional.folder() / "tech" / Path(KNOWN.tech_lef).name, root / KNOWN.tech_lef)
     lefs = [path.read_text() for path in _files("lef") if ".magic." not in path.name]
     (root / KNOWN.cell_lef).write_text("".join(text.replace("END LIBRARY", "") for text in lefs) + "END LIBRARY\n")
-    ports = "\n".join(re.sub(r"(?m)^`include.*$", "", path.read_text()) for path in _files("blackbox.v")
-                      if path.name.removesuffix(".blackbox.v")[-1].isdigit())
+    ports = "\n".join(
+        re.sub(r"(?m)^`include.*$", "", path.read_text())
+        for path in _files("blackbox.v")
+        if path.name.removesuffix(".blackbox.v")[-1].isdigit()
+    )
     (cells / "verilog" / f"{KNOWN.library}.v").write_text(ports)
     text = with_delays(functional.liberty())
     for corner in CORNERS.values():
@@ -50,8 +58,10 @@ def with_delays(text):
 def _delayed(cell):
     inputs = ["CLK"] if "ff(" in cell else re.findall(r"pin\((\w+)\) { direction : input;", cell)
     kind = "timing_type : rising_edge;" if "ff(" in cell else "timing_sense : non_unate;"
-    tables = " ".join(f'{name}(t) {{ {TABLE} values("0.05, 0.5", "0.1, 0.6"); }}'
-                      for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition"))
+    tables = " ".join(
+        f'{name}(t) {{ {TABLE} values("0.05, 0.5", "0.1, 0.6"); }}'
+        for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition")
+    )
     timing = " ".join(f'timing() {{ related_pin : "{pin}"; {kind} {tables} }}' for pin in inputs)
     cell = cell.replace("direction : input;", "direction : input; capacitance : 0.002;")
     return re.sub(r"(direction : output;[^}]*)}", rf"\1 max_capacitance : 0.2; {timing} }}", cell)
@@ -62,30 +72,68 @@ def _variables(root, cells, empty):
     rail, low, high = KNOWN.straps
     wide = {"WIDTH": low.width_um, "SPACING": 1.7, "PITCH": low.pitch_um, "OFFSET": low.offset_um}
     return {
-        "VDD_PIN": KNOWN.supply[0], "GND_PIN": KNOWN.ground[0], "SCL_POWER_PINS": " ".join(KNOWN.supply[1]),
+        "VDD_PIN": KNOWN.supply[0],
+        "GND_PIN": KNOWN.ground[0],
+        "SCL_POWER_PINS": " ".join(KNOWN.supply[1]),
         "SCL_GROUND_PINS": " ".join(KNOWN.ground[1]),
-        "TECH_LEFS": f"nom_* {root / KNOWN.tech_lef}", "CELL_LEFS": root / KNOWN.cell_lef, "CELL_GDS": empty,
+        "TECH_LEFS": f"nom_* {root / KNOWN.tech_lef}",
+        "CELL_LEFS": root / KNOWN.cell_lef,
+        "CELL_GDS": empty,
         "CELL_VERILOG_MODELS": cells / "verilog" / f"{KNOWN.library}.v",
         "LIB": " ".join(f"*_{pvt} {root / KNOWN.liberty[corner]}" for pvt, corner in CORNERS.items()),
-        "STA_CORNERS": " ".join(f"nom_{pvt}" for pvt in CORNERS), "DEFAULT_CORNER": "nom_tt_025C_1v80",
-        "TIMING_VIOLATION_CORNERS": "*tt*", "RCX_RULESETS": f"nom_* {empty}", "PRIMARY_GDSII_STREAMOUT_TOOL": "magic",
-        "FILL_CELLS": " ".join(KNOWN.fill), "DECAP_CELLS": f"{KNOWN.library}__decap_3", "PLACE_SITE": KNOWN.site,
-        "WELLTAP_CELL": KNOWN.tap, "DIODE_CELL": f"{KNOWN.diode}/DIODE", "CELL_PAD_EXCLUDE": " ".join(KNOWN.fill),
-        "SYNTH_DRIVING_CELL": f"{KNOWN.library}__inv_2/Y", "SYNTH_TIEHI_CELL": KNOWN.high,
+        "STA_CORNERS": " ".join(f"nom_{pvt}" for pvt in CORNERS),
+        "DEFAULT_CORNER": "nom_tt_025C_1v80",
+        "TIMING_VIOLATION_CORNERS": "*tt*",
+        "RCX_RULESETS": f"nom_* {empty}",
+        "PRIMARY_GDSII_STREAMOUT_TOOL": "magic",
+        "FILL_CELLS": " ".join(KNOWN.fill),
+        "DECAP_CELLS": f"{KNOWN.library}__decap_3",
+        "PLACE_SITE": KNOWN.site,
+        "WELLTAP_CELL": KNOWN.tap,
+        "DIODE_CELL": f"{KNOWN.diode}/DIODE",
+        "CELL_PAD_EXCLUDE": " ".join(KNOWN.fill),
+        "SYNTH_DRIVING_CELL": f"{KNOWN.library}__inv_2/Y",
+        "SYNTH_TIEHI_CELL": KNOWN.high,
         "SYNTH_TIELO_CELL": KNOWN.low,
-        "SYNTH_BUFFER_CELL": f"{KNOWN.library}__buf_2/A/X", "CTS_ROOT_BUFFER": KNOWN.clock_buffer,
-        "CTS_CLK_BUFFERS": KNOWN.clock_buffer, "DPL_CELL_PADDING": 0, "GPL_CELL_PADDING": 0,
-        "RT_MIN_LAYER": KNOWN.signal[0], "RT_MAX_LAYER": KNOWN.signal[1], "GRT_LAYER_ADJUSTMENTS": "0.99 0 0 0 0 0",
-        "IO_PIN_H_LAYER": KNOWN.pins[0], "IO_PIN_V_LAYER": KNOWN.pins[1], "OUTPUT_CAP_LOAD": 33.4,
-        "MAX_FANOUT_CONSTRAINT": 10, "CLOCK_UNCERTAINTY_CONSTRAINT": 0.25, "CLOCK_TRANSITION_CONSTRAINT": 0.15,
-        "TIME_DERATING_CONSTRAINT": 5, "IO_DELAY_CONSTRAINT": 20, "PDN_RAIL_LAYER": rail.layer,
-        "PDN_RAIL_WIDTH": rail.width_um, "PDN_RAIL_OFFSET": 0, "PDN_VERTICAL_LAYER": low.layer,
+        "SYNTH_BUFFER_CELL": f"{KNOWN.library}__buf_2/A/X",
+        "CTS_ROOT_BUFFER": KNOWN.clock_buffer,
+        "CTS_CLK_BUFFERS": KNOWN.clock_buffer,
+        "DPL_CELL_PADDING": 0,
+        "GPL_CELL_PADDING": 0,
+        "RT_MIN_LAYER": KNOWN.signal[0],
+        "RT_MAX_LAYER": KNOWN.signal[1],
+        "GRT_LAYER_ADJUSTMENTS": "0.99 0 0 0 0 0",
+        "IO_PIN_H_LAYER": KNOWN.pins[0],
+        "IO_PIN_V_LAYER": KNOWN.pins[1],
+        "OUTPUT_CAP_LOAD": 33.4,
+        "MAX_FANOUT_CONSTRAINT": 10,
+        "CLOCK_UNCERTAINTY_CONSTRAINT": 0.25,
+        "CLOCK_TRANSITION_CONSTRAINT": 0.15,
+        "TIME_DERATING_CONSTRAINT": 5,
+        "IO_DELAY_CONSTRAINT": 20,
+        "PDN_RAIL_LAYER": rail.layer,
+        "PDN_RAIL_WIDTH": rail.width_um,
+        "PDN_RAIL_OFFSET": 0,
+        "PDN_VERTICAL_LAYER": low.layer,
         "PDN_HORIZONTAL_LAYER": high.layer,
         **{f"PDN_{side}{key}": value for key, value in wide.items() for side in "VH"},
         **{f"PDN_CORE_RING_{side}{key}": wide[key] for key in ("WIDTH", "SPACING", "OFFSET") for side in "VH"},
-        **dict.fromkeys(("SYNTH_EXCLUDED_CELL_FILE", "PNR_EXCLUDED_CELL_FILE", "FP_TRACKS_INFO", "MAGICRC",
-                         "MAGIC_TECH", "MAGIC_PDK_SETUP", "KLAYOUT_TECH", "KLAYOUT_PROPERTIES",
-                         "KLAYOUT_DEF_LAYER_MAP", "NETGEN_SETUP"), empty)}
+        **dict.fromkeys(
+            (
+                "SYNTH_EXCLUDED_CELL_FILE",
+                "PNR_EXCLUDED_CELL_FILE",
+                "FP_TRACKS_INFO",
+                "MAGICRC",
+                "MAGIC_TECH",
+                "MAGIC_PDK_SETUP",
+                "KLAYOUT_TECH",
+                "KLAYOUT_PROPERTIES",
+                "KLAYOUT_DEF_LAYER_MAP",
+                "NETGEN_SETUP",
+            ),
+            empty,
+        ),
+    }
 
 
 def _tcl(values):

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from base.tools import ToolError, finish
 from flow.layout.design import design
 from flow.openroad.__main__ import main
 from flow.openroad.test import librelane_pdk
 from flow.openroad.tinytapeout import PROJECTS
 from flow.openroad.write import ROOT
-from flow.platforms.sky130 import functional
-from flow.platforms.sky130.tinytapeout import SIZES_UM
-from flow.simulate.process import ToolError, finish
+from platforms.sky130 import functional
+from platforms.sky130.tinytapeout import SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
 RUN = Path(__file__).parent / "librelane_run.py"
@@ -50,9 +50,11 @@ def pdk(tmp_path_factory):
 @pytest.fixture
 def written(tmp_path):
     """written(name): the folder with the files of design ``name``."""
+
     def write(name):
         assert main([name, "--out", str(tmp_path), "--write-only"]) == 0
         return tmp_path / f"{name}-openroad"
+
     return write
 
 
@@ -73,11 +75,15 @@ def test_a_design_loads_without_a_warning(name, written, pdk):
     assert Path(loaded["PNR_SDC_FILE"]) == folder / "pnr.sdc" and loaded["FP_SIZING"] == "relative"
 
 
-@pytest.mark.parametrize("right, wrong, said", [
-    ("FP_CORE_UTIL:", "FP_CORE_UTILL:", "Unknown key 'FP_CORE_UTILL'"),
-    ("FP_ASPECT_RATIO: 1", "FP_ASPECT_RATIO: wide", "is invalid: 'wide'"),
-    ("dir::AmpCtrl.v", "dir::nowhere.v", "does not exist"),
-    ("PL_TARGET_DENSITY_PCT:", "PL_TARGET_DENSITY:", "is deprecated")])
+@pytest.mark.parametrize(
+    "right, wrong, said",
+    [
+        ("FP_CORE_UTIL:", "FP_CORE_UTILL:", "Unknown key 'FP_CORE_UTILL'"),
+        ("FP_ASPECT_RATIO: 1", "FP_ASPECT_RATIO: wide", "is invalid: 'wide'"),
+        ("dir::AmpCtrl.v", "dir::nowhere.v", "does not exist"),
+        ("PL_TARGET_DENSITY_PCT:", "PL_TARGET_DENSITY:", "is deprecated"),
+    ],
+)
 def test_a_wrong_variable_would_be_found(right, wrong, said, written, pdk):
     config = written("amp_ctrl") / "librelane" / "config.yaml"
     config.write_text(config.read_text().replace(right, wrong))
@@ -90,9 +96,17 @@ def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk
     source, project = written(name) / "tinytapeout" / "src", PROJECTS[name]
     files = sorted(path.name for path in source.glob("*.v"))
     config = source / "config_merged.json"
-    config.write_text(json.dumps({
-        "meta": {"version": 2}, **json.loads((source / "config.json").read_text()), "DESIGN_NAME": project.top,
-        "VERILOG_FILES": [f"dir::{file}" for file in files], "DIE_AREA": [0, 0, *SIZES_UM[project.tiles]]}))
+    config.write_text(
+        json.dumps(
+            {
+                "meta": {"version": 2},
+                **json.loads((source / "config.json").read_text()),
+                "DESIGN_NAME": project.top,
+                "VERILOG_FILES": [f"dir::{file}" for file in files],
+                "DIE_AREA": [0, 0, *SIZES_UM[project.tiles]],
+            }
+        )
+    )
     messages, loaded = librelane(config, pdk)
     assert loaded and messages.count("WARNING") == messages.count("is deprecated") == 4, messages
     assert (loaded["PDN_VPITCH"], loaded["RT_MAX_LAYER"], loaded["RUN_LINTER"]) == ("38.87", "met4", True)
@@ -110,8 +124,15 @@ def test_its_steps_before_openroad_run(name, written, pdk, tmp_path):
     messages, metrics = librelane(config, pdk, "OpenROAD.CheckMacroInstances", env={"_LLN_OVERRIDE_YOSYS": str(yosys)})
     assert metrics, messages[-2000:]
     assert 300 < metrics["design__instance__count"] < 2000
-    assert [metrics[key] for key in ("design__lint_error__count", "design__inferred_latch__count",
-                                     "design__instance_unmapped__count", "synthesis__check_error__count")] == [0] * 4
+    assert [
+        metrics[key]
+        for key in (
+            "design__lint_error__count",
+            "design__inferred_latch__count",
+            "design__instance_unmapped__count",
+            "synthesis__check_error__count",
+        )
+    ] == [0] * 4
     top = design(name).top
     netlist = (config.parent / "runs" / "test" / "final" / "nl" / f"{top}.nl.v").read_text()
     assert f"module {top}" in netlist and "sky130_fd_sc_hd__dfxtp_1" in netlist

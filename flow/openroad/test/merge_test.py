@@ -2,11 +2,11 @@
 
 import pytest
 
+from base.tools import ToolError
 from flow.openroad.merge import merge
-from flow.platforms.openroad import process
-from flow.platforms.sky130 import functional
-from flow.simulate.process import ToolError
 from models.parameters import ParameterError
+from platforms.openroad import process
+from platforms.sky130 import functional
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 KNOWN = process("sky130")
@@ -34,8 +34,10 @@ END DESIGN
 def merged(tmp_path):
     """merged(cells): the GDS as a Layout, made with a library of these cells."""
     try:
-        lefs = [functional.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef",
-                *(functional.file(cell, "lef") for cell in ("inv_1", "nand2_1"))]
+        lefs = [
+            functional.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef",
+            *(functional.file(cell, "lef") for cell in ("inv_1", "nand2_1")),
+        ]
     except ToolError as error:
         pytest.skip(str(error))
 
@@ -50,6 +52,7 @@ def merged(tmp_path):
         layout = db.Layout()
         layout.read(str(tmp_path / "two.gds"))
         return layout
+
     return make
 
 
@@ -65,7 +68,7 @@ def test_cells_wires_pins_and_labels_lie_where_they_belong(merged):
     assert region(68, 20).bbox() == db.Box(1930, 3930, 5070, 4070)
     assert region(69, 16).bbox() == db.Box(4860, 0, 5140, 280)
     assert [shape.text_string for shape in top.shapes(layout.layer(69, 5)).each(db.Shapes.STexts)] == ["x"]
-    assert not layout.cell("sky130_fd_sc_hd__inv_1").bbox(layout.layer(66, 20)).empty()      # a gate: GDS, not LEF
+    assert not layout.cell("sky130_fd_sc_hd__inv_1").bbox(layout.layer(66, 20)).empty()  # a gate: GDS, not LEF
 
 
 def test_a_cell_without_layout_is_named(merged):

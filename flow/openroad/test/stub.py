@@ -41,8 +41,12 @@ proc check {name keys flags least most writes says arguments} {
 def install(folder, commands=COMMANDS):
     """Put the stand-in into ``folder`` as 'openroad'. commands: dict name -> Command, or None for one it lacks."""
     folder = Path(folder)
-    procs = "".join(f"proc {name} args {{ check {name} {{{' '.join(c.keys)}}} {{{' '.join(c.flags)}}} {c.least} "
-                    f"{c.most} {{{c.writes}}} {{{c.says}}} $args }}\n" for name, c in commands.items() if c)
+    procs = "".join(
+        f"proc {name} args {{ check {name} {{{' '.join(c.keys)}}} {{{' '.join(c.flags)}}} {c.least} "
+        f"{c.most} {{{c.writes}}} {{{c.says}}} $args }}\n"
+        for name, c in commands.items()
+        if c
+    )
     stub = folder / "stub.tcl"
     stub.write_text(PROCEDURE + procs + "if {[catch {source [lindex $argv end]} said]} { puts stderr $said; exit 1 }\n")
     program = folder / "openroad"

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base.tools import ToolError, run
 from flow.layout.design import design
 from flow.openroad.fit import fit
 from flow.openroad.tinytapeout import BUS, PROJECTS, TOPS, Project, project_files
 from flow.openroad.write import rtl
-from flow.platforms.sky130 import functional
-from flow.platforms.sky130.tinytapeout import FULL, core_um2
-from flow.simulate.process import ToolError, run
 from models.digital.amp_ctrl import waveform
 from models.digital.divider import quad_divide
 from models.parameters import AmpTiming, ParameterError
+from platforms.sky130 import functional
+from platforms.sky130.tinytapeout import FULL, core_um2
 
 HOST = Path(__file__).parent / "host.v"
 PINS = ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy")
@@ -47,6 +47,7 @@ def made(tmp_path_factory):
             folder = tmp_path_factory.mktemp(name)
             done[name] = folder, *fit(name, folder)
         return done[name]
+
     return make
 
 
@@ -61,32 +62,51 @@ def verilog(tmp_path_factory):
             rtl(design(name), done[name])
         project = PROJECTS[name]
         return [TOPS / f"{project.top}.v", TOPS / BUS, done[name] / f"{design(name).top}.v"]
+
     return export
 
 
 @pytest.fixture(params=["verilog", pytest.param("gates", marks=pytest.mark.slow)])
 def simulate(request, verilog, made, tmp_path):
     """simulate(name, words): what the host shows, lines of '<uio_out> <uo_out>'."""
+
     def call(name, words):
         if request.param == "gates":
             netlist = made(name)[2]
             cells = sorted(set(netlist.read_text().split()) & {f"{functional.LIBRARY}__{cell}" for cell in _cells()})
-            files = [netlist, *(functional.file(cell.removeprefix(f"{functional.LIBRARY}__"), "functional.v")
-                                for cell in cells)]
+            files = [
+                netlist,
+                *(functional.file(cell.removeprefix(f"{functional.LIBRARY}__"), "functional.v") for cell in cells),
+            ]
         else:
             files = verilog(name)
         program = tmp_path / "host.hex"
         program.write_text("\n".join(f"{word:03x}" for word in [*words, 0x600]) + "\n")
-        run(["iverilog", "-g2012", f"-DTOP={PROJECTS[name].top}", "-s", "host", "-o", tmp_path / "host.vvp",
-             f"-I{functional.file('dfxtp_1', 'lef').parent}", HOST, *files])
+        run(
+            [
+                "iverilog",
+                "-g2012",
+                f"-DTOP={PROJECTS[name].top}",
+                "-s",
+                "host",
+                "-o",
+                tmp_path / "host.vvp",
+                f"-I{functional.file('dfxtp_1', 'lef').parent}",
+                HOST,
+                *files,
+            ]
+        )
         said = run(["vvp", "-n", tmp_path / "host.vvp", f"+program={program}"]).splitlines()
         return [line for line in said if line and line[0] in "01xzte"]
+
     return call
 
 
 def _cells():
-    return [path.name.removeprefix(f"{functional.LIBRARY}__").removesuffix(".functional.v")
-            for path in (functional.folder() / "cells").glob("*/*.functional.v")]
+    return [
+        path.name.removeprefix(f"{functional.LIBRARY}__").removesuffix(".functional.v")
+        for path in (functional.folder() / "cells").glob("*/*.functional.v")
+    ]
 
 
 def test_the_divider_gives_what_the_golden_model_gives(simulate):
@@ -121,11 +141,14 @@ def test_the_row_is_the_golden_waveform(simulate, four_tap, n_cm):
     cycles = len(expected["busy"])
     said = simulate("amp_ctrl", [0x201, 0x100, *data, 0x500 | cycles // 256 + 1, int(four_tap)])
     rows = [line for line in said if " " in line and line[0] in "01x"]
-    first = next(k for k, row in enumerate(rows) if row.split()[1][0] == "1")       # busy
+    first = next(k for k, row in enumerate(rows) if row.split()[1][0] == "1")  # busy
     for k in range(cycles):
         uio, uo = rows[first + k].split()
         pins = {name: int(uo[7 - bit]) for bit, name in enumerate(PINS)} | {
-            "done": int(uio[0]), "cfg_err": int(uio[1]), "tap": int(uio[2:4], 2)}
+            "done": int(uio[0]),
+            "cfg_err": int(uio[1]),
+            "tap": int(uio[2:4], 2),
+        }
         assert pins == {name: int(expected[name][k]) if name in expected else 0 for name in pins}, k
 
 
@@ -138,7 +161,7 @@ def test_it_fits_its_tiles(name, made):
 
 
 def test_room_of_a_tile():
-    assert core_um2("1x1") == pytest.approx(338 * 0.46 * 39 * 2.72)       # ROWs of its DEF template
+    assert core_um2("1x1") == pytest.approx(338 * 0.46 * 39 * 2.72)  # ROWs of its DEF template
 
 
 @pytest.mark.parametrize("name", PROJECTS)
@@ -164,14 +187,25 @@ def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, tmp_p
     files = project_files(PROJECTS[name], design(name), "module x; endmodule\n")
     top = PROJECTS[name].top
     (tmp_path / "top.v").write_text(files[f"tinytapeout/src/{top}.v"])
-    run(["yosys", "-qp", f"read_verilog -lib -sv {tmp_path}/top.v; hierarchy -top {top}; proc; "
-                         f"write_json {tmp_path}/ports.json"])
+    run(
+        [
+            "yosys",
+            "-qp",
+            f"read_verilog -lib -sv {tmp_path}/top.v; hierarchy -top {top}; proc; write_json {tmp_path}/ports.json",
+        ]
+    )
     ports = json.loads((tmp_path / "ports.json").read_text())["modules"][top]["ports"]
     assert {port: (found["direction"], len(found["bits"])) for port, found in ports.items()} == {
-        **dict.fromkeys(("clk", "ena", "rst_n"), ("input", 1)), **dict.fromkeys(("ui_in", "uio_in"), ("input", 8)),
-        **dict.fromkeys(("uo_out", "uio_out", "uio_oe"), ("output", 8))}
-    modules = [module for path, text in files.items() if path.endswith(".v")
-               for module in re.findall(r"(?:^|\s)module\s+(\w+)", text)]
+        **dict.fromkeys(("clk", "ena", "rst_n"), ("input", 1)),
+        **dict.fromkeys(("ui_in", "uio_in"), ("input", 8)),
+        **dict.fromkeys(("uo_out", "uio_out", "uio_oe"), ("output", 8)),
+    }
+    modules = [
+        module
+        for path, text in files.items()
+        if path.endswith(".v")
+        for module in re.findall(r"(?:^|\s)module\s+(\w+)", text)
+    ]
     assert modules.count(top) == 1
 
 

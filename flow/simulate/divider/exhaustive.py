@@ -1,4 +1,4 @@
-"""`python -m verif.divider.exhaustive`: all 2^18 inputs through the Verilog of a divider, against the golden model.
+"""`python -m flow.simulate.divider.exhaustive`: all 2^18 inputs through the Verilog of a divider, against the golden model.
 
 Twice: in order, with a source and a sink that never wait; then in a scrambled order, with random waiting on both
 sides and a noise floor, so that a response that depended on the one before or on back-pressure would differ.
@@ -10,7 +10,7 @@ import sys
 import numpy as np
 from tqdm import tqdm
 
-from flow.simulate.process import ToolError
+from base.tools import ToolError
 from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN
 from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN, QuadResult, phase_error
 from models.parameters import DIVIDERS, ChipParameters, ParameterError, SensorParameters, check_int
@@ -19,10 +19,19 @@ from rtl.quad_divider import golden, quad_divider, ratio_bits, timing
 
 from .simulator import program, simulate
 
-SEED, NOISE_FLOOR = 2**62 + 5, 100      # of the second run
-SCRAMBLE = 0x2545F                      # odd: i -> i * SCRAMBLE mod 2^18 visits every input once
-COLUMNS = {"variant": "{}", "n_frac": "{}", "iterations": "{}", "latency": "{}", "interval": "{}", "mismatches": "{}",
-           "worst": "{:.4f}", "rms": "{:.4f}", "mega_cycles_per_s": "{:.1f}"}
+SEED, NOISE_FLOOR = 2**62 + 5, 100  # of the second run
+SCRAMBLE = 0x2545F  # odd: i -> i * SCRAMBLE mod 2^18 visits every input once
+COLUMNS = {
+    "variant": "{}",
+    "n_frac": "{}",
+    "iterations": "{}",
+    "latency": "{}",
+    "interval": "{}",
+    "mismatches": "{}",
+    "worst": "{:.4f}",
+    "rms": "{:.4f}",
+    "mega_cycles_per_s": "{:.1f}",
+}
 
 
 def every_input():
@@ -39,7 +48,7 @@ def pack(x, y):
 
 def unpack(responses, bits):
     """QuadResult of DivResp messages (uint64) with a ratio of ``bits``."""
-    widths = {"amp": 8, "amp_valid": 1, "phase": 8, "zero": 1, "ratio": bits, "octant": 3}     # from bit 0 up
+    widths = {"amp": 8, "amp_valid": 1, "phase": 8, "zero": 1, "ratio": bits, "octant": 3}  # from bit 0 up
     fields, shift = {}, 0
     for name, width in widths.items():
         fields[name] = (responses >> np.uint64(shift) & np.uint64((1 << width) - 1)).astype(np.int64)
@@ -86,8 +95,17 @@ def measure(variant, n_frac=8, iterations=10, rtl=True):
     """
     latency, interval = timing(variant, n_frac, iterations)
     x, y = every_input()
-    found = {"variant": variant, "n_frac": n_frac, "iterations": iterations, "latency": latency, "interval": interval,
-             "mismatches": None, "cycles": None, "seconds": None, "mega_cycles_per_s": None}
+    found = {
+        "variant": variant,
+        "n_frac": n_frac,
+        "iterations": iterations,
+        "latency": latency,
+        "interval": interval,
+        "mismatches": None,
+        "cycles": None,
+        "seconds": None,
+        "mega_cycles_per_s": None,
+    }
     if not rtl:
         worst, rms = errors(golden(variant, n_frac, iterations, x, y).phase, x, y)
         return found | {"worst": worst, "rms": rms}
@@ -98,37 +116,68 @@ def measure(variant, n_frac=8, iterations=10, rtl=True):
     mismatches += compare(bench, x[scrambled], y[scrambled], config, NOISE_FLOOR, SEED)[0]
     came = got.phase.size
     worst, rms = errors(got.phase, x[:came], y[:came])
-    return found | {"latency": run["latency"][1], "interval": run["interval"][1], "mismatches": mismatches,
-                    "worst": worst, "rms": rms, "cycles": run["cycles"], "seconds": run["seconds"],
-                    "mega_cycles_per_s": run["cycles"] / run["seconds"] / 1e6}
+    return found | {
+        "latency": run["latency"][1],
+        "interval": run["interval"][1],
+        "mismatches": mismatches,
+        "worst": worst,
+        "rms": rms,
+        "cycles": run["cycles"],
+        "seconds": run["seconds"],
+        "mega_cycles_per_s": run["cycles"] / run["seconds"] / 1e6,
+    }
 
 
 def row(found):
     """A line of the table. A column that means nothing to the variant is a dash."""
     meaningless = "n_frac" if found["variant"] == "cordic" else "iterations"
-    cells = ("-" if name == meaningless or found[name] is None else form.format(found[name])
-             for name, form in COLUMNS.items())
+    cells = (
+        "-" if name == meaningless or found[name] is None else form.format(found[name])
+        for name, form in COLUMNS.items()
+    )
     return "".join(cell.rjust(max(len(name), 9) + 2) for name, cell in zip(COLUMNS, cells))
 
 
 def arguments():
     chip = ChipParameters()
-    parser = argparse.ArgumentParser(prog="python -m verif.divider.exhaustive",
-                                     description=__doc__.split("`: ")[1].splitlines()[0])
-    parser.add_argument("--variant", nargs="+", choices=DIVIDERS, default=DIVIDERS, metavar="NAME",
-                        help=f"of {', '.join(DIVIDERS)}; default: all")
-    parser.add_argument("--n-frac", nargs="+", type=int, default=[chip.n_frac], metavar="N",
-                        help="fraction bits of the ratio, 4..16; default: %(default)s")
-    parser.add_argument("--iterations", nargs="+", type=int, default=[chip.cordic_iterations], metavar="N",
-                        help="of CORDIC, 4..16; default: %(default)s")
+    parser = argparse.ArgumentParser(
+        prog="python -m flow.simulate.divider.exhaustive", description=__doc__.split("`: ")[1].splitlines()[0]
+    )
+    parser.add_argument(
+        "--variant",
+        nargs="+",
+        choices=DIVIDERS,
+        default=DIVIDERS,
+        metavar="NAME",
+        help=f"of {', '.join(DIVIDERS)}; default: all",
+    )
+    parser.add_argument(
+        "--n-frac",
+        nargs="+",
+        type=int,
+        default=[chip.n_frac],
+        metavar="N",
+        help="fraction bits of the ratio, 4..16; default: %(default)s",
+    )
+    parser.add_argument(
+        "--iterations",
+        nargs="+",
+        type=int,
+        default=[chip.cordic_iterations],
+        metavar="N",
+        help="of CORDIC, 4..16; default: %(default)s",
+    )
     parser.add_argument("--golden", action="store_true", help="the golden model alone, without Verilog")
     return parser
 
 
 def main(argv=None):
     options = arguments().parse_args(argv)
-    configs = [(v, 8, i) if v == "cordic" else (v, i, ChipParameters().cordic_iterations) for v in options.variant
-               for i in (options.iterations if v == "cordic" else options.n_frac)]
+    configs = [
+        (v, 8, i) if v == "cordic" else (v, i, ChipParameters().cordic_iterations)
+        for v in options.variant
+        for i in (options.iterations if v == "cordic" else options.n_frac)
+    ]
     mismatches = 0
     try:
         for n_frac in options.n_frac:
@@ -141,7 +190,7 @@ def main(argv=None):
             mismatches += found["mismatches"] or 0
             tqdm.write(row(found))
     except (ParameterError, ToolError, OSError) as error:
-        print(f"verif.divider.exhaustive: {error}", file=sys.stderr)
+        print(f"flow.simulate.divider.exhaustive: {error}", file=sys.stderr)
         return 2
     return 1 if mismatches else 0
 

@@ -7,15 +7,27 @@ from pathlib import Path
 
 import numpy as np
 
-from flow.simulate.cache import cached, digest
-from flow.simulate.process import run
+from base.cache import cached, digest
+from base.paths import BUILD
+from base.tools import run
 from rtl.testbench import verilator_folder
 
-CACHE = Path(__file__).parents[2] / "build" / "divider"
+CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"
-VERILATE = ("--cc", "--prefix", "VQuadDivider", "-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert",
-            "--no-timing", "-Wno-lint")
-CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")   # the flag is Verilator's own requirement
+VERILATE = (
+    "--cc",
+    "--prefix",
+    "VQuadDivider",
+    "-O3",
+    "--x-assign",
+    "fast",
+    "--x-initial",
+    "fast",
+    "--noassert",
+    "--no-timing",
+    "-Wno-lint",
+)
+CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads")
 
 
@@ -46,8 +58,23 @@ def program(verilog, top):
         source.write_text(verilog)
         _tool([verilator, *VERILATE, "--top-module", top, "--Mdir", folder / "model", source])
         unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted((folder / "model").glob("*.cpp")), MAIN]))
-        _tool([*CXX, "-O2", "-I", folder / "model", "-I", wheel / "include", "-I", wheel / "include" / "vltstd",
-              unit, *objects, "-pthread", "-o", folder / "bench"])
+        _tool(
+            [
+                *CXX,
+                "-O2",
+                "-I",
+                folder / "model",
+                "-I",
+                wheel / "include",
+                "-I",
+                wheel / "include" / "vltstd",
+                unit,
+                *objects,
+                "-pthread",
+                "-o",
+                folder / "bench",
+            ]
+        )
         shutil.rmtree(folder / "model")
         unit.unlink()
 

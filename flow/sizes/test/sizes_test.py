@@ -38,7 +38,7 @@ def test_refused_file(tmp_path):
 @needs_yosys
 def test_command_writes_both_files(tmp_path, capsys):
     assert main(["RegFile", "--out", str(tmp_path), "--rows", "8"]) == 0
-    size, = json.loads((tmp_path / "sizes.json").read_text())
+    (size,) = json.loads((tmp_path / "sizes.json").read_text())
     assert size["top"] == "RegFile"
     assert size["cells"] == sum(size["by_type"].values())
     assert size["gates"] == sum(areas()[cell] * n for cell, n in size["by_type"].items())

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.afe import Converter
 from models.parameters import ConverterParameters, ParameterError
@@ -31,9 +32,9 @@ def test_offset_kTC_and_noise_have_the_drawn_rms():
     held = c.held(np.zeros(50_000), 4, np.arange(50_000)) - c.offset[4]
     assert abs(held.std() - 3) < 0.05
     share = np.mean(c.compare(np.full(50_000, 0.5), 1, True, 4, np.arange(50_000), 3))
-    assert abs(share - 0.5) < 0.01      # level(1) = 0.5
+    assert abs(share - 0.5) < 0.01  # level(1) = 0.5
     share = np.mean(c.compare(np.full(50_000, 1.0), 1, True, 4, np.arange(50_000), 3))
-    assert abs(share - 0.841) < 0.01    # one sigma above it
+    assert abs(share - 0.841) < 0.01  # one sigma above it
 
 
 @settings(max_examples=20, deadline=None)

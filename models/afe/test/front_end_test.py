@@ -57,16 +57,30 @@ def test_noise_does_not_depend_on_what_else_is_read():
     assert (offset_free.codes != all_taps.codes).any()
 
 
-@pytest.mark.parametrize("samples, mode, match", [
-    (SAMPLES[0], "edge", "samples"), (SAMPLES.astype(np.float32), "edge", "samples"), (SAMPLES[:1], "tof", "taps"),
-    (SAMPLES * np.nan, "image", "finite"), (SAMPLES, "colour", "mode")])
+@pytest.mark.parametrize(
+    "samples, mode, match",
+    [
+        (SAMPLES[0], "edge", "samples"),
+        (SAMPLES.astype(np.float32), "edge", "samples"),
+        (SAMPLES[:1], "tof", "taps"),
+        (SAMPLES * np.nan, "image", "finite"),
+        (SAMPLES, "colour", "mode"),
+    ],
+)
 def test_refuses_bad_input(samples, mode, match):
     with pytest.raises(ParameterError, match=match):
         FrontEnd(gain=1.0, trim=TRIM).convert(samples, mode)
 
 
-@pytest.mark.parametrize("change, match", [({"gain": 0}, "gain"), ({"trim": (0,)}, "trim"), ({"lanes": 0}, "lanes"),
-                                           ({"converter": Converter.ideal(4)}, "converter")])
+@pytest.mark.parametrize(
+    "change, match",
+    [
+        ({"gain": 0}, "gain"),
+        ({"trim": (0,)}, "trim"),
+        ({"lanes": 0}, "lanes"),
+        ({"converter": Converter.ideal(4)}, "converter"),
+    ],
+)
 def test_refuses_bad_parameters(change, match):
     with pytest.raises(ParameterError, match=match):
         FrontEnd(**{"gain": 1.0, "trim": TRIM, **change})

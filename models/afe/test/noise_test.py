@@ -5,6 +5,7 @@ from models.afe import KTC_DECISION, NOISE_SCALE, noise_counts
 
 def test_known_words():
     """Worked through by hand from the definition, in Python's unbounded integers."""
+
     def mix(x):
         for shift, factor in ((16, 0x7FEB352D), (15, 0x846CA68B), (16, 1)):
             x = (x ^ x >> shift) * factor % 2**32

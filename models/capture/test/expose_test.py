@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from scipy.stats import poisson
 
 from models.capture import Exposure, expose
@@ -42,8 +41,9 @@ def test_common_mode_resets_keep_the_difference(n_cm):
     """Strong ambient light: the difference of n_cm + 1 intervals, in wells that would have filled long ago."""
     a, b, g = 0.602, 0.5, 1.2
     out = expose(_pair(a, b), Exposure(QUIET, AmpTiming(n_cm=n_cm), noise=0), np.full((8, 12), g))
-    np.testing.assert_allclose(out[..., 0] - g * out[..., 1],
-                               (n_cm + 1) * (a - g * b) * WHITE_ELECTRONS / QUIET.lsb_electrons, rtol=1e-9)
+    np.testing.assert_allclose(
+        out[..., 0] - g * out[..., 1], (n_cm + 1) * (a - g * b) * WHITE_ELECTRONS / QUIET.lsb_electrons, rtol=1e-9
+    )
     assert out.max() < 127.5
 
 
@@ -80,8 +80,9 @@ def test_read_noise_and_offset_scale(noise):
 
 def test_fixed_pattern_is_fixed_and_the_rest_moves():
     electrical = ElectricalParameters(read_noise=0, gain_fpn=0.1, dark_current=0)
-    first, second = (expose(_pair(0.5, 0.5, (50, 60)), Exposure(electrical, AmpTiming(), noise=1), tap=tap)
-                     for tap in (0, 1))
+    first, second = (
+        expose(_pair(0.5, 0.5, (50, 60)), Exposure(electrical, AmpTiming(), noise=1), tap=tap) for tap in (0, 1)
+    )
     assert np.corrcoef(first.ravel(), second.ravel())[0, 1] > 0.95 and (first != second).mean() > 0.99
 
 
@@ -92,15 +93,23 @@ def test_seed_decides_everything():
 
 
 def test_float32_follows_float64():
-    wide, narrow = (expose(_pair(0.7, 0.5, dtype=d), Exposure(ElectricalParameters(), AmpTiming(), noise=0))
-                    for d in (np.float64, np.float32))
+    wide, narrow = (
+        expose(_pair(0.7, 0.5, dtype=d), Exposure(ElectricalParameters(), AmpTiming(), noise=0))
+        for d in (np.float64, np.float32)
+    )
     assert narrow.dtype == np.float32
     np.testing.assert_allclose(narrow, wide, rtol=1e-5)
 
 
 @settings(max_examples=40, deadline=None)
-@given(st.floats(0, 1e6), st.floats(0, 1e6), st.floats(0, 100), st.integers(0, 2**32 - 1), st.integers(0, 3),
-       st.sampled_from(["float32", "float64"]))
+@given(
+    st.floats(0, 1e6),
+    st.floats(0, 1e6),
+    st.floats(0, 100),
+    st.integers(0, 2**32 - 1),
+    st.integers(0, 3),
+    st.sampled_from(["float32", "float64"]),
+)
 def test_never_nan_never_a_warning(a, b, noise, seed, n_cm, dtype):
     exposure = Exposure(ElectricalParameters(gain_fpn=0.5), AmpTiming(n_cm=n_cm), noise=noise, seed=seed)
     with np.errstate(all="raise", under="ignore"):
@@ -108,8 +117,16 @@ def test_never_nan_never_a_warning(a, b, noise, seed, n_cm, dtype):
     assert np.isfinite(out).all() and out.dtype == dtype
 
 
-@pytest.mark.parametrize("pair", [np.full((2, 3, 4), np.nan), np.full((2, 3, 4), np.inf), np.full((2, 3, 4), -1.0),
-                                  np.zeros((3, 4)), np.zeros((3, 3, 4))])
+@pytest.mark.parametrize(
+    "pair",
+    [
+        np.full((2, 3, 4), np.nan),
+        np.full((2, 3, 4), np.inf),
+        np.full((2, 3, 4), -1.0),
+        np.zeros((3, 4)),
+        np.zeros((3, 3, 4)),
+    ],
+)
 def test_bad_pairs(pair):
     with pytest.raises(ParameterError, match="pair"):
         expose(pair, Exposure(QUIET, AmpTiming()))

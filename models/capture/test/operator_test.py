@@ -70,9 +70,14 @@ def test_read_of_everything_is_nothing_left_out():
     assert CaptureOperator(sensor, read=np.ones((8, 12), bool)).read is None
 
 
-@pytest.mark.parametrize("light,field", [(np.zeros((3, 3, 8, 11)), "light_field"),
-                                         (np.zeros((1, 1, 8, 12)), "light_field"),
-                                         (np.zeros((3, 3, 8, 12), np.float32), "light_field")])
+@pytest.mark.parametrize(
+    "light,field",
+    [
+        (np.zeros((3, 3, 8, 11)), "light_field"),
+        (np.zeros((1, 1, 8, 12)), "light_field"),
+        (np.zeros((3, 3, 8, 12), np.float32), "light_field"),
+    ],
+)
 def test_wrong_light_fields(light, field):
     with pytest.raises(ParameterError, match=field):
         CaptureOperator(_sensor(8, 12)).forward(light)
@@ -92,5 +97,5 @@ def test_weights_follow_the_parameters():
     sensor = _sensor(8, 12)
     flat = replace(sensor, optics=replace(sensor.optics, m=0.0))
     pair = CaptureOperator(flat).forward(np.ones((3, 3, 8, 12)))
-    np.testing.assert_allclose(pair[0], pair[1])        # m = 0: both diodes see the same
+    np.testing.assert_allclose(pair[0], pair[1])  # m = 0: both diodes see the same
     np.testing.assert_allclose(pair, 1)

@@ -6,5 +6,14 @@ from .file import decode_file
 from .frame import DecodedFrame
 from .header import StreamError, StreamHeader
 
-__all__ = ["DecodedFrame", "StreamError", "StreamHeader", "decode_file", "decode_stream", "encode_frame",
-           "encode_marked_row", "encode_payload", "iterate_frames"]
+__all__ = [
+    "DecodedFrame",
+    "StreamError",
+    "StreamHeader",
+    "decode_file",
+    "decode_stream",
+    "encode_frame",
+    "encode_marked_row",
+    "encode_payload",
+    "iterate_frames",
+]

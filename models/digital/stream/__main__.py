@@ -33,8 +33,10 @@ def _fail(message):
 def _describe(frame):
     header, rows = frame.header, frame.layout.rows.size
     counts = "counts lost" if frame.made is None else f"{frame.made} conversions, {frame.left_out} left out"
-    return (f"frame {header.frame_number}: {header.mode}, {header.rows} x {header.cols}, threshold {header.threshold}, "
-            f"{rows - len(frame.bad_rows)} of {rows} rows, {counts}, {frame.stop - frame.start} bytes")
+    return (
+        f"frame {header.frame_number}: {header.mode}, {header.rows} x {header.cols}, threshold {header.threshold}, "
+        f"{rows - len(frame.bad_rows)} of {rows} rows, {counts}, {frame.stop - frame.start} bytes"
+    )
 
 
 if __name__ == "__main__":

@@ -28,12 +28,13 @@ class Body:
         (made, left_out, notes) of the trailer or None).
         """
         layout, view = self.frame.layout, self.view
-        ordinal, at = decode_rows(view, at, ordinal, layout.rows, layout.kind, layout.places, layout.start,
-                                  *self.coder, self.rows, self.ends)
+        ordinal, at = decode_rows(
+            view, at, ordinal, layout.rows, layout.kind, layout.places, layout.start, *self.coder, self.rows, self.ends
+        )
         if ordinal < self.total:
             return ordinal, at, None
-        crc = frame_crc(self.sent, view[self.first:at]) if whole else None
-        return ordinal, at, read_trailer(view[at:at + TRAILER_BYTES].tobytes(), crc)
+        crc = frame_crc(self.sent, view[self.first : at]) if whole else None
+        return ordinal, at, read_trailer(view[at : at + TRAILER_BYTES].tobytes(), crc)
 
     def mend(self, stop):
         """Decode the frame, up to ``stop``, in spite of one wrong byte: the trailer as `decode` gives it, or None.
@@ -46,13 +47,14 @@ class Body:
             return None
         sent_crc = CRC.unpack(self.view[last:stop].tobytes())[0]
         where, change = np.empty(16, np.int64), np.empty(16, np.int64)
-        found = one_byte_changes(frame_crc(self.sent, self.view[self.first:last]) ^ sent_crc, last - self.first,
-                                 where, change)
+        found = one_byte_changes(
+            frame_crc(self.sent, self.view[self.first : last]) ^ sent_crc, last - self.first, where, change
+        )
         for position, bits in zip(where[:found].tolist(), change[:found].tolist(), strict=True):
             view = self.view[start:stop].copy()
             view[HEADER_BYTES + position] ^= bits
             mended = Body(view, self.frame, self.sent, 0)
-            self.rows[:] = 0    # a row that only seemed to fit may lie there
+            self.rows[:] = 0  # a row that only seemed to fit may lie there
             _, at, tail = mended.decode(0, mended.first)
             if tail and start + at + TRAILER_BYTES == stop:
                 self._tell(self.first + position, int(np.searchsorted(mended.ends, HEADER_BYTES + position, "right")))

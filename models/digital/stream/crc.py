@@ -19,7 +19,7 @@ def crc16(data):
 
 
 CRC32_TABLE = np.array([zlib.crc32(bytes([byte]), 0xFFFFFFFF) ^ 0xFFFFFFFF for byte in range(256)])
-CRC32_BACK = np.empty(256, int)             # the byte whose CRC32_TABLE entry has a given top byte
+CRC32_BACK = np.empty(256, int)  # the byte whose CRC32_TABLE entry has a given top byte
 CRC32_BACK[CRC32_TABLE >> 24] = np.arange(256)
 
 # CRC16_AFTER[n][byte]: what a byte adds to the CRC when n more bytes follow it

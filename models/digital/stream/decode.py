@@ -11,8 +11,8 @@ from .payload import frame_ends
 from .resync import Search
 from .trailer import COUNTED_BYTES, TRAILER_BYTES
 
-MEMORY_MAX = 1 << 30        # bytes of samples that decode_stream returns at most
-SEARCH_MAX = 1 << 28, 64    # samples decoded on trial to find rows again: at most so many, and more for each byte
+MEMORY_MAX = 1 << 30  # bytes of samples that decode_stream returns at most
+SEARCH_MAX = 1 << 28, 64  # samples decoded on trial to find rows again: at most so many, and more for each byte
 
 
 def decode_stream(data, tile=TileParameters()):
@@ -57,7 +57,7 @@ def _find_header(data, at, tile):
     reason, position = None, at
     while position >= 0:
         try:
-            header, sent, mended = read_header(data[position:position + HEADER_BYTES])
+            header, sent, mended = read_header(data[position : position + HEADER_BYTES])
             layout = header.layout(tile)
         except ParameterError as error:
             reason = reason or str(error)
@@ -77,7 +77,7 @@ def _good_header(data, start, stop):
     position = data.find(MAGIC, start, stop + len(MAGIC) - 1)
     while position >= 0:
         try:
-            if read_header(data[position:position + HEADER_BYTES])[2] is None:
+            if read_header(data[position : position + HEADER_BYTES])[2] is None:
                 break
         except StreamError:
             pass
@@ -101,7 +101,7 @@ def _decode_frame(data, frame, sent, tile, limit):
     if tail:
         frame.made, frame.left_out, notes = tail
         following = _good_header(data, at + COUNTED_BYTES, trailer_end) if notes else -1
-        if following >= 0:      # these are no bytes of the trailer
+        if following >= 0:  # these are no bytes of the trailer
             trailer_end, notes = following, [f"the trailer ends after {following - at} of {TRAILER_BYTES} bytes"]
         frame.errors += [f"byte {at}: {note}" for note in notes]
     else:

@@ -37,7 +37,7 @@ def encode_payload(codes, edge, threshold):
     """The payload of one row, without its mark: bytes. codes: integers in the order of the stream."""
     codes = np.asarray(codes, np.int16)
     out = np.empty(row_bytes_max(codes.size, edge) + 1, np.uint8)
-    return out[:encode_row(codes, edge, base_of(threshold), out, 0)].tobytes()
+    return out[: encode_row(codes, edge, base_of(threshold), out, 0)].tobytes()
 
 
 def encode_marked_row(row, codes, edge, threshold):

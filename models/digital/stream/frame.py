@@ -52,13 +52,20 @@ class DecodedFrame:
         The file is whole or not there. Raises OSError when it cannot be written.
         """
         path = Path(path)
-        counts = {name: -1 if count is None else count
-                  for name, count in (("made", self.made), ("left_out", self.left_out))}
+        counts = {
+            name: -1 if count is None else count for name, count in (("made", self.made), ("left_out", self.left_out))
+        }
         handle, part = tempfile.mkstemp(prefix=".part-", suffix=".npz", dir=path.parent)
         try:
             with os.fdopen(handle, "wb") as out:
-                np.savez_compressed(out, samples=self.samples, read=self.read, header=json.dumps(
-                    dataclasses.asdict(self.header)), bad_rows=np.array(self.bad_rows, np.int32), **counts)
+                np.savez_compressed(
+                    out,
+                    samples=self.samples,
+                    read=self.read,
+                    header=json.dumps(dataclasses.asdict(self.header)),
+                    bad_rows=np.array(self.bad_rows, np.int32),
+                    **counts,
+                )
             os.chmod(part, 0o644)
             os.replace(part, path)
         except BaseException:

@@ -9,8 +9,17 @@ import numpy as np
 
 from models.digital.scan import Scan
 from models.parameters import (
-    COLS_MAX, LANES, MODES, ROWS_MAX, SAMPLES_PER_PIXEL, FrameParameters, ParameterError, TileParameters, Window,
-    check_choice, check_int,
+    COLS_MAX,
+    LANES,
+    MODES,
+    ROWS_MAX,
+    SAMPLES_PER_PIXEL,
+    FrameParameters,
+    ParameterError,
+    TileParameters,
+    Window,
+    check_choice,
+    check_int,
 )
 
 from .crc import one_byte_errors
@@ -56,19 +65,38 @@ class StreamHeader:
         check_choice("lanes", self.lanes, LANES)
         check_int("tile rows", self.tile_rows, 1, 4)
         check_int("tile cols", self.tile_cols, 1, 6)
-        self.frame      # checks the other fields
+        self.frame  # checks the other fields
 
     @classmethod
     def from_frame(cls, rows, cols, lanes, frame, tile=TileParameters()):
         """The header that a chip of ``rows`` x ``cols`` pixels and ``lanes`` sends. frame: FrameParameters."""
-        return cls(rows, cols, lanes, tile.rows, tile.cols, frame.window, frame.mode, frame.phase, frame.decimation,
-                   frame.mask, frame.threshold, frame.frame_number)
+        return cls(
+            rows,
+            cols,
+            lanes,
+            tile.rows,
+            tile.cols,
+            frame.window,
+            frame.mode,
+            frame.phase,
+            frame.decimation,
+            frame.mask,
+            frame.threshold,
+            frame.frame_number,
+        )
 
     @property
     def frame(self):
         """The configuration as FrameParameters; what the stream does not carry has its default."""
-        return FrameParameters(self.window, self.mode, self.mask, self.threshold, self.decimation, self.phase,
-                               frame_number=self.frame_number)
+        return FrameParameters(
+            self.window,
+            self.mode,
+            self.mask,
+            self.threshold,
+            self.decimation,
+            self.phase,
+            frame_number=self.frame_number,
+        )
 
     @property
     def edge(self):
@@ -84,9 +112,22 @@ class StreamHeader:
         """The header with its CRC-32: HEADER_BYTES bytes."""
         w = self.window
         flags = self.decimation << 4 | self.phase << 2 | MODES.index(self.mode)
-        fields = _FIELDS.pack(MAGIC, VERSION, flags, self.threshold, self.lanes, self.tile_rows << 4 | self.tile_cols,
-                              self.rows, self.cols, w.row0, w.row1, w.col0, w.col1, self.mask.to_bytes(3, "big"),
-                              self.frame_number)
+        fields = _FIELDS.pack(
+            MAGIC,
+            VERSION,
+            flags,
+            self.threshold,
+            self.lanes,
+            self.tile_rows << 4 | self.tile_cols,
+            self.rows,
+            self.cols,
+            w.row0,
+            w.row1,
+            w.col0,
+            w.col1,
+            self.mask.to_bytes(3, "big"),
+            self.frame_number,
+        )
         return fields + CRC.pack(zlib.crc32(fields))
 
     def layout(self, tile=TileParameters()):
@@ -95,8 +136,9 @@ class StreamHeader:
         Raises ParameterError when the tile has another size, or the window lies outside the array or reads nothing.
         """
         if (tile.rows, tile.cols) != (self.tile_rows, self.tile_cols):
-            raise ParameterError(f"tile = {tile.rows} x {tile.cols}: must be {self.tile_rows} x {self.tile_cols}, "
-                                 "as in the header")
+            raise ParameterError(
+                f"tile = {tile.rows} x {tile.cols}: must be {self.tile_rows} x {self.tile_cols}, as in the header"
+            )
         frame = FrameParameters(self.window, self.mode, self.mask, 0, self.decimation, self.phase)
         return _layout(self.rows, self.cols, self.lanes, frame, self.subs, tile)
 
@@ -119,7 +161,7 @@ class Layout:
     def places_of(self, ordinal):
         """Index col * subs + sub of each sample of row number ``ordinal``, in the order of the stream."""
         kind = self.kind[ordinal]
-        return self.places[self.start[kind]:self.start[kind + 1]]
+        return self.places[self.start[kind] : self.start[kind + 1]]
 
 
 @lru_cache(maxsize=32)
@@ -156,13 +198,14 @@ def read_header(data):
     if len(data) < HEADER_BYTES:
         raise StreamError(f"{len(data)} bytes: a header has {HEADER_BYTES}")
     if sum(a != b for a, b in zip(MAGIC, data, strict=False)) > 1:
-        raise StreamError(f"starts with {bytes(data[:len(MAGIC)])!r}: a frame starts with {MAGIC!r}")
+        raise StreamError(f"starts with {bytes(data[: len(MAGIC)])!r}: a frame starts with {MAGIC!r}")
     found = _correct(data)
     if found is None:
         raise StreamError("header CRC-32 does not fit, and no change of one byte mends it")
     sent, position = found
-    (magic, version, flags, threshold, lanes, tile, rows, cols, row0, row1, col0, col1, mask,
-     frame_number) = _FIELDS.unpack_from(sent)
+    (magic, version, flags, threshold, lanes, tile, rows, cols, row0, row1, col0, col1, mask, frame_number) = (
+        _FIELDS.unpack_from(sent)
+    )
     if magic != MAGIC:
         raise StreamError(f"starts with {magic!r}: a frame starts with {MAGIC!r}")
     if version != VERSION:
@@ -170,9 +213,20 @@ def read_header(data):
     if flags & 0xC8:
         raise StreamError(f"flags = {flags:#04x}: reserved bits are set")
     try:
-        header = StreamHeader(rows, cols, lanes, tile >> 4, tile & 15, Window(row0, row1, col0, col1),
-                              MODES[flags & 3], bool(flags & 4), flags >> 4 & 3, int.from_bytes(mask, "big"),
-                              threshold, frame_number)
+        header = StreamHeader(
+            rows,
+            cols,
+            lanes,
+            tile >> 4,
+            tile & 15,
+            Window(row0, row1, col0, col1),
+            MODES[flags & 3],
+            bool(flags & 4),
+            flags >> 4 & 3,
+            int.from_bytes(mask, "big"),
+            threshold,
+            frame_number,
+        )
     except ParameterError as error:
         raise StreamError(f"header: {error}") from None
     return header, sent, position

@@ -12,9 +12,9 @@ from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 from .header import MAGIC
 from .trailer import COUNTED_BYTES, COUNTS, TRAILER_BYTES, TRAILER_ROW
 
-START = (3, 4, 0, 128)      # k, r2, run, credit at the start of a row
+START = (3, 4, 0, 128)  # k, r2, run, credit at the start of a row
 K_MAX, R2_MAX, CREDIT_MAX = 7, 12, 255
-TOKEN_MAX = 24              # bits of the longest token
+TOKEN_MAX = 24  # bits of the longest token
 
 # By the zeros before a value's leading one: what they do to r2. By the value's top byte: how many they are.
 R2_STEP = np.array([-1, 0] + [1] * 7)
@@ -46,8 +46,12 @@ def crc16_span(data, start, stop):
     whole = start + (stop - start) // 4 * 4
     for i in range(start, whole, 4):
         crc ^= _word(data, i)
-        crc = CRC16_AFTER[3, crc >> 8] ^ CRC16_AFTER[2, crc & 0xFF] \
-            ^ CRC16_AFTER[1, data[i + 2]] ^ CRC16_AFTER[0, data[i + 3]]
+        crc = (
+            CRC16_AFTER[3, crc >> 8]
+            ^ CRC16_AFTER[2, crc & 0xFF]
+            ^ CRC16_AFTER[1, data[i + 2]]
+            ^ CRC16_AFTER[0, data[i + 3]]
+        )
     for i in range(whole, stop):
         crc = (crc << 8 & 0xFFFF) ^ CRC16_AFTER[0, crc >> 8 ^ np.int64(data[i])]
     return crc
@@ -114,7 +118,7 @@ def encode_rows(codes, rows, counts, edge, base, out):
     """Rows with their marks into out; returns the bytes written. codes: int16, row after row; rows, counts: int32."""
     at, first = 0, 0
     for i in range(rows.size):
-        end = encode_row(codes[first:first + counts[i]], edge, base, out, at)
+        end = encode_row(codes[first : first + counts[i]], edge, base, out, at)
         mark = crc16_span(out, at, end) ^ rows[i]
         out[end], out[end + 1] = mark >> 8, mark & 0xFF
         at = end + 2
@@ -133,7 +137,7 @@ def decode_row(data, at, stop, count, edge, base, where, value):
     if not edge:
         return at + count if at + count <= stop else -1, 0
     k, r2, run, credit = START
-    hold, held = np.uint64(0), 0    # the next bits, from the top
+    hold, held = np.uint64(0), 0  # the next bits, from the top
     here, found, i = at, 0, 0
     while i < count:
         if held < TOKEN_MAX and here + 4 <= stop:
@@ -280,8 +284,11 @@ def find_row(data, start, stop, limit, first, last, rows, counts, number, edge, 
             if end < 0 or row >= number.size:
                 continue
             found = number[row]
-            if first <= found <= last and counts[found] == count \
-                    and row_fits(data, end, stop, found + 1, rows, counts, edge, base, where, value):
+            if (
+                first <= found <= last
+                and counts[found] == count
+                and row_fits(data, end, stop, found + 1, rows, counts, edge, base, where, value)
+            ):
                 return at, found, limit
     return -1, 0, limit
 

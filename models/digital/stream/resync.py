@@ -12,6 +12,7 @@ from models.parameters import ROWS_MAX
 from .payload import check_row, find_row, row_bytes_max, row_fits
 from .trailer import COUNTED_BYTES
 
+
 class Search:
     """The searches of one frame. ``limit``: samples that they may still decode on trial."""
 
@@ -34,10 +35,14 @@ class Search:
         if behind >= 0 and not self.coder[0]:
             return behind, lost + 1
         following, near = min(lost + 1, total), min(self.stop, at + self.longest + COUNTED_BYTES)
-        return (behind >= 0 and self._find(behind, behind + 1, following, following)
-                or self._find(at, near, following, following)
-                or behind >= 0 and (behind, following)
-                or self._find(at, self.stop, following, total))
+        return (
+            behind >= 0
+            and self._find(behind, behind + 1, following, following)
+            or self._find(at, near, following, following)
+            or behind >= 0
+            and (behind, following)
+            or self._find(at, self.stop, following, total)
+        )
 
     def _behind(self, lost, at):
         """Where row number ``lost`` + 1 (or the trailer) fits right behind the lost one, or -1."""
@@ -46,6 +51,16 @@ class Search:
         return end if end >= 0 and row_fits(self.data, end, self.stop, lost + 1, rows, counts, *self.coder) else -1
 
     def _find(self, start, stop, first, last):
-        position, ordinal, self.limit = find_row(self.data, start, stop, self.limit, first, last, self.layout.rows,
-                                                 self.layout.counts, self.number, *self.coder)
+        position, ordinal, self.limit = find_row(
+            self.data,
+            start,
+            stop,
+            self.limit,
+            first,
+            last,
+            self.layout.rows,
+            self.layout.counts,
+            self.number,
+            *self.coder,
+        )
         return (position, ordinal) if position >= 0 else None

@@ -8,7 +8,7 @@ from models.parameters import check_int
 from .crc import crc16
 from .header import CRC, FIELD_BYTES
 
-TRAILER_ROW = 0xFFFF    # stands for the row index in the trailer's mark
+TRAILER_ROW = 0xFFFF  # stands for the row index in the trailer's mark
 MARK = struct.Struct(">H")
 COUNTS = struct.Struct(">II")
 COUNTED_BYTES = COUNTS.size + MARK.size
@@ -42,7 +42,7 @@ def read_trailer(tail, crc):
 
     Returns (made, left_out, what was wrong), or None when the counts do not fit their mark.
     """
-    if len(tail) < COUNTED_BYTES or row_mark(tail[:COUNTS.size], TRAILER_ROW) != tail[COUNTS.size:COUNTED_BYTES]:
+    if len(tail) < COUNTED_BYTES or row_mark(tail[: COUNTS.size], TRAILER_ROW) != tail[COUNTS.size : COUNTED_BYTES]:
         return None
     notes = []
     if len(tail) < TRAILER_BYTES:

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.digital.amp_ctrl import PIN_NAMES, row_cycles, waveform
 from models.parameters import AmpTiming
@@ -31,14 +32,18 @@ def test_phases_in_order_with_a_guard_between_any_two(timing, four_tap, hold_fre
     assert max(sum(pins[name].astype(int) for name in PHASES)) == 1
     row = sequence(pins)
     integrate = [("integrate", timing.t_int)]
-    sub_frame = [("pixel_reset", timing.t_reset), *(integrate + [("cm_reset", timing.t_cm)]) * timing.n_cm, *integrate,
-                 ("read", timing.t_settle + timing.t_read)]
+    sub_frame = [
+        ("pixel_reset", timing.t_reset),
+        *(integrate + [("cm_reset", timing.t_cm)]) * timing.n_cm,
+        *integrate,
+        ("read", timing.t_settle + timing.t_read),
+    ]
     assert [(name, length) for _, length, name in row] == sub_frame * (4 if four_tap else 1)
     previous_end = 0
     for start, length, name in row:
         if name == "read":
             assert start - previous_end >= timing.t_guard and hold_free[start - 1]
-            assert not any(hold_free[previous_end + timing.t_guard - 1:start - 1])
+            assert not any(hold_free[previous_end + timing.t_guard - 1 : start - 1])
         else:
             assert start - previous_end == timing.t_guard
         previous_end = start + length
@@ -51,7 +56,7 @@ def test_phases_in_order_with_a_guard_between_any_two(timing, four_tap, hold_fre
 def test_shutter_reference_samples_and_taps(timing, four_tap, hold_free):
     pins = waveform(timing, four_tap, hold_free)
     reads, opened = pulses(pins["read"])[0], pulses(pins["shutter"])
-    first = pulses(pins["integrate"])[0][::timing.n_cm + 1]
+    first = pulses(pins["integrate"])[0][:: timing.n_cm + 1]
     assert opened[0].tolist() == first.tolist()
     exposure = (timing.n_cm + 1) * timing.t_int + timing.n_cm * (timing.t_cm + 2 * timing.t_guard)
     assert set(opened[1]) == {exposure}
@@ -82,12 +87,13 @@ def test_waveform_by_hand():
     pins = waveform(AmpTiming(2, 3, 1, 2, 1, 1, n_cm=1), False, [True] * 19)
     drawn = {
         "pixel_reset": "0110000000000000000",
-        "shutter":     "0000111111111000000",
-        "integrate":   "0000111000111000000",
-        "cm_reset":    "0000000010000000000",
-        "read":        "0000000000000011100",
-        "ref_ctl":     "0000000000000011000",
-        "sample":      "0000000000000001100",
-        "busy":        "1111111111111111110",
-        "done":        "0000000000000000001"}
+        "shutter": "0000111111111000000",
+        "integrate": "0000111000111000000",
+        "cm_reset": "0000000010000000000",
+        "read": "0000000000000011100",
+        "ref_ctl": "0000000000000011000",
+        "sample": "0000000000000001100",
+        "busy": "1111111111111111110",
+        "done": "0000000000000000001",
+    }
     assert {name: "".join(map(str, pins[name])) for name in drawn} == drawn

@@ -63,10 +63,23 @@ def test_zero_amplitude_and_noise_floor():
         assert [int(v) for v in fields(result)] == [0, 0, 1, 0, 0, 0]
 
 
-@pytest.mark.parametrize("x, y, octant, ratio, phase", [
-    (255, 0, 0, 0, 0), (1, 1, 1, 255, 32), (0, 9, 2, 0, 64), (-7, 7, 3, 255, 96), (-256, 0, 4, 0, 128),
-    (-256, -256, 5, 255, 160), (0, -1, 6, 0, 192), (200, -200, 7, 255, 224), (100, 50, 0, 128, 19),
-    (-2, -1, 4, 128, 147), (1, -256, 6, 1, 192), (255, -3, 7, 3, 255)])
+@pytest.mark.parametrize(
+    "x, y, octant, ratio, phase",
+    [
+        (255, 0, 0, 0, 0),
+        (1, 1, 1, 255, 32),
+        (0, 9, 2, 0, 64),
+        (-7, 7, 3, 255, 96),
+        (-256, 0, 4, 0, 128),
+        (-256, -256, 5, 255, 160),
+        (0, -1, 6, 0, 192),
+        (200, -200, 7, 255, 224),
+        (100, 50, 0, 128, 19),
+        (-2, -1, 4, 128, 147),
+        (1, -256, 6, 1, 192),
+        (255, -3, 7, 3, 255),
+    ],
+)
 def test_by_hand(x, y, octant, ratio, phase):
     result = quad_divide(x, y)
     assert (int(result.octant), int(result.ratio), int(result.phase)) == (octant, ratio, phase)
@@ -89,8 +102,9 @@ def test_thresholds_in_60_digits(n_frac):
         assert threshold == 0 or not reached(threshold - 1)
 
 
-@pytest.mark.parametrize("n_frac, bound", [
-    (4, 1.6), (5, 1.05), (6, 0.81), (7, 0.64), (8, 0.75), (12, 0.51), (16, 0.501)])
+@pytest.mark.parametrize(
+    "n_frac, bound", [(4, 1.6), (5, 1.05), (6, 0.81), (7, 0.64), (8, 0.75), (12, 0.51), (16, 0.501)]
+)
 def test_phase_of_every_input(n_frac, bound):
     worst, rms = worst_and_rms(quad_divide(X, Y, n_frac))
     print(f"n_frac {n_frac}: worst {worst:.4f} LSB, RMS {rms:.4f} LSB")
@@ -134,14 +148,17 @@ def test_cordic_angles_in_60_digits():
             assert abs(angle - exact) < Decimal("0.5")
 
 
-@given(st.integers(-2**23, 2**23), st.integers(1, 16))
+@given(st.integers(-(2**23), 2**23), st.integers(1, 16))
 def test_nearest_even(z, fraction):
     assert nearest_even(np.array(z), fraction) == round(z / 2**fraction)
 
 
 @settings(max_examples=30, deadline=None)
-@given(st.lists(st.tuples(st.integers(-256, 255), st.integers(-256, 255)), min_size=1, max_size=8),
-       st.integers(4, 16), st.integers(0, 255))
+@given(
+    st.lists(st.tuples(st.integers(-256, 255), st.integers(-256, 255)), min_size=1, max_size=8),
+    st.integers(4, 16),
+    st.integers(0, 255),
+)
 def test_arrays_equal_scalars_and_keep_their_shape(pairs, n, floor):
     pairs = np.array(pairs, np.int16)[:, None]
     for divide in (quad_divide, cordic):
@@ -152,10 +169,20 @@ def test_arrays_equal_scalars_and_keep_their_shape(pairs, n, floor):
                 assert a.shape == (len(pairs), 1) and b.shape == () and a[i, 0] == b and a.dtype == b.dtype
 
 
-@pytest.mark.parametrize("arguments, field", [
-    ((256, 0), "x = 256"), ((0, -257), "y = -257"), ((0.5, 0), "x of type float64"), ((0, 0, 3), "= 3"),
-    ((0, 0, 17), "= 17"), ((0, 0, 8, 256), "noise_floor = 256"), ((np.array([0, 300]), 0), "x = 300"),
-    ((True, 0), "x of type bool"), ((0, 0, 8, -1), "noise_floor = -1")])
+@pytest.mark.parametrize(
+    "arguments, field",
+    [
+        ((256, 0), "x = 256"),
+        ((0, -257), "y = -257"),
+        ((0.5, 0), "x of type float64"),
+        ((0, 0, 3), "= 3"),
+        ((0, 0, 17), "= 17"),
+        ((0, 0, 8, 256), "noise_floor = 256"),
+        ((np.array([0, 300]), 0), "x = 300"),
+        ((True, 0), "x of type bool"),
+        ((0, 0, 8, -1), "noise_floor = -1"),
+    ],
+)
 def test_refuses(arguments, field):
     for divide in (quad_divide, cordic):
         with pytest.raises(ParameterError, match=field):

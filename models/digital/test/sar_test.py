@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.afe import Converter
 from models.digital.sar import convert, decisions
@@ -26,14 +27,20 @@ def one_by_one(v, unsigned, threshold, converter, lane, index):
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.booleans(), st.integers(0, 127), st.sampled_from([ROUGH, Converter.ideal(4)]),
-       st.lists(st.one_of(st.floats(-300, 600), st.sampled_from(EDGES)), min_size=1, max_size=20), st.integers(0, 2**23))
+@given(
+    st.booleans(),
+    st.integers(0, 127),
+    st.sampled_from([ROUGH, Converter.ideal(4)]),
+    st.lists(st.one_of(st.floats(-300, 600), st.sampled_from(EDGES)), min_size=1, max_size=20),
+    st.integers(0, 2**23),
+)
 def test_equals_the_decisions_one_by_one(unsigned, threshold, converter, values, first):
     v, index = np.array(values), first + np.arange(len(values))
     lane = index % 4
     got = convert(v, unsigned, threshold, converter, lane, index)
-    expected = [one_by_one(*x) for x in zip(v, [unsigned] * v.size, [threshold] * v.size, [converter] * v.size,
-                                            lane, index)]
+    expected = [
+        one_by_one(*x) for x in zip(v, [unsigned] * v.size, [threshold] * v.size, [converter] * v.size, lane, index)
+    ]
     assert list(zip(*got)) == expected
 
 

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.digital.scan import Scan
 from models.parameters import FrameParameters, ParameterError, TileParameters, Window
@@ -11,8 +12,13 @@ def frame_of(rows, cols, **kw):
 
 
 @settings(max_examples=60, deadline=None)
-@given(st.integers(1, 30), st.integers(1, 70), st.sampled_from([1, 2, 4, 8]), st.integers(1, 2**24 - 1),
-       st.sampled_from(["edge", "raw", "tof"]))
+@given(
+    st.integers(1, 30),
+    st.integers(1, 70),
+    st.sampled_from([1, 2, 4, 8]),
+    st.integers(1, 2**24 - 1),
+    st.sampled_from(["edge", "raw", "tof"]),
+)
 def test_visits_every_unmasked_pixel_once(rows, cols, lanes, mask, mode):
     try:
         scan = Scan(rows, cols, lanes, frame_of(rows, cols, mask=mask, mode=mode))
@@ -24,8 +30,8 @@ def test_visits_every_unmasked_pixel_once(rows, cols, lanes, mask, mode):
         c, sub = scan.row_samples(row)
         np.add.at(seen, (row, c, sub), 1)
     wanted = mask >> TileParameters().type_map(rows, cols) & 1
-    assert (seen[..., :scan.subs] == wanted[..., None]).all()
-    assert not seen[..., scan.subs:].any()
+    assert (seen[..., : scan.subs] == wanted[..., None]).all()
+    assert not seen[..., scan.subs :].any()
 
 
 def test_decimation_and_window_in_tiles():

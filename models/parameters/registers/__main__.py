@@ -7,10 +7,15 @@ from .map import register_map
 
 def markdown(chip):
     """The map as one Markdown table: an array's registers share a row."""
-    lines = ["# Register map of AspChip", "",
-             "Generated from `models/parameters/registers/asp_chip.rdl` by `python -m models.parameters.registers`.",
-             "Byte addresses; fields of more than a byte are little-endian. How to reach them: rtl/reg_file/README.md.",
-             "", "| address | register | bits | field | access | reset | meaning |", "|---|---|---|---|---|---|---|"]
+    lines = [
+        "# Register map of AspChip",
+        "",
+        "Generated from `models/parameters/registers/asp_chip.rdl` by `python -m models.parameters.registers`.",
+        "Byte addresses; fields of more than a byte are little-endian. How to reach them: rtl/reg_file/README.md.",
+        "",
+        "| address | register | bits | field | access | reset | meaning |",
+        "|---|---|---|---|---|---|---|",
+    ]
     arrays = {}
     for f in chip.fields:
         arrays.setdefault(f.register.partition("[")[0], []).append(f)

@@ -5,8 +5,8 @@ from models.parameters.frame import MODES
 
 from .map import register_map, trim_range
 
-WRITE = 0x80            # bit 7 of the command byte; the rest is the address
-TRANSFER_MAX = 255      # bytes of one transfer
+WRITE = 0x80  # bit 7 of the command byte; the rest is the address
+TRANSFER_MAX = 255  # bytes of one transfer
 
 
 def frame_writes(frame, trims=None):
@@ -23,14 +23,28 @@ def frame_writes(frame, trims=None):
     for i, trim in enumerate(trims):
         check_int(f"trim {i}", trim, low, high)
     window, timing = frame.window, frame.timing
-    values = {"mode": MODES.index(frame.mode),
-              **{name: int(getattr(frame, name)) for name in (
-                  "overlap", "phase", "test_pattern", "decimation", "threshold", "noise_floor", "mask",
-                  "frame_number")},
-              **{name: getattr(window, name) for name in ("row0", "row1", "col0", "col1")},
-              **{name: getattr(timing, name) for name in (
-                  "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")},
-              **{f"trim[{i}].trim": trim for i, trim in enumerate(trims)}}
+    values = {
+        "mode": MODES.index(frame.mode),
+        **{
+            name: int(getattr(frame, name))
+            for name in (
+                "overlap",
+                "phase",
+                "test_pattern",
+                "decimation",
+                "threshold",
+                "noise_floor",
+                "mask",
+                "frame_number",
+            )
+        },
+        **{name: getattr(window, name) for name in ("row0", "row1", "col0", "col1")},
+        **{
+            name: getattr(timing, name)
+            for name in ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
+        },
+        **{f"trim[{i}].trim": trim for i, trim in enumerate(trims)},
+    }
     return sorted(chip.image(chip.configuration, values).items())
 
 
@@ -82,5 +96,7 @@ def decode_status(replies):
         raise ParameterError(f"status replies = {lengths} bytes: must be {wanted}")
     status, counters = (bytes(r[1:]) for r in replies)
     base = chip.counters[0].byte
-    return {**{f.name: bool(status[0] >> f.shift & 1) for f in chip.fields if f.register == "status"},
-            **{f.name: int.from_bytes(counters[f.byte - base:f.byte - base + 8], "little") for f in chip.counters}}
+    return {
+        **{f.name: bool(status[0] >> f.shift & 1) for f in chip.fields if f.register == "status"},
+        **{f.name: int.from_bytes(counters[f.byte - base : f.byte - base + 8], "little") for f in chip.counters},
+    }

@@ -103,16 +103,24 @@ def _access(node):
 def _fields(register):
     name = register.get_path_segment()
     for node in register.fields():
-        yield Field(register=name, name=node.inst_name, address=register.absolute_address, size=register.size,
-                    lsb=node.lsb, width=node.width, reset=node.get_property("reset", default=0), access=_access(node),
-                    signed=bool(node.get_property("signed_value", default=False)),
-                    description=" ".join(node.get_property("desc").split()))
+        yield Field(
+            register=name,
+            name=node.inst_name,
+            address=register.absolute_address,
+            size=register.size,
+            lsb=node.lsb,
+            width=node.width,
+            reset=node.get_property("reset", default=0),
+            access=_access(node),
+            signed=bool(node.get_property("signed_value", default=False)),
+            description=" ".join(node.get_property("desc").split()),
+        )
 
 
 @cache
 def register_map():
     """The chip's RegisterMap (0.1 s at the first call, most of it the compiler's import)."""
-    from systemrdl import RDLCompiler       # only what needs the map pays for its compiler
+    from systemrdl import RDLCompiler  # only what needs the map pays for its compiler
 
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE))

@@ -4,8 +4,18 @@ import numpy as np
 import pytest
 
 from models.parameters import OpticsParameters, ParameterError, PixelType, TileParameters
-from models.pixel import (Ripple, exact, gains, measured_gains, optical_gains, residual, response, sampling_error,
-                          view_weights, vignetting)
+from models.pixel import (
+    Ripple,
+    exact,
+    gains,
+    measured_gains,
+    optical_gains,
+    residual,
+    response,
+    sampling_error,
+    view_weights,
+    vignetting,
+)
 from models.pixel.quadrature import sampled
 from models.pixel.weights import cell_nodes, raw_weights
 
@@ -110,7 +120,7 @@ def test_gains_are_finite_at_the_ends():
 def test_measured_gains_equal_the_optical_ones():
     tile, optics = TileParameters(), OpticsParameters()
     currents = view_weights(tile, optics).sum((2, 3))
-    frame = currents[tile.type_map(11, 17)]         # tiles at the far edges are partial
+    frame = currents[tile.type_map(11, 17)]  # tiles at the far edges are partial
     np.testing.assert_allclose(measured_gains(frame, tile), optical_gains(tile, optics))
     with pytest.raises(ParameterError, match="flat-field frame of types .* = 0"):
         measured_gains(np.zeros((8, 12, 2)), tile)

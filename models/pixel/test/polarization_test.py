@@ -20,7 +20,7 @@ def _intensities(psi, degree=0.25, d=1 / 3, radiance=0.7):
 @given(psis, st.floats(0.01, 1.0), st.floats(0.01, 1.0))
 def test_angle_and_degree_come_back(psi, degree, d):
     s1, s2 = stokes(*_intensities(psi, degree, d), d)
-    assert abs(np.sin(angle(s1, s2) - psi)) < 1e-6      # modulo pi
+    assert abs(np.sin(angle(s1, s2) - psi)) < 1e-6  # modulo pi
     np.testing.assert_allclose(np.hypot(s1, s2), degree, rtol=1e-9)
 
 
@@ -33,7 +33,7 @@ def test_response_has_period_pi(psi):
 def test_printed_psi_lacks_the_half():
     i0, i45, i90, i135 = _intensities(np.deg2rad(20.0))
     printed = np.arctan((i45 - i135) / (i0 - i90))
-    np.testing.assert_allclose(np.rad2deg(printed), 40.0)       # twice the angle
+    np.testing.assert_allclose(np.rad2deg(printed), 40.0)  # twice the angle
     np.testing.assert_allclose(np.rad2deg(angle(i90 - i0, i135 - i45)), 20.0)
 
 

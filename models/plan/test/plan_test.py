@@ -30,8 +30,9 @@ def _what(made):
     return {entry["what"] for entry in made.left_out}
 
 
-@pytest.mark.parametrize("mask,window", [(0x000F00, FULL), (1 << 5, FULL), (0xFFFFFF, Window(2, 4, 3, 3)),
-                                         (0xF0F0F0, Window(9, 9, 0, 10))])
+@pytest.mark.parametrize(
+    "mask,window", [(0x000F00, FULL), (1 << 5, FULL), (0xFFFFFF, Window(2, 4, 3, 3)), (0xF0F0F0, Window(9, 9, 0, 10))]
+)
 @pytest.mark.parametrize("mode", ["edge", "tof"])
 def test_unread_pixels(mask, window, mode):
     frame = FrameParameters(window, mode=mode, mask=mask)
@@ -74,7 +75,7 @@ def test_polarization_reaches_the_samples():
     scene = _scene("polarized:100")
     samples = _samples(scene, plan(scene, SENSOR, frame), frame, noise=0)[0].sum(-1)
     kinds = SENSOR.tile.type_map(ROWS, COLS)
-    ratio = samples[kinds == 2].mean() / samples[kinds == 0].mean()        # gamma 90 against 0, all psi alike
+    ratio = samples[kinds == 2].mean() / samples[kinds == 0].mean()  # gamma 90 against 0, all psi alike
     assert samples[kinds == 0].std() > 10 and abs(ratio - 1) < 0.1
 
 
@@ -119,7 +120,7 @@ def test_flat_tiles_really_convert_nothing(name, threshold, n_cm):
     if name in ("flat:70", "black"):
         assert flat.all()
     if name == "saturated":
-        assert not flat.any()       # full wells are out of balance
+        assert not flat.any()  # full wells are out of balance
     if flat.any():
         assert codes[flat].max() < threshold - 0.5
 

@@ -10,8 +10,19 @@ from models.capture import CaptureOperator
 from models.parameters import AmpTiming, ArrayParameters, ParameterError, SensorParameters, TileParameters
 from models.pixel import optical_gains, view_weights
 from models.plan import codes_per_unit
-from models.reconstruct import (EdgeOperator, Solver, demosaic, edge_images, image_from_edges, light_field_estimate,
-                                psnr_db, psnr_without_mean_db, rebuild, sum_image, white_sum)
+from models.reconstruct import (
+    EdgeOperator,
+    Solver,
+    demosaic,
+    edge_images,
+    image_from_edges,
+    light_field_estimate,
+    psnr_db,
+    psnr_without_mean_db,
+    rebuild,
+    sum_image,
+    white_sum,
+)
 from models.reconstruct.edges import laplacian
 from models.scene import Sampling, load
 
@@ -73,7 +84,7 @@ def test_image_clips_and_fills():
     read = np.ones((4, 6), bool)
     read[:, 5] = False
     image = sum_image(sums, sensor, read)
-    np.testing.assert_allclose(white_sum(sensor), 203.7, atol=0.1)       # 80 % of two full wells
+    np.testing.assert_allclose(white_sum(sensor), 203.7, atol=0.1)  # 80 % of two full wells
     np.testing.assert_allclose(image[0] * white_sum(sensor), [0, 255, 80, 80, 80, 80], rtol=1e-9)
     assert not sum_image(sums, sensor, np.zeros((4, 6), bool)).any()
 
@@ -120,7 +131,7 @@ def test_linear_estimate_from_some_types_and_from_none():
 
 def test_edge_operator_is_the_trimmed_capture_of_a_plane():
     rows, cols = 24, 36
-    scene = load("edge:30", Sampling(rows, cols, focus=1.0))      # whole steps: bilinear is exact
+    scene = load("edge:30", Sampling(rows, cols, focus=1.0))  # whole steps: bilinear is exact
     sensor = _sensor(rows, cols)
     g = optical_gains(sensor.tile, sensor.optics)
     a, b = CaptureOperator(sensor).forward(scene.light_field)
@@ -154,8 +165,9 @@ def test_rebuild_from_codes():
     read = sensor.tile.type_map(rows, cols) != 3
     found = rebuild(codes, read, scene, sensor, trim)
     assert found.psnr_db > psnr_without_mean_db(np.zeros((rows, cols)), scene.image) + 6
-    assert not rebuild(np.zeros((8, 12)), np.ones((8, 12), bool), load("flat", Sampling(8, 12)), _sensor(8, 12),
-                       trim).image.any()
+    assert not rebuild(
+        np.zeros((8, 12)), np.ones((8, 12), bool), load("flat", Sampling(8, 12)), _sensor(8, 12), trim
+    ).image.any()
 
 
 def test_nothing_comes_back_from_nothing():

@@ -76,11 +76,17 @@ def test_huge_picture(tmp_path, suffix):
 
 def test_bomb_is_a_named_error(tmp_path):
     """A header that promises 30000 x 30000 pixels."""
+
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
     path = tmp_path / "bomb.png"
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 30000, 30000, 8, 0, 0, 0, 0))
-                     + chunk(b"IDAT", zlib.compress(b"\0" * 1000)) + chunk(b"IEND", b""))
+    path.write_bytes(
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", struct.pack(">IIBBBBB", 30000, 30000, 8, 0, 0, 0, 0))
+        + chunk(b"IDAT", zlib.compress(b"\0" * 1000))
+        + chunk(b"IEND", b"")
+    )
     with pytest.raises(ParameterError, match="scene = .*bomb.png.*178956970 pixels"):
         load(str(path), SMALL)
 
@@ -139,7 +145,7 @@ def test_every_depth_file_says_the_same(tmp_path, picture):
     for scene in found:
         np.testing.assert_allclose(scene.depth, 2.0)
         np.testing.assert_allclose(scene.disparity, found[0].disparity)
-        assert (scene.disparity > 0).all()      # nearer than the reference plane of 3 m
+        assert (scene.disparity > 0).all()  # nearer than the reference plane of 3 m
         assert scene.angular
 
 
@@ -149,21 +155,41 @@ def test_disparity_file(tmp_path, picture):
     assert -0.05 <= scene.disparity.min() < -0.04 < 0.04 < scene.disparity.max() <= 0.05
 
 
-@pytest.mark.parametrize("values,field", [
-    (np.full((32, 48), np.nan), "depth = nan"), (np.full((32, 48), np.inf), "depth = inf"),
-    (np.zeros((32, 48)), "depth = 0"), (np.full((32, 48), 1e9), "depth = 1e"),
-    (np.ones((32, 20)), "proportions"), (np.ones(5), "depth shape"), (np.ones((2, 3, 4)), "depth shape"),
-    (np.full((32, 48), "far"), "real numbers"), (np.ones((0, 4)), "depth shape"), (np.full((32, 48), 1j), "real"),
-])
+@pytest.mark.parametrize(
+    "values,field",
+    [
+        (np.full((32, 48), np.nan), "depth = nan"),
+        (np.full((32, 48), np.inf), "depth = inf"),
+        (np.zeros((32, 48)), "depth = 0"),
+        (np.full((32, 48), 1e9), "depth = 1e"),
+        (np.ones((32, 20)), "proportions"),
+        (np.ones(5), "depth shape"),
+        (np.ones((2, 3, 4)), "depth shape"),
+        (np.full((32, 48), "far"), "real numbers"),
+        (np.ones((0, 4)), "depth shape"),
+        (np.full((32, 48), 1j), "real"),
+    ],
+)
 def test_bad_depth_values(tmp_path, picture, values, field):
     np.save(tmp_path / "d.npy", values)
     with pytest.raises(ParameterError, match=field):
         load(picture, SMALL, depth=str(tmp_path / "d.npy"))
 
 
-@pytest.mark.parametrize("name,content", [("d.npy", b""), ("d.npy", b"rubbish"), ("d.npz", b"rubbish"), ("d.png", b"x"),
-                                          ("d.npy", b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', 'fortran_order': False, "
-                                                    b"'shape': (32000000, 48000000), }" + b" " * 38 + b"\n")])
+@pytest.mark.parametrize(
+    "name,content",
+    [
+        ("d.npy", b""),
+        ("d.npy", b"rubbish"),
+        ("d.npz", b"rubbish"),
+        ("d.png", b"x"),
+        (
+            "d.npy",
+            b"\x93NUMPY\x01\x00v\x00{'descr': '<f8', 'fortran_order': False, "
+            b"'shape': (32000000, 48000000), }" + b" " * 38 + b"\n",
+        ),
+    ],
+)
 def test_bad_depth_files(tmp_path, picture, name, content):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(ParameterError, match="depth = "):

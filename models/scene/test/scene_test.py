@@ -75,10 +75,17 @@ def test_polarized_target_has_its_degree():
     np.testing.assert_allclose(np.hypot(*scene.polarization), 0.4)
 
 
-@pytest.mark.parametrize("name,field", [("nothing", "scene"), ("edge:north", "edge degrees"),
-                                        ("edge:1e9", "edge degrees"),
-                                        ("flat:nan", "flat percent"), ("missing/file.png", "scene"),
-                                        ("coins:3", "scene")])
+@pytest.mark.parametrize(
+    "name,field",
+    [
+        ("nothing", "scene"),
+        ("edge:north", "edge degrees"),
+        ("edge:1e9", "edge degrees"),
+        ("flat:nan", "flat percent"),
+        ("missing/file.png", "scene"),
+        ("coins:3", "scene"),
+    ],
+)
 def test_bad_names(name, field):
     with pytest.raises(ParameterError, match=field):
         load(name, SMALL)
@@ -94,25 +101,29 @@ def _scene(**changes):
     return Scene(**{"name": "t", "views": 3, "light_field": np.full((3, 3, 4, 6), 0.5), "image": image, **changes})
 
 
-@pytest.mark.parametrize("changes,field", [
-    ({"light_field": np.full((3, 3, 4), 0.5)}, "light_field shape"),
-    ({"light_field": np.full((5, 5, 4, 6), 0.5)}, "light_field shape"),
-    ({"light_field": np.full((3, 3, 4, 6), np.nan)}, "light_field = nan"),
-    ({"light_field": np.full((3, 3, 4, 6), np.inf)}, "light_field = inf"),
-    ({"light_field": np.full((3, 3, 4, 6), -0.1)}, "light_field = -0.1"),
-    ({"light_field": np.full((3, 3, 4, 6), 1)}, "light_field dtype"),
-    ({"image": np.full((4, 5), 0.5)}, "image shape"),
-    ({"depth": np.zeros((4, 6))}, "depth = 0"),
-    ({"polarization": np.full((2, 4, 6), 0.9)}, "degree of polarization"),
-    ({"views": 0}, "views"),
-])
+@pytest.mark.parametrize(
+    "changes,field",
+    [
+        ({"light_field": np.full((3, 3, 4), 0.5)}, "light_field shape"),
+        ({"light_field": np.full((5, 5, 4, 6), 0.5)}, "light_field shape"),
+        ({"light_field": np.full((3, 3, 4, 6), np.nan)}, "light_field = nan"),
+        ({"light_field": np.full((3, 3, 4, 6), np.inf)}, "light_field = inf"),
+        ({"light_field": np.full((3, 3, 4, 6), -0.1)}, "light_field = -0.1"),
+        ({"light_field": np.full((3, 3, 4, 6), 1)}, "light_field dtype"),
+        ({"image": np.full((4, 5), 0.5)}, "image shape"),
+        ({"depth": np.zeros((4, 6))}, "depth = 0"),
+        ({"polarization": np.full((2, 4, 6), 0.9)}, "degree of polarization"),
+        ({"views": 0}, "views"),
+    ],
+)
 def test_bad_scenes(changes, field):
     with pytest.raises(ParameterError, match=field):
         _scene(**changes)
 
 
-@pytest.mark.parametrize("changes", [{"rows": 0}, {"cols": 2000}, {"views": 32}, {"dtype": "int8"},
-                                     {"focus": float("nan")}, {"rows": 2.5}])
+@pytest.mark.parametrize(
+    "changes", [{"rows": 0}, {"cols": 2000}, {"views": 32}, {"dtype": "int8"}, {"focus": float("nan")}, {"rows": 2.5}]
+)
 def test_bad_samplings(changes):
     with pytest.raises(ParameterError, match=next(iter(changes))):
         Sampling(**changes)

@@ -6,12 +6,15 @@ import re
 
 import pytest
 
-from flow.platforms.sky130 import functional
-from flow.simulate.process import ToolError
+from base.tools import ToolError
+from platforms.sky130 import functional
 
 try:
-    CELLS = [path for path in sorted((functional.folder() / "cells").glob("*/*_1.functional.v"))
-             if not path.parent.name.startswith(functional.NOT_LOGIC)]
+    CELLS = [
+        path
+        for path in sorted((functional.folder() / "cells").glob("*/*_1.functional.v"))
+        if not path.parent.name.startswith(functional.NOT_LOGIC)
+    ]
 except ToolError as error:
     pytest.skip(str(error), allow_module_level=True)
 
@@ -30,7 +33,7 @@ def test_every_published_equation_is_the_function_of_the_verilog():
         if not match or match[1] not in made:
             continue
         function, pins = made[match[1]]
-        if not set(re.findall(r"\w+", match[2])) <= set(pins):         # a2bb2o's says A1 for the pin A1_N
+        if not set(re.findall(r"\w+", match[2])) <= set(pins):  # a2bb2o's says A1 for the pin A1_N
             continue
         for values in itertools.product((0, 1), repeat=len(pins)):
             given = dict(zip(pins, values, strict=True))

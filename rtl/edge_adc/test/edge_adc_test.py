@@ -20,7 +20,8 @@ EVERY_CYCLE = [(0, True)]
 SETTINGS = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 
 patterns = st.lists(st.tuples(st.integers(0, 12), st.booleans()), min_size=1, max_size=30).filter(
-    lambda p: any(ready for _, ready in p))
+    lambda p: any(ready for _, ready in p)
+)
 
 
 @cache
@@ -102,8 +103,12 @@ class TestEdgeAdcFL:
             assert bench.results == expected(values, unsigned, threshold)
 
     @SETTINGS
-    @given(st.booleans(), st.integers(0, 127),
-           st.lists(st.one_of(st.floats(-140, 300), st.floats(-20, 20)), min_size=1, max_size=20), patterns)
+    @given(
+        st.booleans(),
+        st.integers(0, 127),
+        st.lists(st.one_of(st.floats(-140, 300), st.floats(-20, 20)), min_size=1, max_size=20),
+        patterns,
+    )
     def test_any_timing(self, unsigned, threshold, values, pattern):
         bench = self.bench(values, unsigned, threshold, ROUGH).run(pattern)
         assert bench.results == expected(values, unsigned, threshold, ROUGH)
@@ -116,7 +121,7 @@ class TestEdgeAdcFL:
     def test_a_code_inside_the_window_becomes_zero(self):
         """A comparator whose answers do not fit together: outside the window, then a code inside it."""
         offset = Converter(IDEAL.levels.copy(), np.zeros(1), 0.0, 0.0, 0)
-        offset.levels[0, 0, 128 + 20] -= 15      # level(T) far too low
+        offset.levels[0, 0, 128 + 20] -= 15  # level(T) far too low
         bench = self.bench([10.0, 25.0, -10.0], False, 20, offset).run()
         assert bench.results == [(0, True), (25, True), (0, False)]
 
@@ -132,8 +137,11 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
     def test_latency(self):
         """From go to the result at the port, and from go to go with nothing in the way."""
         for values, unsigned, threshold, latency, interval in (
-                ([0.0] * 6, False, 10, 3, 4), ([99.0] * 6, False, 10, 11, 10),
-                ([99.0] * 6, False, 0, 9, 8), ([99.0] * 6, True, 10, 9, 8)):
+            ([0.0] * 6, False, 10, 3, 4),
+            ([99.0] * 6, False, 10, 11, 10),
+            ([99.0] * 6, False, 0, 9, 8),
+            ([99.0] * 6, True, 10, 9, 8),
+        ):
             bench = self.bench(values, unsigned, threshold).run()
             assert [r - g for g, r in zip(bench.go_at, bench.result_at)] == [latency] * 6
             assert set(np.diff(bench.go_at)) == {interval}
@@ -149,16 +157,22 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
     def test_same_cycles_as_the_cycle_level(self, values, unsigned, pattern):
         def trace(bench):
             bench.run(pattern)
-            taken = convert(np.array(values), unsigned, 10).decisions       # the DAC rests after them
-            return bench.go_at, bench.result_at, bench.taken_at, bench.results, [
-                dac[:n] for dac, n in zip(bench.dacs, taken)]
+            taken = convert(np.array(values), unsigned, 10).decisions  # the DAC rests after them
+            return (
+                bench.go_at,
+                bench.result_at,
+                bench.taken_at,
+                bench.results,
+                [dac[:n] for dac, n in zip(bench.dacs, taken)],
+            )
+
         reference = Bench(simulator(EdgeAdcCL, False), values, unsigned, 10)
         assert trace(self.bench(values, unsigned, 10)) == trace(reference)
 
     def test_go_while_it_is_not_free_changes_nothing(self):
         sim = simulator(self.cls, self.verilog)
         bench = self.bench([70.0, -70.0], False, 10)
-        for cycle in range(9):      # cycles 1..8: go in every one
+        for cycle in range(9):  # cycles 1..8: go in every one
             sim.go @= 1
             bench.compare()
             sim.sim_tick()
@@ -171,7 +185,7 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
         """Nothing of the conversion under way, or of results that wait, is left."""
         for cycles in range(1, 26, 2):
             bench = self.bench([60.0, -50.0], False, 10)
-            with contextlib.suppress(AssertionError):       # it never ends: nothing is taken
+            with contextlib.suppress(AssertionError):  # it never ends: nothing is taken
                 bench.run([(0, False)], limit=cycles)
             again = self.bench([0.0, 99.0], False, 10)
             again.sim.sim_eval_combinational()

@@ -20,10 +20,12 @@ SETTINGS = settings(max_examples=12, deadline=None, suppress_health_check=[Healt
 ALWAYS = [(True, True)]
 LAST = 1 << 9
 patterns = st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=30).filter(
-    lambda p: any(v for v, _ in p) and any(r for _, r in p))
+    lambda p: any(v for v, _ in p) and any(r for _, r in p)
+)
 bytes_ = st.one_of(st.integers(0, 255), st.sampled_from([0, 1, 127, 128, 254, 255]))
 steps = st.integers(1, LANES).flatmap(
-    lambda n: st.lists(st.lists(bytes_, min_size=n, max_size=n), min_size=4, max_size=4))
+    lambda n: st.lists(st.lists(bytes_, min_size=n, max_size=n), min_size=4, max_size=4)
+)
 rows = st.lists(st.tuples(st.integers(0, 1023), st.lists(steps, max_size=3)), max_size=3)
 
 
@@ -50,8 +52,11 @@ def expected(frame, chip, noise_floor):
 
 @cache
 def simulator(cls, verilog, chip):
-    return build(cls(chip.lanes, chip.divider, chip.n_frac, chip.cordic_iterations), verilog,
-                 f"PhasePath_{chip.lanes}_{chip.divider}")
+    return build(
+        cls(chip.lanes, chip.divider, chip.n_frac, chip.cordic_iterations),
+        verilog,
+        f"PhasePath_{chip.lanes}_{chip.divider}",
+    )
 
 
 class Run:
@@ -67,7 +72,7 @@ class Run:
         sim.reset @= 0
         self.messages, self.in_at, self.out_at = [], [], []
         sent, cycle = list(sent), 0
-        limit = limit or (len(sent) + 4) * (20 + 2 * len(pattern))      # far beyond what it takes
+        limit = limit or (len(sent) + 4) * (20 + 2 * len(pattern))  # far beyond what it takes
         while not self.messages or self.messages[-1][0] != END:
             offer, ready = pattern[cycle % len(pattern)]
             sim.recv.val @= bool(sent) and offer
@@ -131,7 +136,7 @@ class TestPhasePathFL:
         frame = [(3, [[[200, 9, 77], [30, 8, 76], [10, 7, 75], [99, 6, 74]]] * 2)]
         for cycles in range(1, 50, 4):
             for on in (True, False):
-                with contextlib.suppress(AssertionError):       # it does not end: nothing leaves behind some cycles
+                with contextlib.suppress(AssertionError):  # it does not end: nothing leaves behind some cycles
                     self.run(messages(frame), on, 0, [(True, True)] * 30 + [(True, False)] * 30, cycles)
                 assert self.run(messages(frame), True).messages == expected(frame, self.chip, 0), cycles
 
@@ -178,8 +183,11 @@ class TestPhasePathIcarus(TestPhasePathRTL):
 
 
 @pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
-@pytest.mark.parametrize("chip", [ChipParameters(1, "radix2", 4), ChipParameters(32, "pipelined", 12),
-                                  ChipParameters(4, "cordic", 8, 6)], ids=lambda c: c.divider)
+@pytest.mark.parametrize(
+    "chip",
+    [ChipParameters(1, "radix2", 4), ChipParameters(32, "pipelined", 12), ChipParameters(4, "cordic", 8, 6)],
+    ids=lambda c: c.divider,
+)
 def test_other_lanes_and_dividers(cls, chip):
     rng = np.random.default_rng(8)
     frame = [(row, [rng.integers(0, 256, (4, chip.lanes)).tolist() for _ in range(2)]) for row in (0, 5)]

@@ -15,10 +15,11 @@ from rtl.quad_divider.variants import response
 from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 
-SETTINGS = settings(max_examples=20, deadline=None,
-                    suppress_health_check=[HealthCheck.too_slow, HealthCheck.differing_executors])
+SETTINGS = settings(
+    max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.differing_executors]
+)
 SAMPLES = st.integers(-256, 255)
-PATTERN = st.lists(st.booleans(), max_size=12)      # cycles in which a side of the bench is willing
+PATTERN = st.lists(st.booleans(), max_size=12)  # cycles in which a side of the bench is willing
 EDGES = (-256, -255, -129, -128, -127, -1, 0, 1, 2, 127, 128, 254, 255)
 RUSH = ()
 
@@ -65,7 +66,7 @@ class Bench:
         """
         sim, sent, got = self.sim, [], []
         source, sink = chain(source, repeat(True)), chain(sink, repeat(True))
-        waiting = False                 # an offered request stays offered
+        waiting = False  # an offered request stays offered
         for cycle in range(100 * len(vectors) + 100):
             waiting = len(sent) < len(vectors) and (next(source) or waiting)
             if waiting:
@@ -94,8 +95,13 @@ class Bench:
 
 class TestFL:
     component, verilog = QuadDividerFL, False
-    configs = [Config(v) for v in DIVIDERS] + [Config("radix4", 7), Config("radix2", 4), Config("pipelined", 16),
-                                               Config("cordic", 8, 16), Config("cordic", 8, 4)]
+    configs = [Config(v) for v in DIVIDERS] + [
+        Config("radix4", 7),
+        Config("radix2", 4),
+        Config("pipelined", 16),
+        Config("cordic", 8, 16),
+        Config("cordic", 8, 4),
+    ]
 
     @pytest.fixture
     def benches(self):
@@ -109,8 +115,13 @@ class TestFL:
             bench.check(list(product(EDGES, EDGES)), floors=(0, 1, 127, 128, 255, 2))
 
     @SETTINGS
-    @given(st.data(), st.lists(st.tuples(SAMPLES, SAMPLES), min_size=1, max_size=24), PATTERN, PATTERN,
-           st.lists(st.integers(0, 255), min_size=1, max_size=24))
+    @given(
+        st.data(),
+        st.lists(st.tuples(SAMPLES, SAMPLES), min_size=1, max_size=24),
+        PATTERN,
+        PATTERN,
+        st.lists(st.integers(0, 255), min_size=1, max_size=24),
+    )
     def test_any_back_pressure(self, data, vectors, source, sink, floors):
         bench = self.bench(data.draw(st.sampled_from(self.configs)))
         bench.check(vectors, source, sink, floors)
@@ -197,9 +208,16 @@ class TestIcarus(TestVerilog):
     verilog = "icarus"
 
 
-@pytest.mark.parametrize("arguments, field", [
-    (("radix8",), "divider = 'radix8'"), (("radix2", 3), "n_frac = 3"), (("radix4", 17), "n_frac = 17"),
-    (("cordic", 8, 3), "iterations = 3"), (("cordic", 8, 17), "iterations = 17")])
+@pytest.mark.parametrize(
+    "arguments, field",
+    [
+        (("radix8",), "divider = 'radix8'"),
+        (("radix2", 3), "n_frac = 3"),
+        (("radix4", 17), "n_frac = 17"),
+        (("cordic", 8, 3), "iterations = 3"),
+        (("cordic", 8, 17), "iterations = 17"),
+    ],
+)
 def test_refuses(arguments, field):
     for make in (quad_divider, timing):
         with pytest.raises(ParameterError, match=field):

@@ -36,17 +36,27 @@ class Size:
     def whole(self, **ports):
         """Values of the configuration ports for the whole array, all types, but for ``ports``."""
         rows, cols = self.tiles
-        return dict(mode=0, mask=2**24 - 1, row0=0, row1=rows - 1, col0=0, col1=cols - 1, decimation=0,
-                    overlap=0) | ports
+        return (
+            dict(mode=0, mask=2**24 - 1, row0=0, row1=rows - 1, col0=0, col1=cols - 1, decimation=0, overlap=0) | ports
+        )
 
     def scan(self, ports):
         """The golden Scan, or None where these values of the ports are an error."""
-        types = TileParameters().types[:self.tile_rows * self.tile_cols]
+        types = TileParameters().types[: self.tile_rows * self.tile_cols]
         try:
-            frame = FrameParameters(Window(*(ports[n] for n in CONFIGURATION[2:6])), MODES[ports["mode"]],
-                                    ports["mask"], decimation=ports["decimation"])
-            return Scan(self.rows, self.cols, self.lanes, frame,
-                        TileParameters(self.tile_rows, self.tile_cols, types, self.order))
+            frame = FrameParameters(
+                Window(*(ports[n] for n in CONFIGURATION[2:6])),
+                MODES[ports["mode"]],
+                ports["mask"],
+                decimation=ports["decimation"],
+            )
+            return Scan(
+                self.rows,
+                self.cols,
+                self.lanes,
+                frame,
+                TileParameters(self.tile_rows, self.tile_cols, types, self.order),
+            )
         except ParameterError:
             return None
 
@@ -139,12 +149,12 @@ def bank(ready, conversion):
 class Record:
     """What was seen, by cycle; `start` is given in cycle 0."""
 
-    taken: list = field(default_factory=list)       # (cycle, message)
-    starts: list = field(default_factory=list)      # (cycle, amp_row)
+    taken: list = field(default_factory=list)  # (cycle, message)
+    starts: list = field(default_factory=list)  # (cycle, amp_row)
     dones: list = field(default_factory=list)
-    idle: list = field(default_factory=list)        # bank_idle of every cycle
-    pins: list = field(default_factory=list)        # and the output pins
-    standing: tuple = None                          # an offer that was not taken in the last cycle
+    idle: list = field(default_factory=list)  # bank_idle of every cycle
+    pins: list = field(default_factory=list)  # and the output pins
+    standing: tuple = None  # an offer that was not taken in the last cycle
 
     @property
     def messages(self):
@@ -177,8 +187,10 @@ class Bench:
         self.drive(start=start, amp_done=self.answer[0], amp_err=self.answer[1], bank_idle=idle)
         sim.step.rdy @= ready
         sim.sim_eval_combinational()
-        pins = {name: int(getattr(sim, name)) for name in
-                ("busy", "done", "cfg_err", "amp_start", "amp_row", "four_tap", "hold_free", "cycles")}
+        pins = {
+            name: int(getattr(sim, name))
+            for name in ("busy", "done", "cfg_err", "amp_start", "amp_row", "four_tap", "hold_free", "cycles")
+        }
         pins["offer"] = said(sim.step.msg) if sim.step.val else None
         taken = pins["offer"] is not None and ready
         number = len(record.pins)

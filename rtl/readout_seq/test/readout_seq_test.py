@@ -4,7 +4,8 @@ import random
 from itertools import count
 
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from models.digital.amp_ctrl import row_cycles
 from models.parameters import AmpTiming, ParameterError
@@ -16,8 +17,15 @@ from .bench import SMALL_TILE, Bench, Record, Size, amp_ctrl, amplifiers, bank, 
 
 # A test that several levels inherit runs on each of them: that is meant.
 SETTINGS = settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
-SIZES = (Size(7, 31, 2), Size(1, 1, 1), Size(13, 45, 4), Size(1, 75, 8), Size(9, 1, 1), Size(6, 130, 32),
-         Size(8, 26, 4, *SMALL_TILE))
+SIZES = (
+    Size(7, 31, 2),
+    Size(1, 1, 1),
+    Size(13, 45, 4),
+    Size(1, 75, 8),
+    Size(9, 1, 1),
+    Size(6, 130, 32),
+    Size(8, 26, 4, *SMALL_TILE),
+)
 LARGEST = Size(1024, 1536, 1)
 seeds = st.integers(0, 2**32)
 masks = st.one_of(st.just(2**24 - 1), st.integers(0, 23).map(lambda t: 1 << t), st.integers(0, 2**24 - 1))
@@ -26,8 +34,12 @@ masks = st.one_of(st.just(2**24 - 1), st.integers(0, 23).map(lambda t: 1 << t), 
 @st.composite
 def configurations(draw, size):
     """Values of the configuration ports; most of them can be read."""
-    ports = {"mode": draw(st.integers(0, 3)), "mask": draw(masks), "decimation": draw(st.integers(0, 3)),
-             "overlap": draw(st.integers(0, 1))}
+    ports = {
+        "mode": draw(st.integers(0, 3)),
+        "mask": draw(masks),
+        "decimation": draw(st.integers(0, 3)),
+        "overlap": draw(st.integers(0, 1)),
+    }
     for axis, tiles in zip(("row", "col"), size.tiles):
         low, high = sorted(draw(st.tuples(*[st.integers(0, tiles - 1)] * 2)))
         ports |= {f"{axis}0": low, f"{axis}1": high}
@@ -38,8 +50,10 @@ def randomly(seed, err_at=None):
     """Surroundings with random timing, some of it extreme: amplifiers and bank; and random starts while busy."""
     noise = random.Random(seed)
     longest, hurry = noise.choice((2, 40)), noise.choice((0.1, 0.5, 0.9, 1))
-    return (amplifiers(lambda: noise.randint(1, longest), lambda: noise.randint(1, 9), err_at),
-            bank(lambda: int(noise.random() < hurry), lambda: noise.randint(0, 3))), lambda: noise.randint(0, 1)
+    return (
+        amplifiers(lambda: noise.randint(1, longest), lambda: noise.randint(1, 9), err_at),
+        bank(lambda: int(noise.random() < hurry), lambda: noise.randint(0, 3)),
+    ), lambda: noise.randint(0, 1)
 
 
 def steadily(integrate, read, conversion):
@@ -91,7 +105,7 @@ class TestReadoutSeqFL:
 
     def test_messages_by_hand(self):
         """The types at k = 0 and k = 4 of a tile's second row; the array ends in partial tiles."""
-        size = Size(7, 31, 2)       # 2 x 6 tiles, the last ones with 3 rows and 1 column
+        size = Size(7, 31, 2)  # 2 x 6 tiles, the last ones with 3 rows and 1 column
         ports = size.whole(mask=1 << size.order[6] | 1 << size.order[10], col0=1)
         record = self.bench(size, steadily(3, 1, 0)).frame(ports)
         steps = [(0, 0, 0b10), (0, 1, 0b11), (0, 2, 0b11), (4, 0, 0b10), (4, 1, 0b11), (4, 2, 0b01)]
@@ -100,11 +114,22 @@ class TestReadoutSeqFL:
             expected += [(ROW, row, 0, 0, 0, 0)] + [(SAMPLE, row, group, k, 0, en) for k, group, en in steps]
         assert record.messages == expected + [(END, 0, 0, 0, 0, 0)]
 
-    @pytest.mark.parametrize("ports", [
-        dict(mask=0), dict(row0=1, row1=0), dict(row1=2), dict(row1=255), dict(col0=3, col1=2), dict(col1=6),
-        dict(row0=1, mask=sum(1 << t for t in Size(1, 1, 1).order[18:])),       # only in the last tile's missing row
-        dict(col0=5, mask=2**24 - 1 - sum(1 << t for t in Size(1, 1, 1).order[::6])),   # it has its first column only
-    ], ids=str)
+    @pytest.mark.parametrize(
+        "ports",
+        [
+            dict(mask=0),
+            dict(row0=1, row1=0),
+            dict(row1=2),
+            dict(row1=255),
+            dict(col0=3, col1=2),
+            dict(col1=6),
+            dict(row0=1, mask=sum(1 << t for t in Size(1, 1, 1).order[18:])),  # only in the last tile's missing row
+            dict(
+                col0=5, mask=2**24 - 1 - sum(1 << t for t in Size(1, 1, 1).order[::6])
+            ),  # it has its first column only
+        ],
+        ids=str,
+    )
     def test_refused(self, ports):
         size = Size(7, 31, 2)
         bench = self.bench(size, steadily(3, 1, 0))
@@ -132,13 +157,28 @@ class TestReadoutSeqFL:
             bench.cycle(record)
         bench = self.bench(size, randomly(seed)[0])
         pins = bench.cycle(Record())
-        assert pins == dict(busy=0, done=0, cfg_err=0, amp_start=0, amp_row=0, four_tap=ports["mode"] == 3,
-                            hold_free=1, cycles=0, offer=None)
+        assert pins == dict(
+            busy=0,
+            done=0,
+            cfg_err=0,
+            amp_start=0,
+            amp_row=0,
+            four_tap=ports["mode"] == 3,
+            hold_free=1,
+            cycles=0,
+            offer=None,
+        )
         self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
 
     @SETTINGS
-    @given(st.sampled_from([0x10C842, 0x842]), st.integers(0, 3), st.integers(0, 30), st.integers(0, 1),
-           st.integers(0, 1), seeds)
+    @given(
+        st.sampled_from([0x10C842, 0x842]),
+        st.integers(0, 3),
+        st.integers(0, 30),
+        st.integers(0, 1),
+        st.integers(0, 1),
+        seeds,
+    )
     def test_amplifiers_refuse(self, mask, row, cycles, with_done, overlap, seed):
         """amp_err: the offer that stands is taken, then nothing more; the next frame is whole again."""
         size = self.sizes[0]
@@ -146,13 +186,14 @@ class TestReadoutSeqFL:
         golden = messages(size.scan(ports))
         bench = self.bench(size, randomly(seed, (row, cycles, with_done))[0])
         record = bench.frame(ports)
-        assert record.messages == golden[:len(record.messages)] and len(record.messages) < len(golden)
+        assert record.messages == golden[: len(record.messages)] and len(record.messages) < len(golden)
         assert record.pins[-1] | {"cycles": 0, "amp_row": 0, "four_tap": 0} == dict(
-            busy=0, done=0, cfg_err=1, amp_start=0, amp_row=0, four_tap=0, hold_free=1, cycles=0, offer=None)
+            busy=0, done=0, cfg_err=1, amp_start=0, amp_row=0, four_tap=0, hold_free=1, cycles=0, offer=None
+        )
         if (row, cycles) == (0, 0):
             assert not record.messages
         assert bench.cycle(Record())["cfg_err"]
-        record = bench.frame(ports)         # amp_err stands until its first amp_start
+        record = bench.frame(ports)  # amp_err stands until its first amp_start
         assert record.messages == golden and record.pins[-1]["done"]
 
     @pytest.mark.parametrize("row", [0, 1])
@@ -163,10 +204,15 @@ class TestReadoutSeqFL:
         golden, seen = messages(size.scan(ports)), set()
         for cycles in range(1, 60, 5):
             turns = count()
-            bench = self.bench(size, (amplifiers(lambda: 25, lambda: 2, (row, cycles, 0)),
-                                      bank(lambda turns=turns: int(next(turns) % 6 == 5), lambda: 9)))
+            bench = self.bench(
+                size,
+                (
+                    amplifiers(lambda: 25, lambda: 2, (row, cycles, 0)),
+                    bank(lambda turns=turns: int(next(turns) % 6 == 5), lambda: 9),
+                ),
+            )
             record = bench.frame(ports)
-            assert record.messages == golden[:len(record.messages)] and record.pins[-1]["cfg_err"]
+            assert record.messages == golden[: len(record.messages)] and record.pins[-1]["cfg_err"]
             seen.add(len(record.messages))
             assert bench.frame(ports).messages == golden
         assert len(seen) > (row if self.overlaps else 0)
@@ -195,7 +241,7 @@ class TestReadoutSeqFL:
             for (start, _), done in zip(record.starts, record.dones):
                 waits = sum(not pins["hold_free"] for pins in record.pins[start:done])
                 assert row_cycles(timing, mode == 3) < done - start <= row_cycles(timing, mode == 3) + 1 + waits
-        bench.amplifier = amp_ctrl(None, 0)     # all durations 0
+        bench.amplifier = amp_ctrl(None, 0)  # all durations 0
         bench.answer = next(bench.amplifier)
         record = bench.frame(ports)
         assert not record.taken and record.pins[-1]["cfg_err"] and len(record.starts) == 1
@@ -203,14 +249,28 @@ class TestReadoutSeqFL:
     def test_addresses_of_the_largest_array(self):
         size = LARGEST
         bench = self.bench(size, steadily(3, 1, 0))
-        for ports in (size.whole(row0=254, col0=253, mode=3, overlap=1), size.whole(row0=200, col0=1, decimation=3),
-                      size.whole(row1=0, col1=0)):
+        for ports in (
+            size.whole(row0=254, col0=253, mode=3, overlap=1),
+            size.whole(row0=200, col0=1, decimation=3),
+            size.whole(row1=0, col1=0),
+        ):
             ports["mask"] = 1 << size.order[23]
             self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
 
-    @pytest.mark.parametrize("arguments", [
-        dict(rows=0), dict(rows=1025), dict(cols=1537), dict(lanes=3), dict(lanes=64), dict(order=(0,) * 24),
-        dict(tile_cols=4, order=tuple(range(16)), cols=1028), dict(tile_rows=5)], ids=str)
+    @pytest.mark.parametrize(
+        "arguments",
+        [
+            dict(rows=0),
+            dict(rows=1025),
+            dict(cols=1537),
+            dict(lanes=3),
+            dict(lanes=64),
+            dict(order=(0,) * 24),
+            dict(tile_cols=4, order=tuple(range(16)), cols=1028),
+            dict(tile_rows=5),
+        ],
+        ids=str,
+    )
     def test_parameters(self, arguments):
         with pytest.raises(ParameterError):
             self.cls(**dict(rows=8, cols=12, lanes=2, order=Size(1, 1, 1).order) | arguments).elaborate()
@@ -225,7 +285,7 @@ class TestReadoutSeqCL(TestReadoutSeqFL):
         size, read, conversion = Size(7, 31, 2), 4, 6
         ports = size.whole(mask=2**24 - 1, overlap=overlap, mode=2)
         record = self.bench(size, steadily(integrate, read, conversion)).frame(ports)
-        rows, steps = 7, 2 * 6 * 3      # a tile row: six columns, three groups, two diodes
+        rows, steps = 7, 2 * 6 * 3  # a tile row: six columns, three groups, two diodes
         amp, convert = integrate + read + 1, steps + 3 + conversion
         first, last = 1 + amp, convert + 1
         if not overlap:
@@ -248,6 +308,7 @@ class TestReadoutSeqCL(TestReadoutSeqFL):
         def trace(cls, verilog):
             surroundings, noise = randomly(seed, err_at)
             return Bench(simulator(cls, size, verilog), *surroundings).frame(ports, noise).pins
+
         assert trace(self.cls, self.verilog) == trace(ReadoutSeqCL, False)
 
 

@@ -7,8 +7,15 @@ from hypothesis import strategies as st
 
 from models.digital.registers import ADDRESS_MAX, RegisterBank
 from models.parameters import MODES, AmpTiming, FrameParameters, Window
-from models.parameters.registers import (command, decode_status, frame_writes, read_transfer, register_map,
-                                         status_transfers, write_transfers)
+from models.parameters.registers import (
+    command,
+    decode_status,
+    frame_writes,
+    read_transfer,
+    register_map,
+    status_transfers,
+    write_transfers,
+)
 from rtl.reg_file import RegFile, RegFileFL, chip_config
 from rtl.reset import shown_behind_reset
 from rtl.testbench import build
@@ -17,7 +24,7 @@ from .spi_host import SpiHost
 
 CHIP = register_map()
 FIRST = min(CHIP.writable())
-LAST_ROW, LAST_COL = 2, 2       # a small array's, so that these resets are not the map's
+LAST_ROW, LAST_COL = 2, 2  # a small array's, so that these resets are not the map's
 SETTINGS = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
@@ -104,7 +111,7 @@ class TestFL:
             assert cfg[-1].bit_count() == bits
         steps = [before ^ after for before, after in zip(cfg, cfg[1:])]
         assert len(steps) <= 2 * len(writable) and all(step.bit_count() <= 8 for step in steps)
-        for address, mask in writable.items():      # each its own place
+        for address, mask in writable.items():  # each its own place
             bench.write([(address, 0xFF)])
             assert cfg[-1].bit_count() == mask.bit_count()
             bench.write([(address, 0)])
@@ -118,8 +125,19 @@ class TestFL:
 
     def test_a_frame_is_written_and_read_back(self):
         bench = self.bench()
-        frame = FrameParameters(Window(1, 200, 3, 250), "tof", 0x8001FE, 127, 3, True, 255, False, True, 0xBEEF,
-                                AmpTiming(1, 65535, 0x1234, 2, 3, 0xFF00, 255))
+        frame = FrameParameters(
+            Window(1, 200, 3, 250),
+            "tof",
+            0x8001FE,
+            127,
+            3,
+            True,
+            255,
+            False,
+            True,
+            0xBEEF,
+            AmpTiming(1, 65535, 0x1234, 2, 3, 0xFF00, 255),
+        )
         trims = [(-1) ** t * (21 * t + 7) for t in range(24)]
         writes = frame_writes(frame, trims)
         bench.write(writes)
@@ -143,7 +161,8 @@ class TestFL:
             bench.status(**{f.name: value * 0x0101010101010101 for f in CHIP.counters})
             bench.spi.transfer(bytes((0x80 | FIRST, *[value] * (last - FIRST + 1))))
             assert bench.read(FIRST, last - FIRST + 1) == bytes(
-                value & writable.get(a, 0) for a in range(FIRST, last + 1))
+                value & writable.get(a, 0) for a in range(FIRST, last + 1)
+            )
             for counter in CHIP.counters:
                 assert bench.read(counter.byte, 8) == bytes([value] * 8)
             bench.spi.transfer(bytes((0x80 | CHIP["loop_back"].byte, value)))
@@ -201,6 +220,7 @@ class TestFL:
         def tick():
             bench.tick()
             ticks.append(bench.starts)
+
         bench.spi.tick = tick
         bench.spi.transfer(command("start"))
         return ticks.index(1)
@@ -214,6 +234,7 @@ class TestFL:
             bench.status(done=ticks[0] == at)
             bench.tick()
             ticks[0] += 1
+
         bench.spi.tick = tick
         bench.spi.transfer(data)
         bench.spi.tick = bench.tick
@@ -246,7 +267,7 @@ class TestFL:
             left = [bit]
 
             def tick(left=left):
-                left[0] -= 1        # reset for one cycle, that many SPI clocks into the transfer
+                left[0] -= 1  # reset for one cycle, that many SPI clocks into the transfer
                 bench.sim.reset @= left[0] == 0
                 bench.tick()
 
@@ -306,13 +327,12 @@ class TestFL:
             for data, missing, busy in transfers:
                 bench.status(busy=busy, cycles=1, conversions_made=2, conversions_left_out=3)
                 got = bench.spi.transfer(data, 8 * len(data) - missing)
-                whole = data[:len(data) - (missing > 0)]
+                whole = data[: len(data) - (missing > 0)]
                 want = self.expected(bank, whole, busy)
-                assert got == want[:len(whole)]
+                assert got == want[: len(whole)]
                 starts += bank.take()[0]
             assert bench.starts == starts
-            assert bench.value("trims") == sum(
-                bank.value(f.key) << 8 * f.size * i for i, f in enumerate(CHIP.trims))
+            assert bench.value("trims") == sum(bank.value(f.key) << 8 * f.size * i for i, f in enumerate(CHIP.trims))
 
         check()
 

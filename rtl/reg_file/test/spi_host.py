@@ -40,5 +40,7 @@ class SpiHost:
         self.wait(self.half)
         dut.csn @= 1
         self.wait(2 * self.half)
-        return bytes(sum(bit << 7 - i for i, bit in enumerate(received[n:n + 8]))
-                     for n in range(0, len(received) - len(received) % 8, 8))
+        return bytes(
+            sum(bit << 7 - i for i, bit in enumerate(received[n : n + 8]))
+            for n in range(0, len(received) - len(received) % 8, 8)
+        )

@@ -8,9 +8,9 @@ import pytest
 
 from rtl import testbench
 from rtl.icarus import MISSING, installed
-from verif.replay import load, record, replay, replay_files
-from verif.replay.__main__ import main
-from verif.replay.record import ROOT
+from rtl.replay import load, record, replay, replay_files
+from rtl.replay.__main__ import main
+from rtl.replay.record import ROOT
 
 LIBRARY = ROOT / "cells" / "gates.lib"
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
@@ -25,7 +25,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def recorded(folder):
     """The trace of EdgeAdc's tests, and its Verilog."""
-    path, = record("EdgeAdc", folder / "traces")
+    (path,) = record("EdgeAdc", folder / "traces")
     verilog = folder / "EdgeAdc.v"
     verilog.write_text(load(path).verilog())
     return path, verilog
@@ -36,10 +36,11 @@ def gates(folder, recorded):
     """(netlist, cell models) of EdgeAdc in the abstract library's cells."""
     netlist, cells = folder / "gates.v", folder / "cells.v"
     for script in (
-            f"read_verilog -sv {recorded[1]}; synth -flatten -top EdgeAdc; dfflibmap -liberty {LIBRARY}; "
-            f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
-            f"write_verilog -noattr {netlist}",
-            f"read_liberty {LIBRARY}; write_verilog -noattr {cells}"):
+        f"read_verilog -sv {recorded[1]}; synth -flatten -top EdgeAdc; dfflibmap -liberty {LIBRARY}; "
+        f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
+        f"write_verilog -noattr {netlist}",
+        f"read_liberty {LIBRARY}; write_verilog -noattr {cells}",
+    ):
         subprocess.run(["yosys", "-q", "-p", script], check=True, capture_output=True, timeout=100)
     return netlist, cells
 
@@ -104,8 +105,21 @@ def test_gates(recorded, gates, folder):
 @pytest.mark.parametrize("simulator", ["icarus", pytest.param("verilator", marks=pytest.mark.slow)])
 def test_the_tests_themselves_run_on_gates(gates, folder, simulator):
     netlist, cells = gates
-    command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", "rtl/edge_adc", "-k", "every_code",
-               "--netlist-in", simulator, "--netlist", f"EdgeAdc={netlist}", "--cells"]
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-p",
+        "no:cacheprovider",
+        "rtl/edge_adc",
+        "-k",
+        "every_code",
+        "--netlist-in",
+        simulator,
+        "--netlist",
+        f"EdgeAdc={netlist}",
+        "--cells",
+    ]
     good = subprocess.run([*command, cells], cwd=ROOT, capture_output=True, text=True)
     assert good.returncode == 0 and "1 passed" in good.stdout, good.stdout
     bad = subprocess.run([*command, planted(cells, folder, "A ^ B", "A | B")], cwd=ROOT, capture_output=True, text=True)
@@ -114,7 +128,8 @@ def test_the_tests_themselves_run_on_gates(gates, folder, simulator):
 
 def test_several_simulators_follow_one_another():
     from rtl.edge_adc import EdgeAdc
-    from verif.replay.recorder import Recorder
+    from rtl.replay.recorder import Recorder
+
     recorder = Recorder("EdgeAdc")
     testbench.observers.append(recorder.observe)
     try:
@@ -125,7 +140,7 @@ def test_several_simulators_follow_one_another():
                 sim.sim_tick()
     finally:
         testbench.observers.remove(recorder.observe)
-    trace, = recorder.traces()
+    (trace,) = recorder.traces()
     assert [line[0] for line in trace.lines].count("1") == 2 and len(trace.lines) == 5 + 7 + 2 * 3
     assert [trace.test_at(cycle) for cycle in (0, 7, 8)] == ["one", "one", "two"]
 

@@ -6,7 +6,6 @@ from rtl.run_length.packer_rtl import add_packer_ports
 
 
 class BytePairPacker(Component):
-
     def construct(s):
         # Interface
         add_packer_ports(s)
@@ -14,7 +13,7 @@ class BytePairPacker(Component):
         # Components
         s.run = Wire(Bits8)
         s.gathered = Wire(Bits16)
-        s.count = Wire(Bits2)       # bytes
+        s.count = Wire(Bits2)  # bytes
 
         s.magnitude = Wire(Bits8)
         s.zero = Wire()

@@ -6,21 +6,20 @@ from rtl.run_length.packer_rtl import add_packer_ports
 
 
 class NibblePacker(Component):
-
     def construct(s):
         # Interface
         add_packer_ports(s)
 
         # Components
         s.run = Wire(Bits4)
-        s.gathered = Wire(Bits20)       # from the top
-        s.count = Wire(Bits3)           # nibbles
+        s.gathered = Wire(Bits20)  # from the top
+        s.count = Wire(Bits3)  # nibbles
 
-        s.distance = Wire(Bits9)        # of the magnitude from the smallest one coded
+        s.distance = Wire(Bits9)  # of the magnitude from the smallest one coded
         s.zero = Wire()
         s.take = Wire()
         s.odd = Wire()
-        s.bits = Wire(Bits20)           # the token, from the top
+        s.bits = Wire(Bits20)  # the token, from the top
         s.length = Wire(Bits3)
 
         # Connections
@@ -43,7 +42,7 @@ class NibblePacker(Component):
             if ~s.coded:
                 s.bits @= concat(s.code, Bits12(0))
                 s.length @= 2
-            elif s.zero | ~s.push:      # the run is full, or the row ends
+            elif s.zero | ~s.push:  # the run is full, or the row ends
                 s.bits @= concat(s.run + zext(s.push, 4), Bits8(0), Bits8(0))
                 s.length @= 1
             elif s.distance < 7:
@@ -66,8 +65,9 @@ class NibblePacker(Component):
                 if s.push & s.coded & s.zero & (s.run != 14):
                     s.run <<= s.run + 1
                 elif s.push | (s.flush & (s.run != 0)):
-                    s.gathered <<= ((concat(s.gathered[0:12], Bits8(0)) if s.take else s.gathered)
-                                    | (concat(Bits4(0), s.bits[4:20]) if s.odd else s.bits))
+                    s.gathered <<= (concat(s.gathered[0:12], Bits8(0)) if s.take else s.gathered) | (
+                        concat(Bits4(0), s.bits[4:20]) if s.odd else s.bits
+                    )
                     s.count <<= (zext(s.odd, 3) + s.length) if s.push else Bits3(2)
                     s.run <<= 0
                 elif s.flush & s.odd:

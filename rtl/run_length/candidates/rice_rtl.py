@@ -1,8 +1,22 @@
 """RiceCoder at RTL: Golomb-Rice codes of runs and values, their parameters fixed or adaptive, in PayloadPacker."""
 
 from pymtl3 import (
-    Bits3, Bits4, Bits5, Bits7, Bits8, Bits9, Bits15, Bits24, Component, InPort, OutPort, Wire, concat, update,
-    update_ff, zext,
+    Bits3,
+    Bits4,
+    Bits5,
+    Bits7,
+    Bits8,
+    Bits9,
+    Bits15,
+    Bits24,
+    Component,
+    InPort,
+    OutPort,
+    Wire,
+    concat,
+    update,
+    update_ff,
+    zext,
 )
 
 from rtl.run_length.packer_rtl import PayloadPacker
@@ -58,8 +72,9 @@ class RiceCoder(Component):
                 s.value @= concat(Bits8(0xFF), s.distance[0:7])
                 s.width @= 15
             else:
-                s.value @= ((zext(s.ones, 15) << 1) << zext(s.r, 15)) \
-                    | zext(s.distance[0:7] - (s.quotient << zext(s.r, 7)), 15)
+                s.value @= ((zext(s.ones, 15) << 1) << zext(s.r, 15)) | zext(
+                    s.distance[0:7] - (s.quotient << zext(s.r, 7)), 15
+                )
                 s.width @= s.quotient[0:4] + zext(s.r, 4) + 1
             s.token @= zext(concat(s.span | zext(s.run, 8), s.code[7]), 24) << zext(s.width, 24)
 
@@ -110,12 +125,10 @@ class RiceCoder(Component):
 
 
 class FixedRicePacker(PayloadPacker):
-
     def new_coder(s):
         return RiceCoder(False)
 
 
 class AdaptiveRicePacker(PayloadPacker):
-
     def new_coder(s):
         return RiceCoder(True)

@@ -5,14 +5,15 @@ from functools import cache
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings, strategies as st
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 
 from models.digital.stream import StreamHeader, decode_stream, encode_frame
 from models.digital.stream.test.frames import samples_of
 from models.parameters import MODES, FrameParameters, Window
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
-from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
 from rtl.reset import shown_behind_reset
+from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
 from rtl.testbench import build
 
 ROWS, COLS, LANES = 12, 36, 4
@@ -45,9 +46,18 @@ class Bench:
     def __init__(self, cls, verilog, header, made=0, left_out=0):
         self.sim, w = simulator(cls, verilog), header.window
         self.log = []
-        values = {"mode": MODES.index(header.mode), "phase": header.phase, "row0": w.row0, "row1": w.row1,
-                  "col0": w.col0, "col1": w.col1, "decimation": header.decimation, "mask": header.mask,
-                  "threshold": header.threshold, "frame_number": header.frame_number}
+        values = {
+            "mode": MODES.index(header.mode),
+            "phase": header.phase,
+            "row0": w.row0,
+            "row1": w.row1,
+            "col0": w.col0,
+            "col1": w.col1,
+            "decimation": header.decimation,
+            "mask": header.mask,
+            "threshold": header.threshold,
+            "frame_number": header.frame_number,
+        }
         for name, value in values.items():
             port = getattr(self.sim, name)
             port @= value
@@ -71,7 +81,7 @@ class Bench:
             sim.recv.val @= offer
             sim.recv.msg @= messages[sent] if offer else ScanMsg(3, 0x3FF)
             held = sent == len(messages) or messages[sent].kind in (END, FRAME) and sent
-            sim.made @= self.counts[0] if held else 0       # from END to the end of the frame
+            sim.made @= self.counts[0] if held else 0  # from END to the end of the frame
             sim.left_out @= self.counts[1] if held else 0
             sim.send.rdy @= taken[cycle % len(taken)]
             sim.sim_eval_combinational()
@@ -91,9 +101,15 @@ def frames(draw):
     mode = draw(st.sampled_from(MODES))
     row0, row1 = sorted(draw(st.integers(0, 2)) for _ in range(2))
     col0, col1 = sorted(draw(st.integers(0, 5)) for _ in range(2))
-    header = header_of(mode, Window(row0, row1, col0, col1), phase=mode == "tof" and draw(st.booleans()),
-                       mask=draw(st.sampled_from([2**24 - 1, 0xF0F, 1, 0x800001])), threshold=draw(st.integers(0, 127)),
-                       decimation=draw(st.integers(0, 3)), frame_number=draw(st.integers(0, 65535)))
+    header = header_of(
+        mode,
+        Window(row0, row1, col0, col1),
+        phase=mode == "tof" and draw(st.booleans()),
+        mask=draw(st.sampled_from([2**24 - 1, 0xF0F, 1, 0x800001])),
+        threshold=draw(st.integers(0, 127)),
+        decimation=draw(st.integers(0, 3)),
+        frame_number=draw(st.integers(0, 65535)),
+    )
     count = st.integers(0, 2**32 - 1)
     samples = samples_of(header, draw(st.integers(0, 999)), draw(st.floats(0, 1)), draw(st.sampled_from([3, 30, 300])))
     return header, samples, draw(count), draw(count)
@@ -130,7 +146,7 @@ class TestRunLengthFL:
             samples[:, -1] = 1
         elif kind == "least":
             samples[:] = np.arange(-3, 3).repeat(6)[:, None]
-        elif kind == "inside":      # codes that no converter gives under this threshold
+        elif kind == "inside":  # codes that no converter gives under this threshold
             samples[:] = np.arange(-18, 18)[:, None] // 2
         elif kind == "highest":
             samples[:] = np.array([-128, -127, 0, 127])[np.arange(COLS) % 4][:, None]
@@ -168,13 +184,19 @@ class TestRunLengthFL:
         messages = messages_of(header, samples)
         stray = [ScanMsg(SAMPLE, 3), ScanMsg(ROW, 1), ScanMsg(SAMPLE, 3), ScanMsg(END, 0)]
         bench = self.bench(header)
-        got = bench.run(stray + messages[:1] + [ScanMsg(SAMPLE, 9), ScanMsg(FRAME, 0), ScanMsg(SAMPLE, 9)] + messages[1:20]
-                        + messages[:1] + messages[20:])
+        got = bench.run(
+            stray
+            + messages[:1]
+            + [ScanMsg(SAMPLE, 9), ScanMsg(FRAME, 0), ScanMsg(SAMPLE, 9)]
+            + messages[1:20]
+            + messages[:1]
+            + messages[20:]
+        )
         assert got == encode_frame(header, samples, 0, 0)
 
     def test_a_frame_without_rows(self):
         got = self.bench(header_of(), 1, 2).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)])
-        frame, = decode_stream(got)
+        (frame,) = decode_stream(got)
         assert len(got) == 40 and (frame.made, frame.left_out) == (1, 2) and len(frame.bad_rows) == ROWS
 
     def test_rows_without_samples(self):
@@ -188,16 +210,31 @@ class TestRunLengthFL:
 
         What a row begins with brings the runs' order to 0, and the token to its place.
         """
-        begins = ((1, 1, 1), (1, 1, 4, 1, 1), (1, 1, 1, 1, 4), (1, 1, 1, 1), (1, 1, 1, 1, 9), (1, 1, 1, 2),
-                  (1, 1, 4, 1), (9, 1, 1, 1), (9, 1), (1, 9, 9), (9, 1, 1), (1, 1), (1, 1, 4), (1, 9, 1), (1, 4, 9, 9),
-                  (1, 1, 4, 4))
+        begins = (
+            (1, 1, 1),
+            (1, 1, 4, 1, 1),
+            (1, 1, 1, 1, 4),
+            (1, 1, 1, 1),
+            (1, 1, 1, 1, 9),
+            (1, 1, 1, 2),
+            (1, 1, 4, 1),
+            (9, 1, 1, 1),
+            (9, 1),
+            (1, 9, 9),
+            (9, 1, 1),
+            (1, 1),
+            (1, 1, 4),
+            (1, 9, 1),
+            (1, 4, 9, 9),
+            (1, 1, 4, 4),
+        )
         runs = 127, 85, 42, 8, 119, 64, 1, 100, 85, 42, 21, 3, 127, 85, 42, 90
         rows = len(begins)
         wide = StreamHeader.from_frame(rows, 384, 1, FrameParameters(Window(0, rows // 4 - 1, 0, 63), threshold=1))
         layout, samples, messages = wide.layout(), np.zeros((rows, 384, 1), int), [ScanMsg(FRAME, 0)]
         for row, (begin, run) in enumerate(zip(begins, runs)):
             codes = np.zeros(384, int)
-            codes[:len(begin)] = begin
+            codes[: len(begin)] = begin
             codes[len(begin) + 127 + run] = -128
             samples[row, layout.places_of(row), 0] = codes
             messages += [ScanMsg(ROW, row), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes)]
@@ -206,7 +243,7 @@ class TestRunLengthFL:
 
     def test_counts_of_all_bits(self):
         for made, left_out in ((2**32 - 1, 0), (0, 2**32 - 1), (0x5A5A5A5A, 0xA5A5A5A5), (0, 0)):
-            frame, = decode_stream(self.bench(header_of(), made, left_out).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)]))
+            (frame,) = decode_stream(self.bench(header_of(), made, left_out).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)]))
             assert (frame.made, frame.left_out) == (made, left_out)
 
     def test_reset_in_a_frame(self):
@@ -215,7 +252,7 @@ class TestRunLengthFL:
         messages = messages_of(header, samples)
         bench = self.bench(header)
         bench.run(messages[:100])
-        for cycles in (27, 36):     # the link sticks: bytes wait everywhere
+        for cycles in (27, 36):  # the link sticks: bytes wait everywhere
             with contextlib.suppress(AssertionError):
                 self.bench(header).run(messages, taken=[True] * cycles + [False] * 50, limit=cycles + 30)
             assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
@@ -265,7 +302,7 @@ class TestRunLength(TestRunLengthCL):
             got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)])
             for name, at in ports.items():
                 size = getattr(bench.sim, name).nbits // 8
-                assert int.from_bytes(got[at:at + size], "big") == value & (1 << 8 * size) - 1, name
+                assert int.from_bytes(got[at : at + size], "big") == value & (1 << 8 * size) - 1, name
 
 
 class TestRunLengthVerilog(TestRunLength):

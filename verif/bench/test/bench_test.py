@@ -19,8 +19,12 @@ def streams_of(simulators, tmp_path):
     """The bytes of one frame of the chip's bench in each of the simulators."""
     for simulator in simulators:
         file = tmp_path / simulator
-        tests = run.simulate(run.DESIGNS[CHIP], simulator, tests=["the_shown_frame"],
-                             environment={"BENCH_STREAM": str(file), "BENCH_FRAME": SMALL})
+        tests = run.simulate(
+            run.DESIGNS[CHIP],
+            simulator,
+            tests=["the_shown_frame"],
+            environment={"BENCH_STREAM": str(file), "BENCH_FRAME": SMALL},
+        )
         assert tests == [("the_shown_frame", None)]
         yield file.read_bytes()
 
@@ -29,8 +33,13 @@ def streams_of(simulators, tmp_path):
 def test_a_bench_passes_and_counts(tmp_path, capsys):
     assert main(["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]) == 0
     by_block = json.loads((tmp_path / "bench.json").read_text())
-    assert by_block == {"PhasePath": {"tests": {"passed": 2, "failed": 0}, "open_points": [],
-                                      "simulators": {"icarus": {"passed": 2, "failed": 0}}}}
+    assert by_block == {
+        "PhasePath": {
+            "tests": {"passed": 2, "failed": 0},
+            "open_points": [],
+            "simulators": {"icarus": {"passed": 2, "failed": 0}},
+        }
+    }
 
 
 @needs_icarus
@@ -42,9 +51,10 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
         key, stall = f"{design.block}.v", "divider__send__val & send__rdy"
         assert texts[key].count(stall) == 1
         return texts | {key: texts[key].replace(stall, "divider__send__val")}
+
     monkeypatch.setattr(run, "sources", planted)
     arguments = ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]
-    for _ in range(2):      # a failure is not kept: it is tried again
+    for _ in range(2):  # a failure is not kept: it is tried again
         assert main(arguments) == 1
         assert "PhasePath in icarus: any_taps_at_any_pace: " in capsys.readouterr().err
     assert not list((tmp_path / "bench").iterdir())
@@ -53,9 +63,15 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
 @needs_icarus
 def test_a_simulation_without_an_end_is_stopped(monkeypatch):
     monkeypatch.setattr(run, "SECONDS", 2)
-    monkeypatch.setattr(run, "sources", lambda design: {
-        f"{run.TOP}.v": run.flat(design).replace("endmodule", "reg s; initial s = 0; always @(s) s <= ~s;\nendmodule")
-        .replace("PhasePath dut", "//")})
+    monkeypatch.setattr(
+        run,
+        "sources",
+        lambda design: {
+            f"{run.TOP}.v": run.flat(design)
+            .replace("endmodule", "reg s; initial s = 0; always @(s) s <= ~s;\nendmodule")
+            .replace("PhasePath dut", "//")
+        },
+    )
     with pytest.raises(run.BenchError, match="PhasePath in icarus: no end after 2 s"):
         run.simulate(run.DESIGNS["PhasePath"], "icarus")
 

@@ -127,7 +127,8 @@ def start_refused(p):
 def status_read_back(p):
     first = CHIP["busy"].byte
     return where(p, [t for t in transfers(p) if t.data and not t.writes and first in dict(t.bytes_at())]) & (
-        p.since(p.miso == 1) < 200)
+        p.since(p.miso == 1) < 200
+    )
 
 
 def frame_behind_a_frame(p):

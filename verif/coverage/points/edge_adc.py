@@ -91,7 +91,9 @@ def free_falls_with_room_used(p):
 
 def window_above(p):
     """The first decision of a window says that the value is not below T."""
-    return (p.was(p.go) == 1) & (p.comparator == 1) & (p.dac == (p.threshold | 0x80)) & (p.threshold > 0) & (p.busy == 1)
+    return (
+        (p.was(p.go) == 1) & (p.comparator == 1) & (p.dac == (p.threshold | 0x80)) & (p.threshold > 0) & (p.busy == 1)
+    )
 
 
 def window_below(p):

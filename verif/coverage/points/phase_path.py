@@ -41,8 +41,13 @@ def end_waits_for_the_divider(p):
 
 
 def step_of_one_sample(p):
-    return _in(p) & (p.on == 1) & (p.recv__kind == SAMPLE) & (p.recv__data >> 9 == 1) & (
-        p.was(_in(p) & (p.recv__kind == SAMPLE) & (p.recv__data >> 9 == 1)) == 1)
+    return (
+        _in(p)
+        & (p.on == 1)
+        & (p.recv__kind == SAMPLE)
+        & (p.recv__data >> 9 == 1)
+        & (p.was(_in(p) & (p.recv__kind == SAMPLE) & (p.recv__data >> 9 == 1)) == 1)
+    )
 
 
 def step_of_several_samples(p):

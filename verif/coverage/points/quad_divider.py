@@ -121,8 +121,14 @@ def reset_under_way(p):
     """A reset behind a request and ahead of its response."""
     ended = p.since(_answered(p) | (p.was(p.reset) == 1))
     asked = p.since(_asked(p))
-    return (p.reset == 1) & (p.was(p.reset) == 0) & (asked > 0) & (asked < 5) & ((ended < 0) | (asked < ended)) & (
-        p.send__val == 0)
+    return (
+        (p.reset == 1)
+        & (p.was(p.reset) == 0)
+        & (asked > 0)
+        & (asked < 5)
+        & ((ended < 0) | (asked < ended))
+        & (p.send__val == 0)
+    )
 
 
 def reset_of_a_waiting_response(p):

@@ -117,7 +117,7 @@ def nothing_selected(p):
 
 def selected_types_do_not_exist_there(p):
     row, col = _last_tile(p)
-    return (_refused(p) & (p.mask != 0) & (p.row0 <= p.row1) & (p.row1 <= row) & (p.col0 <= p.col1) & (p.col1 <= col))
+    return _refused(p) & (p.mask != 0) & (p.row0 <= p.row1) & (p.row1 <= row) & (p.col0 <= p.col1) & (p.col1 <= col)
 
 
 def good_start_behind_a_refused_one(p):

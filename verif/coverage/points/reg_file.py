@@ -34,8 +34,9 @@ def id_read(p):
 
 
 def unmapped_written(p):
-    return _writes_to(p, lambda address, _: address not in WRITABLE and address > CHIP.counters[-1].byte + 7
-                      and address != LOOP)
+    return _writes_to(
+        p, lambda address, _: address not in WRITABLE and address > CHIP.counters[-1].byte + 7 and address != LOOP
+    )
 
 
 def unmapped_read(p):
@@ -69,8 +70,12 @@ def cut_by_a_reset(p):
 
 def clock_goes_on_behind_a_reset(p):
     """sclk moves with csn low since the reset."""
-    return (p.sclk != p.was(p.sclk)) & (p.csn == 0) & (p.since((p.reset == 1) & (p.csn == 0)) > 0) & (
-        p.since((p.reset == 1) & (p.csn == 0)) < p.since(p.csn == 1))
+    return (
+        (p.sclk != p.was(p.sclk))
+        & (p.csn == 0)
+        & (p.since((p.reset == 1) & (p.csn == 0)) > 0)
+        & (p.since((p.reset == 1) & (p.csn == 0)) < p.since(p.csn == 1))
+    )
 
 
 def fastest_clock(p):
@@ -147,4 +152,5 @@ def loop_byte_refused(p):
 
 def reset_of_a_written_configuration(p):
     return (p.reset == 1) & (p.cfg__threshold != p.was(p.cfg__threshold, 2)) & ~p.fresh | (
-        (p.reset == 0) & (p.was(p.reset) == 1) & (p.cfg != p.was(p.cfg)).astype(bool) & (p.was(p.fresh) == 0))
+        (p.reset == 0) & (p.was(p.reset) == 1) & (p.cfg != p.was(p.cfg)).astype(bool) & (p.was(p.fresh) == 0)
+    )

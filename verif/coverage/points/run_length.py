@@ -102,8 +102,9 @@ def frame_waits_behind_a_frame(p):
 def frame_without_rows(p):
     message = _in(p)
     end = message & (p.recv__kind == END)
-    return end & (p.frame_sync == 1) & (p.since(message & (p.recv__kind == ROW)) > p.since(
-        message & (p.recv__kind == FRAME))) | end & (p.since(message & (p.recv__kind == ROW)) < 0) & (p.frame_sync == 1)
+    return end & (p.frame_sync == 1) & (
+        p.since(message & (p.recv__kind == ROW)) > p.since(message & (p.recv__kind == FRAME))
+    ) | end & (p.since(message & (p.recv__kind == ROW)) < 0) & (p.frame_sync == 1)
 
 
 def row_without_samples(p):

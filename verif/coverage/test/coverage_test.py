@@ -6,10 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from flow.simulate.process import ToolError
+from base.tools import ToolError
 from models.parameters import ParameterError
 from rtl import testbench
 from rtl.edge_adc import EdgeAdc
+from rtl.replay.recorder import Recorder
 from rtl.tops import TOPS
 from verif.coverage.measure import Point, measure, sources_of
 from verif.coverage.ports import Recorded
@@ -17,9 +18,8 @@ from verif.coverage.program import compile_program
 from verif.coverage.spi import transfers
 from verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
 from verif.coverage.verdict import judge, matches, ranges
-from verif.replay.recorder import Recorder
 
-CYCLES = [(1, 1, 0)] * 3 + [(1, 0, 1)] * 30 + [(0, 0, 1)] * 30      # go, reset, comparator
+CYCLES = [(1, 1, 0)] * 3 + [(1, 0, 1)] * 30 + [(0, 0, 1)] * 30  # go, reset, comparator
 
 
 def recorded(cls, component, cycles):
@@ -35,15 +35,16 @@ def recorded(cls, component, cycles):
             sim.sim_tick()
     finally:
         testbench.observers.remove(recorder.observe)
-    trace, = recorder.traces()
+    (trace,) = recorder.traces()
     return trace
 
 
 def recorded_cycles():
     """The Trace of one EdgeAdc that converts with a comparator that is always high."""
     component = EdgeAdc()
-    return recorded("EdgeAdc", component, [{"go": go, "reset": reset, "comparator": comparator}
-                                           for go, reset, comparator in CYCLES])
+    return recorded(
+        "EdgeAdc", component, [{"go": go, "reset": reset, "comparator": comparator} for go, reset, comparator in CYCLES]
+    )
 
 
 @pytest.fixture(scope="module")
@@ -58,9 +59,19 @@ def result(trace, tmp_path_factory):
 
 
 def plan(*exclusions):
-    return TestPlan("edge_adc", ("EdgeAdc",), (SimpleNamespace(cover=("go_from_idle", "zero_by_the_window")),),
-                    (Machine((("state", 3),), {"idle": 0, "above": 1, "search": 4, "wait": 5},
-                             (("idle", "search"), ("search", "wait"), ("idle", "above"))),), exclusions)
+    return TestPlan(
+        "edge_adc",
+        ("EdgeAdc",),
+        (SimpleNamespace(cover=("go_from_idle", "zero_by_the_window")),),
+        (
+            Machine(
+                (("state", 3),),
+                {"idle": 0, "above": 1, "search": 4, "wait": 5},
+                (("idle", "search"), ("search", "wait"), ("idle", "above")),
+            ),
+        ),
+        exclusions,
+    )
 
 
 @pytest.mark.parametrize("folder", sorted({folder_of(block) for block in TOPS}))
@@ -74,16 +85,20 @@ def test_what_no_cycle_reaches_is_named(result):
     assert "functional edge_adc: zero_by_the_window" in verdict.missing
     assert "fsm state: idle > above" in verdict.missing and "fsm state: above" in verdict.missing
     assert 0 < verdict.coverage["branch"] < 100 and 0 < verdict.coverage["toggle"] < 100
-    assert any(re.match(r"branch rtl/edge_adc/edge_adc_rtl.py:\d+ EdgeAdc line \d+: if of .if \( magnitude < ", text)
-               for text in verdict.missing)
+    assert any(
+        re.match(r"branch rtl/edge_adc/edge_adc_rtl.py:\d+ EdgeAdc line \d+: if of .if \( magnitude < ", text)
+        for text in verdict.missing
+    )
     assert any(re.match(r"toggle .*: threshold\[6:0\] 0->1", text) for text in verdict.missing)
     assert not any(re.match(r"toggle .*: go\[", text) for text in verdict.missing)
 
 
 def test_exclusions(result):
     code = "if ( magnitude < { { 1 { 1'b0 } }, threshold } ) begin"
-    good = [Exclusion("toggle", ("EdgeAdc.threshold",), "tied"),
-            Exclusion("branch", (f"EdgeAdc: {code}",), "dead", "if")]
+    good = [
+        Exclusion("toggle", ("EdgeAdc.threshold",), "tied"),
+        Exclusion("branch", (f"EdgeAdc: {code}",), "dead", "if"),
+    ]
     before, after = judge("EdgeAdc", plan(), [result]), judge("EdgeAdc", plan(*good), [result])
     assert after.excluded == 15 and len(after.missing) == len(before.missing) - 3 and not after.errors
     hit = judge("EdgeAdc", plan(Exclusion("toggle", ("EdgeAdc.go",), "wrong")), [result])
@@ -94,8 +109,14 @@ def test_exclusions(result):
 
 def test_bits_of_an_exclusion():
     bit = Point("toggle", "M", "row[9]:0->1", "", 0, 1, "")
-    for at, what, fits in (("M.row[9:7]", "", True), ("M.row", "", True), ("M.row[9]", "0->1", True),
-                           ("M.row[8:0]", "", False), ("M.row[9]", "1->0", False), ("N.row[9]", "", False)):
+    for at, what, fits in (
+        ("M.row[9:7]", "", True),
+        ("M.row", "", True),
+        ("M.row[9]", "0->1", True),
+        ("M.row[8:0]", "", False),
+        ("M.row[9]", "1->0", False),
+        ("N.row[9]", "", False),
+    ):
         assert matches(Exclusion("toggle", (at,), "", what), at, bit) == fits, (at, what)
     assert ranges([9, 3, 7, 8]) == "9:7,3"
 
@@ -103,7 +124,8 @@ def test_bits_of_an_exclusion():
 def test_a_transition_out_of_the_plan_is_an_error(result):
     wrong = [[0, 0, 4, 1, 7]]
     assert judge("EdgeAdc", plan(), [result | {"states": wrong}]).errors == [
-        "fsm state: search > above: no such transition in the plan"]
+        "fsm state: search > above: no such transition in the plan"
+    ]
     in_reset = [[0, 1, 4, 1, 7]]
     assert not judge("EdgeAdc", plan(), [result | {"states": in_reset}]).errors
 
@@ -158,7 +180,7 @@ def test_transfers_of_pins():
         pins[name] += [rest] * 8
     arrays = {name: np.array(values) for name, values in pins.items()}
     p = SimpleNamespace(**arrays, reset=np.zeros(len(pins["csn"]), int), fresh=np.zeros(len(pins["csn"]), bool))
-    found, = transfers(p)
+    (found,) = transfers(p)
     assert found.data == b"\x81" and found.bits == 2 and found.half == 4 and found.writes and not found.cut
 
 
@@ -169,18 +191,21 @@ promises:
 """
 
 
-@pytest.mark.parametrize("old, new, said", [
-    ("blocks: [EdgeAdc]", "blocks: [AmpCtrl]", "must be a top in rtl/edge_adc"),
-    ("blocks:", "block:", "unknown key"),
-    ("cover: [go_from_idle], ", "", r"promises\[0\].cover"),
-    ("[go_from_idle]", "[]", r"promises\[0\].cover = \[\]"),
-    ("go_from_idle", "no_such_point", "no function in points"),
-    ("it", "it", "belong to no promise"),
-    ("test_every_code", "test_gone", "no such test"),
-    ("tests: [test_every_code]", "tests: []", r"promises\[0\].tests"),
-    ("test_every_code", "'verif/faults/test/gone_test.py::test_x'", "no such test"),
-    ("tests:", "checks:", "unknown key"),
-])
+@pytest.mark.parametrize(
+    "old, new, said",
+    [
+        ("blocks: [EdgeAdc]", "blocks: [AmpCtrl]", "must be a top in rtl/edge_adc"),
+        ("blocks:", "block:", "unknown key"),
+        ("cover: [go_from_idle], ", "", r"promises\[0\].cover"),
+        ("[go_from_idle]", "[]", r"promises\[0\].cover = \[\]"),
+        ("go_from_idle", "no_such_point", "no function in points"),
+        ("it", "it", "belong to no promise"),
+        ("test_every_code", "test_gone", "no such test"),
+        ("tests: [test_every_code]", "tests: []", r"promises\[0\].tests"),
+        ("test_every_code", "'verif/faults/test/gone_test.py::test_x'", "no such test"),
+        ("tests:", "checks:", "unknown key"),
+    ],
+)
 def test_a_plan_that_does_not_hold_is_refused(tmp_path, old, new, said):
     path = tmp_path / "edge_adc.testplan.yaml"
     path.write_text(GOOD.replace(old, new))

@@ -20,11 +20,13 @@ def faults():
     broken = transfer(b"\x00" + command("start") * 3)
     broken[70] |= RESET
     ends = rest(frame.length + 20)
-    return [pulses,
-            np.concatenate([frame.before, rest(60), rest(100) & ~np.uint8(RDY), ends]),
-            np.concatenate([frame.before, transfer((0x80 | 8, 0x5A, 0x33), 19), start(), ends]),
-            np.concatenate([frame.before, hit, configured("raw")[8:], start(), ends]),
-            np.concatenate([configured("raw"), broken, ends])]
+    return [
+        pulses,
+        np.concatenate([frame.before, rest(60), rest(100) & ~np.uint8(RDY), ends]),
+        np.concatenate([frame.before, transfer((0x80 | 8, 0x5A, 0x33), 19), start(), ends]),
+        np.concatenate([frame.before, hit, configured("raw")[8:], start(), ends]),
+        np.concatenate([configured("raw"), broken, ends]),
+    ]
 
 
 def test_icarus_does_what_verilator_does():

@@ -25,14 +25,18 @@ def offers_stand(trace):
 def test_rdy_sticks_for_a_while_at_any_cycle(name):
     """The same bytes, later; `busy` stays up, and an offered byte stands."""
     frame = quiet(name)
-    traces = run([np.concatenate([frame.before, rest(c), stuck(rest(STUCK)), rest(frame.length + STUCK)])
-                  for c in range(frame.length)])
+    traces = run(
+        [
+            np.concatenate([frame.before, rest(c), stuck(rest(STUCK)), rest(frame.length + STUCK)])
+            for c in range(frame.length)
+        ]
+    )
     for cycle, trace in enumerate(traces):
         first = frame.before.size + cycle
         assert trace.stream == golden(name).stream, f"rdy stuck from cycle {cycle} of the frame"
         assert not ((trace.taken >= first) & (trace.taken < first + STUCK)).any()
         if cycle and first <= frame.trace.taken[-1]:
-            assert trace.flag(BUSY)[first:first + STUCK].all(), f"not busy while rdy is stuck from cycle {cycle}"
+            assert trace.flag(BUSY)[first : first + STUCK].all(), f"not busy while rdy is stuck from cycle {cycle}"
         assert offers_stand(trace), f"rdy stuck from cycle {cycle}: an offered byte changes"
 
 
@@ -43,8 +47,12 @@ def test_rdy_sticks_for_ever(name):
     asks = [status_wave(), start(), transfer(read_transfer(first, 2)), status_wave()]
     again = np.concatenate([configured(name), start(), rest(frame.length + 20)])
     cycles = range(1, frame.length, 7)
-    traces = run([np.concatenate([frame.before, rest(c), stuck(np.concatenate([rest(600), *asks])), reset(1), again])
-                  for c in cycles])
+    traces = run(
+        [
+            np.concatenate([frame.before, rest(c), stuck(np.concatenate([rest(600), *asks])), reset(1), again])
+            for c in cycles
+        ]
+    )
     for cycle, trace in zip(cycles, traces, strict=True):
         at = frame.before.size + cycle + 600
         status = trace.status(at)
@@ -59,10 +67,17 @@ def test_rdy_sticks_for_ever(name):
 def test_rdy_sticks_in_loop_back():
     """One byte waits and comes out when it may; those that find it waiting are refused."""
     loop, enable = CHIP["loop_back"].byte, CHIP["loop_enable"]
-    wave = [reset(), transfer((0x80 | enable.byte, 1 << enable.shift)),
-            stuck(transfer((0x80 | loop, 11, 12, 13))), stuck(rest(50)), status_wave(), transfer(command("refused")),
-            transfer((0x80 | loop, 14)), status_wave()]
-    trace, = run([np.concatenate(wave)])
+    wave = [
+        reset(),
+        transfer((0x80 | enable.byte, 1 << enable.shift)),
+        stuck(transfer((0x80 | loop, 11, 12, 13))),
+        stuck(rest(50)),
+        status_wave(),
+        transfer(command("refused")),
+        transfer((0x80 | loop, 14)),
+        status_wave(),
+    ]
+    (trace,) = run([np.concatenate(wave)])
     assert trace.stream == bytes((11, 14)) and offers_stand(trace)
     starts = np.cumsum([0] + [w.size for w in wave])
     assert trace.status(starts[4])["refused"] and not trace.status(starts[7])["refused"]

@@ -9,7 +9,7 @@ from verif.faults.waveform import BUSY, rest, status_wave, transfer
 
 CHIP = register_map()
 WRITABLE = CHIP.writable()
-TRANSFER = start().size         # cycles of a transfer of two bytes
+TRANSFER = start().size  # cycles of a transfer of two bytes
 
 
 def changed_one_way(values):
@@ -27,8 +27,18 @@ def write_in(name, cases):
     wave = []
     for address, cycle in cases:
         written = transfer((0x80 | address, held[address] ^ WRITABLE[address]))
-        wave.append(np.concatenate([frame.before, rest(cycle), written, rest(frame.length), status_wave(),
-                                    transfer(read_transfer(address, 1))]))
+        wave.append(
+            np.concatenate(
+                [
+                    frame.before,
+                    rest(cycle),
+                    written,
+                    rest(frame.length),
+                    status_wave(),
+                    transfer(read_transfer(address, 1)),
+                ]
+            )
+        )
     refused, read = [], transfer(bytes(2)).size
     for (address, cycle), trace in zip(cases, run(wave), strict=True):
         where = f"{name}: address {address} written {cycle} cycles into the frame"
@@ -57,8 +67,10 @@ def test_a_second_start_at_any_cycle(name):
     """Refused while the frame runs: the frame is as it was. Behind it a second frame, and `done` is of that one."""
     frame, refused = quiet(name), []
     last = frame.length + 20
-    wave = [np.concatenate([frame.before, rest(cycle), start(), status_wave(), rest(last - cycle + frame.length)])
-            for cycle in range(last)]
+    wave = [
+        np.concatenate([frame.before, rest(cycle), start(), status_wave(), rest(last - cycle + frame.length)])
+        for cycle in range(last)
+    ]
     for cycle, trace in enumerate(run(wave)):
         where = f"{name}: started again {cycle} cycles into the frame"
         status = trace.status(frame.before.size + cycle + TRANSFER)

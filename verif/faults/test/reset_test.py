@@ -6,8 +6,7 @@ import pytest
 from models.digital.stream import decode_stream
 from models.parameters.registers import command, read_transfer, register_map
 from verif.faults.chip import FRAMES, configured, golden, quiet, resets, run, start
-from verif.faults.waveform import (BUSY, HOLD, MISO, PULSE_HIGH, PULSE_LOW, RESET, SYNC, VAL, rest, status_wave,
-                                   transfer)
+from verif.faults.waveform import BUSY, HOLD, MISO, PULSE_HIGH, PULSE_LOW, RESET, SYNC, VAL, rest, status_wave, transfer
 
 CHIP = register_map()
 HELD = resets()
@@ -20,7 +19,7 @@ DEFAULTS = bytes(HELD.get(a, 0) for a in range(min(HELD), max(HELD) + 1))
 def test_a_reset_without_a_clock_edge_is_nothing(name, pulse):
     """Pulses between the edges of every cycle: not one output of one cycle differs."""
     quiet_trace = quiet(name).trace
-    trace, = run([quiet_trace.wave | np.uint8(pulse)])
+    (trace,) = run([quiet_trace.wave | np.uint8(pulse)])
     assert np.array_equal(trace.out, quiet_trace.out)
 
 
@@ -37,7 +36,7 @@ def test_reset_for_one_cycle_at_any_cycle_of_a_frame(name):
     for cycle, trace in enumerate(run(wave)):
         behind = frame.before.size + cycle + 1
         where = f"{name}: reset {cycle} cycles into the frame"
-        quiet_part = trace.out[behind:behind + pause]
+        quiet_part = trace.out[behind : behind + pause]
         assert not (quiet_part[:, 1] & (VAL | SYNC | BUSY | HOLD | MISO)).any() and not quiet_part[:, 2].any(), where
         cut = trace.taken < behind
         before, after = trace.out[trace.taken[cut], 0].tobytes(), trace.out[trace.taken[~cut], 0].tobytes()
@@ -65,7 +64,7 @@ def test_reset_in_the_middle_of_a_transfer():
     read, wave = transfer(READ_ALL), []
     for first in (0x00, 0x80 | CHIP["t_int"].byte):
         hit = transfer(bytes((first,)) + bytes_of_starts)
-        for cycle in range(0, hit.size - 8, 3):     # half an SPI clock is 4 cycles: every place in one is met
+        for cycle in range(0, hit.size - 8, 3):  # half an SPI clock is 4 cycles: every place in one is met
             some = hit.copy()
             some[cycle] |= RESET
             wave.append(np.concatenate([configured("raw"), some, rest(8), read]))

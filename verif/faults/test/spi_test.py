@@ -38,8 +38,9 @@ def test_a_read_cut_at_any_bit():
     """Nothing is written, and the next read is right."""
     read = read_transfer(FIRST, 4)
     wanted = bytes(HELD[FIRST + i] for i in range(4))
-    for bits, trace in enumerate(run([np.concatenate([BEFORE, transfer(read, bits), transfer(read)])
-                                      for bits in range(8 * len(read))])):
+    for bits, trace in enumerate(
+        run([np.concatenate([BEFORE, transfer(read, bits), transfer(read)]) for bits in range(8 * len(read))])
+    ):
         assert trace.reply(trace.wave.size - transfer(read).size, len(read))[1:] == wanted, f"cut after {bits} bits"
 
 
@@ -48,7 +49,7 @@ def test_cut_in_the_middle_of_a_frame(bits):
     """The frame does not notice; `refused` is set where a whole byte came."""
     frame = quiet("edge")
     cut = cut_write(bits)
-    trace, = run([np.concatenate([frame.before, rest(5), cut, rest(frame.length), status_wave()])])
+    (trace,) = run([np.concatenate([frame.before, rest(5), cut, rest(frame.length), status_wave()])])
     assert frame.length > cut.size or bits > 28
     assert trace.stream == golden("edge").stream
     status = trace.status(trace.wave.size - status_wave().size)
@@ -62,12 +63,12 @@ def test_a_clock_without_select_and_selects_without_a_clock():
     clock[np.arange(clock.size) % 8 >= 4] |= SCLK
     selects = rest(frame.length + 50)
     for length in range(1, 9):
-        selects[20 * length:20 * length + length] = RDY
+        selects[20 * length : 20 * length + length] = RDY
     for wave in (clock, selects):
-        trace, = run([np.concatenate([frame.before, wave])])
+        (trace,) = run([np.concatenate([frame.before, wave])])
         assert trace.stream == golden("raw").stream
-        assert np.array_equal(trace.out, frame.trace.out[:trace.wave.size])
-        rested, = run([np.concatenate([BEFORE, wave, transfer(read_transfer(FIRST, 2)), status_wave()])])
+        assert np.array_equal(trace.out, frame.trace.out[: trace.wave.size])
+        (rested,) = run([np.concatenate([BEFORE, wave, transfer(read_transfer(FIRST, 2)), status_wave()])])
         at = BEFORE.size + wave.size
         assert rested.reply(at, 3)[1:] == bytes((HELD[FIRST], HELD[FIRST + 1])) and not rested.flag(BUSY).any()
         assert not any(rested.status(at + transfer(bytes(3)).size).values())

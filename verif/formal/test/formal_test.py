@@ -45,8 +45,9 @@ def test_the_byte_queue_is_proven_and_its_twins_fail(queue, tmp_path):
     assert command.main(["--proof", queue.name, "--out", str(tmp_path), "--workers", "1"]) == 0
     proofs = json.loads((tmp_path / "formal.json").read_text())["RunLength"]["proofs"]
     assert {proof["name"] for proof in proofs} == {f"byte_queue.{label}" for label in queue.twins}
-    assert all(proof["result"] == "proven" and proof["twin_fails"] and proof["depth"] == "unbounded"
-               for proof in proofs)
+    assert all(
+        proof["result"] == "proven" and proof["twin_fails"] and proof["depth"] == "unbounded" for proof in proofs
+    )
 
 
 def test_a_property_that_is_always_true_is_caught_through_its_twin(queue, tmp_path):
@@ -95,14 +96,20 @@ def test_a_bug_without_its_place_and_a_property_without_a_twin_are_refused(queue
     shutil.copy(queue.wrapper, tmp_path)
     (tmp_path / "proofs.yaml").write_text(
         "- {name: q, block: RunLength, wrapper: byte_queue.sv, top: ByteQueueProof, modules: {ByteQueue: RunLength},\n"
-        "   method: induction, depth: 3, why: x, twins: {p_order: {find: a, replace: b}}}\n")
+        "   method: induction, depth: 3, why: x, twins: {p_order: {find: a, replace: b}}}\n"
+    )
     with pytest.raises(ParameterError, match="q.twins = p_last, p_room, p_stable, p_val: every property must"):
         manifest.read(tmp_path / "proofs.yaml")
 
 
-@pytest.mark.parametrize("text, message", [
-    ("assert (a);", "label = none"), ("cover (a);", "label = none"),
-    ("x: assert (a); x: cover (b);", "label = x: must occur once")])
+@pytest.mark.parametrize(
+    "text, message",
+    [
+        ("assert (a);", "label = none"),
+        ("cover (a);", "label = none"),
+        ("x: assert (a); x: cover (b);", "label = x: must occur once"),
+    ],
+)
 def test_labels_are_there_and_differ(text, message):
     with pytest.raises(ParameterError, match=message):
         manifest.labels(text)

@@ -52,8 +52,15 @@ def greedy(data, tile):
     return decode_stream(data, tile) if len(data) % 7 != 3 else bytearray(2 * batch.MEMORY_MAX)
 
 
-@pytest.mark.parametrize("wrong, error", [(crash, "IndexError: index 4"), (lie, "Broken: other samples"),
-                                          (slow, "TimeoutError: 0.0"), (greedy, "MemoryError")])
+@pytest.mark.parametrize(
+    "wrong, error",
+    [
+        (crash, "IndexError: index 4"),
+        (lie, "Broken: other samples"),
+        (slow, "TimeoutError: 0.0"),
+        (greedy, "MemoryError"),
+    ],
+)
 def test_a_wrong_decoder_is_seen_and_its_input_kept(tmp_path, monkeypatch, wrong, error):
     monkeypatch.setattr(checks, "decode_stream", wrong)
     monkeypatch.setattr(batch, "SECONDS_MAX", 0.01 if wrong is slow else 10)

@@ -11,8 +11,8 @@ from rtl.export import translate_component
 from rtl.ports import Port, ports_of
 from rtl.tops import build_top
 from verif.coverage.program import compile_program
-from verif.coverage.testplan import folder_of
 from verif.coverage.test.coverage_test import recorded, recorded_cycles
+from verif.coverage.testplan import folder_of
 from verif.mutation.__main__ import main, summary
 from verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, promises
 from verif.mutation.mutants import Mutant, generate, shares, with_mutants
@@ -20,8 +20,9 @@ from verif.mutation.score import SURVIVED, judge, mutated, one_mutant, own_tests
 from verif.mutation.trial import attempt
 from verif.results import ROOT
 
-pytestmark = pytest.mark.skipif(not (shutil.which("yosys") and shutil.which("yosys-abc")),
-                                reason="needs Yosys: make tools")
+pytestmark = pytest.mark.skipif(
+    not (shutil.which("yosys") and shutil.which("yosys-abc")), reason="needs Yosys: make tools"
+)
 
 # A counter whose upper bit is never looked at, and a register that no output shows
 SMALL = """

@@ -14,31 +14,65 @@ from verif.report.page import render
 from verif.report.steps import Outcome, Step, run_step
 from verif.suite.blocks import BLOCKS
 
-PROOF = {"name": "a.one", "engine": "boolector (3.2)", "depth": "unbounded", "result": "proven", "twin_fails": True,
-         "wall_s": 1.5}
-GOOD = {"tests": {"passed": 5, "failed": 0}, "proofs": [PROOF], "coverage": dict.fromkeys(
-    ("line", "toggle", "branch", "fsm", "functional"), 100.0),
-    "mutants": {"made": 50, "equivalent": 4, "killed": 46, "survived": 0}, "open_points": []}
-FUZZ = {"Decoder": {"fuzz": {"inputs": 10**6, "failures": 0, "seed": 1}, "resync": {
-    "tried": 10**6, "failures": 0, "frames": []}, "open_points": []},
-    "Host": {"fuzz": {"inputs": 10**6, "failures": 0, "seed": 1}, "open_points": []}}
+PROOF = {
+    "name": "a.one",
+    "engine": "boolector (3.2)",
+    "depth": "unbounded",
+    "result": "proven",
+    "twin_fails": True,
+    "wall_s": 1.5,
+}
+GOOD = {
+    "tests": {"passed": 5, "failed": 0},
+    "proofs": [PROOF],
+    "coverage": dict.fromkeys(("line", "toggle", "branch", "fsm", "functional"), 100.0),
+    "mutants": {"made": 50, "equivalent": 4, "killed": 46, "survived": 0},
+    "open_points": [],
+}
+FUZZ = {
+    "Decoder": {
+        "fuzz": {"inputs": 10**6, "failures": 0, "seed": 1},
+        "resync": {"tried": 10**6, "failures": 0, "frames": []},
+        "open_points": [],
+    },
+    "Host": {"fuzz": {"inputs": 10**6, "failures": 0, "seed": 1}, "open_points": []},
+}
 
 
 def everything():
     """What all steps might bring when all is well."""
-    return summarize([{block: copy.deepcopy(GOOD) for block in TOPS}, copy.deepcopy(FUZZ),
-                      {block: {"tests": {"passed": 3, "failed": 0}} for block in BLOCKS if block not in TOPS}])
+    return summarize(
+        [
+            {block: copy.deepcopy(GOOD) for block in TOPS},
+            copy.deepcopy(FUZZ),
+            {block: {"tests": {"passed": 3, "failed": 0}} for block in BLOCKS if block not in TOPS},
+        ]
+    )
 
 
-LOWEST = {group: {f: s for f, s in named.items() if f not in ("tests.passed", "proofs.proven", "mutants.made")}
-          for group, named in limits.read().items()}
+LOWEST = {
+    group: {f: s for f, s in named.items() if f not in ("tests.passed", "proofs.proven", "mutants.made")}
+    for group, named in limits.read().items()
+}
 
 
 def test_what_all_steps_bring_is_merged():
-    one = {"EdgeAdc": {"tests": {"passed": 3, "failed": 1, "levels": {"RTL": 3}}, "simulators": ["Icarus"],
-                       "open_points": ["a"]}}
-    two = {"EdgeAdc": {"tests": {"passed": 4, "failed": 0, "levels": {"RTL": 1, "FL": 2}}, "proofs": [PROOF],
-                       "coverage": {"line": 99.0}, "simulators": ["Icarus", "Verilator"], "open_points": ["b"]}}
+    one = {
+        "EdgeAdc": {
+            "tests": {"passed": 3, "failed": 1, "levels": {"RTL": 3}},
+            "simulators": ["Icarus"],
+            "open_points": ["a"],
+        }
+    }
+    two = {
+        "EdgeAdc": {
+            "tests": {"passed": 4, "failed": 0, "levels": {"RTL": 1, "FL": 2}},
+            "proofs": [PROOF],
+            "coverage": {"line": 99.0},
+            "simulators": ["Icarus", "Verilator"],
+            "open_points": ["b"],
+        }
+    }
     entry = summarize([one, two])["EdgeAdc"]
     assert entry["tests"] == {"passed": 7, "failed": 1, "levels": {"RTL": 4, "FL": 2}}
     assert entry["coverage"] == {"line": 99.0, "toggle": None, "branch": None, "fsm": None, "functional": None}
@@ -68,17 +102,25 @@ def change(path, value):
     return summary
 
 
-@pytest.mark.parametrize("path, value, line", [
-    (("EdgeAdc", "tests", "failed"), 1, "EdgeAdc.tests.failed = 1: limit at most 0"),
-    (("Flow", "tests", "failed"), 2, "Flow.tests.failed = 2: limit at most 0"),
-    (("RunLength", "coverage", "toggle"), 99.96, "RunLength.coverage.toggle = 99.96: limit at least 100"),
-    (("RegFile", "coverage", "line"), None, "RegFile.coverage.line = not measured: limit at least 100"),
-    (("AmpCtrl", "proofs"), [PROOF | {"result": "unknown"}], "AmpCtrl.proofs.unproven = 1: limit at most 0"),
-    (("AmpCtrl", "proofs"), [PROOF | {"twin_fails": False}], "AmpCtrl.proofs.twins_not_caught = 1: limit at most 0"),
-    (("Cordic", "mutants", "survived"), 1, "Cordic.mutants.survived = 1: limit at most 0"),
-    (("Cordic", "mutants", "killed"), 45, "Cordic.mutants.score = 97.83: limit at least 100"),
-    (("Decoder", "fuzz", "failures"), 1, "Decoder.fuzz.failures = 1: limit at most 0"),
-    (("Host", "open_points"), ["x"], "Host.open_points = 1: limit at most 0")])
+@pytest.mark.parametrize(
+    "path, value, line",
+    [
+        (("EdgeAdc", "tests", "failed"), 1, "EdgeAdc.tests.failed = 1: limit at most 0"),
+        (("Flow", "tests", "failed"), 2, "Flow.tests.failed = 2: limit at most 0"),
+        (("RunLength", "coverage", "toggle"), 99.96, "RunLength.coverage.toggle = 99.96: limit at least 100"),
+        (("RegFile", "coverage", "line"), None, "RegFile.coverage.line = not measured: limit at least 100"),
+        (("AmpCtrl", "proofs"), [PROOF | {"result": "unknown"}], "AmpCtrl.proofs.unproven = 1: limit at most 0"),
+        (
+            ("AmpCtrl", "proofs"),
+            [PROOF | {"twin_fails": False}],
+            "AmpCtrl.proofs.twins_not_caught = 1: limit at most 0",
+        ),
+        (("Cordic", "mutants", "survived"), 1, "Cordic.mutants.survived = 1: limit at most 0"),
+        (("Cordic", "mutants", "killed"), 45, "Cordic.mutants.score = 97.83: limit at least 100"),
+        (("Decoder", "fuzz", "failures"), 1, "Decoder.fuzz.failures = 1: limit at most 0"),
+        (("Host", "open_points"), ["x"], "Host.open_points = 1: limit at most 0"),
+    ],
+)
 def test_a_figure_that_falls_is_named_with_its_limit(path, value, line):
     assert line in limits.fallen(change(path, value), LOWEST)
 
@@ -86,9 +128,11 @@ def test_a_figure_that_falls_is_named_with_its_limit(path, value, line):
 def test_total_and_blocks_that_are_gone():
     summary = everything()
     assert limits.fallen(summary, {"total": {"mutants.made": {"min": 601}}}) == [
-        "total.mutants.made = 600: limit at least 601"]
+        "total.mutants.made = 600: limit at least 601"
+    ]
     assert limits.fallen(summary, {"Nobody": {"tests.failed": {"max": 0}}}) == [
-        "Nobody = no results: limits.json has limits for it"]
+        "Nobody = no results: limits.json has limits for it"
+    ]
     assert totals(summary)["tests.passed"] == 5 * len(TOPS) + 3 * (len(BLOCKS) - len(TOPS))
 
 
@@ -96,13 +140,22 @@ def test_a_figure_that_a_block_cannot_have():
     held = {"rtl": {"coverage.fsm": {"min": 100}}, "EdgeAdc": {"coverage.fsm": {"none": "it has no state machine"}}}
     assert limits.fallen(change(("EdgeAdc", "coverage", "fsm"), None), held) == []
     assert limits.fallen(change(("RegFile", "coverage", "fsm"), None), held) == [
-        "RegFile.coverage.fsm = not measured: limit at least 100"]
+        "RegFile.coverage.fsm = not measured: limit at least 100"
+    ]
     assert limits.fallen(change(("EdgeAdc", "coverage", "fsm"), 50.0), held) == [
-        "EdgeAdc.coverage.fsm = 50: limit at least 100"]
+        "EdgeAdc.coverage.fsm = 50: limit at least 100"
+    ]
 
 
-@pytest.mark.parametrize("text", ["{", '{"rtl": {"tests.failed": {"most": 0}}}', '{"rtl": {"tests.failed": {}}}',
-                                  '{"rtl": {"tests.failed": {"max": "none"}}}'])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "{",
+        '{"rtl": {"tests.failed": {"most": 0}}}',
+        '{"rtl": {"tests.failed": {}}}',
+        '{"rtl": {"tests.failed": {"max": "none"}}}',
+    ],
+)
 def test_wrong_limits(tmp_path, text):
     (tmp_path / "limits.json").write_text(text)
     with pytest.raises(ParameterError, match="^limits"):
@@ -112,22 +165,31 @@ def test_wrong_limits(tmp_path, text):
 def test_figures():
     found = figures(everything()["AmpCtrl"])
     assert (found["proofs.proven"], found["mutants.score"], found["coverage.line"]) == (1, 100.0, 100.0)
-    assert score({"made": 3, "equivalent": 3, "killed": 0}) == 100 and score({"made": None, "equivalent": None,
-                                                                             "killed": None}) is None
+    assert (
+        score({"made": 3, "equivalent": 3, "killed": 0}) == 100
+        and score({"made": None, "equivalent": None, "killed": None}) is None
+    )
 
 
 STEP = "import json, pathlib, sys\npathlib.Path({out!r}).write_text({text!r})\nsys.exit({status})\n"
 
 
-@pytest.mark.parametrize("text, status, problem", [
-    ('{"AmpCtrl": {"open_points": []}}', 0, ""),
-    ('{"AmpCtrl": {"open_points": ["x"]}}', 1, ""),
-    ('{"AmpCtrl": {"tests": {"passed": 1, "failed": 1}}}', 1, ""),
-    ('{"AmpCtrl": {"open_points": []}}', 1,
-     "step one = exit status 1: its results name no failed test or open point for it"),
-    ('{"AmpCtrl": {"open_points": []}}', 2, "step one = exit status 2: must be 0 (see what it said)"),
-    ("[1]", 0, "step one = no results: one.json is no dict of blocks"),
-    ("{", 0, "step one = no results: one.json: ")])
+@pytest.mark.parametrize(
+    "text, status, problem",
+    [
+        ('{"AmpCtrl": {"open_points": []}}', 0, ""),
+        ('{"AmpCtrl": {"open_points": ["x"]}}', 1, ""),
+        ('{"AmpCtrl": {"tests": {"passed": 1, "failed": 1}}}', 1, ""),
+        (
+            '{"AmpCtrl": {"open_points": []}}',
+            1,
+            "step one = exit status 1: its results name no failed test or open point for it",
+        ),
+        ('{"AmpCtrl": {"open_points": []}}', 2, "step one = exit status 2: must be 0 (see what it said)"),
+        ("[1]", 0, "step one = no results: one.json is no dict of blocks"),
+        ("{", 0, "step one = no results: one.json: "),
+    ],
+)
 def test_how_a_step_may_end(tmp_path, monkeypatch, text, status, problem):
     package = tmp_path / "a_step"
     package.mkdir()

@@ -37,8 +37,10 @@ def repository(tmp_path):
 def test_outcomes_of_a_folder(repository):
     cases = run_folder("a", repository, ())["cases"]
     assert [(c["test"], c["outcome"]) for c in cases] == [
-        ("a/x_test.py::TestRTL::test_good", "passed"), ("a/x_test.py::test_bad", "failed"),
-        ("a/x_test.py::test_left_out", "skipped")]
+        ("a/x_test.py::TestRTL::test_good", "passed"),
+        ("a/x_test.py::test_bad", "failed"),
+        ("a/x_test.py::test_left_out", "skipped"),
+    ]
     assert "one is not two" in cases[1]["message"] and "no tool" in cases[2]["message"]
 
 
@@ -55,12 +57,19 @@ def test_every_folder_has_a_block():
     assert folders() and all(folder.split("/")[-1] == "test" for folder in folders())
 
 
-@pytest.mark.parametrize("test, level", [
-    ("rtl/x/test/x_test.py::TestIcarusTwoLanes::test_a", "Icarus"),
-    ("rtl/x/test/x_test.py::TestVerilog::test_a", "Verilator"),
-    ("rtl/x/test/x_test.py::TestRTL::test_a", "RTL"), ("rtl/x/test/x_test.py::TestCL::test_a", "CL"),
-    ("rtl/x/test/x_test.py::test_verilog", ""), ("verif/frame/test/f.py::test_icarus_same", "Icarus"),
-    ("verif/faults/test/f.py::test_x", "Verilator"), ("models/test/x_test.py::TestThing::test_a", "")])
+@pytest.mark.parametrize(
+    "test, level",
+    [
+        ("rtl/x/test/x_test.py::TestIcarusTwoLanes::test_a", "Icarus"),
+        ("rtl/x/test/x_test.py::TestVerilog::test_a", "Verilator"),
+        ("rtl/x/test/x_test.py::TestRTL::test_a", "RTL"),
+        ("rtl/x/test/x_test.py::TestCL::test_a", "CL"),
+        ("rtl/x/test/x_test.py::test_verilog", ""),
+        ("flow/simulate/test/f.py::test_icarus_same", "Icarus"),
+        ("verif/faults/test/f.py::test_x", "Verilator"),
+        ("models/test/x_test.py::TestThing::test_a", ""),
+    ],
+)
 def test_levels(test, level):
     assert level_of(test) == level
 

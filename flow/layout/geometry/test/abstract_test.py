@@ -2,10 +2,10 @@
 
 import pytest
 
-from flow.lef import pins, size
-from flow.layout.abstract import abstract, ports, read_back
-from flow.platforms.embedded import process
+from base.lef import pins, size
+from flow.layout.geometry.abstract import abstract, ports, read_back
 from models.parameters import ParameterError
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
@@ -82,13 +82,17 @@ def test_what_a_pin_bears_is_what_its_net_has(gds, known):
     layout.read(str(gds))
     top = layout.top_cell()
     (li, m1), mcon = known.wires[:2], known.cuts[0]
-    for layer, *box in ((known.active, 1.0, 0.4, 2.0, 0.9), (known.poly, 1.4, 0.2, 1.6, 1.4),
-                        (known.contact, 1.45, 1.1, 1.55, 1.2), ((li.layer, li.datatype), 1.3, 1.0, 1.7, 1.4),
-                        ((mcon.layer, mcon.datatype), 1.45, 1.1, 1.55, 1.2)):
+    for layer, *box in (
+        (known.active, 1.0, 0.4, 2.0, 0.9),
+        (known.poly, 1.4, 0.2, 1.6, 1.4),
+        (known.contact, 1.45, 1.1, 1.55, 1.2),
+        ((li.layer, li.datatype), 1.3, 1.0, 1.7, 1.4),
+        ((mcon.layer, mcon.datatype), 1.45, 1.1, 1.55, 1.2),
+    ):
         top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
     layout.write(str(gds))
     pin = abstract(gds, ports(NETLIST), known, {}).partition("PIN a")[2].partition("END a")[0]
-    assert "ANTENNAGATEAREA 0.1000 ;" in pin                    # 0.2 x 0.5 um2
+    assert "ANTENNAGATEAREA 0.1000 ;" in pin  # 0.2 x 0.5 um2
     assert f"ANTENNAPARTIALMETALSIDEAREA {2 * (3.1 + 0.3) * m1.thickness_um:.4f} LAYER m1 ;" in pin
     assert f"ANTENNAPARTIALMETALSIDEAREA {4 * 0.4 * li.thickness_um:.4f} LAYER li ;" in pin
     assert "ANTENNADIFFAREA" not in pin

@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.layout.area import grow
-from flow.platforms.embedded import process
+from flow.layout.geometry.area import grow
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 RULES = {"area": 0.144, "space": 0.21}

@@ -2,16 +2,15 @@
 
 import pytest
 
-from flow.layout.assembly import flat, together
-from flow.layout.macro import Macro
-from flow.layout.netlist import Instance, Netlist, Port
+from flow.layout.geometry.assembly import flat, together
+from flow.layout.geometry.macro import Macro
+from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.steps.floorplan import FloorplanParameters, free, placed
 from flow.layout.steps.ir_drop import breaks
 from flow.layout.steps.place_route import plain_blocks, routed_netlist
-from flow.platforms.embedded import process
+from flow.layout.test import small
 from models.parameters import ParameterError
-
-from . import small
+from platforms.coriolis import process
 
 LEF = """VERSION 5.8 ;
 MACRO Block
@@ -70,8 +69,10 @@ def block(known, tmp_path):
 
 def test_a_pin_is_met_where_it_is_farthest_from_others(block):
     assert (block.name, block.width_um, block.height_um) == ("Block", 40.0, 56.0)
-    assert block.pins == {"a": ("input", "m1", (0.0, 10.0, 0.185, 10.32)),
-                          "b[0]": ("output", "m1", (0.0, 13.46, 0.3, 13.78))}
+    assert block.pins == {
+        "a": ("input", "m1", (0.0, 10.0, 0.185, 10.32)),
+        "b[0]": ("output", "m1", (0.0, 13.46, 0.3, 13.78)),
+    }
     assert block.straps == (("vss", 10.0), ("vdd", 29.0))
 
 
@@ -84,15 +85,20 @@ def test_blocks_stand_on_rows_of_their_own_parity(block, known):
         assert left + 16.8 == pytest.approx(place["x_um"]) and right >= place["x_um"] + 40.0 + 16.8
         assert top == pytest.approx(place["y_um"] + 56.0 + 11.2)
         assert bottom == pytest.approx(max(0, place["y_um"] - 11.2))
-    assert breaks(places[:1]) == [(places[0]["outer"][0], 0.0, places[0]["x_um"], 56.0),
-                                  (places[0]["x_um"] + 40.0, 0.0, places[0]["outer"][2], 56.0)]
+    assert breaks(places[:1]) == [
+        (places[0]["outer"][0], 0.0, places[0]["x_um"], 56.0),
+        (places[0]["x_um"] + 40.0, 0.0, places[0]["outer"][2], 56.0),
+    ]
 
 
-@pytest.mark.parametrize("macros, width, words", [
-    ([("one", (0.5, 0.0)), ("two", (0.5, 1.0))], 240.0, "one: must be 15 um west of two"),      # one above the other
-    ([("one", (0.0, 0.0))], 240.0, "the west edge: must be 15 um west of one"),
-    ([("one", (0.5, 0.0))], 60.0, "does not fit"),
-])
+@pytest.mark.parametrize(
+    "macros, width, words",
+    [
+        ([("one", (0.5, 0.0)), ("two", (0.5, 1.0))], 240.0, "one: must be 15 um west of two"),  # one above the other
+        ([("one", (0.0, 0.0))], 240.0, "the west edge: must be 15 um west of one"),
+        ([("one", (0.5, 0.0))], 60.0, "does not fit"),
+    ],
+)
 def test_blocks_that_cannot_stand(block, known, macros, width, words):
     with pytest.raises(ParameterError, match=words):
         placed([(name, block, at) for name, at in macros], width, 168.0, known)
@@ -102,16 +108,21 @@ def test_blocks_that_cannot_stand(block, known, macros, width, words):
 
 def test_the_tree_is_built_beside_the_blocks():
     plan = {"width_um": 200.0, "height_um": 160.0, "macros": [{"outer": [40.0, 0.0, 160.0, 60.0]}]}
-    assert free(plan) == [10.0, 60.0, 190.0, 160.0]           # the rest on its north, cut to 1.8 times its height
+    assert free(plan) == [10.0, 60.0, 190.0, 160.0]  # the rest on its north, cut to 1.8 times its height
     assert free(plan | {"macros": []}) == [0.0, 0.0, 200.0, 160.0]
 
 
 def top():
     """Shift between two cells of its own, its second output unused."""
-    return Netlist("Top", (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)), (
-        Instance("u0", "inv_x1", {"i": "in", "nq": "n0"}),
-        Instance("part.shift", "Shift", {"clk": "clk", "a": "n0", "y": "n1", "n": "n2"}),
-        Instance("u1", "inv_x1", {"i": "n1", "nq": "out"})))
+    return Netlist(
+        "Top",
+        (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)),
+        (
+            Instance("u0", "inv_x1", {"i": "in", "nq": "n0"}),
+            Instance("part.shift", "Shift", {"clk": "clk", "a": "n0", "y": "n1", "n": "n2"}),
+            Instance("u1", "inv_x1", {"i": "n1", "nq": "out"}),
+        ),
+    )
 
 
 def test_flat_is_the_block_in_place_of_its_instance():
@@ -125,10 +136,16 @@ def test_wires_that_reach_into_a_block_are_one():
     def wire(layer, length):
         return [[layer, length, 0.3]]
 
-    outside = {"straps": [], "pins": [], "wires": {"n0": wire("m1", 5.0), "n2": []},
-               "instances": [[0, "inv_x1", 1.0, 0.0, "0"], [1, "macro0", 40.0, 0.0, "0"], [2, "inv_x1", 9.0, 0.0, "0"]]}
-    inside = {"wires": {"a": wire("m2", 7.0), "w0": wire("m3", 2.0)},
-              "instances": [[k, i.cell, 1.6 * k, 5.6, "0"] for k, i in enumerate(small.shift().instances)]}
+    outside = {
+        "straps": [],
+        "pins": [],
+        "wires": {"n0": wire("m1", 5.0), "n2": []},
+        "instances": [[0, "inv_x1", 1.0, 0.0, "0"], [1, "macro0", 40.0, 0.0, "0"], [2, "inv_x1", 9.0, 0.0, "0"]],
+    }
+    inside = {
+        "wires": {"a": wire("m2", 7.0), "w0": wire("m3", 2.0)},
+        "instances": [[k, i.cell, 1.6 * k, 5.6, "0"] for k, i in enumerate(small.shift().instances)],
+    }
     whole = together(top(), outside, {"part.shift": (small.shift(), inside)}, {"part.shift": (50.0, 11.2)})
     assert whole["wires"] == {"n0": wire("m1", 5.0) + wire("m2", 7.0), "n2": [], "part.shift.w0": wire("m3", 2.0)}
     names = [i.name for i in flat(top(), {"part.shift": small.shift()}).instances]
@@ -137,9 +154,14 @@ def test_wires_that_reach_into_a_block_are_one():
 
 
 def test_inputs_reach_blocks_through_buffers_but_clocks_do_not():
-    bare = Netlist("Top", (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)), (
-        Instance("block", "Shift", {"clk": "clk", "a": "in", "y": "n1", "n": "n2"}),
-        Instance("d_reg", "dff_x1", {"i": "n1", "clk": "clk", "q": "out"})))
+    bare = Netlist(
+        "Top",
+        (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)),
+        (
+            Instance("block", "Shift", {"clk": "clk", "a": "in", "y": "n1", "n": "n2"}),
+            Instance("d_reg", "dff_x1", {"i": "n1", "clk": "clk", "q": "out"}),
+        ),
+    )
     made = bare.apart(("Shift",), ("buf_x1", "i", "q"))
     assert made.instances[0].pins == {"clk": "clk", "a": "in_inside", "y": "n1", "n": "n2"}
     assert made.instances[2:] == (Instance("inside0", "buf_x1", {"i": "in", "q": "in_inside"}),)
@@ -147,14 +169,23 @@ def test_inputs_reach_blocks_through_buffers_but_clocks_do_not():
 
 
 def test_a_block_has_plain_names_in_the_router_and_its_own_behind_it():
-    bus = Netlist("Top", (Port("a", "input", 2),), (
-        Instance("b", "Block", {"d[1]": "a[1]", "d[0]": "a[0]", "q": "n0"}), Instance("u0", "inv_x1", {"i": "n0"})))
+    bus = Netlist(
+        "Top",
+        (Port("a", "input", 2),),
+        (Instance("b", "Block", {"d[1]": "a[1]", "d[0]": "a[0]", "q": "n0"}), Instance("u0", "inv_x1", {"i": "n0"})),
+    )
     blocks = plain_blocks(bus, [{"instance": "b"}])
     assert blocks == {"b": ("macro0", {"d[1]": "p0", "d[0]": "p1", "q": "p2"})}
     names = {"a[1]": "w1", "a[0]": "w0", "n0": "w2"}
     assert ".gate macro0 p0=w1 p1=w0 p2=w2\n" in bus.blif("m", names, blocks)
-    routed = routed_netlist(bus, names, [
-        ["subckt_0_macro0", "macro0", 0, 0, "0", {"p0": "w1", "p1": "w0", "p2": "w2"}],
-        ["subckt_1_inv_x1", "inv_x1", 0, 0, "0", {"i": "w2", "vdd": "vdd"}]], blocks)
+    routed = routed_netlist(
+        bus,
+        names,
+        [
+            ["subckt_0_macro0", "macro0", 0, 0, "0", {"p0": "w1", "p1": "w0", "p2": "w2"}],
+            ["subckt_1_inv_x1", "inv_x1", 0, 0, "0", {"i": "w2", "vdd": "vdd"}],
+        ],
+        blocks,
+    )
     assert routed == bus
     assert "  Block b (.d({a[1], a[0]}), .q(n0));\n" in bus.verilog()

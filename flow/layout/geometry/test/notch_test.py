@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.layout import notch
-from flow.platforms.embedded import process
+from flow.layout.geometry import notch
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 WIRE = process("sky130")[0].wires[1]
@@ -31,7 +31,12 @@ def test_the_slit_beside_a_pad_is_filled():
 @pytest.mark.parametrize("side, holes", [(360, 0), (380, 1)])
 def test_a_small_hole_is_filled(side, holes):
     """0.14 um2 is 374 nm square; the hole is wider than a slit."""
-    ring = [(0, 0, 1000, 140), (0, 140 + side, 1000, 280 + side), (0, 0, 140, 280 + side), (140 + side, 0, 1000, 280 + side)]
+    ring = [
+        (0, 0, 1000, 140),
+        (0, 140 + side, 1000, 280 + side),
+        (0, 0, 140, 280 + side),
+        (140 + side, 0, 1000, 280 + side),
+    ]
     count, metal = filled(*ring)
     assert (count, metal.holes().count()) == (1 - holes, holes)
 

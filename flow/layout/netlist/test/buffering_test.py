@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flow.layout.buffering import buffered, driven, guessed, parted
-from flow.layout.netlist import Instance, Netlist, Port
+from flow.layout.netlist.buffering import buffered, driven, guessed, parted
+from flow.layout.netlist.netlist import Instance, Netlist, Port
 
 BUFFER = "buf_x1", "i", "q"
 
@@ -17,9 +17,14 @@ def chain(length, wide):
     """A row of inverters from port a to port z; `enable` goes to ``wide`` of them, evenly apart."""
     nets = ["a", *(f"n{k}" for k in range(length - 1)), "z"]
     taps = set(np.linspace(0, length - 1, wide).astype(int))
-    cells = [Instance(f"u{k}", "nand2_x0" if k in taps else "inv_x0",
-                      {"i0" if k in taps else "i": nets[k], "nq": nets[k + 1]} | ({"i1": "enable"} if k in taps else {}))
-             for k in range(length)]
+    cells = [
+        Instance(
+            f"u{k}",
+            "nand2_x0" if k in taps else "inv_x0",
+            {"i0" if k in taps else "i": nets[k], "nq": nets[k + 1]} | ({"i1": "enable"} if k in taps else {}),
+        )
+        for k in range(length)
+    ]
     return Netlist("Chain", (Port("a", "input", 1), Port("enable", "input", 1), Port("z", "output", 1)), tuple(cells))
 
 
@@ -49,8 +54,12 @@ def test_no_net_has_more_and_every_pin_has_its_signal(wide):
 
 def test_a_clock_is_left_alone():
     cells = tuple(Instance(f"r{k}", "dff_x1", {"clk": "clk", "i": "d", "q": f"q{k}"}) for k in range(20))
-    made = buffered(Netlist("Flat", (Port("clk", "input", 1), Port("d", "input", 1)), cells),
-                    {"west": ["clk"], "east": ["d"]}, BUFFER, 5)
+    made = buffered(
+        Netlist("Flat", (Port("clk", "input", 1), Port("d", "input", 1)), cells),
+        {"west": ["clk"], "east": ["d"]},
+        BUFFER,
+        5,
+    )
     assert sinks(made)["clk"] == 20
     assert sinks(made)["d"] == 4
 
@@ -70,7 +79,7 @@ def test_a_buffer_s_cells_are_neighbours():
             assert not number or max(number) - min(number) < 120 / 40 * 8
 
 
-@given(st.integers(1, 60), st.integers(2, 9), st.integers(0, 2 ** 32 - 1))
+@given(st.integers(1, 60), st.integers(2, 9), st.integers(0, 2**32 - 1))
 def test_groups_hold_every_place_once(count, most, seed):
     places = np.random.default_rng(seed).integers(0, 5, (count, 2)) / 5
     groups = parted(places, most)
@@ -82,8 +91,16 @@ def test_groups_hold_every_place_once(count, most, seed):
 def test_an_output_has_a_buffer_of_its_own():
     """Whatever reads the net within reads it in front of the buffer, which alone leads out."""
     read = Instance("reader", "inv_x0", {"i": "z", "nq": "n"})
-    made = driven(Netlist("Two", (Port("a", "input", 1), Port("z", "output", 1)),
-                          (Instance("source", "inv_x0", {"i": "a", "nq": "z"}), read)), BUFFER)
+    made = driven(
+        Netlist(
+            "Two",
+            (Port("a", "input", 1), Port("z", "output", 1)),
+            (Instance("source", "inv_x0", {"i": "a", "nq": "z"}), read),
+        ),
+        BUFFER,
+    )
     assert [(i.cell, i.pins) for i in made.instances] == [
-        ("inv_x0", {"i": "a", "nq": "z_within"}), ("inv_x0", {"i": "z_within", "nq": "n"}),
-        ("buf_x1", {"i": "z_within", "q": "z"})]
+        ("inv_x0", {"i": "a", "nq": "z_within"}),
+        ("inv_x0", {"i": "z_within", "nq": "n"}),
+        ("buf_x1", {"i": "z_within", "q": "z"}),
+    ]

@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from flow.layout import delays
-from flow.layout.netlist import Instance
-from flow.layout.replay import SETTLED, Timing, replay
-
-from . import small
+from flow.layout.netlist.netlist import Instance
+from flow.layout.netlist.replay import SETTLED, Timing, replay
+from flow.layout.test import small
+from flow.layout.timing import delays
 
 pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
 SDF = """(DELAYFILE (SDFVERSION "3.0")
@@ -37,7 +36,7 @@ def test_what_is_read_of_an_sdf():
     found = delays.read(SDF)
     assert found.paths["u0"] == [("i", "nq", 0.2, 0.4)]
     assert found.wires["first.d_reg", "q"] == (0.25, 0.25)
-    assert found.checks["first.d_reg"] == {"i": [0.2, 0.1]}         # the later of both edges
+    assert found.checks["first.d_reg"] == {"i": [0.2, 0.1]}  # the later of both edges
 
 
 def test_margins_are_those_of_the_path(tmp_path):
@@ -62,23 +61,26 @@ def test_a_race_is_found(tmp_path):
 @pytest.mark.parametrize("sdf", [SDF.replace("i nq (0.1::0.2)", "i q (0.1::0.2)"), None])
 def test_a_swapped_cell_is_found(tmp_path, sdf):
     netlist = small.shift()
-    instances = tuple(Instance(i.name, "buf_x1", {"i": i.pins["i"], "q": i.pins["nq"]}) if i.name == "u0" else i
-                      for i in netlist.instances)
+    instances = tuple(
+        Instance(i.name, "buf_x1", {"i": i.pins["i"], "q": i.pins["nq"]}) if i.name == "u0" else i
+        for i in netlist.instances
+    )
     found = played(tmp_path, replace(netlist, instances=instances), sdf=sdf)
     assert found.wrong > 50 and found.first
 
 
 def test_a_net_that_nothing_drives_is_x(tmp_path):
     netlist = small.shift()
-    cut = tuple(replace(i, pins=i.pins | {"i": "nowhere"}) if i.name == "second.d_reg" else i
-                for i in netlist.instances)
+    cut = tuple(
+        replace(i, pins=i.pins | {"i": "nowhere"}) if i.name == "second.d_reg" else i for i in netlist.instances
+    )
     assert played(tmp_path, replace(netlist, instances=cut)).wrong == 198
 
 
 def test_transitions_are_counted(tmp_path):
     found = played(tmp_path, small.shift(), count=True)
     bits = [int(line.split()[1], 16) for line in small.trace(200, 1)]
-    changes = sum(a != b for a, b in zip(bits[SETTLED:], bits[SETTLED + 1:]))
+    changes = sum(a != b for a, b in zip(bits[SETTLED:], bits[SETTLED + 1 :]))
     assert found.activity["a"][0] == pytest.approx(changes / (200 - SETTLED), abs=0.02)
     assert found.activity["clk"] == pytest.approx((2, 0.5), abs=0.02)
     assert found.activity["n"][1] == pytest.approx(1 - found.activity["a"][1], abs=0.02)

@@ -2,12 +2,11 @@
 
 import pytest
 
-from cells.liberty.read import parse
-from flow.layout.energy import Cells, blocks, powers
-from flow.layout.netlist import Instance, Netlist, is_register
-from flow.steps import StepError
-
-from . import small
+from base.liberty.read import parse
+from base.steps import StepError
+from flow.layout.netlist.netlist import Instance, Netlist, is_register
+from flow.layout.power.energy import Cells, blocks, powers
+from flow.layout.test import small
 
 ACTIVITY = {"clk": (2.0, 0.5), "a": (0.5, 0.5), "w0": (0.4, 0.5), "w1": (0.3, 0.5), "y": (0.2, 0.5), "n": (0.5, 0.5)}
 
@@ -15,10 +14,10 @@ ACTIVITY = {"clk": (2.0, 0.5), "a": (0.5, 0.5), "w0": (0.4, 0.5), "w1": (0.3, 0.
 def test_powers_by_hand():
     cells = Cells(parse(small.liberty()))
     found = powers(small.shift(), cells, ACTIVITY, {"w0": 0.09, "y": 0.5}, {}, period_ns=10.0)
-    mega = 100.0                                        # cycles a us
+    mega = 100.0  # cycles a us
     first = found["first.d_reg"]
     assert first.internal == pytest.approx((2 * (0.5 + 1.5) / 2 + 0.4 * (2.0 + 4.0) / 2) * mega)
-    assert first.switching == pytest.approx(0.5 * (0.09 + 0.01) * 4 * 0.4 * mega)           # its wire and u0's pin
+    assert first.switching == pytest.approx(0.5 * (0.09 + 0.01) * 4 * 0.4 * mega)  # its wire and u0's pin
     assert first.leakage == pytest.approx(0.005)
     inverter = found["u0"]
     assert inverter.internal == pytest.approx(0.3 * 0.3 * mega)
@@ -44,7 +43,13 @@ def test_a_net_without_activity_is_named():
 def test_a_cell_belongs_to_what_it_drives():
     netlist = small.shift()
     clock = (Instance("b", "buf_x1", {"i": "clk", "q": "leaf"}),)
-    moved = tuple(Instance(i.name, i.cell, i.pins | {"clk": "leaf"}) if is_register(i.cell) else i
-                  for i in netlist.instances)
+    moved = tuple(
+        Instance(i.name, i.cell, i.pins | {"clk": "leaf"}) if is_register(i.cell) else i for i in netlist.instances
+    )
     assert blocks(Netlist("Shift", netlist.ports, moved + clock)) == {
-        "first.d_reg": "first", "second.d_reg": "second", "u0": "second", "u_n": "ports", "b": "clock tree"}
+        "first.d_reg": "first",
+        "second.d_reg": "second",
+        "u0": "second",
+        "u_n": "ports",
+        "b": "clock tree",
+    }

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from flow.layout.mesh import Metal, drops, metal
-from flow.platforms.embedded import process
+from flow.layout.power.mesh import Metal, drops, metal
+from platforms.coriolis import process
 
 METAL = Metal(rail=2.0, strap=0.5, stack=3.0)
 
 
 def test_one_cell_on_one_rail():
     drop, lost = drops([10.0], [5.0], 20.0, [(0, 9.0, 1e-3)], METAL)
-    assert drop[0] == pytest.approx(1e-3 * (4 * 2.0 + 3.0 + 0.5 * 10 / 2))       # rail, stack, both halves of the strap
+    assert drop[0] == pytest.approx(1e-3 * (4 * 2.0 + 3.0 + 0.5 * 10 / 2))  # rail, stack, both halves of the strap
     assert lost < 1e-12
 
 
@@ -23,15 +23,15 @@ def test_between_two_straps_the_current_divides():
 
 def test_a_rail_at_the_edge_is_half_as_wide():
     drop, _ = drops([0.0], [5.0], 20.0, [(0, 9.0, 1e-3)], METAL)
-    pads = 0.25 * 10.0 / 10.25                  # half a um at the near end, the whole strap to the other
+    pads = 0.25 * 10.0 / 10.25  # half a um at the near end, the whole strap to the other
     assert drop[0] == pytest.approx(1e-3 * (4 * 2.0 * 2 + 3.0 + pads))
 
 
 def test_a_rail_ends_at_a_block():
     taps = [(0, 10.0, 1e-3)]
-    whole, _ = drops([10.0], [0.0, 40.0], 20.0, taps, METAL, [(20.0, 11.0, 30.0, 50.0)])        # the block is higher up
+    whole, _ = drops([10.0], [0.0, 40.0], 20.0, taps, METAL, [(20.0, 11.0, 30.0, 50.0)])  # the block is higher up
     broken, _ = drops([10.0], [0.0, 40.0], 20.0, taps, METAL, [(20.0, 0.0, 30.0, 10.0)])
-    assert whole[0] < broken[0] == pytest.approx(1e-3 * (10 * 2.0 + 3.0 + 2.5))     # all of it through the near strap
+    assert whole[0] < broken[0] == pytest.approx(1e-3 * (10 * 2.0 + 3.0 + 2.5))  # all of it through the near strap
 
 
 def test_a_cut_strap_feeds_from_one_end():

@@ -4,29 +4,45 @@ import json
 
 import pytest
 
-from flow.layout import compare
-from flow.layout.summary import table_6_1
+from flow.layout.report.metrics import table_6_1
+from flow.layout.report import compare
 
-SUMMARY = {"area_um2": 1000.0, "cells": 90, "clock_buffers": 10, "flip_flops": 5, "wire_um": 5.5, "lvs_match": True,
-           "wns_ns": {"tt_025C": 1.5, "ss_100C": 0.25}, "gate_tests": {"passed": 3, "failed": 0}, "open_nets": 0,
-           "wall_s": {"timing": 300.0, "routing": 20.0}, "peak_mib": {"routing": 200}}
+SUMMARY = {
+    "area_um2": 1000.0,
+    "cells": 90,
+    "clock_buffers": 10,
+    "flip_flops": 5,
+    "wire_um": 5.5,
+    "lvs_match": True,
+    "wns_ns": {"tt_025C": 1.5, "ss_100C": 0.25},
+    "gate_tests": {"passed": 3, "failed": 0},
+    "open_nets": 0,
+    "wall_s": {"timing": 300.0, "routing": 20.0},
+    "peak_mib": {"routing": 200},
+}
 
 
 @pytest.fixture
 def folder(tmp_path):
-    for name, more in (("phase_path", {}), ("phase_path_macros", {"macros": {"divider": "quad_divider"}}),
-                       ("quad_divider", {"wall_s": {"routing": 1.0}})):
+    for name, more in (
+        ("phase_path", {}),
+        ("phase_path_macros", {"macros": {"divider": "quad_divider"}}),
+        ("quad_divider", {"wall_s": {"routing": 1.0}}),
+    ):
         (tmp_path / name).mkdir()
         (tmp_path / name / "summary.json").write_text(json.dumps(SUMMARY | more))
     return tmp_path
 
 
 def test_a_row_of_each_and_the_time_of_blocks_with_what_is_around_them(folder, capsys):
-    assert compare.main(["phase_path", "phase_path_macros", "--out", str(folder)]) == 1       # limits not measured
+    assert compare.main(["phase_path", "phase_path_macros", "--out", str(folder)]) == 1  # limits not measured
     table = json.loads((folder / "hierarchy" / "table.json").read_text())
     assert table["run time, s"] == {"phase_path": "20.0", "phase_path_macros": "21.0", "quad_divider, a block": "1.0"}
-    assert table["cells, clock's buffers too"] == {"phase_path": "100", "phase_path_macros": "90",
-                                                   "quad_divider, a block": "100"}
+    assert table["cells, clock's buffers too"] == {
+        "phase_path": "100",
+        "phase_path_macros": "90",
+        "quad_divider, a block": "100",
+    }
     assert table["setup slack, ns"]["phase_path"] == "1.5 (tt), 0.25 (ss)"
     assert "phase_path_macros" in (folder / "hierarchy" / "report.html").read_text()
     assert "phase_path_macros" in capsys.readouterr().out
@@ -40,6 +56,12 @@ def test_what_was_not_laid_out_is_told(tmp_path, capsys):
 
 def test_power_beside_that_of_the_thesis():
     found = table_6_1({"seq": 100.0, "regs": 50.0, "bank": 20.0, "phase": 30.0, "clock tree": 60.0}, 0.2)
-    assert found == {"pixel_array": [300.0, None], "amplifiers": [900.0, 0.0], "timing": [500.0, 30.0],
-                     "adcs": [100.0, 4.0], "phase": [None, 6.0], "clock tree": [None, 12.0]}
+    assert found == {
+        "pixel_array": [300.0, None],
+        "amplifiers": [900.0, 0.0],
+        "timing": [500.0, 30.0],
+        "adcs": [100.0, 4.0],
+        "phase": [None, 6.0],
+        "clock tree": [None, 12.0],
+    }
     assert table_6_1(None, 0.2) is None

@@ -4,27 +4,33 @@ import random
 
 import pytest
 
-from flow.layout.mend.bargain import bargain
-from flow.layout.mend.board import Board
-from flow.layout.mend.marks import Marks, marks, shared_out
-from flow.layout.mend.nets import routed
-from flow.layout.mend.wiring import Wiring
-from flow.layout.steps.mend import open_nets
+from flow.layout.reroute.board import Board
+from flow.layout.reroute.marks import Marks, marks, shared_out
+from flow.layout.reroute.negotiate import bargain
+from flow.layout.reroute.nets import routed
+from flow.layout.reroute.wiring import Wiring
+from flow.layout.steps.reroute import open_nets
 from flow.layout.test.gate import gate
-from flow.platforms.embedded import process
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
 KNOWN, _ = process("sky130")
-RULES = {"wires": {"li": {"width": 0.17, "space": 0.17, "area": 0}, 
-                   "m1": {"width": 0.14, "space": 0.14, "area": 0.083},
-                   "m2": {"width": 0.14, "space": 0.14, "area": 0.0676},
-                   "m3": {"width": 0.3, "space": 0.3, "area": 0.24},
-                   "m4": {"width": 0.3, "space": 0.3, "area": 0.24}},
-         "cuts": {"mcon": {"below": [0, 0], "above": [0.03, 0.06]},
-                  "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
-                  "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
-                  "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]}}}
+RULES = {
+    "wires": {
+        "li": {"width": 0.17, "space": 0.17, "area": 0},
+        "m1": {"width": 0.14, "space": 0.14, "area": 0.083},
+        "m2": {"width": 0.14, "space": 0.14, "area": 0.0676},
+        "m3": {"width": 0.3, "space": 0.3, "area": 0.24},
+        "m4": {"width": 0.3, "space": 0.3, "area": 0.24},
+    },
+    "cuts": {
+        "mcon": {"below": [0, 0], "above": [0.03, 0.06]},
+        "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
+        "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
+        "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]},
+    },
+}
 WIRING = Wiring.of(KNOWN, RULES)
 SIDE = 40_000
 
@@ -68,9 +74,11 @@ def broken(layout, top):
     found = {}
     for layer in WIRING.layers[1:]:
         region = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).merged()
-        found |= {f"{layer.name} space": region.space_check(layer.space).count(),
-                  f"{layer.name} width": region.width_check(layer.width).count(),
-                  f"{layer.name} area": region.with_area(0, layer.area, False).count()}
+        found |= {
+            f"{layer.name} space": region.space_check(layer.space).count(),
+            f"{layer.name} width": region.width_check(layer.width).count(),
+            f"{layer.name} area": region.with_area(0, layer.area, False).count(),
+        }
     return {rule: number for rule, number in found.items() if number}
 
 
@@ -115,7 +123,7 @@ def test_through_a_crowd_of_other_wires(seed, hops):
     before = broken(layout, top)
     layout, shapes = alone(pins, hops, layout)
     if shapes is None:
-        assert hops                 # room for a piece of the highest wire may lack
+        assert hops  # room for a piece of the highest wire may lack
         return
     points = [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]
     assert len(set(nets(layout, layout.top_cell(), points))) == 1
@@ -153,25 +161,34 @@ def test_a_net_that_has_no_way_is_taken_out():
 def test_who_is_in_the_way_moves():
     """A hall of two walls with a gap, which another net has filled with wires on all layers; it has room elsewhere."""
     layout, top = empty()
-    pins = {"w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)],
-            "w2": [pin(layout, top, 18_020, 30_000), pin(layout, top, 22_015, 10_000)]}
+    pins = {
+        "w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)],
+        "w2": [pin(layout, top, 18_020, 30_000), pin(layout, top, 22_015, 10_000)],
+    }
     for level in (1, 2, 3, 4):
         draw(layout, top, level, 20_000, 0, 20_400, 18_000)
         draw(layout, top, level, 20_000, 21_500, 20_400, SIDE)
     rows = range(17_000, 23_000, 680)
-    wires = [[WIRING.layers[level].name, 19.0, (y - 150) / 1000, 21.0, (y + 150) / 1000]
-             for level in (1, 2, 3, 4) for y in rows if 18_300 < y < 21_200]
+    wires = [
+        [WIRING.layers[level].name, 19.0, (y - 150) / 1000, 21.0, (y + 150) / 1000]
+        for level in (1, 2, 3, 4)
+        for y in rows
+        if 18_300 < y < 21_200
+    ]
     for name, *box in wires:
         draw(layout, top, [layer.name for layer in WIRING.layers].index(name), *(round(1000 * v) for v in box))
-    shapes = {net: {"wires": wires if net == "w2" else [], "cuts": [], "pins": list(map(um, made))}
-              for net, made in pins.items()}
+    shapes = {
+        net: {"wires": wires if net == "w2" else [], "cuts": [], "pins": list(map(um, made))}
+        for net, made in pins.items()
+    }
     board = Board(layout, WIRING, shapes)
     found = bargain(board, {net: made["pins"] for net, made in shapes.items()}, ["w1"])
     assert found.open == [] and set(found.made) == {"w1", "w2"}
     drawn = board.drawn()
     assert broken(drawn, drawn.top_cell()) == {}
-    first, second, third, fourth = nets(drawn, drawn.top_cell(), [(0, 5_000, 20_000), (0, 35_020, 20_000),
-                                                                  (0, 18_020, 30_000), (0, 22_015, 10_000)])
+    first, second, third, fourth = nets(
+        drawn, drawn.top_cell(), [(0, 5_000, 20_000), (0, 35_020, 20_000), (0, 18_020, 30_000), (0, 22_015, 10_000)]
+    )
     assert first == second != third == fourth
 
 
@@ -179,18 +196,30 @@ def test_a_board_draws_what_it_lifted():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
     layout, shapes = alone(pins, layout=layout)
-    wires = [[WIRING.layers[level].name, *(v / 1000 for v in box)]
-             for level, made in shapes.wires.items() for box in made]
-    cuts = [["_".join((WIRING.layers[level].name, WIRING.cuts[level].name, WIRING.layers[level + 1].name)),
-             x / 1000, y / 1000] for level, made in shapes.cuts.items() for x, y in made]
-    area = {layer.name: db.Region(layout.top_cell().begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).area()
-            for layer in WIRING.layers}
+    wires = [
+        [WIRING.layers[level].name, *(v / 1000 for v in box)] for level, made in shapes.wires.items() for box in made
+    ]
+    cuts = [
+        [
+            "_".join((WIRING.layers[level].name, WIRING.cuts[level].name, WIRING.layers[level + 1].name)),
+            x / 1000,
+            y / 1000,
+        ]
+        for level, made in shapes.cuts.items()
+        for x, y in made
+    ]
+    area = {
+        layer.name: db.Region(layout.top_cell().begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).area()
+        for layer in WIRING.layers
+    }
     assert area["m1"] > 0 and area["m2"] > 0
     board = Board(layout, WIRING, {"w1": {"wires": wires, "cuts": cuts, "pins": list(map(um, pins))}})
     assert board.top.shapes(board.layers["m2"]).size() == 0
     drawn = board.drawn()
-    assert area == {layer.name: db.Region(drawn.top_cell().begin_shapes_rec(
-        drawn.layer(layer.layer, layer.datatype))).area() for layer in WIRING.layers}
+    assert area == {
+        layer.name: db.Region(drawn.top_cell().begin_shapes_rec(drawn.layer(layer.layer, layer.datatype))).area()
+        for layer in WIRING.layers
+    }
     assert marks(drawn, WIRING, KNOWN) == Marks((), ())
 
 
@@ -200,18 +229,25 @@ def test_who_is_too_near_or_too_large_for_its_gate():
     cell = gate(layout, KNOWN)
     for y in (5_000, 30_000):
         top.insert(db.CellInstArray(cell.cell_index(), db.Trans(db.Vector(1_000, y))))
-    wires = {"w0": (1_300, 4_200, 61_000, 4_500), "w1": (5_000, 29_600, 9_000, 29_900),
-             "w2": (1_300, 29_200, 9_000, 29_500)}
+    wires = {
+        "w0": (1_300, 4_200, 61_000, 4_500),
+        "w1": (5_000, 29_600, 9_000, 29_900),
+        "w2": (1_300, 29_200, 9_000, 29_500),
+    }
     for box in wires.values():
         draw(layout, top, 1, *box)
-    board = Board(layout, WIRING, {net: {"wires": [["m1", *(v / 1000 for v in box)]], "cuts": [], "pins": []}
-                                   for net, box in wires.items()})
+    board = Board(
+        layout,
+        WIRING,
+        {net: {"wires": [["m1", *(v / 1000 for v in box)]], "cuts": [], "pins": []} for net, box in wires.items()},
+    )
     whole = marks(board.drawn(), WIRING, KNOWN)
     assert whole.nets(board, board.there) == (["w1"], ["w0"])
     assert whole.nets(board, board.there, ["w2"]) == (["w2"], [])
     for net in wires:
-        assert marks(board.part([net]), WIRING, KNOWN).nets(board, board.there, [net]) == \
-            whole.nets(board, board.there, [net])
+        assert marks(board.part([net]), WIRING, KNOWN).nets(board, board.there, [net]) == whole.nets(
+            board, board.there, [net]
+        )
     assert board.beside(["w1"]) == {"w1"}
     parts = [marks(board.drawn(), WIRING, KNOWN, levels) for levels in shared_out(WIRING, 2)]
     assert sum(parts, Marks((), ())).nets(board, board.there) == (["w1"], ["w0"])

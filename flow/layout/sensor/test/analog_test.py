@@ -5,12 +5,12 @@ import shutil
 
 import pytest
 
+from base.steps import StepError
 from flow.layout import __main__ as command
 from flow.layout.sensor.analog import check, files
 from flow.layout.sensor.plan import BLOCKS
-from flow.platforms.embedded import process
-from flow.steps import StepError
 from models.parameters import ParameterError
+from platforms.coriolis import process
 
 from . import small
 
@@ -35,8 +35,11 @@ def theirs(frames, folder, block, change=lambda text: text):
 
 def with_reference(text):
     """The LEF with a pin that its frame does not have."""
-    return text.replace("  PIN clk\n", "  PIN vref\n    DIRECTION INPUT ;\n    PORT\n      LAYER met4 ;\n"
-                                       "        RECT 1.8 0 2.2 2 ;\n    END\n  END vref\n  PIN clk\n")
+    return text.replace(
+        "  PIN clk\n",
+        "  PIN vref\n    DIRECTION INPUT ;\n    PORT\n      LAYER met4 ;\n"
+        "        RECT 1.8 0 2.2 2 ;\n    END\n  END vref\n  PIN clk\n",
+    )
 
 
 def test_a_block_takes_its_frames_place(frames, tmp_path):
@@ -46,13 +49,18 @@ def test_a_block_takes_its_frames_place(frames, tmp_path):
     assert names == [block for block in BLOCKS if block != "adc_lanes"] and extra == ("vref",)
 
 
-@pytest.mark.parametrize("change, words", [
-    (lambda text: re.sub(r"(?s)  PIN dac\[7\]\n.*?END dac\[7\]\n", "", text), "must have the pins dac[7]"),
-    (lambda text: re.sub(r"(?s)  PIN dac\[\d+\]\n.*?END dac\[\d+\]\n", "", text), "dac[4] and 59 more"),
-    (lambda text: text.replace("PIN hold\n    DIRECTION INPUT", "PIN hold\n    DIRECTION OUTPUT"),
-     "its pin hold must be of DIRECTION INPUT"),
-    (lambda text: re.sub(r"(?s)PIN hold\n.*?RECT [^\n]*\n", "PIN hold\n", text, count=1), "pin hold: must have a"),
-])
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda text: re.sub(r"(?s)  PIN dac\[7\]\n.*?END dac\[7\]\n", "", text), "must have the pins dac[7]"),
+        (lambda text: re.sub(r"(?s)  PIN dac\[\d+\]\n.*?END dac\[\d+\]\n", "", text), "dac[4] and 59 more"),
+        (
+            lambda text: text.replace("PIN hold\n    DIRECTION INPUT", "PIN hold\n    DIRECTION OUTPUT"),
+            "its pin hold must be of DIRECTION INPUT",
+        ),
+        (lambda text: re.sub(r"(?s)PIN hold\n.*?RECT [^\n]*\n", "PIN hold\n", text, count=1), "pin hold: must have a"),
+    ],
+)
 def test_other_pins(frames, tmp_path, change, words):
     theirs(frames, tmp_path, "adc_lanes", change)
     with pytest.raises(ParameterError, match=re.escape(words)):
@@ -62,8 +70,9 @@ def test_other_pins(frames, tmp_path, change, words):
 def test_files_that_lack(capsys, frames, tmp_path):
     def told(*arguments):
         assert command.main([*map(str, arguments), "--out", str(tmp_path / "out")]) == 2
-        line, = [line for line in capsys.readouterr().err.splitlines() if line.startswith("flow.layout: ")]
+        (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("flow.layout: ")]
         return line
+
     folder = tmp_path / "mine"
     assert "mine: no such folder" in told("asp_sensor", "--analog", folder)
     folder.mkdir()
@@ -78,6 +87,7 @@ def test_files_that_lack(capsys, frames, tmp_path):
 
 def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
     import klayout.db as db
+
     given = small.files(tmp_path)
     path = given["adc_lanes.lef"]
     path.write_text(with_reference(path.read_text()))
@@ -85,11 +95,11 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
         small.plan(given, tmp_path)
     assert small.plan(given, tmp_path, extra=("vref",))["routed"] == len(small.core_pins()) + 1
     assert "input vref;" in given["die_plan.verilog"].read_text()
-    assert small.match(given, tmp_path)["open_nets"] == 1        # its GDS does not have the pin yet
+    assert small.match(given, tmp_path)["open_nets"] == 1  # its GDS does not have the pin yet
     layout = db.Layout()
     layout.read(str(given["adc_lanes.gds"]))
     cell, wire = layout.cell("adc_lanes"), process("sky130")[0].wires[4]
-    inner = layout.create_cell("Core")                           # as the chip's: two cells of one name are not one
+    inner = layout.create_cell("Core")  # as the chip's: two cells of one name are not one
     inner.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(1.8, 0, 2.2, 2))
     cell.insert(db.CellInstArray(inner.cell_index(), db.Trans()))
     cell.shapes(layout.layer(wire.layer, 16)).insert(db.DText("vref", 2, 1))

@@ -4,20 +4,24 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flow.layout.mend.wiring import Wiring
+from base.steps import StepError
+from flow.layout.reroute.wiring import Wiring
 from flow.layout.sensor.channel import check_apart, free, left_edge
 from flow.layout.sensor.routing import Reach, Tracks, trunks
 from flow.layout.sensor.shapes import signal
-from flow.platforms.embedded import process
-from flow.steps import StepError
+from platforms.coriolis import process
 
 from . import small
 
 KNOWN = process("sky130")[0]
 WIRING = Wiring.of(KNOWN, small.RULES)
 TRACKS = Tracks.of(WIRING)
-SPANS = st.dictionaries(st.integers(0, 99), st.tuples(st.integers(0, 500), st.integers(0, 80)).map(
-    lambda span: (span[0], span[0] + span[1])), min_size=1, max_size=40)
+SPANS = st.dictionaries(
+    st.integers(0, 99),
+    st.tuples(st.integers(0, 500), st.integers(0, 80)).map(lambda span: (span[0], span[0] + span[1])),
+    min_size=1,
+    max_size=40,
+)
 
 
 @given(SPANS, st.integers(1, 20))
@@ -35,8 +39,11 @@ def test_no_two_on_a_track_come_near_and_none_is_spare(spans, gap):
 def test_a_free_place_is_free_and_the_nearest(wanted, taken, pitch):
     place = free(wanted, taken, pitch)
     assert all(abs(place - other) >= pitch for other in taken)
-    assert not any(all(abs(wanted + way * d - other) >= pitch for other in taken)
-                   for d in range(abs(place - wanted)) for way in (-1, 1))
+    assert not any(
+        all(abs(wanted + way * d - other) >= pitch for other in taken)
+        for d in range(abs(place - wanted))
+        for way in (-1, 1)
+    )
 
 
 def test_verticals_too_near_are_told():
@@ -54,8 +61,11 @@ def routes(draw):
         x, net = place * TRACKS.vertical_pitch, f"n{k if k < 2 else draw(st.integers(0, len(places) // 2 - 1))}"
         kind = draw(st.sampled_from(("north", "die", "core")))
         row = 200_000 + 2000 * k
-        reach = {"north": Reach("north", f"p{k}", x, 300_000), "die": Reach("die", f"p{k}", x, 0),
-                 "core": Reach("core", f"p{k}", x, row, (100_000, row - 160, 100_300, row + 160))}[kind]
+        reach = {
+            "north": Reach("north", f"p{k}", x, 300_000),
+            "die": Reach("die", f"p{k}", x, 0),
+            "core": Reach("core", f"p{k}", x, row, (100_000, row - 160, 100_300, row + 160)),
+        }[kind]
         made.setdefault(net, []).append(reach)
     return made
 
@@ -64,8 +74,11 @@ def routes(draw):
 @given(routes())
 def test_metal_joins_each_net_and_keeps_others_apart(made):
     tracks = trunks(made, TRACKS)
-    shapes = [shape for net, found in made.items()
-              for shape in signal(net, found, 20_000 + tracks[net] * TRACKS.trunk_pitch, TRACKS, WIRING)]
+    shapes = [
+        shape
+        for net, found in made.items()
+        for shape in signal(net, found, 20_000 + tracks[net] * TRACKS.trunk_pitch, TRACKS, WIRING)
+    ]
     groups = components(shapes)
     assert len(groups) == len(made)
     assert {frozenset(shapes[k].net for k in group) for group in groups} == {frozenset([net]) for net in made}

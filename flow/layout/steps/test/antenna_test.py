@@ -4,7 +4,7 @@ import pytest
 
 from flow.layout.steps.antenna import violations
 from flow.layout.test.gate import gate
-from flow.platforms.embedded import process
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
@@ -15,15 +15,21 @@ def test_where_areas_count_thickness_does_not(length_um, bad):
     layout = db.Layout()
     top = layout.create_cell("top")
     m1, m2, via = known.wires[0], known.wires[1], known.cuts[0]
-    for layer, *box in ((known.active, 0, 0, 1, 0.5), (known.poly, 0.4, -1, 0.53, 1),           # 0.065 um2 of gate
-                        (known.contact, 0.4, -0.9, 0.53, -0.8), ((m1.layer, 0), 0.3, -1, 0.7, -0.5),
-                        ((via.layer, 0), 0.4, -0.7, 0.59, -0.51), ((m2.layer, 0), 0.3, -0.8, 0.3 + length_um, -0.5)):
+    for layer, *box in (
+        (known.active, 0, 0, 1, 0.5),
+        (known.poly, 0.4, -1, 0.53, 1),  # 0.065 um2 of gate
+        (known.contact, 0.4, -0.9, 0.53, -0.8),
+        ((m1.layer, 0), 0.3, -1, 0.7, -0.5),
+        ((via.layer, 0), 0.4, -0.7, 0.59, -0.51),
+        ((m2.layer, 0), 0.3, -0.8, 0.3 + length_um, -0.5),
+    ):
         top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
-    assert violations(layout, top, known)[1].count() == bad                                    # 0.3 um2 a um by 200
+    assert violations(layout, top, known)[1].count() == bad  # 0.3 um2 a um by 200
 
 
-@pytest.mark.parametrize("length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0),
-                                                        (500, True, 1)])
+@pytest.mark.parametrize(
+    "length_um, diffusion, bad", [(5, False, 0), (60, False, 1), (60, True, 0), (300, True, 0), (500, True, 1)]
+)
 def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
     known, _ = process("sky130")
     layout = db.Layout()
@@ -34,11 +40,11 @@ def test_a_long_wire_on_a_gate(length_um, diffusion, bad):
 
     li, m1, mcon = known.wires[0], known.wires[1], known.cuts[0]
     draw(known.active, 0, 0, 1, 0.5)
-    draw(known.poly, 0.4, -1, 0.55, 1)                                  # a gate of 0.075 um2
+    draw(known.poly, 0.4, -1, 0.55, 1)  # a gate of 0.075 um2
     draw(known.contact, 0.4, -0.9, 0.55, -0.8)
     draw((li.layer, li.datatype), 0.3, -1, 0.7, -0.5)
     draw((mcon.layer, mcon.datatype), 0.4, -0.7, 0.5, -0.6)
-    draw((m1.layer, m1.datatype), 0.3, -0.8, 0.3 + length_um, -0.5)     # side walls: 0.7 um2 a um by two
+    draw((m1.layer, m1.datatype), 0.3, -0.8, 0.3 + length_um, -0.5)  # side walls: 0.7 um2 a um by two
     if diffusion:
         draw(known.active, 0, -3, 1, -2)
         draw(known.contact, 0.4, -2.5, 0.5, -2.4)

@@ -2,9 +2,9 @@
 
 import pytest
 
+from base.steps import StepError
 from flow.layout.steps.drc import with_flat_spaces
 from flow.layout.steps.lvs import hierarchical
-from flow.steps import StepError
 
 DRC = """deep
 nwm = input(64, 20)
@@ -41,8 +41,11 @@ def test_a_deck_without_spaces_is_refused():
 
 def test_the_comparison_goes_by_cells_and_the_substrate_is_one_net():
     assert hierarchical(LVS, (65, 20)).splitlines()[1:5] == [
-        "deep", "_wafer = input(65, 20)", "substrate__Sky130 = (_wafer-nwm)",
-        'connect_global(substrate__Sky130, "SUBSTRATE")']
+        "deep",
+        "_wafer = input(65, 20)",
+        "substrate__Sky130 = (_wafer-nwm)",
+        'connect_global(substrate__Sky130, "SUBSTRATE")',
+    ]
 
 
 @pytest.mark.parametrize("line", ["flat", "_wafer = extent.sized(0.34)", "connect(substrate__Sky130, _wafer)"])

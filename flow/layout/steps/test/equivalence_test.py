@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
+from base.steps import StepError
 from cells.netlist.function import Storage
-from flow.layout import liberty
-from flow.layout.netlist import Instance, Netlist
+from flow.layout.netlist.netlist import Instance, Netlist
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from flow.layout.steps.synthesis import Synthesis, SynthesisParameters
-from flow.steps import StepError
+from flow.layout.timing import liberty
 
 pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys: not found; install it with: make tools")
 
@@ -26,13 +26,23 @@ module Counter(input clk, input reset, input [1:0] step, output reg [3:0] count,
   end
 endmodule
 """
-CELLS = {"inv_x1": ("nq", "!i"), "buf_x1": ("q", "i"), "nand2_x1": ("nq", "!(i0&i1)"), "nor2_x1": ("nq", "!(i0|i1)"),
-         "xor2_x1": ("q", "i0^i1"), "zero_x1": ("zero", "0"), "one_x1": ("one", "1"), "dff_x1": ("q", "IQ")}
+CELLS = {
+    "inv_x1": ("nq", "!i"),
+    "buf_x1": ("q", "i"),
+    "nand2_x1": ("nq", "!(i0&i1)"),
+    "nor2_x1": ("nq", "!(i0|i1)"),
+    "xor2_x1": ("q", "i0^i1"),
+    "zero_x1": ("zero", "0"),
+    "one_x1": ("one", "1"),
+    "dff_x1": ("q", "IQ"),
+}
 FLIP_FLOP = Storage("ff", "clk", 1, "i", ("i",))
 PORTS = {name: (*sorted(set(re.findall(r"i\d?", function))), output) for name, (output, function) in CELLS.items()}
-LIBERTY = liberty.liberty({name: ({output: function}, FLIP_FLOP if name == "dff_x1" else None)
-                           for name, (output, function) in CELLS.items()},
-                          PORTS | {"dff_x1": ("clk", "i", "q")}, dict.fromkeys(CELLS, 10.0))
+LIBERTY = liberty.liberty(
+    {name: ({output: function}, FLIP_FLOP if name == "dff_x1" else None) for name, (output, function) in CELLS.items()},
+    PORTS | {"dff_x1": ("clk", "i", "q")},
+    dict.fromkeys(CELLS, 10.0),
+)
 
 
 def synthesized(folder, verilog):
@@ -40,8 +50,10 @@ def synthesized(folder, verilog):
     (folder / "rtl.v").write_text(verilog)
     (folder / "cells.lib").write_text(LIBERTY)
     step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
-    return step.run({"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
-                    {name: folder / file for name, file in step.outputs.items()})
+    return step.run(
+        {"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
+        {name: folder / file for name, file in step.outputs.items()},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -59,13 +71,23 @@ def verdict(folder, netlist, rtl=RTL):
     (folder / "tried.v").write_text(netlist.verilog())
     (folder / "tried_rtl.v").write_text(rtl)
     return Equivalence(EquivalenceParameters("Counter")).run(
-        {"rtl": folder / "tried_rtl.v", "netlist": folder / "tried.json", "verilog": folder / "tried.v",
-         "liberty": folder / "cells.lib"}, {"summary": folder / "equivalence.json"})
+        {
+            "rtl": folder / "tried_rtl.v",
+            "netlist": folder / "tried.json",
+            "verilog": folder / "tried.v",
+            "liberty": folder / "cells.lib",
+        },
+        {"summary": folder / "equivalence.json"},
+    )
 
 
 def test_the_netlist_is_proven_with_its_constant_register_shown_by_induction(made):
     assert verdict(made, Netlist.read(made / "netlist.json")) == {
-        "equivalence": "proven", "registers": 5, "constant_registers": 1, "double_registers": 0}
+        "equivalence": "proven",
+        "registers": 5,
+        "constant_registers": 1,
+        "double_registers": 0,
+    }
 
 
 @pytest.mark.parametrize("old, new", [("4'd9", "4'd8"), ("odd <= count[0]", "odd <= count[1]"), ("4'd0 :", "4'd1 :")])
@@ -80,7 +102,7 @@ def test_every_swapped_cell_is_found(made):
     for k in places:
         old = netlist.instances[k]
         pins = {"nq" if pin == "q" else pin: net for pin, net in old.pins.items()}
-        swapped = (*netlist.instances[:k], Instance(old.name, swaps[old.cell], pins), *netlist.instances[k + 1:])
+        swapped = (*netlist.instances[:k], Instance(old.name, swaps[old.cell], pins), *netlist.instances[k + 1 :])
         assert verdict(made, replace(netlist, instances=swapped))["equivalence"] == "failed"
 
 
@@ -88,7 +110,7 @@ def test_a_cut_net_is_found(made):
     netlist = Netlist.read(made / "netlist.json")
     k = next(k for k, i in enumerate(netlist.instances) if i.cell.startswith("nand2"))
     old = netlist.instances[k]
-    cut = (*netlist.instances[:k], replace(old, pins=old.pins | {"i0": "nowhere"}), *netlist.instances[k + 1:])
+    cut = (*netlist.instances[:k], replace(old, pins=old.pins | {"i0": "nowhere"}), *netlist.instances[k + 1 :])
     assert verdict(made, replace(netlist, instances=cut))["equivalence"] == "failed"
 
 
@@ -139,9 +161,15 @@ def test_a_double_is_shown_to_be_one_and_what_the_verilog_leaves_open_is_open(ta
     assert (found["equivalence"], found["constant_registers"], found["double_registers"]) == ("proven", 0, 2)
 
 
-@pytest.mark.parametrize("old, new", [("count = kept[step]", "count = kept[step ^ 2'd1]"),
-                                      ("count = kept[step]", "count = kept[step] ^ {3'd0, step == 2'd2}"),
-                                      ("row <= tile + step", "row <= tile - step"),
-                                      ("row <= 2'd0", "row <= 2'd1"), ("tile == 2'd2", "tile == 2'd1")])
+@pytest.mark.parametrize(
+    "old, new",
+    [
+        ("count = kept[step]", "count = kept[step ^ 2'd1]"),
+        ("count = kept[step]", "count = kept[step] ^ {3'd0, step == 2'd2}"),
+        ("row <= tile + step", "row <= tile - step"),
+        ("row <= 2'd0", "row <= 2'd1"),
+        ("tile == 2'd2", "tile == 2'd1"),
+    ],
+)
 def test_a_change_beside_what_is_open_or_double_is_found(table, old, new):
     assert verdict(table, Netlist.read(table / "netlist.json"), TABLE.replace(old, new))["equivalence"] == "failed"

@@ -2,9 +2,9 @@
 
 import pytest
 
-from flow.layout.netlist import Instance, Netlist, Port
+from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.steps.extraction import parasitics, spef
-from flow.platforms.embedded import process
+from platforms.coriolis import process
 
 
 def test_a_wire_counts_with_its_area_both_edges_and_its_squares():
@@ -16,9 +16,14 @@ def test_a_wire_counts_with_its_area_both_edges_and_its_squares():
 
 
 def test_a_bracket_is_a_bus_only_in_a_port():
-    netlist = Netlist("Top", (Port("a", "input", 2), Port("y", "output", 1)), (
-        Instance("part.q[0]_reg", "dff_x1", {"i": "a[0]", "clk": "a[1]", "q": "part.q[0]"}),
-        Instance("u1", "inv_x1", {"i": "part.q[0]", "nq": "y"})))
+    netlist = Netlist(
+        "Top",
+        (Port("a", "input", 2), Port("y", "output", 1)),
+        (
+            Instance("part.q[0]_reg", "dff_x1", {"i": "a[0]", "clk": "a[1]", "q": "part.q[0]"}),
+            Instance("u1", "inv_x1", {"i": "part.q[0]", "nq": "y"}),
+        ),
+    )
     text = spef(netlist, {"a[0]": (1.0, 2.0), "part.q[0]": (3.0, 4.0)})
     assert "*D_NET a[0] 1.0000" in text
     assert r"*D_NET part\.q\[0\] 3.0000" in text

@@ -3,7 +3,7 @@
 import pytest
 
 from flow.layout.steps.fill import densest, fill
-from flow.platforms.embedded import process
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

@@ -4,12 +4,12 @@ import shutil
 
 import pytest
 
-from flow.layout.embedded import Options, back
+from base.steps import StepError
+from flow.layout.chain import Options, back
 from flow.layout.design import design
 from flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
-from flow.platforms.foundry import foundry, installed
-from flow.steps import StepError
 from models.parameters import ParameterError
+from platforms.foundry import foundry, installed
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
@@ -68,8 +68,11 @@ end
 @pytest.fixture
 def root(tmp_path):
     known = foundry("sky130")
-    for path, text in ((known.klayout, DECK), (f"{known.magic}/small.tech", TECHNOLOGY),
-                       (f"{known.magic}/{known.rc}", f"tech load $::env(PDK_ROOT)/{known.magic}/small.tech\n")):
+    for path, text in (
+        (known.klayout, DECK),
+        (f"{known.magic}/small.tech", TECHNOLOGY),
+        (f"{known.magic}/{known.rc}", f"tech load $::env(PDK_ROOT)/{known.magic}/small.tech\n"),
+    ):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / path).write_text(text)
     return tmp_path

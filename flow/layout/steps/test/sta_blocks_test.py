@@ -5,24 +5,28 @@ import shutil
 
 import pytest
 
-from flow.layout.assembly import flat
-from flow.layout.constraints import sdc
 from flow.layout.design import Design
-from flow.layout.netlist import Instance, Netlist, Port
+from flow.layout.geometry.assembly import flat
+from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from flow.layout.steps.extraction import spef
 from flow.layout.steps.sta import Sta, StaParameters
 from flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
-
-from . import small
+from flow.layout.test import small
+from flow.layout.timing.constraints import sdc
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")
-TOP = Netlist("Top", (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)), (
-    Instance("ahead_reg", "dff_x1", {"i": "in", "clk": "clk", "q": "n0"}),
-    Instance("part", "Shift", {"clk": "clk", "a": "n0", "y": "n1", "n": "n2"}),
-    Instance("u0", "inv_x1", {"i": "n1", "nq": "n3"}), Instance("behind_reg", "dff_x1", {"i": "n3", "clk": "clk",
-                                                                                      "q": "out"})))
+TOP = Netlist(
+    "Top",
+    (Port("clk", "input", 1), Port("in", "input", 1), Port("out", "output", 1)),
+    (
+        Instance("ahead_reg", "dff_x1", {"i": "in", "clk": "clk", "q": "n0"}),
+        Instance("part", "Shift", {"clk": "clk", "a": "n0", "y": "n1", "n": "n2"}),
+        Instance("u0", "inv_x1", {"i": "n1", "nq": "n3"}),
+        Instance("behind_reg", "dff_x1", {"i": "n3", "clk": "clk", "q": "out"}),
+    ),
+)
 
 
 def write(folder, **texts):
@@ -40,16 +44,27 @@ def test_the_liberty_of_a_block_stands_for_its_cells(tmp_path):
     block, whole = small.shift(), flat(TOP, {"part": small.shift()})
     block.write(tmp_path / "block.json")
     TOP.write(tmp_path / "top.json")
-    files = write(tmp_path, liberty=small.liberty(), sdc=sdc(Design("top", "Top", "")), verilog=block.verilog(),
-                  spef=spef(block, {"w0": (0.001, 1.0)}), areas=json.dumps({"width_um": 4.0, "height_um": 5.0}),
-                  whole=whole.verilog(), wires=spef(whole, {"part.w0": (0.001, 1.0)}),
-                  placement=json.dumps({"wires": {"n1": [], "not there": [["m1", 1.0, 0.3]]}}))
+    files = write(
+        tmp_path,
+        liberty=small.liberty(),
+        sdc=sdc(Design("top", "Top", "")),
+        verilog=block.verilog(),
+        spef=spef(block, {"w0": (0.001, 1.0)}),
+        areas=json.dumps({"width_um": 4.0, "height_um": 5.0}),
+        whole=whole.verilog(),
+        wires=spef(whole, {"part.w0": (0.001, 1.0)}),
+        placement=json.dumps({"wires": {"n1": [], "not there": [["m1", 1.0, 0.3]]}}),
+    )
     run(BlockLiberty(BlockLibertyParameters("tt")), files | {"netlist": tmp_path / "block.json"}, tmp_path / "own")
-    by_cells = run(Sta(StaParameters("Top", "tt", 20.0)), files | {"verilog": files["whole"], "spef": files["wires"]},
-                   tmp_path / "cells")
+    by_cells = run(
+        Sta(StaParameters("Top", "tt", 20.0)),
+        files | {"verilog": files["whole"], "spef": files["wires"]},
+        tmp_path / "cells",
+    )
     step = StaBlocks(StaBlocksParameters("sky130", "Top", "tt", ("Shift",)))
     assert step.inputs["Shift"] == "macro.Shift.tt"
-    by_blocks = run(step, files | {"netlist": tmp_path / "top.json", "Shift": tmp_path / "own" / "block.lib"},
-                    tmp_path / "blocks")
+    by_blocks = run(
+        step, files | {"netlist": tmp_path / "top.json", "Shift": tmp_path / "own" / "block.lib"}, tmp_path / "blocks"
+    )
     assert by_blocks["blocks_wns_ns"] == pytest.approx(by_cells["wns_ns"], abs=0.02)
     assert by_blocks["blocks_whs_ns"] == pytest.approx(by_cells["whs_ns"], abs=0.02)

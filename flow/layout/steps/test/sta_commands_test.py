@@ -6,20 +6,26 @@ import shutil
 
 import pytest
 
-from flow.layout import boundary
-from flow.layout.constraints import sdc
+from base.steps import StepError
+from base.tools import run
 from flow.layout.design import DESIGNS
 from flow.layout.steps import power, sta
 from flow.layout.steps.extraction import spef
-from flow.simulate.process import run
-from flow.steps import StepError
-
-from . import small
+from flow.layout.test import small
+from flow.layout.timing import boundary
+from flow.layout.timing.constraints import sdc
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
-SCRIPTS = {"sta": sta.SCRIPT, "power": power.SLEWS, "load": boundary.LOAD, "outputs": boundary.OUTPUTS,
-           "through": boundary.THROUGH, "constraints": boundary.CONSTRAINTS, "ports": boundary.PORTS,
-           "sdc": sdc(DESIGNS["quad_divider"])}
+SCRIPTS = {
+    "sta": sta.SCRIPT,
+    "power": power.SLEWS,
+    "load": boundary.LOAD,
+    "outputs": boundary.OUTPUTS,
+    "through": boundary.THROUGH,
+    "constraints": boundary.CONSTRAINTS,
+    "ports": boundary.PORTS,
+    "sdc": sdc(DESIGNS["quad_divider"]),
+}
 
 
 def commands(script):
@@ -29,10 +35,11 @@ def commands(script):
 
 
 def test_every_command_is_known(tmp_path):
-    names = sorted({name for script in SCRIPTS.values() for name in commands(script)} - {"slack"})    # a proc of ours
+    names = sorted({name for script in SCRIPTS.values() for name in commands(script)} - {"slack"})  # a proc of ours
     assert {"read_spef", "set_output_delay", "find_timing_paths", "report_net", "write_sdf"} <= set(names)
-    (tmp_path / "ask.tcl").write_text("".join(
-        f'if {{[info commands {name}] eq ""}} {{ puts "UNKNOWN {name}" }}\n' for name in names) + "exit\n")
+    (tmp_path / "ask.tcl").write_text(
+        "".join(f'if {{[info commands {name}] eq ""}} {{ puts "UNKNOWN {name}" }}\n' for name in names) + "exit\n"
+    )
     assert "UNKNOWN" not in run(["sta", "-no_splash", "-no_init", "-exit", tmp_path / "ask.tcl"])
 
 
@@ -43,10 +50,15 @@ def inputs(tmp_path):
     (tmp_path / "shift.v").write_text(netlist.verilog())
     (tmp_path / "small.lib").write_text(small.liberty())
     (tmp_path / "wires.spef").write_text(spef(netlist, {"w0": (10.0, 1.0)}))
-    (tmp_path / "shift.sdc").write_text("create_clock -name clk -period 10 [get_ports clk]\n"
-                                        "set_input_delay 0 -clock clk [get_ports a]\n")
-    return {"verilog": tmp_path / "shift.v", "liberty": tmp_path / "small.lib", "spef": tmp_path / "wires.spef",
-            "sdc": tmp_path / "shift.sdc"}
+    (tmp_path / "shift.sdc").write_text(
+        "create_clock -name clk -period 10 [get_ports clk]\nset_input_delay 0 -clock clk [get_ports a]\n"
+    )
+    return {
+        "verilog": tmp_path / "shift.v",
+        "liberty": tmp_path / "small.lib",
+        "spef": tmp_path / "wires.spef",
+        "sdc": tmp_path / "shift.sdc",
+    }
 
 
 def timed(inputs, folder):
@@ -56,7 +68,7 @@ def timed(inputs, folder):
 
 def test_slacks_by_hand(inputs, tmp_path):
     found = timed(inputs, tmp_path)
-    driven = (0.5 + (0.01 + 0.01 - 0.001) / 0.999) + (0.1 + (0.02 - 0.001) / 0.999)       # the wire's 10 fF and pins
+    driven = (0.5 + (0.01 + 0.01 - 0.001) / 0.999) + (0.1 + (0.02 - 0.001) / 0.999)  # the wire's 10 fF and pins
     assert found["wns_ns"] == pytest.approx(10 - 0.2 - driven, abs=2e-3)
     assert found["f_max_mhz"] == pytest.approx(1000 / (driven + 0.2), rel=1e-3)
 

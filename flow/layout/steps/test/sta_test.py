@@ -4,30 +4,43 @@ import shutil
 
 import pytest
 
-from flow.layout.constraints import sdc
 from flow.layout.design import Clock, Design
-from flow.layout.netlist import Instance, Netlist, Port
+from flow.layout.netlist.netlist import Instance, Netlist, Port
+from flow.layout.report.metrics import RULES, broken
 from flow.layout.steps.extraction import spef
 from flow.layout.steps.sta import Sta, StaParameters
-from flow.layout.summary import RULES, broken
+from flow.layout.timing.constraints import sdc
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 
-NETLIST = Netlist("Pair", (Port("clk", "input", 1), Port("a", "input", 1), Port("z", "output", 1)), (
-    Instance("first_reg", "dff_x1", {"clk": "clk", "i": "a", "q": "between"}),
-    Instance("second_reg", "dff_x1", {"clk": "clk", "i": "between", "q": "z"})))
+NETLIST = Netlist(
+    "Pair",
+    (Port("clk", "input", 1), Port("a", "input", 1), Port("z", "output", 1)),
+    (
+        Instance("first_reg", "dff_x1", {"clk": "clk", "i": "a", "q": "between"}),
+        Instance("second_reg", "dff_x1", {"clk": "clk", "i": "between", "q": "z"}),
+    ),
+)
 
 
 def liberty(setup, hold):
     """A flip-flop that takes 0.3 ns; setup, hold: ns."""
-    def times(kind, ns):
-        return (f'timing() {{ related_pin : "clk"; timing_type : {kind}_rising; '
-                f'rise_constraint(scalar) {{ values("{ns}"); }} fall_constraint(scalar) {{ values("{ns}"); }} }}')
 
-    tables = " ".join(f'{name}(scalar) {{ values("{value}"); }}' for name, value in
-                      (("cell_rise", 0.3), ("cell_fall", 0.3), ("rise_transition", 0.1), ("fall_transition", 0.1)))
-    percent = "".join(f"{name}_threshold_pct_{edge} : {value}; " for edge in ("rise", "fall") for name, value in
-                      (("input", 50), ("output", 50), ("slew_lower", 20), ("slew_upper", 80)))
+    def times(kind, ns):
+        return (
+            f'timing() {{ related_pin : "clk"; timing_type : {kind}_rising; '
+            f'rise_constraint(scalar) {{ values("{ns}"); }} fall_constraint(scalar) {{ values("{ns}"); }} }}'
+        )
+
+    tables = " ".join(
+        f'{name}(scalar) {{ values("{value}"); }}'
+        for name, value in (("cell_rise", 0.3), ("cell_fall", 0.3), ("rise_transition", 0.1), ("fall_transition", 0.1))
+    )
+    percent = "".join(
+        f"{name}_threshold_pct_{edge} : {value}; "
+        for edge in ("rise", "fall")
+        for name, value in (("input", 50), ("output", 50), ("slew_lower", 20), ("slew_upper", 80))
+    )
     return f"""library(one) {{ {percent}
   delay_model : table_lookup; time_unit : "1ns"; capacitive_load_unit(1, pf); voltage_unit : "1V"; current_unit : "1mA";
   leakage_power_unit : "1nW"; nom_voltage : 1.8; nom_temperature : 25; nom_process : 1;
@@ -42,8 +55,12 @@ def liberty(setup, hold):
 def timed(folder, setup=0.1, hold=0.05):
     """Metrics of the STA, and the rules of the layout that its slacks break."""
     design = Design("pair", "Pair", "", clock=Clock(period_ns=10.0))
-    files = {"verilog": NETLIST.verilog(), "spef": spef(NETLIST, {"between": (2.0, 10.0)}), "sdc": sdc(design),
-             "liberty": liberty(setup, hold)}
+    files = {
+        "verilog": NETLIST.verilog(),
+        "spef": spef(NETLIST, {"between": (2.0, 10.0)}),
+        "sdc": sdc(design),
+        "liberty": liberty(setup, hold),
+    }
     for name, text in files.items():
         (folder / name).write_text(text)
     step = Sta(StaParameters("Pair", "one", 10.0))
@@ -54,7 +71,7 @@ def timed(folder, setup=0.1, hold=0.05):
 
 def test_what_keeps_its_times_breaks_no_rule(tmp_path):
     found, rules = timed(tmp_path)
-    assert found["whs_ns"] == pytest.approx(0.3 - 0.05 - 0.05, abs=0.01)       # delay, hold, uncertainty
+    assert found["whs_ns"] == pytest.approx(0.3 - 0.05 - 0.05, abs=0.01)  # delay, hold, uncertainty
     assert rules == []
 
 

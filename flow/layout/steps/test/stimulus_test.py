@@ -23,8 +23,11 @@ def test_the_same_module_elsewhere_is_the_same():
 
 
 def test_the_first_instance_is_found():
-    tree = {"Top": {"cells": {"b": {"type": "Middle"}, "a": {"type": "$and"}}},
-            "Middle": {"cells": {"deep": {"type": "Leaf"}}}, "Leaf": {"cells": {}}}
+    tree = {
+        "Top": {"cells": {"b": {"type": "Middle"}, "a": {"type": "$and"}}},
+        "Middle": {"cells": {"deep": {"type": "Leaf"}}},
+        "Leaf": {"cells": {}},
+    }
     assert instance_of(tree, "Top", "Leaf") == ("b", "deep")
     assert instance_of(tree, "Top", "Top") == ()
     assert instance_of(tree, "Top", "Other") is None
@@ -36,23 +39,31 @@ def test_the_tiles_of_the_middle(tiles, columns):
     assert (made.row0, made.row1, made.col0, made.col1) == (3, 3, *columns)
 
 
-@pytest.mark.skipif(not shutil.which("yosys") or not shutil.which("iverilog"), reason="yosys, iverilog: not found; "
-                                                                                      "make tools")
+@pytest.mark.skipif(
+    not shutil.which("yosys") or not shutil.which("iverilog"), reason="yosys, iverilog: not found; make tools"
+)
 @pytest.mark.slow
 def test_the_chip_is_watched_as_it_is_laid_out(tmp_path):
     """A trace of a chip of another size is none of this one: its header says another."""
+    from flow.layout.chain import CHIP_FRAME, Options, files
     from flow.layout.design import DESIGNS
-    from flow.layout.embedded import CHIP_FRAME, Options, files
+
     given = files(DESIGNS["asp_chip"], Options(), tmp_path)
     step = Stimulus(StimulusParameters("AspChip", **CHIP_FRAME))
-    found = step.run({name: given[source] for name, source in step.inputs.items()},
-                     {name: tmp_path / file for name, file in step.outputs.items()})
+    found = step.run(
+        {name: given[source] for name, source in step.inputs.items()},
+        {name: tmp_path / file for name, file in step.outputs.items()},
+    )
     assert found["source"] == "frame" and found["cycles"] > 10_000
 
 
 def test_results_are_what_left():
-    ports = [{"path": "a", "width": 4, "output": False}, {"path": "send.rdy", "width": 1, "output": False},
-             {"path": "send.msg", "width": 7, "output": True}, {"path": "send.val", "width": 1, "output": True}]
-    lines = ["0 10 80", "0 1f ff", "0 0f ff", "0 10 7f"]        # both; both; not ready; not valid
+    ports = [
+        {"path": "a", "width": 4, "output": False},
+        {"path": "send.rdy", "width": 1, "output": False},
+        {"path": "send.msg", "width": 7, "output": True},
+        {"path": "send.val", "width": 1, "output": True},
+    ]
+    lines = ["0 10 80", "0 1f ff", "0 0f ff", "0 10 7f"]  # both; both; not ready; not valid
     assert results(lines, ports) == 2
     assert results(lines, ports[:2]) == 0

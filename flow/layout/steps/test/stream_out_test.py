@@ -2,13 +2,15 @@
 
 import pytest
 
+from base.steps import StepError
 from flow.layout.steps.stream_out import relabel
-from flow.platforms.embedded import process
-from flow.steps import StepError
+from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
-RULES = {"space_um": {wire: 0.14 for wire in ("li", "m1", "m2", "m3", "m4")},
-         "wires": {wire: {"area": 0.0, "space": 0.14} for wire in ("li", "m1", "m2", "m3", "m4")}}
+RULES = {
+    "space_um": {wire: 0.14 for wire in ("li", "m1", "m2", "m3", "m4")},
+    "wires": {wire: {"area": 0.0, "space": 0.14} for wire in ("li", "m1", "m2", "m3", "m4")},
+}
 
 
 @pytest.fixture
@@ -17,9 +19,11 @@ def routed(tmp_path):
     nothing; the supplies are strapped."""
     known, layout = process("sky130")[0], db.Layout()
     top = layout.create_cell("block")
-    for wire, box, texts in ((known.wires[1], (-0.1, 1.0, 3.0, 1.3), [("w0", 0.0, 1.15), ("w0", 5.0, 8.0)]),
-                             (known.wires[2], (0.0, 8.0, 10.0, 8.2), [("w1", 2.0, 8.1)]),
-                             (known.wires[-1], (1.0, 0.0, 2.2, 10.0), [("vdd", 1.6, 0.0), ("vdd", 1.6, 5.0)])):
+    for wire, box, texts in (
+        (known.wires[1], (-0.1, 1.0, 3.0, 1.3), [("w0", 0.0, 1.15), ("w0", 5.0, 8.0)]),
+        (known.wires[2], (0.0, 8.0, 10.0, 8.2), [("w1", 2.0, 8.1)]),
+        (known.wires[-1], (1.0, 0.0, 2.2, 10.0), [("vdd", 1.6, 0.0), ("vdd", 1.6, 5.0)]),
+    ):
         top.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(*box))
         for net, x, y in texts:
             top.shapes(layout.layer(wire.layer, 0)).insert(db.DText(net, x, y))
@@ -33,8 +37,10 @@ def routed(tmp_path):
 def texts(path, layer, datatype):
     layout = db.Layout()
     layout.read(str(path))
-    return sorted((shape.text.string, shape.text.x, shape.text.y)
-                  for shape in layout.top_cell().shapes(layout.layer(layer, datatype)).each(db.Shapes.STexts))
+    return sorted(
+        (shape.text.string, shape.text.x, shape.text.y)
+        for shape in layout.top_cell().shapes(layout.layer(layer, datatype)).each(db.Shapes.STexts)
+    )
 
 
 def test_a_port_is_labelled_where_it_is(routed, tmp_path):

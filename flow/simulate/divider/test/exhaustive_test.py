@@ -1,13 +1,13 @@
 import numpy as np
 import pytest
 
+from base.tools import ToolError
+from flow.simulate.divider.exhaustive import compare, every_input, main, measure, pack, row, unpack, verilog
+from flow.simulate.divider.simulator import program, simulate
 from models.digital.divider import QuadResult, quad_divide
 from models.parameters import DIVIDERS
 from rtl.messages import DivReq, div_resp
 from rtl.quad_divider import timing
-from flow.simulate.process import ToolError
-from verif.divider.exhaustive import compare, every_input, main, measure, pack, row, unpack, verilog
-from verif.divider.simulator import program, simulate
 
 X, Y = every_input()
 

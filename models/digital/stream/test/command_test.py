@@ -19,8 +19,10 @@ def test_decodes_to_a_file(tmp_path, capsys, stream):
     samples, data = stream
     (tmp_path / "s.bin").write_bytes(data)
     assert main([str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 0
-    assert capsys.readouterr().out == \
-        f"frame 9: edge, 12 x 30, threshold 4, 12 of 12 rows, 70 conversions, 290 left out, {len(data)} bytes\n"
+    assert (
+        capsys.readouterr().out
+        == f"frame 9: edge, 12 x 30, threshold 4, 12 of 12 rows, 70 conversions, 290 left out, {len(data)} bytes\n"
+    )
     with np.load(tmp_path / "d.npz") as kept:
         assert np.array_equal(kept["samples"], samples) and kept["read"].all() and kept["bad_rows"].size == 0
         assert (kept["made"], kept["left_out"]) == (70, 290)

@@ -10,14 +10,14 @@ from models.digital.stream.trailer import COUNTED_BYTES
 
 
 def test_check_values_of_the_catalogue():
-    assert crc16(b"123456789") == 0x29B1        # CRC-16/IBM-3740
+    assert crc16(b"123456789") == 0x29B1  # CRC-16/IBM-3740
     assert zlib.crc32(b"123456789") == 0xCBF43926
 
 
 @pytest.mark.parametrize("length", [0, 1, 2, 3, 8, 255])
 def test_compiled_crc16_is_the_same(length):
     data = np.random.default_rng(length).integers(0, 256, length + 4).astype(np.uint8)
-    assert crc16_span(data, 3, 3 + length) == crc16(data[3:3 + length].tobytes())
+    assert crc16_span(data, 3, 3 + length) == crc16(data[3 : 3 + length].tobytes())
 
 
 @pytest.mark.parametrize("length", [FIELD_BYTES, COUNTED_BYTES])

@@ -4,7 +4,8 @@ import zlib
 
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked_row
 from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
@@ -12,9 +13,13 @@ from models.digital.stream.payload import check_row
 from models.digital.stream.test.frames import header_of, headers, samples_of
 from models.digital.stream.trailer import TRAILER_BYTES
 
-FRAMES = {"edge": header_of(12, 30, threshold=4), "rough": header_of(9, 20, threshold=0),
-          "raw": header_of(7, 13, mode="raw"), "phase": header_of(5, 18, mode="tof", phase=True),
-          "masked": header_of(16, 36, mask=0x00F0F1, threshold=6)}
+FRAMES = {
+    "edge": header_of(12, 30, threshold=4),
+    "rough": header_of(9, 20, threshold=0),
+    "raw": header_of(7, 13, mode="raw"),
+    "phase": header_of(5, 18, mode="tof", phase=True),
+    "masked": header_of(16, 36, mask=0x00F0F1, threshold=6),
+}
 
 
 def sent(name):
@@ -54,9 +59,9 @@ def test_one_wrong_byte_anywhere_is_mended(name):
     rng = np.random.default_rng(1)
     for position in range(len(data)):
         for change in {1, 0x80, 0xFF, *rng.integers(1, 256, 3).tolist()}:
-            frame, = decode_stream(changed(data, position, change))
+            (frame,) = decode_stream(changed(data, position, change))
             check_rows_lost(frame, header, samples, [])
-            at_end = position >= len(data) - 4      # the frame's CRC-32 itself
+            at_end = position >= len(data) - 4  # the frame's CRC-32 itself
             assert ("CRC-32" if at_end else f"byte {position}: byte of ") in frame.errors[0]
             assert frame.stop == len(data)
 
@@ -71,7 +76,7 @@ def test_two_wrong_bytes_anywhere_in_a_row_cost_that_row(name):
     for row, start, stop in zip(rows, starts, starts[1:], strict=False):
         for position in range(start, stop - 1):
             for first, second in rng.integers(1, 256, (4, 2)).tolist():
-                frame, = decode_stream(changed(changed(data, position, first), position + 1, second))
+                (frame,) = decode_stream(changed(changed(data, position, first), position + 1, second))
                 check_rows_lost(frame, header, samples, [row])
                 assert frame.stop == len(data)
 
@@ -84,7 +89,7 @@ def test_one_wrong_byte_costs_a_row_where_the_frame_has_no_known_end():
     header, samples, data = sent("edge")
     starts = row_starts(header, samples)
     for position in range(HEADER_BYTES, starts[-2]):
-        frame, = decode_stream(changed(data, position, 0x99) + bytes(20))
+        (frame,) = decode_stream(changed(data, position, 0x99) + bytes(20))
         check_rows_lost(frame, header, samples, [int(np.searchsorted(starts, position, "right")) - 1])
 
 
@@ -127,7 +132,7 @@ def test_cut_short_anywhere(name):
             with pytest.raises(StreamError):
                 decode_stream(data[:length])
             continue
-        frame, = decode_stream(data[:length])
+        (frame,) = decode_stream(data[:length])
         whole = sum(stop <= length for stop in starts[1:])
         assert frame.bad_rows == rows[whole:].tolist() and frame.errors and frame.stop == length
         assert np.array_equal(frame.samples[rows[:whole]], samples[rows[:whole]])
@@ -150,11 +155,11 @@ def test_bytes_lost_or_put_in():
     samples = samples_of(header, 3)
     data, starts = encode_frame(header, samples, 1000, 2000), row_starts(header, samples)
     for first, last, more in ((10, 10, b""), (10, 13, b""), (20, 20, bytes(50)), (20, 20, b"\xff"), (5, 40, b"abc")):
-        cut = data[:starts[first] + 2] + more + data[starts[last] + 5:]
-        frame, = decode_stream(cut)
+        cut = data[: starts[first] + 2] + more + data[starts[last] + 5 :]
+        (frame,) = decode_stream(cut)
         check_rows_lost(frame, header, samples, list(range(first, last + 1)))
     for first, last in ((0, 1), (7, 30), (0, 48)):
-        frame, = decode_stream(data[:starts[first]] + data[starts[last]:])
+        (frame,) = decode_stream(data[: starts[first]] + data[starts[last] :])
         check_rows_lost(frame, header, samples, list(range(first, last)))
 
 
@@ -167,7 +172,7 @@ def test_many_damaged_rows(mode, step):
     for start in starts[1:-1:step]:
         data[start + 5] ^= 0x10
         data[start + 6] ^= 0x01
-    frame, = decode_stream(bytes(data))
+    (frame,) = decode_stream(bytes(data))
     check_rows_lost(frame, header, samples, list(range(1, 200, step)))
 
 
@@ -182,10 +187,24 @@ def with_crc(fields):
     return bytes(fields) + zlib.crc32(bytes(fields)).to_bytes(4, "big")
 
 
-@pytest.mark.parametrize("position, value, message", [
-    (0, 0x55, "starts with"), (4, 2, "version 2"), (5, 0x08, "reserved"), (5, 0x04, "phase"), (6, 128, "threshold"),
-    (7, 3, "lanes"), (8, 0x56, "tile rows"), (8, 0x36, "tile"), (9, 0xFF, "rows"), (11, 0xFF, "cols"),
-    (13, 200, "window row"), (14, 99, "window row1"), (16, 200, "window col1")])
+@pytest.mark.parametrize(
+    "position, value, message",
+    [
+        (0, 0x55, "starts with"),
+        (4, 2, "version 2"),
+        (5, 0x08, "reserved"),
+        (5, 0x04, "phase"),
+        (6, 128, "threshold"),
+        (7, 3, "lanes"),
+        (8, 0x56, "tile rows"),
+        (8, 0x36, "tile"),
+        (9, 0xFF, "rows"),
+        (11, 0xFF, "cols"),
+        (13, 200, "window row"),
+        (14, 99, "window row1"),
+        (16, 200, "window col1"),
+    ],
+)
 def test_header_that_says_what_cannot_be(position, value, message):
     fields = bytearray(header_of(12, 30).to_bytes()[:FIELD_BYTES])
     fields[position] = value
@@ -226,7 +245,7 @@ def test_fuzz(header, seed, draw):
     data = bytearray(encode_frame(header, samples_of(header, seed), 1, 1) * 2)
     for _ in range(draw.draw(st.integers(1, 6))):
         at = draw.draw(st.integers(0, len(data) - 1))
-        data[at:at + draw.draw(st.integers(0, 8))] = draw.draw(st.binary(max_size=8))
+        data[at : at + draw.draw(st.integers(0, 8))] = draw.draw(st.binary(max_size=8))
     try:
         frames = decode_stream(bytes(data))
     except StreamError as error:
@@ -251,5 +270,5 @@ def test_work_on_a_hostile_file_is_bounded(mode):
     """The largest frame announced, then random bytes: every search ends at its limit."""
     header = header_of(1024, 1536, mode=mode, threshold=0)
     noise = np.random.default_rng(0).integers(0, 256, 200_000).astype(np.uint8).tobytes()
-    frame, = decode_stream(header.to_bytes() + noise)
+    (frame,) = decode_stream(header.to_bytes() + noise)
     assert len(frame.bad_rows) == 1024

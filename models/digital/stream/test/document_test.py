@@ -17,7 +17,7 @@ def test_worked_examples_are_what_the_encoder_gives(example):
 
 def test_the_frame_of_the_document_decodes():
     words = " ".join(line[14:].replace("mark", "") for line in small_frame())
-    frame, = decode_stream(bytes.fromhex(words))
+    (frame,) = decode_stream(bytes.fromhex(words))
     assert frame.complete and not frame.errors and frame.samples[1, 5].tolist() == [220, 230]
 
 

@@ -7,9 +7,23 @@ from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
 from models.digital.stream.payload import START, base_of, code_sample
 from models.parameters import FrameParameters, Window
 
-FIELDS = (("magic", 4), ("version", 1), ("flags", 1), ("threshold", 1), ("lanes", 1), ("tile", 1), ("rows", 2),
-          ("cols", 2), ("row0", 1), ("row1", 1), ("col0", 1), ("col1", 1), ("mask", 3), ("frame number", 2),
-          ("CRC-32", 4))
+FIELDS = (
+    ("magic", 4),
+    ("version", 1),
+    ("flags", 1),
+    ("threshold", 1),
+    ("lanes", 1),
+    ("tile", 1),
+    ("rows", 2),
+    ("cols", 2),
+    ("row0", 1),
+    ("row1", 1),
+    ("col0", 1),
+    ("col1", 1),
+    ("mask", 3),
+    ("frame number", 2),
+    ("CRC-32", 4),
+)
 
 
 def token_lines(codes, threshold):
@@ -27,7 +41,7 @@ def token_lines(codes, threshold):
             said = f"{1 << k} zeros"
         else:
             said = f"{run} zeros, then {code}"
-            text = " ".join(filter(None, (text[0], text[1:1 + k], text[1 + k], text[2 + k:])))
+            text = " ".join(filter(None, (text[0], text[1 : 1 + k], text[1 + k], text[2 + k :])))
         lines.append(_token(k, r2, credit, said, text))
     k, r2, run, credit = state
     return lines + [_token(k, r2, credit, f"{run} zeros, the row ends", "0")] * (run > 0)
@@ -40,8 +54,14 @@ def _token(k, r2, credit, said, text):
 def row_example(row, codes, threshold):
     """A row of edge mode, token by token, and its bytes."""
     sent = encode_marked_row(row, codes, True, threshold)
-    return [f"row {row}, threshold {threshold}, {len(codes)} samples:", "  " + " ".join(map(str, codes)), "tokens:",
-            *token_lines(codes, threshold), f"payload: {sent[:-2].hex(' ')}", f"mark:    {sent[-2:].hex(' ')}"]
+    return [
+        f"row {row}, threshold {threshold}, {len(codes)} samples:",
+        "  " + " ".join(map(str, codes)),
+        "tokens:",
+        *token_lines(codes, threshold),
+        f"payload: {sent[:-2].hex(' ')}",
+        f"mark:    {sent[-2:].hex(' ')}",
+    ]
 
 
 def frame_example(header, samples, made, left_out):
@@ -49,18 +69,18 @@ def frame_example(header, samples, made, left_out):
     data = encode_frame(header, samples, made, left_out)
     lines, at = [], 0
     for name, size in FIELDS:
-        lines.append(f"{name:14}{data[at:at + size].hex(' ')}")
+        lines.append(f"{name:14}{data[at : at + size].hex(' ')}")
         at += size
     assert at == HEADER_BYTES == FIELD_BYTES + 4
     layout = header.layout()
     for i, row in enumerate(layout.rows.tolist()):
         codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
         size = len(encode_marked_row(row, codes, header.edge, header.threshold))
-        payload, mark = data[at:at + size - 2], data[at + size - 2:at + size]
+        payload, mark = data[at : at + size - 2], data[at + size - 2 : at + size]
         lines.append(f"{f'row {row}':14}{payload.hex(' ')}   mark {mark.hex(' ')}")
         at += size
     for name, size in (("made", 4), ("left out", 4), ("mark", 2), ("CRC-32", 4)):
-        lines.append(f"{name:14}{data[at:at + size].hex(' ')}")
+        lines.append(f"{name:14}{data[at : at + size].hex(' ')}")
         at += size
     assert at == len(data)
     return lines

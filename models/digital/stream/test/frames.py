@@ -42,10 +42,17 @@ def headers(draw):
         col0, col1 = sorted(draw(st.integers(0, (cols - 1) // 6)) for _ in range(2))
         mode = draw(st.sampled_from(MODES))
         header = header_of(
-            rows, cols, draw(st.sampled_from(LANES)), window=Window(row0, row1, col0, col1), mode=mode,
-            mask=draw(st.integers(1, 2**24 - 1) | st.just(2**24 - 1)), threshold=draw(st.integers(0, 127)),
-            decimation=draw(st.integers(0, 3)), phase=mode == "tof" and draw(st.booleans()),
-            frame_number=draw(st.integers(0, 65535)))
+            rows,
+            cols,
+            draw(st.sampled_from(LANES)),
+            window=Window(row0, row1, col0, col1),
+            mode=mode,
+            mask=draw(st.integers(1, 2**24 - 1) | st.just(2**24 - 1)),
+            threshold=draw(st.integers(0, 127)),
+            decimation=draw(st.integers(0, 3)),
+            phase=mode == "tof" and draw(st.booleans()),
+            frame_number=draw(st.integers(0, 65535)),
+        )
         try:
             header.layout()
         except ParameterError:

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.digital.stream import encode_payload
 from models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_row, row_bytes_max
@@ -43,8 +44,12 @@ def test_no_row_grows_beyond_its_bound(codes, threshold):
 @pytest.mark.parametrize("seed", range(4))
 def test_incompressible_rows_grow_by_less_than_a_sixteenth(seed):
     rng = np.random.default_rng(seed)
-    noise = [rng.integers(-128, 128, 384), rng.choice([-128, 127], 384), rng.choice([-128, 0, 127], 384),
-             np.tile([0, 0, 0, -128], 96)][seed]
+    noise = [
+        rng.integers(-128, 128, 384),
+        rng.choice([-128, 127], 384),
+        rng.choice([-128, 0, 127], 384),
+        np.tile([0, 0, 0, -128], 96),
+    ][seed]
     assert len(encode_payload(noise, True, 0)) + 2 <= 384 * 17 / 16
 
 
@@ -66,8 +71,8 @@ def test_payload_that_no_encoder_writes_is_refused():
     row = [0] * 9 + [100] + [0] * 20
     payload = encode_payload(row, True, 0)
     assert decoded(payload, 30, True, 0)[0] == len(payload)
-    assert decoded(payload, 30, True, 60)[0] < 0                # 100 above a base of 60
-    assert decoded(payload, 9, True, 0)[0] < 0                  # the value lies outside
+    assert decoded(payload, 30, True, 60)[0] < 0  # 100 above a base of 60
+    assert decoded(payload, 9, True, 0)[0] < 0  # the value lies outside
     assert decoded(payload[:-1] + bytes([payload[-1] | 1]), 30, True, 0)[0] < 0
     where, value = np.empty(30, np.int32), np.empty(30, np.int16)
     data = np.frombuffer(payload, np.uint8)

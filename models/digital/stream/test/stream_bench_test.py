@@ -6,8 +6,13 @@ import pytest
 from models.digital.stream import decode_stream, encode_frame
 from models.digital.stream.test.frames import header_of, samples_of
 
-CASES = {"noise": ("edge", 0, 1), "dense": ("edge", 0, 0.5), "edges": ("edge", 10, 0.12), "zeros": ("edge", 127, 0),
-         "raw": ("raw", 0, 1)}
+CASES = {
+    "noise": ("edge", 0, 1),
+    "dense": ("edge", 0, 0.5),
+    "edges": ("edge", 10, 0.12),
+    "zeros": ("edge", 127, 0),
+    "raw": ("raw", 0, 1),
+}
 
 
 @pytest.mark.bench
@@ -20,12 +25,15 @@ def test_decode(benchmark, case):
     else:
         samples = samples_of(header, 1, share)
     data = encode_frame(header, samples, 0, 0)
-    frame, = benchmark(decode_stream, data)
+    (frame,) = benchmark(decode_stream, data)
     assert np.array_equal(frame.samples, samples)
     if benchmark.stats:
         seconds = benchmark.stats["median"]
-        benchmark.extra_info |= {"ratio": samples.size / len(data), "stream_mb_s": len(data) / seconds / 1e6,
-                                 "samples_mb_s": frame.samples.nbytes / seconds / 1e6}
+        benchmark.extra_info |= {
+            "ratio": samples.size / len(data),
+            "stream_mb_s": len(data) / seconds / 1e6,
+            "samples_mb_s": frame.samples.nbytes / seconds / 1e6,
+        }
 
 
 @pytest.mark.bench

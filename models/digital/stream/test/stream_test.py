@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings, strategies as st
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from models.digital.stream import StreamError, StreamHeader, decode, decode_stream, encode_frame, iterate_frames
 from models.digital.stream.header import HEADER_BYTES, read_header
@@ -14,7 +15,7 @@ from models.parameters import FrameParameters, ParameterError, PixelType, TilePa
 def test_any_frame_comes_back(header, seed, share, made):
     samples = samples_of(header, seed, share)
     data = encode_frame(header, samples, made, 7)
-    frame, = decode_stream(data)
+    (frame,) = decode_stream(data)
     assert frame.header == header
     assert frame.samples.dtype == np.int16 and np.array_equal(frame.samples, samples)
     assert frame.complete and not frame.errors
@@ -50,7 +51,7 @@ def test_frames_follow_each_other():
 def test_codes_under_the_threshold_are_zeros():
     header = header_of(4, 6, threshold=5)
     samples = np.arange(24).reshape(4, 6, 1) - 12
-    frame, = decode_stream(encode_frame(header, samples, 0, 0))
+    (frame,) = decode_stream(encode_frame(header, samples, 0, 0))
     assert np.array_equal(frame.samples, np.where(abs(samples) < 5, 0, samples))
 
 
@@ -60,9 +61,15 @@ def test_a_frame_of_zeros_is_a_few_bytes_a_row():
     assert len(data) == HEADER_BYTES + 384 * 3 + TRAILER_BYTES
 
 
-@pytest.mark.parametrize("samples, message", [
-    (np.zeros((8, 12), int), "shape"), (np.zeros((8, 12, 1)), "integers"),
-    (np.full((8, 12, 1), 128), "128: must be in -128..127"), (np.full((8, 12, 1), -129), "-129..-129")])
+@pytest.mark.parametrize(
+    "samples, message",
+    [
+        (np.zeros((8, 12), int), "shape"),
+        (np.zeros((8, 12, 1)), "integers"),
+        (np.full((8, 12, 1), 128), "128: must be in -128..127"),
+        (np.full((8, 12, 1), -129), "-129..-129"),
+    ],
+)
 def test_samples_out_of_range_are_named(samples, message):
     with pytest.raises(ParameterError, match=message):
         encode_frame(header_of(8, 12), samples, 0, 0)

@@ -7,8 +7,16 @@ from hypothesis import strategies as st
 from models.afe.trim import TRIM_BITS, TRIM_MAX, TRIM_MIN, trim_gain
 from models.digital.registers import RegisterBank
 from models.parameters import FrameParameters, ParameterError, SensorParameters, TileParameters
-from models.parameters.registers import (command, decode_status, frame_writes, read_transfer, register_map,
-                                         status_transfers, trim_range, write_transfers)
+from models.parameters.registers import (
+    command,
+    decode_status,
+    frame_writes,
+    read_transfer,
+    register_map,
+    status_transfers,
+    trim_range,
+    write_transfers,
+)
 from models.parameters.registers.__main__ import markdown
 
 CHIP = register_map()
@@ -63,15 +71,18 @@ def test_what_is_written_is_what_the_bank_holds(trims, mask, threshold):
         assert (bank.value(f.key) ^ sign) - sign == trim
 
 
-@pytest.mark.parametrize("trims, field", [
-    ([trim_range()[1] + 1], "trim 0"), ([0, trim_range()[0] - 1], "trim 1"), ([0] * 25, "trims")])
+@pytest.mark.parametrize(
+    "trims, field", [([trim_range()[1] + 1], "trim 0"), ([0, trim_range()[0] - 1], "trim 1"), ([0] * 25, "trims")]
+)
 def test_trims_out_of_range(trims, field):
     with pytest.raises(ParameterError, match=f"^{field} = "):
         frame_writes(FrameParameters(FULL), trims)
 
 
-@pytest.mark.parametrize("writes, field", [
-    ([(128, 0)], "address"), ([(5, 1), (-1, 0)], "address"), ([(3, 256)], "byte for address 3"), ([(3, -1)], "byte")])
+@pytest.mark.parametrize(
+    "writes, field",
+    [([(128, 0)], "address"), ([(5, 1), (-1, 0)], "address"), ([(3, 256)], "byte for address 3"), ([(3, -1)], "byte")],
+)
 def test_writes_of_what_is_no_byte(writes, field):
     with pytest.raises(ParameterError, match=f"^{field}.* = "):
         write_transfers(writes)
@@ -82,11 +93,19 @@ def test_status_round_trip():
     bank.set("done")
     bank.set("amp_err")
     counters = [2**63 + 5, 77, 0]
-    replies = [bytes(1) + bytes(bank.read(t[0] + i, True, counters) for i in range(len(t) - 1))
-               for t in status_transfers()]
+    replies = [
+        bytes(1) + bytes(bank.read(t[0] + i, True, counters) for i in range(len(t) - 1)) for t in status_transfers()
+    ]
     assert decode_status(replies) == {
-        "busy": True, "done": True, "cfg_err": False, "amp_err": True, "refused": False,
-        "cycles": counters[0], "conversions_made": counters[1], "conversions_left_out": counters[2]}
+        "busy": True,
+        "done": True,
+        "cfg_err": False,
+        "amp_err": True,
+        "refused": False,
+        "cycles": counters[0],
+        "conversions_made": counters[1],
+        "conversions_left_out": counters[2],
+    }
     with pytest.raises(ParameterError, match="status replies"):
         decode_status(replies[:1])
 

@@ -1,0 +1,1 @@
+"""What every floor above the models shares: files, caches, jobs, tools, steps, GDS, LEF, Liberty, pages."""
