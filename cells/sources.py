@@ -2,11 +2,9 @@
 
 import json
 import re
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import tools as child
 from cells.extract import extract
 from cells.flexcell.canvas import Canvas
 from cells.flexcell.catalogue import schematics

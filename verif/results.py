@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-from pathlib import Path
 
 from base.files import staged
 from base.paths import ROOT

@@ -4,7 +4,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from cells.flexcell.place import breaks
-from cells.flexcell.route import Task, route
+from cells.flexcell.route import Task
 
 
 @dataclass

@@ -1,6 +1,6 @@
 """The trim that belongs to the pixels at the pins: position in the tile -> pixel type -> register."""
 
-from pymtl3 import Bits3, Bits5, Bits8, Bits10, Component, InPort, OutPort, Wire, clog2, mk_bits, trunc, update, zext
+from pymtl3 import Bits3, Bits5, Bits10, Component, InPort, OutPort, Wire, clog2, mk_bits, trunc, update, zext
 
 
 class Balance(Component):

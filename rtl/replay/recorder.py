@@ -1,6 +1,5 @@
 """A pytest plugin that records what tests do at a component's ports: `-p rtl.replay.recorder`, Verilog level too."""
 
-import os
 from pathlib import Path
 
 from rtl import testbench

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 from dataclasses import dataclass
-from pathlib import Path
 from xml.etree import ElementTree
 
 from base.paths import ROOT

@@ -82,7 +82,6 @@ def abstract(gds, directions, known, names):
 def antennas(layout, top, known, found, signals):
     """What the nets of the pins ``found`` gather and bear: dict net -> (um2 of gates, um2 of diffusions, list of
     (Wire, um2 of side walls)), all wires joined. signals: nets that are asked for."""
-    import klayout.db as db
 
     l2n, gate, diffusion, wires = next(connected(layout, top, known, [len(known.wires) - 1]))
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from base import lef
 from flow.layout.netlist.netlist import SUPPLIES
-from platforms import openroad
 
 from .abstract import EDGE_UM
 

@@ -1,13 +1,12 @@
 """The library's cells measured at the process's corners: delays, slews, energies, setup and hold as Liberty."""
 
-import importlib
 import json
 import re
 from dataclasses import dataclass, field
 
 from base import jobs
 from base.steps import Step, StepError
-from platforms.coriolis import modules, process
+from platforms.coriolis import modules
 
 NS = 1e-9
 MEASURES = "characterize", "spice", "netlist", "liberty", "extract"  # of cells/: whose text decides the result

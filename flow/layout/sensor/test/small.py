@@ -1,7 +1,6 @@
 """A small die: 16 x 120 pixels, two lanes, and a core that has the chip's pins and straps and nothing in it."""
 
 import json
-from pathlib import Path
 
 from base.paths import ROOT
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
