@@ -10,7 +10,6 @@ import time
 from functools import cache
 from pathlib import Path
 
-
 PROVEN, FAILED, UNKNOWN = "proven", "failed", "unknown"
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from base.files import staged
+from base.paths import ROOT
 from base.steps import Runner, StepError
 from flow.layout.block import laid_out, tell
 from flow.layout.report.metrics import broken

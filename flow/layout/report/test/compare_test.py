@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from flow.layout.report.metrics import table_6_1
 from flow.layout.report import compare
+from flow.layout.report.metrics import table_6_1
 
 SUMMARY = {
     "area_um2": 1000.0,
