@@ -30,7 +30,7 @@ from .steps.library import Library, LibraryParameters
 from .steps.lvs import Lvs, LvsParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.power import Power, PowerParameters
-from .steps.reroute import Mend, MendParameters
+from .steps.reroute import Reroute, RerouteParameters
 from .steps.sta import Sta, StaParameters
 from .steps.sta_blocks import StaBlocks, StaBlocksParameters
 from .steps.stimulus import Stimulus, StimulusParameters
@@ -46,9 +46,9 @@ CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 ASSEMBLED = {
     "place_route.netlist": "assemble.netlist",
     "place_route.placement": "assemble.placement",
-    "mend.placement": "assemble.placement",
+    "reroute.placement": "assemble.placement",
 }
-MOST_OPEN = {False: 60, True: 200}  # nets that are routed anew behind the router; around blocks it leaves more open
+MOST_OPEN = {False: 60, True: 200}  # open nets that are rerouted after the router; around blocks it leaves more open
 STEP, LEAST = 0.04, 0.20  # utilization: of one round of tries less than of the one before; of the last
 EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second try has the one that its first has not
 ASPECTS = 1.0, 1.25  # width by height of a round's tries
@@ -160,7 +160,7 @@ def judged(design, options):
     clock, hard = design.clock.port, modules(design)
     assemble = [Assemble(AssembleParameters(options.pdk, hard))] if hard else []
     return [
-        Mend(MendParameters(options.pdk, clock, MOST_OPEN[bool(hard)])),
+        Reroute(RerouteParameters(options.pdk, clock, MOST_OPEN[bool(hard)])),
         *assemble,
         StreamOut(StreamOutParameters(options.pdk, clock, bool(hard))),
         Fill(FillParameters(options.pdk)),
@@ -260,8 +260,8 @@ def layout(design, options, runner, behind=back):
         placed += 1
         found = runner.run(place_route)["metrics"]
         tried[-1]["open_segments"] = found["open_segments"]
-        mend, *others = judged(design, options)
-        if found["stopped"] is None and not runner.run(mend)["metrics"]["open_nets"]:
+        reroute, *others = judged(design, options)
+        if found["stopped"] is None and not runner.run(reroute)["metrics"]["open_nets"]:
             broken = sum(
                 record["metrics"].get(f"{step.name}_violations", 0)
                 for step, record in zip(others, runner.run_all(others), strict=True)

@@ -11,7 +11,7 @@ PARTS = {
     "gds": "fill.gds",
     "verilog": "stream_out.verilog",
     "netlist": "place_route.netlist",
-    "placement": "mend.placement",
+    "placement": "reroute.placement",
     "spice": "stream_out.spice",
 }
 

@@ -169,6 +169,6 @@ def _pins(layout, top, die, wire, known, strap):
                     yield net, polygon.bbox() & die
             else:
                 for part in (shape & bands).decompose_trapezoids_to_region(db.Polygon.TD_htrapezoids).each():
-                    pin = part.bbox()  # of an L, which a mended net may have there, both arms
+                    pin = part.bbox()  # of an L, which a rerouted net may have there, both arms
                     if pin.left <= die.left or pin.right >= die.right:
                         yield net, pin & die

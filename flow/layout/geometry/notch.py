@@ -1,6 +1,6 @@
 """Notches and holes of one net's metal that are narrower or smaller than a process allows are filled.
 
-A wire that `mend` leads to a block's pin ends in a pad beside it, now and then a few nm away: one shape with a slit.
+A route that `reroute` leads to a block's pin ends in a pad beside it, now and then a few nm away: one shape with a slit.
 What fills a slit joins nothing that was not one shape before.
 """
 

@@ -32,10 +32,10 @@ class Assemble(Step):
     name = "assemble"
     inputs = {
         "netlist": "place_route.netlist",
-        "placement": "mend.placement",
+        "placement": "reroute.placement",
         "floorplan": "floorplan.floorplan",
         "cells": "library.spice",
-        "gds": "mend.gds",
+        "gds": "reroute.gds",
         "areas": "library.areas",
     }
     outputs = {"gds": "assembled.gds", "netlist": "netlist.json", "placement": "placement.json", "spice": "parts.spi"}

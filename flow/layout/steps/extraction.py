@@ -28,7 +28,7 @@ class Extraction(Step):
     name = "extraction"
     inputs = {
         "netlist": "place_route.netlist",
-        "placement": "mend.placement",
+        "placement": "reroute.placement",
         "platform": "platform",
         "liberty": "library.liberty",
     }

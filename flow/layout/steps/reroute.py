@@ -1,4 +1,4 @@
-"""Nets that the router left open, too near to others or with an antenna, routed anew."""
+"""Rip-up and reroute of nets that are open, too near to others or have an antenna."""
 
 import json
 import re
@@ -15,11 +15,10 @@ from ..geometry import boxes as boxes_module
 from ..netlist import netlist as netlist_module
 from ..netlist.netlist import Netlist
 from ..reroute import board as board_module
-from ..reroute import marks as marks_module
 from ..reroute import negotiate as bargain_module
-from ..reroute import nets, search, window, wiring
+from ..reroute import nets, search, violations, window, wiring
 from ..reroute.board import Board
-from ..reroute.marks import Marks, marks, marks_of, shared_out
+from ..reroute.violations import Marks, marks, marks_of, shared_out
 from ..reroute.negotiate import bargain
 from ..reroute.wiring import Wiring
 from . import antenna
@@ -30,7 +29,7 @@ ROUNDS = 5  # who is moved for one net's sake may get an antenna by it
 
 
 @dataclass(frozen=True)
-class MendParameters:
+class RerouteParameters:
     """pdk: process. clock: name of the clock port. most: nets, with more the layout is given up."""
 
     pdk: str = "sky130"
@@ -41,12 +40,15 @@ class MendParameters:
         check_int("most", self.most, 0, 10_000)
 
 
-class Mend(Step):
-    """open_nets: left open. mended: nets routed anew because they were open, hopped: because of an antenna, each gate
-    behind a piece of the highest wire, parted: because another was nearer than the rules allow, moved: because they
-    were in the way. Wires of the clock's tree are left alone, but for the one from the port to its root."""
+class Reroute(Step):
+    """Rip-up and reroute with negotiated congestion.
 
-    name = "mend"
+    open_nets: still open. rerouted_nets: rerouted because they were open; antenna_jumpers: because of an antenna, with a
+    jumper on the top layer in front of every gate; respaced_nets: because another net was too near; evicted_nets:
+    because they were in the way. The clock tree is left alone, except the net from the port to its root.
+    """
+
+    name = "reroute"
     inputs = {
         "gds": "place_route.gds",
         "placement": "place_route.placement",
@@ -56,15 +58,22 @@ class Mend(Step):
         "rules": "library.rules",
         "geometry": "library.geometry",
     }
-    outputs = {"gds": "mended.gds", "placement": "placement.json"}
-    Parameters = MendParameters
-    metrics = {"open_nets": "", "mended": "", "hopped": "", "parted": "", "moved": "", "wire_um": "um"}
+    outputs = {"gds": "rerouted.gds", "placement": "placement.json"}
+    Parameters = RerouteParameters
+    metrics = {
+        "open_nets": "",
+        "rerouted_nets": "",
+        "antenna_jumpers": "",
+        "respaced_nets": "",
+        "evicted_nets": "",
+        "wire_um": "um",
+    }
     uses = (
         antenna,
         bargain_module,
         boxes_module,
         board_module,
-        marks_module,
+        violations,
         nets,
         search,
         window,
@@ -92,13 +101,13 @@ class Mend(Step):
         placement["wires"] |= {names.get(net, f"cts_{net}"): _wires(rules, shapes) for net, shapes in made.items()}
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
-        mended, hopped = set(made) & set(left), set(made) & hopping
+        rerouted, jumped = set(made) & set(left), set(made) & hopping
         return {
             "open_nets": len(found.open if found else left),
-            "mended": len(mended),
-            "hopped": len(hopped - mended),
-            "parted": len(near - mended - hopped),
-            "moved": len(set(made) - mended - hopped - near),
+            "rerouted_nets": len(rerouted),
+            "antenna_jumpers": len(jumped - rerouted),
+            "respaced_nets": len(near - rerouted - jumped),
+            "evicted_nets": len(set(made) - rerouted - jumped - near),
             "wire_um": round(sum(wire[1] for net in placement["wires"].values() for wire in net), 1),
         }
 

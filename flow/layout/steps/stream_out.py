@@ -28,7 +28,7 @@ class StreamOut(Step):
 
     name = "stream_out"
     inputs = {
-        "gds": "mend.gds",
+        "gds": "reroute.gds",
         "netlist": "place_route.netlist",
         "synthesized": "synthesis.netlist",
         "cells": "library.spice",
@@ -124,7 +124,7 @@ def relabel(source, target, top_name, names, ports, known, rules):
 
 def _clear_pins(shapes, places):
     """Leave of the boxes ``shapes`` of a pins' layer, for each of ``places``, the least one around it. Coriolis marks all
-    wires of a port's net as pins, also where `mend` has moved them away, and decks take a pin for metal."""
+    wires of a port's net as pins, also where `reroute` moved them, and decks take a pin for metal."""
     import klayout.db as db
 
     boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]

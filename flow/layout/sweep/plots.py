@@ -79,7 +79,7 @@ def effort_plot(points):
                     xytext=(6, -3),
                     textcoords="offset points",
                 )
-        axes.set(xlabel="seconds of placing, routing and mending", ylabel=words)
+        axes.set(xlabel="seconds of placement, routing and rerouting", ylabel=words)
         axes.margins(0.08)
     marks = [
         Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")

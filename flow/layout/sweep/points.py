@@ -79,8 +79,8 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
     }
     if found["metrics"]["stopped"] is not None:
         return made
-    mend, *others = judged(design, options)
-    wires = runner.run(mend)
+    reroute, *others = judged(design, options)
+    wires = runner.run(reroute)
     made["seconds"] = round(made["seconds"] + wires["wall_s"], 2)
     if wires["metrics"]["open_nets"]:
         return made

@@ -30,7 +30,7 @@ def runner(tmp_path_factory):
     floorplan, place_route = next(chain.tries(design, options))
     made.run(floorplan)
     assert made.run(place_route)["metrics"]["routed"]
-    for step in chain.judged(design, options)[:3]:  # mended, streamed out, filled
+    for step in chain.judged(design, options)[:3]:  # rerouted, streamed out, filled
         made.run(step)
     return made
 

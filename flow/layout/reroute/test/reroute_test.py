@@ -5,7 +5,7 @@ import random
 import pytest
 
 from flow.layout.reroute.board import Board
-from flow.layout.reroute.marks import Marks, marks, shared_out
+from flow.layout.reroute.violations import Marks, marks, shared_out
 from flow.layout.reroute.negotiate import bargain
 from flow.layout.reroute.nets import routed
 from flow.layout.reroute.wiring import Wiring
