@@ -15,7 +15,7 @@ settings.register_profile("smallest", phases=list(Phase))
 settings.load_profile("first")
 
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
-LAYOUTS = "cells/extract", "cells/flexcell", "cells/lef", "cells/test"
+LAYOUTS = "cells/extract", "cells/compact", "cells/lef", "cells/test"
 collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cells.extract import extract
-from cells.flexcell.canvas import Canvas
-from cells.flexcell.catalogue import schematics
-from cells.flexcell.library import schematic_spice, written
+from cells.compact.canvas import Canvas
+from cells.compact.catalogue import schematics
+from cells.compact.library import schematic_spice, written
 from cells.lef import header as lef_header
 from cells.netlist import spice
 from models.parameters import ParameterError
@@ -16,11 +16,11 @@ from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import models as sky130
 from platforms.sky130 import process as sky130_layout
 
-LIBRARIES = ("sky130_hd", "flexcell")
+LIBRARIES = ("sky130_hd", "compact")
 NETLISTS = ("extracted", "capacitances", "devices", "schematic")
-FLEXCELL = Path("build/cells/flexcell")
+COMPACT = Path("build/cells/compact")
 # cells without an input that hold a constant: cell -> pin: level
-CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}}, "flexcell": {"zero_x1": {"zero": 0}, "one_x1": {"one": 1}}}
+CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}}, "compact": {"zero_x1": {"zero": 0}, "one_x1": {"one": 1}}}
 _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
 
 
@@ -36,12 +36,12 @@ class Source:
 def names(library):
     """Cells of ``library`` that synthesis may use, sorted: of LIBRARIES, or every .subckt of a SPICE file.
 
-    FlexCell is drawn first if it is not there.
+    The compact cells are drawn first if their files are missing.
     """
     if library == "sky130_hd":
         return sky130_hd.names()
-    if library == "flexcell":
-        return sorted(name for name in _flexcell_areas() if not name.startswith(_NOT_LOGIC))
+    if library == "compact":
+        return sorted(name for name in _compact_areas() if not name.startswith(_NOT_LOGIC))
     return sorted(spice.read_all(_file(library)))
 
 
@@ -49,8 +49,8 @@ def left_out(library):
     """{cell: why} of the cells of ``library`` that are not characterized, for want of a function."""
     if library == "sky130_hd":
         return sky130_hd.left_out()
-    if library == "flexcell":
-        return {name: "has no input, or no logic" for name in sorted(_flexcell_areas()) if name.startswith(_NOT_LOGIC)}
+    if library == "compact":
+        return {name: "has no input, or no logic" for name in sorted(_compact_areas()) if name.startswith(_NOT_LOGIC)}
     return {}
 
 
@@ -70,10 +70,10 @@ def source(library, name, netlist="extracted"):
     if library not in LIBRARIES:
         return Source(name, spice.subcircuit(spice.source(_file(library)), name), None)
     strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
-    if library == "flexcell":
+    if library == "compact":
         if netlist == "schematic":
-            return Source(name, schematic_spice(schematics()[name], Canvas()), _flexcell_areas()[name])
-        return Source(name, extract(FLEXCELL / "flexcell.gds", name, sky130_layout, **strays), _flexcell_areas()[name])
+            return Source(name, schematic_spice(schematics()[name], Canvas()), _compact_areas()[name])
+        return Source(name, extract(COMPACT / "compact.gds", name, sky130_layout, **strays), _compact_areas()[name])
     gds = sky130_hd.file(name, "gds")
     text = (
         sky130_hd.file(name, "spice").read_text()
@@ -84,14 +84,14 @@ def source(library, name, netlist="extracted"):
 
 
 def files(library, cells):
-    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of FlexCell all cells.
+    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of the compact library all cells.
 
     Nothing of a SPICE file, which has neither.
     """
     if library not in LIBRARIES:
         return {}
-    if library == "flexcell":
-        return {suffix: (FLEXCELL / f"flexcell.{suffix}").read_text() for suffix in ("lef", "v")}
+    if library == "compact":
+        return {suffix: (COMPACT / f"compact.{suffix}").read_text() for suffix in ("lef", "v")}
     names = sorted({*cells, *CONSTANTS[library]})
     macros = (sky130_hd.file(name, "lef").read_text() for name in names)
     macros = [text[text.find("MACRO") : text.rfind("END LIBRARY")].rstrip() for text in macros]
@@ -105,8 +105,8 @@ def constants(library):
     """{cell's whole name: (pin: level, area in um2)} of the cells that hold a constant."""
     if library not in LIBRARIES:
         return {}
-    if library == "flexcell":
-        return {name: (pins, _flexcell_areas()[name]) for name, pins in CONSTANTS[library].items()}
+    if library == "compact":
+        return {name: (pins, _compact_areas()[name]) for name, pins in CONSTANTS[library].items()}
     return {
         f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
         for name, pins in CONSTANTS[library].items()
@@ -134,7 +134,7 @@ def _file(library):
     return path
 
 
-def _flexcell_areas():
-    """um2 of every cell of FlexCell, drawn now if it is not there or was drawn by other code."""
-    written(FLEXCELL)
-    return json.loads((FLEXCELL / "areas.json").read_text())
+def _compact_areas():
+    """um2 of every compact cell, drawn now if the files are missing or other code drew them."""
+    written(COMPACT)
+    return json.loads((COMPACT / "areas.json").read_text())

@@ -1,6 +1,6 @@
 """The cells: names, functions and transistors. Ports are named as in c4m-flexcell (i0, cmd, q, nq, clk, nrst)."""
 
-from cells.flexcell.transistors import Schematic, Switch
+from cells.compact.transistors import Schematic, Switch
 
 INPUTS = ("i0", "i1", "i2", "i3", "i4")
 

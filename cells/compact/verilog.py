@@ -2,10 +2,10 @@
 
 
 def verilog(cells):
-    """Text for ``cells`` (cells.flexcell.pdk.DrawnCell): a module each, without supply pins."""
+    """Text for ``cells`` (cells.compact.pdk.DrawnCell): a module each, without supply pins."""
     return "\n".join(
         [
-            "// Cells of the FlexCell library; written by python -m cells.flexcell",
+            "// Compact cells; written by python -m cells.compact",
             *(module(cell.schematic) for cell in cells),
         ]
     )

@@ -2,8 +2,8 @@
 
 from dataclasses import asdict
 
-from cells.flexcell.draw import CUT, WIRE, Pen, frame
-from cells.flexcell.transistors import Schematic
+from cells.compact.draw import CUT, WIRE, Pen, frame
+from cells.compact.transistors import Schematic
 
 WIDTHS = (1, 2, 4, 8)  # sites
 

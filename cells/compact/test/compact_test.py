@@ -9,16 +9,16 @@ pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
 from cells.extract import extract
 from cells.extract.compare import differences
-from cells.flexcell.assemble import assemble, task
-from cells.flexcell.canvas import Canvas
-from cells.flexcell.catalogue import schematics
-from cells.flexcell.draw import Drawing, Shape
-from cells.flexcell.library import schematic_spice
-from cells.flexcell.make import make, recipe
-from cells.flexcell.place import breaks, place
-from cells.flexcell.route import route
-from cells.flexcell.rules import broken
-from cells.flexcell.transistors import Schematic, Switch
+from cells.compact.assemble import assemble, task
+from cells.compact.canvas import Canvas
+from cells.compact.catalogue import schematics
+from cells.compact.draw import Drawing, Shape
+from cells.compact.library import schematic_spice
+from cells.compact.make import make, recipe
+from cells.compact.place import breaks, place
+from cells.compact.route import route
+from cells.compact.rules import broken
+from cells.compact.transistors import Schematic, Switch
 from cells.netlist import spice
 from models.parameters import ParameterError
 from platforms.sky130 import process

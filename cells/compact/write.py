@@ -3,9 +3,9 @@
 import json
 
 from base.gds import write_gds
-from cells.flexcell.liberty import liberty
-from cells.flexcell.library import NAME, SITE, pins
-from cells.flexcell.verilog import verilog
+from cells.compact.liberty import liberty
+from cells.compact.library import NAME, SITE, pins
+from cells.compact.verilog import verilog
 from cells.lef import abstract, header
 from platforms.sky130.process import PROCESS
 
@@ -36,17 +36,17 @@ NPC = (95, 20)  # nitride cut over the gates' contacts: a mask that PDKMaster's 
 
 
 def write(library, canvas, folder):
-    """Write every file of ``library`` (cells.flexcell.library) into ``folder``.
+    """Write every file of ``library`` (cells.compact.library) into ``folder``.
 
-    flexcell.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/flexcell/
+    compact.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/compact/
     (Python package: techno.setup() and StdCellLib.setup()).
     """
     cells = list(library.cells)
-    _gds(library, canvas, folder / "flexcell.gds")
-    (folder / "flexcell.spi").write_text(_spice(cells))
-    (folder / "flexcell.v").write_text(verilog(cells))
-    (folder / "flexcell.lib").write_text(liberty(cells, canvas))
-    (folder / "flexcell.lef").write_text(_lef(cells, canvas, folder / "flexcell.gds"))
+    _gds(library, canvas, folder / "compact.gds")
+    (folder / "compact.spi").write_text(_spice(cells))
+    (folder / "compact.v").write_text(verilog(cells))
+    (folder / "compact.lib").write_text(liberty(cells, canvas))
+    (folder / "compact.lef").write_text(_lef(cells, canvas, folder / "compact.gds"))
     areas = {cell.name: round(cell.drawing["width"] * canvas.height, 4) for cell in cells}
     (folder / "areas.json").write_text(json.dumps(areas, indent=1) + "\n")
     _decks(folder / "decks")
@@ -102,7 +102,7 @@ def _coriolis(library, folder):
 
     spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)
     exporter = FileExporter(tech=tech, gds_layers=gds_layers, spec=spec)
-    package = folder / "flexcell"
+    package = folder / "compact"
     package.mkdir(parents=True)
     (package / "techno.py").write_text(exporter())
     (package / f"{NAME}.py").write_text(exporter(library))

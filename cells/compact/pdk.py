@@ -8,7 +8,7 @@ from pdkmaster.technology import geometry
 
 
 class DrawnCell(pdk_cell.Cell):
-    """A cell with its circuit and layout. schematic: Schematic; drawing: as `cells.flexcell.make.make` returns it."""
+    """A cell with its circuit and layout. schematic: Schematic; drawing: as `cells.compact.make.make` returns it."""
 
     def __init__(self, canvas, schematic, drawing):
         super().__init__(name=schematic.name, tech=tech, cktfab=cktfab, layoutfab=layoutfab)

@@ -1,4 +1,4 @@
-"""Wires inside a cell: negotiated routing (PathFinder) on cells.flexcell.grid.
+"""Wires inside a cell: negotiated routing (PathFinder) on cells.compact.grid.
 
 Every net is routed as if it were alone, at a price; where two meet the price rises until one of them goes round.
 """
@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 
-from cells.flexcell.grid import Grid
+from cells.compact.grid import Grid
 
 ROUNDS = 80
 NOISE = 0.2

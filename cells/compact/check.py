@@ -10,7 +10,7 @@ from base.tools import ToolError, finish
 
 
 def check(folder, names, workers=-1):
-    """Check every cell in ``folder`` (as cells.flexcell.write makes it): {name: {"drc": {rule: count}, "lvs": bool}}.
+    """Check every cell in ``folder`` (as cells.compact.write makes it): {name: {"drc": {rule: count}, "lvs": bool}}.
 
     DRC of all cells far apart and of all of them abutted in many orders (a rule broken between cells counts for
     'gallery'), LVS of each. Results are kept in folder/checks. Raises ToolError when KLayout is missing or fails.
@@ -20,7 +20,7 @@ def check(folder, names, workers=-1):
     drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
     jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in ("apart", "gallery")]
     jobs += [
-        Job(name, matches, (str(folder), name), (lvs, folder / "flexcell.spi", _content(folder, name)))
+        Job(name, matches, (str(folder), name), (lvs, folder / "compact.spi", _content(folder, name)))
         for name in names
     ]
     apart, abutted, *lvs = run(jobs, folder / "checks", "cells checked", workers)
@@ -42,7 +42,7 @@ def _arrange(folder, names):
     orders = [names, names[::-1], names[half:] + names[:half], names[::2] + names[1::2]]
     for top_name, rows, gap in (("apart", [names], 5000), ("gallery", orders, 0)):
         layout = db.Layout()
-        layout.read(str(folder / "flexcell.gds"))
+        layout.read(str(folder / "compact.gds"))
         boundary = layout.layer(235, 4)
         top = layout.create_cell(top_name)
         for row, order in enumerate(rows):
@@ -81,8 +81,8 @@ def matches(folder, name):
         "lvs",
         name,
         {
-            "SOURCE_FILE": str((folder / "flexcell.gds").absolute()),
-            "SPICE_FILE": str((folder / "flexcell.spi").absolute()),
+            "SOURCE_FILE": str((folder / "compact.gds").absolute()),
+            "SPICE_FILE": str((folder / "compact.spi").absolute()),
         },
     )
     return "LVS OK" in words
@@ -93,7 +93,7 @@ def _content(folder, name):
     import klayout.db as db
 
     layout = db.Layout()
-    layout.read(str(folder / "flexcell.gds"))
+    layout.read(str(folder / "compact.gds"))
     return "".join(
         f"{info}{sorted(map(str, layout.cell(name).shapes(layout.layer(info)).each()))}"
         for info in layout.layer_infos()

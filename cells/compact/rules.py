@@ -2,7 +2,7 @@
 
 import klayout.db as db
 
-from cells.flexcell.draw import regions
+from cells.compact.draw import regions
 
 SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}  # nm
 WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}

@@ -1,6 +1,6 @@
 """A cell from its schematic: the narrowest placement that routes and breaks no rule.
 
-recipes.json holds what a longer search has found (python -m cells.flexcell.search): a seed of the placement, where
+recipes.json holds what a longer search has found (python -m cells.compact.search): a seed of the placement, where
 extra gaps are, whether met1 is used. With it a cell is drawn at once; without it, it is searched for.
 """
 
@@ -8,11 +8,11 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from cells.flexcell.assemble import assemble, task
-from cells.flexcell.draw import Drawing
-from cells.flexcell.place import breaks, place
-from cells.flexcell.route import route
-from cells.flexcell.rules import broken
+from cells.compact.assemble import assemble, task
+from cells.compact.draw import Drawing
+from cells.compact.place import breaks, place
+from cells.compact.route import route
+from cells.compact.rules import broken
 
 RECIPES = Path(__file__).with_name("recipes.json")
 SEEDS = 24  # placements tried when there is no recipe

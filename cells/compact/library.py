@@ -6,14 +6,14 @@ from pathlib import Path
 from base.cache import digest
 from base.files import staged
 from base.jobs import Job, run
-from cells.flexcell.canvas import Canvas
-from cells.flexcell.catalogue import schematics
-from cells.flexcell.make import make, recipe
-from cells.flexcell.ties import diode, ties
+from cells.compact.canvas import Canvas
+from cells.compact.catalogue import schematics
+from cells.compact.make import make, recipe
+from cells.compact.ties import diode, ties
 
 NAME = "StdCellLib"
-FOLDER = Path("build/cells/flexcell")
-SITE = "flexcell"
+FOLDER = Path("build/cells/compact")
+SITE = "compact"
 SOURCES = [
     Path(__file__).with_name(f"{part}.py")
     for part in ("transistors", "place", "grid", "route", "assemble", "draw", "rules", "make")
@@ -44,7 +44,7 @@ def library(canvas=None, store=FOLDER / "drawn", workers=-1):
     workers: processes that draw what is not in ``store``; 1 within a process that should end by itself (joblib's
     workers keep it waiting for five minutes).
     """
-    from cells.flexcell.pdk import to_pdkmaster
+    from cells.compact.pdk import to_pdkmaster
 
     canvas = canvas or Canvas()
     return to_pdkmaster(NAME, canvas, drawn(canvas, store, workers))
@@ -61,7 +61,7 @@ def pins(schematic):
 
 def written(folder=FOLDER, canvas=None):
     """The library's GDS; written into ``folder`` with all other files unless they are there and of this content."""
-    from cells.flexcell.write import write
+    from cells.compact.write import write
 
     canvas = canvas or Canvas()
     folder = Path(folder)
@@ -75,7 +75,7 @@ def written(folder=FOLDER, canvas=None):
                 if path.is_dir():
                     shutil.rmtree(folder / path.name, ignore_errors=True)
         mark.write_text(stamp)
-    return folder / "flexcell.gds"
+    return folder / "compact.gds"
 
 
 def schematic_spice(schematic, canvas):

@@ -1,4 +1,4 @@
-"""Area of our own blocks on this library against sky130_fd_sc_hd: python -m cells.flexcell.area
+"""Area of our own blocks on this library against sky130_fd_sc_hd: python -m cells.compact.area
 
 Both by the same Yosys script from Liberty files without delays: the mapper looks at areas and logic depth alone.
 """
@@ -19,7 +19,7 @@ from models.parameters import ParameterError
 
 BLOCKS = ("QuadDividerRadix2", "EdgeAdc", "AmpCtrl", "RunLength", "RegFile")
 LIMIT = 1.6  # of the sum, ours by theirs
-STORE = Path("build/cells/flexcell/area")
+STORE = Path("build/cells/compact/area")
 
 
 def mapped(verilog, top, liberty):
@@ -54,9 +54,9 @@ def compare(verilog, blocks, ours, theirs, store=STORE):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python -m cells.flexcell.area", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m cells.compact.area", description=__doc__.splitlines()[0])
     parser.add_argument("--verilog", default="build/verilog", help="folder of the blocks' Verilog (make verilog)")
-    parser.add_argument("--liberty", default="build/cells/flexcell/flexcell.lib", help="of this library")
+    parser.add_argument("--liberty", default="build/cells/compact/compact.lib", help="of this library")
     parser.add_argument("--blocks", default=",".join(BLOCKS), help="names, with commas between them")
     parser.add_argument("--document", help="Markdown file whose part 'area' is written anew")
     options = parser.parse_args(arguments)
@@ -72,7 +72,7 @@ def _report(options):
 
     ours = Path(options.liberty)
     if not ours.exists():
-        raise ParameterError(f"liberty = {ours}: must be a file (python -m cells.flexcell)")
+        raise ParameterError(f"liberty = {ours}: must be a file (python -m cells.compact)")
     STORE.mkdir(parents=True, exist_ok=True)
     theirs = STORE / "sky130_fd_sc_hd.lib"
     theirs.write_text(liberty())
@@ -87,7 +87,7 @@ def _report(options):
 
 
 def _blocks(found, total):
-    lines = ["| block | FlexCell um2 | sky130_fd_sc_hd um2 | ratio |", "|---|---:|---:|---:|"]
+    lines = ["| block | Compact um2 | sky130_fd_sc_hd um2 | ratio |", "|---|---:|---:|---:|"]
     for block, (a, b) in (*((block, [side["um2"] for side in pair]) for block, pair in found.items()), ("all", total)):
         lines.append(f"| {block} | {a:,.0f} | {b:,.0f} | {a / b:.2f} |")
     return "\n".join(lines)

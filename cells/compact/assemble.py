@@ -3,8 +3,8 @@
 from collections import Counter
 from dataclasses import dataclass, field
 
-from cells.flexcell.place import breaks
-from cells.flexcell.route import Task
+from cells.compact.place import breaks
+from cells.compact.route import Task
 
 
 @dataclass

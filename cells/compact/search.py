@@ -1,4 +1,4 @@
-"""Narrower cells by a longer search: python -m cells.flexcell.search --seeds 24:200 --cells dff_x1,dff_x2
+"""Narrower cells by a longer search: python -m cells.compact.search --seeds 24:200 --cells dff_x1,dff_x2
 
 What beats the kept recipe goes into recipes.json, which is part of the sources.
 """
@@ -10,9 +10,9 @@ import sys
 
 from base.files import staged
 from base.jobs import Job, run
-from cells.flexcell.canvas import Canvas
-from cells.flexcell.catalogue import schematics
-from cells.flexcell.make import RECIPES, choose, recipe
+from cells.compact.canvas import Canvas
+from cells.compact.catalogue import schematics
+from cells.compact.make import RECIPES, choose, recipe
 from models.parameters import ParameterError
 
 
@@ -26,7 +26,7 @@ def best(name, first, last, narrower):
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python -m cells.flexcell.search", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m cells.compact.search", description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", default="0:24", help="first:last")
     parser.add_argument("--anew", action="store_true", help="do not compare with the recipes that are kept")
     parser.add_argument("--cells", help="names with commas between; default: all")
@@ -57,7 +57,7 @@ def _run(options):
         )
         for name in names
     ]
-    found = run(jobs, "build/cells/flexcell/search", "cells searched", options.workers)
+    found = run(jobs, "build/cells/compact/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
     better = {name: made for name, made in zip(names, found, strict=True) if made}
     for name, (sites, met1, seed, _) in better.items():

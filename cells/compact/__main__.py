@@ -1,4 +1,4 @@
-"""python -m cells.flexcell: draw the library, write its files and check every cell."""
+"""python -m cells.compact: draw the library, write its files and check every cell."""
 
 import argparse
 import json
@@ -7,29 +7,29 @@ from pathlib import Path
 
 from base.files import check_folder
 from base.tools import ToolError
-from cells.flexcell.library import written
-from cells.flexcell.make import NoLayout
+from cells.compact.library import written
+from cells.compact.make import NoLayout
 from models.parameters import ParameterError
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python -m cells.flexcell", description=__doc__)
-    parser.add_argument("--out", default="build/cells/flexcell", help="folder of the library's files")
+    parser = argparse.ArgumentParser(prog="python -m cells.compact", description=__doc__)
+    parser.add_argument("--out", default="build/cells/compact", help="folder of the library's files")
     parser.add_argument("--no-check", action="store_true", help="leave out DRC and LVS")
     options = parser.parse_args(arguments)
     try:
         check_folder("out", options.out)
         return _run(Path(options.out), not options.no_check)
     except NoLayout as error:
-        print(f"flexcell: {error}", file=sys.stderr)
+        print(f"compact: {error}", file=sys.stderr)
         return 1
     except (ParameterError, ToolError) as error:
-        print(f"flexcell: {error}", file=sys.stderr)
+        print(f"compact: {error}", file=sys.stderr)
         return 2
 
 
 def _run(out, checked):
-    from cells.flexcell.check import check
+    from cells.compact.check import check
 
     gds = written(out)
     names = list(json.loads(gds.with_name("areas.json").read_text()))

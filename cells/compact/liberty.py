@@ -2,9 +2,9 @@
 
 
 def liberty(cells, canvas):
-    """Text for ``cells`` (cells.flexcell.pdk.DrawnCell). No delays: pins have directions, functions and areas only."""
+    """Text for ``cells`` (cells.compact.pdk.DrawnCell). No delays: pins have directions, functions and areas only."""
     lines = [
-        "library(flexcell) {",
+        "library(compact) {",
         "  delay_model : table_lookup;",
         '  time_unit : "1ns"; voltage_unit : "1V"; '
         'current_unit : "1mA"; pulling_resistance_unit : "1kohm"; leakage_power_unit : "1nW";',
