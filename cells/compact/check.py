@@ -20,8 +20,7 @@ def check(folder, names, workers=-1):
     drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
     jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in ("apart", "gallery")]
     jobs += [
-        Job(name, matches, (str(folder), name), (lvs, folder / "compact.spi", _content(folder, name)))
-        for name in names
+        Job(name, matches, (str(folder), name), (lvs, folder / "compact.spi", _content(folder, name))) for name in names
     ]
     apart, abutted, *lvs = run(jobs, folder / "checks", "cells checked", workers)
     result = {name: {"drc": apart.get(name, {}), "lvs": ok} for name, ok in zip(names, lvs, strict=True)}

@@ -4,10 +4,7 @@
 def verilog(cells):
     """Text for ``cells`` (cells.compact.pdk.DrawnCell): a module each, without supply pins."""
     return "\n".join(
-        [
-            "// Compact cells; written by python -m cells.compact",
-            *(module(cell.schematic) for cell in cells),
-        ]
+        ["// Compact cells; written by python -m cells.compact", *(module(cell.schematic) for cell in cells)]
     )
 
 
