@@ -18,7 +18,7 @@ def pinout(lef):
 def datasheet(design, summary, lef, waivers):
     """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
     width, height = size(lef)
-    around, clock = design.surroundings, design.clock
+    io, clock = design.io, design.clock
     tests, density = summary.get("gate_tests"), summary.get("density") or {}
     rows = [
         ("top", design.top),
@@ -29,8 +29,8 @@ def datasheet(design, summary, lef, waivers):
         ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),
         *_figures(summary, "f_max_mhz", "highest clock, MHz"),
         *_figures(summary, "power_uw", "power, uW"),
-        ("input delay, output delay", f"{around.input_delay:.0%}, {around.output_delay:.0%} of the period"),
-        ("load of an output", f"{around.load_pf:g} pF"),
+        ("input delay, output delay", f"{io.input_delay:.0%}, {io.output_delay:.0%} of the period"),
+        ("load of an output", f"{io.load_pf:g} pF"),
         *_figures(summary, "wns_ns", "setup slack, ns"),
         *_figures(summary, "whs_ns", "hold slack, ns"),
         ("timing rests on", summary.get("timing_rests_on")),

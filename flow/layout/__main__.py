@@ -14,8 +14,7 @@ from platforms.foundry import installed
 
 from .block import laid_out
 from .chain import Options, chain
-from .design import DESIGNS, design, folder_name
-from .macros import inner
+from .design import DESIGNS, design, folder_name, macro_designs
 from .report.metrics import broken
 from .sensor.die import CHIP, SENSOR, laid_out_sensor, sensor_steps
 
@@ -82,7 +81,7 @@ def block(chosen, settings, options):
     """(summary.json's path, limits broken) of a design laid out. Raises as `laid_out`."""
     if options.analog:
         raise ParameterError(f"analog = {options.analog}: must be with DESIGN={SENSOR} alone")
-    steps = [f"{block.name}: {step.name}" for block in inner(chosen) for step in chain(block, settings)]
+    steps = [f"{block.name}: {step.name}" for block in macro_designs(chosen) for step in chain(block, settings)]
     with Steps([*steps, *(step.name for step in chain(chosen, settings))]) as bar:
         _, summary = laid_out(chosen, settings, options.out, bar.note)
     return options.out / folder_name(chosen, options.pdk) / "summary.json", broken(summary)

@@ -9,8 +9,8 @@ from base.steps import Runner, StepError
 from platforms.coriolis import process
 
 from .chain import files, layout
-from .design import folder_name
-from .macros import check_same, given, inner
+from .design import folder_name, macro_designs
+from .macros import check_same, given
 from .netlist.netlist import Netlist
 from .power.energy import blocks
 from .report import history
@@ -66,7 +66,7 @@ def laid_out(chosen, settings, out, note):
     """Lay out ``chosen``, and before it the blocks that are hardened in it: (Runner, summary); what came of each lies
     in its folder in ``out``. Raises StepError for a block that breaks a limit."""
     runners = {}
-    for block in inner(chosen):
+    for block in macro_designs(chosen):
         own = replace(settings, utilization=block.utilization)
         runners[block.name], summary = laid_out(block, own, out, lambda text, name=block.name: note(f"{name}: {text}"))
         if wrong := broken(summary):

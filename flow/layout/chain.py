@@ -11,7 +11,7 @@ from flow.simulate.verilator import FRAME
 from models.parameters import ParameterError, check_int, check_real
 from platforms.coriolis import process
 
-from .design import DESIGNS
+from .design import DESIGNS, macro_modules
 from .steps.antenna import Antenna, AntennaParameters
 from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
@@ -117,14 +117,9 @@ def files(design, options, folder):
     )
 
 
-def modules(design):
-    """Names of the modules of a design that are laid out before it: tuple."""
-    return tuple(dict.fromkeys(DESIGNS[hard.design].top for hard in design.macros))
-
-
 def front(design, options):
     """The steps ahead of a floorplan."""
-    library, hard, load = Library(LibraryParameters(options.pdk)), modules(design), design.surroundings.load_pf
+    library, hard, load = Library(LibraryParameters(options.pdk)), macro_modules(design), design.io.load_pf
     if not options.corners:
         return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, load, hard))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
@@ -149,7 +144,7 @@ def tries(design, options):
                 Floorplan(FloorplanParameters(options.pdk, utilization, aspect, places)),
                 PlaceRoute(
                     PlaceRouteParameters(
-                        options.pdk, design.clock.port, options.effort, variation, macros=modules(design)
+                        options.pdk, design.clock.port, options.effort, variation, macros=macro_modules(design)
                     )
                 ),
             )
@@ -157,7 +152,7 @@ def tries(design, options):
 
 def judged(design, options):
     """The steps behind a routing that say whether it keeps the design rules."""
-    clock, hard = design.clock.port, modules(design)
+    clock, hard = design.clock.port, macro_modules(design)
     assemble = [Assemble(AssembleParameters(options.pdk, hard))] if hard else []
     return [
         Reroute(RerouteParameters(options.pdk, clock, MOST_OPEN[bool(hard)])),
@@ -185,7 +180,7 @@ def back(design, options):
     for step in steps if design.macros else ():
         step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
     return steps + [
-        StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, modules(design)))
+        StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, macro_modules(design)))
         for corner in options.corners
         if design.macros
     ]
@@ -204,7 +199,7 @@ def simulations(design):
 def timed(design, options):
     """The steps that want characterized cells, corner by corner; of the chip, whose frames take minutes with delays,
     simulation and power at the first alone."""
-    clock, around = design.clock, design.surroundings
+    clock, io = design.clock, design.io
     size = {} if design.netlist_names else CHIP_FRAME
     watched = StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac, **size)
     steps = [Stimulus(watched)] if options.corners else []
@@ -215,7 +210,7 @@ def timed(design, options):
         ]
     for corner in options.corners if design.netlist_names else list(options.corners)[:1]:
         steps += [
-            GateDelays(GateDelaysParameters(corner, clock.period_ns, around.input_delay, around.output_delay)),
+            GateDelays(GateDelaysParameters(corner, clock.period_ns, io.input_delay, io.output_delay)),
             Power(PowerParameters(design.top, corner, clock.period_ns)),
             IrDrop(IrDropParameters(options.pdk, corner)),
         ]

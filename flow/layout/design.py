@@ -22,7 +22,7 @@ class Clock:
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class IoConstraints:
     """Delays outside as a share of the period; the slew at inputs (ns); the load of an output (pF)."""
 
     input_delay: float = 0.2
@@ -32,7 +32,7 @@ class Surroundings:
 
 
 @dataclass(frozen=True)
-class Hard:
+class MacroPlacement:
     """A block in a design that is laid out by itself before. instance: its path in the Verilog. design: its name here.
     at: shares of the width and of the height that are left free to its west and its south.
     """
@@ -47,7 +47,7 @@ class Design:
     """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
     block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
     smallest area begins; density_variation: of the placer. A block whose tests have a size of their own is laid out in
-    that size. divider, n_frac: of the chip in whose frame the block is watched. macros: tuple of Hard.
+    that size. divider, n_frac: of the chip in whose frame the block is watched. macros: tuple of MacroPlacement.
     """
 
     name: str
@@ -61,7 +61,7 @@ class Design:
     n_frac: int = 8
     macros: tuple = ()
     clock: Clock = Clock()
-    surroundings: Surroundings = Surroundings()
+    io: IoConstraints = IoConstraints()
 
 
 def divider(name, variant, n_frac=8):
@@ -83,7 +83,7 @@ def divider(name, variant, n_frac=8):
     )
 
 
-DIE = Surroundings(load_pf=0.25)  # of the chip on the sensor's die: the longest wires of flow.layout.sensor
+DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest wires of flow.layout.sensor
 DESIGNS = {
     made.name: made
     for made in (
@@ -104,11 +104,11 @@ DESIGNS = {
             "phase_path",
             ("PhasePath_8_radix4",),
             utilization=0.8,
-            macros=(Hard("divider", "quad_divider"),),
+            macros=(MacroPlacement("divider", "quad_divider"),),
         ),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
         Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
-        Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, surroundings=DIE),
+        Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, io=DIE),
         # of the thesis (B.3.2): both blocks hardened, the rest around them
         Design(
             "asp_chip_macros",
@@ -116,8 +116,11 @@ DESIGNS = {
             "asp_chip",
             utilization=0.5,
             density_variation=0.3,
-            surroundings=DIE,
-            macros=(Hard("phase.divider", "quad_divider", (0.1, 1.0)), Hard("amp", "amp_ctrl", (0.93, 0.8))),
+            io=DIE,
+            macros=(
+                MacroPlacement("phase.divider", "quad_divider", (0.1, 1.0)),
+                MacroPlacement("amp", "amp_ctrl", (0.93, 0.8)),
+            ),
         ),
     )
 }
@@ -139,6 +142,16 @@ def flat_design(name):
             "the embedded backend has these"
         )
     return found
+
+
+def macro_designs(design: Design) -> list[Design]:
+    """Designs of the macros in ``design``, each once: they are laid out before it."""
+    return [DESIGNS[name] for name in dict.fromkeys(placement.design for placement in design.macros)]
+
+
+def macro_modules(design: Design) -> tuple[str, ...]:
+    """Verilog modules of the macros in ``design``, each once."""
+    return tuple(dict.fromkeys(DESIGNS[placement.design].top for placement in design.macros))
 
 
 def folder_name(design, pdk):

@@ -8,9 +8,10 @@ from coriolis.Hurricane import Box
 from coriolis.plugins.block.block import Block
 from coriolis.plugins.block.configuration import BlockConf, IoPin
 
+from flow.layout.netlist.names import CLOCK
+
 from .leaves import balance
 from .macros import fix_macros
-from .session import CLOCK
 from .straps import PIN_CLEARANCE_UM, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}

@@ -3,7 +3,7 @@
 import re
 import sys
 
-CLOCK = "clk"  # name of the clock net in the netlist given to Coriolis
+from flow.layout.netlist.names import CLOCK
 
 
 def configure(request):

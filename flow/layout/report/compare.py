@@ -10,8 +10,7 @@ from jinja2 import Environment, FileSystemLoader
 
 from base.files import staged
 from base.paths import ROOT
-from flow.layout.design import DESIGNS, design
-from flow.layout.macros import inner
+from flow.layout.design import DESIGNS, design, macro_designs
 from models.parameters import ParameterError
 
 from .metrics import broken
@@ -62,7 +61,7 @@ def read(folder, name):
 
 def columns(names, summaries):
     """(name, summary, the blocks in it) of each, blocks behind the designs around them."""
-    found = [(name, summaries[name], [block.name for block in inner(DESIGNS[name])]) for name in names]
+    found = [(name, summaries[name], [block.name for block in macro_designs(DESIGNS[name])]) for name in names]
     blocks = dict.fromkeys(block for _, _, own in found for block in own)
     return found + [(f"{name}, a block", summaries[name], []) for name in blocks if name not in names]
 
@@ -103,7 +102,7 @@ def main(argv=None):
     options = arguments().parse_args(argv)
     try:
         names = list(options.designs)
-        wanted = dict.fromkeys([*names, *(block.name for name in names for block in inner(design(name)))])
+        wanted = dict.fromkeys([*names, *(block.name for name in names for block in macro_designs(design(name)))])
         summaries = {name: read(options.out, name) for name in wanted}
         made = columns(names, summaries)
         rows, folder = table(made, summaries), options.out / "hierarchy"

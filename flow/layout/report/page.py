@@ -49,7 +49,7 @@ def page(summary, broken, known, runs, picture=None, pictures=()):
     picture: of the layout, file name beside it; pictures: further (file name, what it shows)."""
     environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
     key = [(wire.name, f"#{color:06x}") for wire, color in zip(known.wires, PALETTE)]
-    return environment.get_template("report.html").render(
+    return environment.get_template("page.html").render(
         s=summary,
         broken=broken,
         tiles=_tiles(summary, broken),

@@ -48,15 +48,15 @@ RESULTS = {
 
 def sensor_steps(chip, settings, extra=()):
     """The die's steps in order. chip: Design; settings: Options; extra: as of DiePlanParameters."""
-    pdk, clock, around = settings.pdk, chip.clock, chip.surroundings
+    pdk, clock, io = settings.pdk, chip.clock, chip.io
     drc = Drc(DrcParameters(pdk))
     drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
     wires = DieWiresParameters(
         pdk,
         clock.port,
-        load_pf=around.load_pf,
-        input_ns=around.input_delay * clock.period_ns,
-        output_ns=around.output_delay * clock.period_ns,
+        load_pf=io.load_pf,
+        input_ns=io.input_delay * clock.period_ns,
+        output_ns=io.output_delay * clock.period_ns,
     )
     return [
         DiePlan(DiePlanParameters(pdk, extra=extra)),

@@ -1,6 +1,6 @@
 """Capacitance of a net of the die and its Elmore delays [Elmore1948], from the lengths of its wires."""
 
-from flow.layout.steps.extraction import parasitics
+from flow.layout.timing.parasitics import parasitics
 
 from .plan import CORE
 from .routing import STUB, TRUNK, VERTICAL

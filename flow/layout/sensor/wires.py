@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass, field
 
 from base.steps import Step
-from flow.layout.steps import extraction
+from flow.layout.timing import parasitics
 from platforms.coriolis import process
 
 from . import elmore
@@ -45,7 +45,7 @@ class DieWires(Step):
         "worst_delay": "",
         "loads_over": "",
     }
-    uses = (elmore, extraction)
+    uses = (elmore, parasitics)
 
     def run(self, inputs, outputs):
         p, plan = self.parameters, json.loads(inputs["plan"].read_text())

@@ -7,11 +7,11 @@ from base.steps import Step, StepError
 from models.parameters import check_real
 
 from ..netlist import netlist as netlist_module
-from ..netlist import replay as replay_module
 from ..netlist.netlist import Netlist
-from ..netlist.replay import Timing, replay
 from ..timing import delays as delays_module
+from ..timing import replay as replay_module
 from ..timing.delays import read
+from ..timing.replay import Timing, replay
 
 CONSTANTS = {"zero", "one"}  # pins of cells without a path
 

@@ -16,10 +16,10 @@ from models.parameters import check_int, check_real
 from platforms.coriolis import process
 from platforms.openroad import layer_names
 
-from ..coriolis.session import CLOCK
 from ..geometry import macro as macro_module
 from ..geometry.macro import Macro
 from ..netlist import netlist as netlist_module
+from ..netlist.names import plain_names
 from ..netlist.netlist import SUPPLIES, Instance, Netlist
 
 OVER_UM = 0.4  # that wires of a block may lie over its edge: half a wire on a track there
@@ -165,13 +165,6 @@ class PlaceRoute(Step):
             **{key: block[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
             "pins": [[pins[pin], ends[nets[pin]] > 1, *piece] for pin, piece in macro.pins.items()],
         }
-
-
-def plain_names(netlist, clock):
-    """dict net -> the name that Coriolis gets: letters and digits only, CLOCK for the net ``clock``."""
-    nets = dict.fromkeys(net for port in netlist.ports for net in port.bits())
-    nets.update(dict.fromkeys(net for instance in netlist.instances for net in instance.pins.values()))
-    return {net: CLOCK if net == clock else f"w{number}" for number, net in enumerate(nets)}
 
 
 def plain_blocks(netlist, placed):

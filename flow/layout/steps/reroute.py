@@ -13,6 +13,7 @@ from platforms.coriolis import process
 
 from ..geometry import boxes as boxes_module
 from ..netlist import netlist as netlist_module
+from ..netlist.names import plain_names
 from ..netlist.netlist import Netlist
 from ..reroute import board as board_module
 from ..reroute import negotiate as bargain_module
@@ -22,7 +23,6 @@ from ..reroute.violations import Marks, marks, marks_of, shared_out
 from ..reroute.negotiate import bargain
 from ..reroute.wiring import Wiring
 from . import antenna
-from .place_route import plain_names
 
 JOBS = 2  # in which the router's layout is looked at
 ROUNDS = 5  # who is moved for one net's sake may get an antenna by it

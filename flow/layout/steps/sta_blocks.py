@@ -11,8 +11,8 @@ from ..netlist import netlist as netlist_module
 from ..netlist.netlist import Netlist
 from ..timing import opensta as opensta_module
 from ..timing.opensta import opensta
-from . import extraction, sta
-from .extraction import parasitics, spef
+from ..timing.parasitics import parasitics, spef
+from . import sta
 from .sta import SCRIPT, worst_slacks
 
 
@@ -33,7 +33,7 @@ class StaBlocks(Step):
     outputs = {"report": "sta.txt"}
     Parameters = StaBlocksParameters
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}
-    uses = (extraction, netlist_module, opensta_module, sta)
+    uses = (netlist_module, opensta_module, sta)
     tools = ("sta",)
 
     def __init__(self, parameters):

@@ -1,7 +1,6 @@
 """What happens at a block's ports in a real frame: recorded in the chip's RTL; else what its tests do there."""
 
 import json
-import re
 import sys
 import tempfile
 from dataclasses import dataclass, replace
@@ -14,6 +13,8 @@ from base.tools import ToolError, finish, run
 from flow.simulate import icarus
 from flow.simulate.icarus import icarus_program
 
+from ..netlist import verilog
+from ..netlist.verilog import modules
 from .gate_frames import TAPS
 
 CHIP = "AspChip"
@@ -63,7 +64,7 @@ class Stimulus(Step):
     outputs = {"head": "stimulus.json", "trace": "stimulus.trace"}
     Parameters = StimulusParameters
     metrics = {"source": "", "cycles": "", "results": ""}
-    uses = (icarus,)
+    uses = (icarus, verilog)
     tools = ("iverilog", "yosys")
 
     def run(self, inputs, outputs):
@@ -80,12 +81,6 @@ class Stimulus(Step):
                 head = in_tests(top, own, folder, outputs["trace"])
         outputs["head"].write_text(json.dumps(head, indent=1) + "\n")
         return {name: head[name] for name in self.metrics}
-
-
-def modules(verilog):
-    """dict module name -> its text without comments and without the names of processes, which tell their place."""
-    text = re.sub(r"(?m)^\s*//.*\n|(?<=begin : )_lambda__\w+", "", verilog)
-    return {match[1]: match[0] for match in re.finditer(r"(?ms)^module (\w+)\b.*?^endmodule", text)}
 
 
 def in_frame(parameters, folder, trace):

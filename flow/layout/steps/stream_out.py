@@ -9,8 +9,8 @@ from platforms.coriolis import process
 
 from ..geometry import area, notch, trim
 from ..netlist import netlist as netlist_module
+from ..netlist.names import plain_names
 from ..netlist.netlist import SUPPLIES, Netlist
-from .place_route import plain_names
 
 
 @dataclass(frozen=True)

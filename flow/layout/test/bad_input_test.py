@@ -12,10 +12,9 @@ from base.steps import StepError, versions
 from flow.layout import __main__ as command
 from flow.layout import chain
 from flow.layout.netlist.netlist import Instance
+from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.floorplan import Floorplan, FloorplanParameters
 from models.parameters import ParameterError
-
-from . import small
 
 
 def told(capsys, arguments):

@@ -4,7 +4,7 @@ import pytest
 
 from base.steps import Runner, StepError
 from flow.layout import chain
-from flow.layout.design import DESIGNS, Design, Hard
+from flow.layout.design import DESIGNS, Design, MacroPlacement
 from flow.layout.macros import check_same, given
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
@@ -37,7 +37,7 @@ endmodule
 )
 OPTIONS = chain.Options(utilization=0.4, untimed=True)
 INNER = Design("counter", "Counter", "")
-OUTER = Design("pair", "Pair", "", macros=(Hard("first", "counter", (0.5, 0.0)),))
+OUTER = Design("pair", "Pair", "", macros=(MacroPlacement("first", "counter", (0.5, 0.0)),))
 
 
 def closed(design, verilog, folder, more):

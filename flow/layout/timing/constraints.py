@@ -6,7 +6,7 @@ def sdc(design, propagated=True):
 
     propagated: whether the clock is that of its tree; not before there is one.
     """
-    clock, around = design.clock, design.surroundings
+    clock, io = design.clock, design.io
     return "\n".join(
         [
             f"create_clock -name {clock.port} -period {clock.period_ns:g} [get_ports {{{clock.port}}}]",
@@ -17,10 +17,10 @@ def sdc(design, propagated=True):
             "foreach port [all_inputs] {",
             f'  if {{[get_property $port full_name] ne "{clock.port}"}} {{ lappend data_inputs $port }}',
             "}",
-            f"set_input_delay {around.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs",
-            f"set_output_delay {around.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]",
-            f"set_input_transition {around.input_slew_ns:g} [all_inputs]",
-            f"set_load {around.load_pf:g} [all_outputs]",
+            f"set_input_delay {io.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs",
+            f"set_output_delay {io.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]",
+            f"set_input_transition {io.input_slew_ns:g} [all_inputs]",
+            f"set_load {io.load_pf:g} [all_outputs]",
             "",
         ]
     )

@@ -5,10 +5,10 @@ import pytest
 from flow.layout.geometry.assembly import flat, together
 from flow.layout.geometry.macro import Macro
 from flow.layout.netlist.netlist import Instance, Netlist, Port
+from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.floorplan import FloorplanParameters, free, placed
 from flow.layout.steps.ir_drop import breaks
 from flow.layout.steps.place_route import plain_blocks, routed_netlist
-from flow.layout.test import small
 from models.parameters import ParameterError
 from platforms.coriolis import process
 

@@ -4,13 +4,13 @@ import random
 
 import pytest
 
+from flow.layout.geometry.test.gate import gate
 from flow.layout.reroute.board import Board
 from flow.layout.reroute.violations import Marks, marks, shared_out
 from flow.layout.reroute.negotiate import bargain
 from flow.layout.reroute.nets import routed
 from flow.layout.reroute.wiring import Wiring
 from flow.layout.steps.reroute import open_nets
-from flow.layout.test.gate import gate
 from platforms.coriolis import process
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")

@@ -3,7 +3,7 @@
 import pytest
 
 from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.steps.extraction import parasitics, spef
+from flow.layout.timing.parasitics import parasitics, spef
 from platforms.coriolis import process
 
 

@@ -5,12 +5,12 @@ import shutil
 
 import pytest
 
+from flow.layout.netlist.test import shift_register as small
 from flow.layout.power.energy import Cells, powers
 from flow.layout.power.test.energy_test import ACTIVITY
-from flow.layout.steps.extraction import spef
 from flow.layout.steps.ir_drop import IrDrop, IrDropParameters
 from flow.layout.steps.power import Power, PowerParameters, wire_pf
-from flow.layout.test import small
+from flow.layout.timing.parasitics import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 

@@ -8,12 +8,12 @@ import pytest
 from flow.layout.design import Design
 from flow.layout.geometry.assembly import flat
 from flow.layout.netlist.netlist import Instance, Netlist, Port
+from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from flow.layout.steps.extraction import spef
 from flow.layout.steps.sta import Sta, StaParameters
 from flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
-from flow.layout.test import small
 from flow.layout.timing.constraints import sdc
+from flow.layout.timing.parasitics import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")

@@ -9,11 +9,11 @@ import pytest
 from base.steps import StepError
 from base.tools import run
 from flow.layout.design import DESIGNS
+from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps import power, sta
-from flow.layout.steps.extraction import spef
-from flow.layout.test import small
 from flow.layout.timing import boundary
 from flow.layout.timing.constraints import sdc
+from flow.layout.timing.parasitics import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 SCRIPTS = {

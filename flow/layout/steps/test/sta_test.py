@@ -7,9 +7,9 @@ import pytest
 from flow.layout.design import Clock, Design
 from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.report.metrics import RULES, broken
-from flow.layout.steps.extraction import spef
 from flow.layout.steps.sta import Sta, StaParameters
 from flow.layout.timing.constraints import sdc
+from flow.layout.timing.parasitics import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 

@@ -4,7 +4,8 @@ import shutil
 
 import pytest
 
-from flow.layout.steps.stimulus import Stimulus, StimulusParameters, instance_of, middle, modules, results
+from flow.layout.netlist.verilog import modules
+from flow.layout.steps.stimulus import Stimulus, StimulusParameters, instance_of, middle, results
 from models.parameters import Window
 
 BLOCK = """

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from flow.layout.netlist.netlist import Instance
-from flow.layout.netlist.replay import SETTLED, Timing, replay
-from flow.layout.test import small
+from flow.layout.netlist.test import shift_register as small
 from flow.layout.timing import delays
+from flow.layout.timing.replay import SETTLED, Timing, replay
 
 pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
 SDF = """(DELAYFILE (SDFVERSION "3.0")

@@ -11,10 +11,10 @@ from pathlib import Path
 
 from base.steps import StepError
 from base.tools import ToolError, finish, run
-from flow.layout.steps.place_route import plain_names
-from flow.layout.timing.delays import constrained, icarus, specified
+from flow.layout.netlist.names import plain_names
+from flow.layout.netlist.netlist import Instance, Netlist
 
-from .netlist import Instance, Netlist
+from .delays import constrained, icarus, specified
 
 BENCH = """`timescale 1ns/1ps
 module Replay;
