@@ -12,7 +12,7 @@ from rtl.icarus import MISSING, installed
 from verif.results import OUT, digest_of, write_step
 
 from .exposure import FRAMES
-from .run import DESIGNS, SIMULATORS, BenchError, simulate
+from .simulation import DESIGNS, SIMULATORS, BenchError, simulate
 
 SOURCES = "models", "rtl", "pixels", "verif/bench"
 CHIP, SHOWN = "AspChip", "edge"

@@ -1,6 +1,5 @@
 """One trace replayed into the Verilog of its component: what Verilator counts, registers, functional cover points."""
 
-import importlib
 import re
 import tempfile
 from dataclasses import dataclass
@@ -9,6 +8,7 @@ from pathlib import Path
 from base.tools import ToolError
 from rtl.replay import load
 
+from .points import POINTS
 from .ports import Recorded
 from .program import compile_program
 
@@ -94,7 +94,7 @@ def measure(path, folder, registers, points):
     """Replay the trace ``path``: dict points, states, functional.
 
     folder: of the block, whose own modules count. registers: names of `program.header`. points: names of the
-    functions of verif.coverage.points.<folder> to evaluate.
+    functional cover points of the folder to evaluate.
     Raises ToolError where the Verilog does not do what the tests saw.
     """
     trace = load(path)
@@ -108,11 +108,10 @@ def measure(path, folder, registers, points):
         found = read_points(counts, verilog)
         steps = [tuple(map(int, line.split())) for line in states.read_text().splitlines()]
     own = f"rtl/{folder}/"
-    module = importlib.import_module(f"verif.coverage.points.{folder}")
     ports = Recorded(trace)
     return {
         "cycles": trace.cycles,
         "points": [[*vars(p).values(), n] for p, n in found.items() if p.source.startswith(own)],
         "states": steps,
-        "functional": {name: int(getattr(module, name)(ports).sum()) for name in points},
+        "functional": {name: int(POINTS[folder][name](ports).sum()) for name in points},
     }

@@ -1,21 +1,28 @@
-"""The values of a component's ports over all recorded cycles, as arrays: what functional cover points look at."""
+"""The values of a component's ports over all recorded cycles, as arrays: the input of functional cover points."""
+
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from rtl.ports import places, port_signals, split
+from rtl.replay import Trace
+
+Values = npt.NDArray[Any]  # int64, one per cycle; Python integers for ports of more than 63 bits
+Mask = npt.NDArray[np.bool_]  # one per cycle
 
 
 class Recorded:
     """Ports of a Trace by name: ``p.start``, or ``p.step__msg``, whose fields are ``p.step__kind``.
 
-    Values: int64, a cycle each; objects for more than 63 bits. ``p.fresh``: a simulator's first cycle, ahead of its
-    reset. ``p.arguments``: of the component.
+    ``p.fresh``: a simulator's first cycle, before its reset. ``p.arguments``: of the component.
     """
 
-    def __init__(self, trace):
+    def __init__(self, trace: Trace) -> None:
         self.arguments = trace.arguments
         rows = [line.split() for line in trace.lines]
-        self.fresh = np.array([row[0] == "1" for row in rows])
+        self.fresh: Mask = np.array([row[0] == "1" for row in rows])
         self._packed = [int(row[1], 16) for row in rows], [int(row[2], 16) for row in rows]
         self._places = {
             port.name: (group, low, port.width)
@@ -30,8 +37,8 @@ class Recorded:
             if hasattr(kind, "__bitstruct_fields__"):
                 self._add_fields(repr(signal)[start:].replace(".", "__"), kind)
 
-    def _add_fields(self, port, kind):
-        """A struct's fields lie from the highest bits down."""
+    def _add_fields(self, port: str, kind: Any) -> None:
+        """Add the fields of a bit struct, the first in the highest bits."""
         group, low, width = self._places[port]
         high = low + width
         stem = port.removesuffix("msg") if port.endswith("__msg") else f"{port}__"
@@ -39,7 +46,7 @@ class Recorded:
             high -= field.nbits
             self._places[stem + name] = group, high, field.nbits
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> Values:
         if name.startswith("_") or name not in self._places:
             raise AttributeError(f"no port {name}")
         group, low, width = self._places[name]
@@ -48,17 +55,20 @@ class Recorded:
         setattr(self, name, values)
         return values
 
-    def was(self, values, cycles=1):
-        """``values`` of some cycles before; False or 0 where a simulator had not begun."""
+    def was(self, values: Values, cycles: int = 1) -> Values:
+        """Return ``values`` as they were ``cycles`` earlier; False or 0 before a simulator's first cycle."""
         out = np.zeros_like(values)
         out[cycles:] = values[:-cycles]
         begun = np.maximum.accumulate(np.where(self.fresh, np.arange(len(values)), 0))
         out[np.arange(len(values)) - begun < cycles] = 0
         return out
 
-    def since(self, event):
-        """Cycles since ``event`` was last true, 0 in such a cycle; -1 where it never was in its simulator."""
+    def since(self, event: Mask) -> Values:
+        """Return the cycles since ``event`` was last true: 0 in such a cycle, -1 if never in this simulator."""
         at = np.arange(len(event))
         begun = np.maximum.accumulate(np.where(self.fresh, at, 0))
         last = np.maximum.accumulate(np.where(event, at, -1))
         return np.where(last >= begun, at - last, -1)
+
+
+Points = dict[str, Callable[[Recorded], Mask]]  # by name, true in the cycles that reach the point

@@ -21,7 +21,7 @@ from verif.coverage.traces import recorded
 from verif.results import OUT, digest_of, write_step
 
 from .mutants import generate, with_mutants
-from .score import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
+from .judge import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
 
 SEED = 1
 NUMBERS = {

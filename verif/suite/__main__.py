@@ -15,7 +15,7 @@ from models.parameters import ParameterError
 from verif.results import OUT, ROOT, digest_of, write_step
 
 from .blocks import blocks_of, level_of
-from .run import folders, run_folder
+from .pytest_folder import folders, run_folder
 
 DOCUMENT = "docs/stream.md"  # its examples are tested
 SILICON = "models", "base", "rtl", "platforms", "pixels", "cells", "flow"

@@ -6,7 +6,7 @@ import pytest
 
 from models.digital.chip import golden_frame
 from rtl.icarus import MISSING, installed
-from verif.bench import run
+from verif.bench import simulation
 from verif.bench.__main__ import CHIP, SAME, main, summary
 from verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
 from verif.bench.pymtl_frame import pymtl_stream
@@ -19,8 +19,8 @@ def streams_of(simulators, tmp_path):
     """The bytes of one frame of the chip's bench in each of the simulators."""
     for simulator in simulators:
         file = tmp_path / simulator
-        tests = run.simulate(
-            run.DESIGNS[CHIP],
+        tests = simulation.simulate(
+            simulation.DESIGNS[CHIP],
             simulator,
             tests=["the_shown_frame"],
             environment={"BENCH_STREAM": str(file), "BENCH_FRAME": SMALL},
@@ -44,7 +44,7 @@ def test_a_bench_passes_and_counts(tmp_path, capsys):
 
 @needs_icarus
 def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
-    good = run.sources
+    good = simulation.sources
 
     def planted(design):
         texts = good(design)
@@ -52,7 +52,7 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
         assert texts[key].count(stall) == 1
         return texts | {key: texts[key].replace(stall, "divider__send__val")}
 
-    monkeypatch.setattr(run, "sources", planted)
+    monkeypatch.setattr(simulation, "sources", planted)
     arguments = ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]
     for _ in range(2):  # a failure is not kept: it is tried again
         assert main(arguments) == 1
@@ -62,18 +62,18 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
 
 @needs_icarus
 def test_a_simulation_without_an_end_is_stopped(monkeypatch):
-    monkeypatch.setattr(run, "SECONDS", 2)
+    monkeypatch.setattr(simulation, "SECONDS", 2)
     monkeypatch.setattr(
-        run,
+        simulation,
         "sources",
         lambda design: {
-            f"{run.TOP}.v": run.flat(design)
+            f"{simulation.TOP}.v": simulation.flat(design)
             .replace("endmodule", "reg s; initial s = 0; always @(s) s <= ~s;\nendmodule")
             .replace("PhasePath dut", "//")
         },
     )
-    with pytest.raises(run.BenchError, match="PhasePath in icarus: no end after 2 s"):
-        run.simulate(run.DESIGNS["PhasePath"], "icarus")
+    with pytest.raises(simulation.BenchError, match="PhasePath in icarus: no end after 2 s"):
+        simulation.simulate(simulation.DESIGNS["PhasePath"], "icarus")
 
 
 def test_streams_that_differ_fail():
@@ -87,4 +87,4 @@ def test_streams_that_differ_fail():
 @pytest.mark.slow
 def test_pymtl_icarus_and_verilator_give_the_same_bytes(tmp_path):
     golden = golden_frame(samples(), SENSOR, FRAMES[SMALL], FRONT_END).stream
-    assert [*streams_of(run.SIMULATORS, tmp_path), pymtl_stream(FRAMES[SMALL])] == [golden] * 3
+    assert [*streams_of(simulation.SIMULATORS, tmp_path), pymtl_stream(FRAMES[SMALL])] == [golden] * 3

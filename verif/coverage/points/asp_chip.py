@@ -2,12 +2,13 @@
 
 from models.parameters.registers import register_map
 
+from ..ports import Mask, Points, Recorded
 from ..spi import transfers, where
 
 CHIP = register_map()
 
 
-def _configuration(p, field):
+def _configuration(p: Recorded, field: str) -> Mask:
     """Cycles in which a frame starts while ``field`` holds something other than 0, as the host wrote it."""
     place = CHIP[field]
     mask = (1 << place.width) - 1 << place.shift
@@ -21,120 +22,69 @@ def _configuration(p, field):
     return where(p, chosen)
 
 
-def _sent(p):
+def _sent(p: Recorded) -> Mask:
     return (p.link_val == 1) & (p.link_rdy == 1) & (p.reset == 0)
 
 
-def _frame_ends(p):
+def _frame_ends(p: Recorded) -> Mask:
     return (p.busy == 0) & (p.was(p.frame_sync, 2) == 1) & (p.reset == 0)
 
 
-def edge_frame(p):
-    return _frame_ends(p) & (p.mode == 0)
-
-
-def image_frame(p):
-    return _frame_ends(p) & (p.mode == 1)
-
-
-def raw_frame(p):
-    return _frame_ends(p) & (p.mode == 2)
-
-
-def tof_frame(p):
-    return _frame_ends(p) & (p.mode == 3)
-
-
-def phase_asked_for(p):
-    return _configuration(p, "phase") & (p.mode == 3)
-
-
-def phase_asked_for_in_another_mode(p):
-    return _configuration(p, "phase") & (p.mode != 3)
-
-
-def pattern_on(p):
-    return _configuration(p, "test_pattern")
-
-
-def analog_comparators(p):
-    """An answer of the front end, with something to sample."""
-    return (p.comparator != 0) & (p.busy == 1)
-
-
-def overlap_asked_for(p):
-    return _configuration(p, "overlap")
-
-
-def decimation_asked_for(p):
-    return _configuration(p, "decimation")
-
-
-def bytes_of_loop_back(p):
-    return _sent(p) & (p.frame_sync == 0)
-
-
-def byte_waits(p):
+def _byte_waits(p: Recorded) -> Mask:
     return (p.link_val == 1) & (p.link_rdy == 0) & (p.frame_sync == 1)
 
 
-def byte_waits_while_busy_ends(p):
-    """Only the link is left."""
-    return byte_waits(p) & (p.since(p.hold == 1) > 200)
-
-
-def a_byte_a_cycle(p):
-    return _sent(p) & (p.was(_sent(p)) == 1)
-
-
-def all_four_taps(p):
-    return (p.sample == 1) & (p.tap == 3)
-
-
-def negative_balance(p):
-    return (p.hold == 1) & (p.balance >> 9 == 1)
-
-
-def positive_balance(p):
-    return (p.hold == 1) & (p.balance >> 9 == 0) & (p.balance > 0)
-
-
-def hold_of_all_lanes(p):
-    return (p.hold == 1) & (p.en == (1 << p.arguments[2]) - 1)
-
-
-def hold_of_some_lanes(p):
-    return (p.hold == 1) & (p.en != (1 << p.arguments[2]) - 1)
-
-
-def last_pixel(p):
+def _last_pixel(p: Recorded) -> Mask:
     """The array's last row and column."""
     rows, cols, lanes = p.arguments[:3]
     col = (cols - 1) // 6
     return (p.hold == 1) & (p.row == rows - 1) & (p.k == (cols - 1) % 6) & (p.group == col // lanes)
 
 
-def second_diode(p):
-    return (p.hold == 1) & (p.mode == 2) & (p.sub == 1)
-
-
-def start_refused(p):
+def _start_refused(p: Recorded) -> Mask:
     """A start that the chip does not become busy from."""
     starts = where(p, [t for t in transfers(p) if t.writes and (CHIP["start"].byte, 1) in t.bytes_at()])
     return starts & (p.busy == 0) & (p.since(p.busy == 1) != 0)
 
 
-def status_read_back(p):
+def _status_read_back(p: Recorded) -> Mask:
     first = CHIP["busy"].byte
     return where(p, [t for t in transfers(p) if t.data and not t.writes and first in dict(t.bytes_at())]) & (
         p.since(p.miso == 1) < 200
     )
 
 
-def frame_behind_a_frame(p):
+def _frame_after_a_frame(p: Recorded) -> Mask:
     ends = _frame_ends(p)
     return (p.frame_sync == 1) & (p.was(p.frame_sync) == 0) & (p.since(ends) > 0)
 
 
-def reset_between_frames(p):
-    return (p.reset == 1) & (p.busy == 0) & (p.since(p.frame_sync == 1) > 0) & ~p.fresh
+POINTS: Points = {
+    "edge_frame": lambda p: _frame_ends(p) & (p.mode == 0),
+    "image_frame": lambda p: _frame_ends(p) & (p.mode == 1),
+    "raw_frame": lambda p: _frame_ends(p) & (p.mode == 2),
+    "tof_frame": lambda p: _frame_ends(p) & (p.mode == 3),
+    "phase_requested": lambda p: _configuration(p, "phase") & (p.mode == 3),
+    "phase_requested_in_another_mode": lambda p: _configuration(p, "phase") & (p.mode != 3),
+    "pattern_on": lambda p: _configuration(p, "test_pattern"),
+    # An answer of the front end, with something to sample.
+    "analog_comparators": lambda p: (p.comparator != 0) & (p.busy == 1),
+    "overlap_requested": lambda p: _configuration(p, "overlap"),
+    "decimation_requested": lambda p: _configuration(p, "decimation"),
+    "bytes_of_loop_back": lambda p: _sent(p) & (p.frame_sync == 0),
+    "byte_waits": _byte_waits,
+    # Only the link is left.
+    "byte_waits_while_busy_ends": lambda p: _byte_waits(p) & (p.since(p.hold == 1) > 200),
+    "a_byte_a_cycle": lambda p: _sent(p) & (p.was(_sent(p)) == 1),
+    "all_four_taps": lambda p: (p.sample == 1) & (p.tap == 3),
+    "negative_balance": lambda p: (p.hold == 1) & (p.balance >> 9 == 1),
+    "positive_balance": lambda p: (p.hold == 1) & (p.balance >> 9 == 0) & (p.balance > 0),
+    "hold_of_all_lanes": lambda p: (p.hold == 1) & (p.en == (1 << p.arguments[2]) - 1),
+    "hold_of_some_lanes": lambda p: (p.hold == 1) & (p.en != (1 << p.arguments[2]) - 1),
+    "last_pixel": _last_pixel,
+    "second_diode": lambda p: (p.hold == 1) & (p.mode == 2) & (p.sub == 1),
+    "start_refused": _start_refused,
+    "status_read_back": _status_read_back,
+    "frame_after_a_frame": _frame_after_a_frame,
+    "reset_between_frames": lambda p: (p.reset == 1) & (p.busy == 0) & (p.since(p.frame_sync == 1) > 0) & ~p.fresh,
+}

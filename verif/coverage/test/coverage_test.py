@@ -198,7 +198,7 @@ promises:
         ("blocks:", "block:", "unknown key"),
         ("cover: [go_from_idle], ", "", r"promises\[0\].cover"),
         ("[go_from_idle]", "[]", r"promises\[0\].cover = \[\]"),
-        ("go_from_idle", "no_such_point", "no function in points"),
+        ("go_from_idle", "no_such_point", "must be in points"),
         ("it", "it", "belong to no promise"),
         ("test_every_code", "test_gone", "no such test"),
         ("tests: [test_every_code]", "tests: []", r"promises\[0\].tests"),

@@ -6,7 +6,7 @@ from rtl.tops import TOPS
 from verif.results import ROOT, sources
 from verif.suite.__main__ import decides, empty, forget, jobs, main, summarize
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
-from verif.suite.run import folders, run_folder
+from verif.suite.pytest_folder import folders, run_folder
 
 FILE = """
 import pytest

@@ -1,11 +1,11 @@
-"""A bench's own process, for `verif.bench.run`: cocotb's runner builds the simulation and runs its tests."""
+"""A bench's own process, for `verif.bench.simulation`: cocotb's runner builds the simulation and runs its tests."""
 
 import sys
 from pathlib import Path
 
 from cocotb_tools.runner import get_runner
 
-from .run import BUILD_ARGS, TOP
+from .simulation import BUILD_ARGS, TOP
 
 
 def main(simulator, module, folder, results, seed, tests, *rest):

@@ -56,7 +56,7 @@ DESIGNS = {
     for design in (
         Design(
             "RunLength",
-            "verif.bench.run_length_bench",
+            "verif.bench.simulation_length_bench",
             SensorParameters(array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4)),
         ),
         Design("PhasePath", "verif.bench.phase_path_bench"),
@@ -131,7 +131,7 @@ def simulate(design, simulator, seed=1, environment=None, tests=()):
     command = [
         sys.executable,
         "-m",
-        "verif.bench.session",
+        "verif.bench.cocotb_process",
         simulator,
         design.module,
         folder,
