@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from models.digital.stream.header import HEADER_BYTES
 from models.digital.stream.payload import base_of
-from models.digital.stream.trailer import TRAILER_BYTES
+from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 from models.reconstruct.psnr import psnr_db
 
 from .codes import entropy_bytes, thresholded

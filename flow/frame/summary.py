@@ -6,9 +6,8 @@ from importlib.metadata import version
 import numpy as np
 
 from flow.simulate.verilator import verilator_version
-from models.digital.stream.header import HEADER_BYTES
-from models.digital.stream.trailer import TRAILER_BYTES
 from models.parameters import EnergyParameters
+from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 PEAK = 255.0  # span of the 8-bit codes
 

@@ -13,22 +13,12 @@ Shifts round down (arithmetic shift right). The angles are rounded to nearest. T
 to even.
 """
 
-from functools import cache
-
 import numpy as np
 
 from models.parameters import check_int
+from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
 
-from .divider import TURN, fold, operands, unfold
-
-ITERATIONS_MIN, ITERATIONS_MAX = 4, 16
-
-
-@cache
-def angles(iterations):
-    """atan(2^-i) for i = 1..iterations in LSB of the phase, ``iterations`` fraction bits, rounded: tuple of int."""
-    i = np.arange(1, iterations + 1)
-    return tuple(int(a) for a in np.rint(np.arctan(2.0**-i) * (TURN / (2 * np.pi)) * 2**iterations))
+from .divider import fold, operands, unfold
 
 
 def cordic(x, y, iterations=10, noise_floor=0):
@@ -39,7 +29,7 @@ def cordic(x, y, iterations=10, noise_floor=0):
     check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
     octant, larger, smaller = fold(*operands(x, y, noise_floor))
     state = larger << iterations, smaller << iterations, np.zeros_like(larger)
-    for i, angle in enumerate(angles(iterations), start=1):
+    for i, angle in enumerate(cordic_angles(iterations), start=1):
         state = rotate(*state, i, angle)
     return unfold(octant, larger, np.zeros_like(larger), nearest_even(state[2], iterations), noise_floor)
 

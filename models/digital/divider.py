@@ -4,16 +4,20 @@ Angles are counter-clockwise from +x. The phase is a binary angle: 256 is one tu
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 
 from models.parameters import ParameterError, check_int
-
-SAMPLE_MIN, SAMPLE_MAX = -256, 255  # differences of two 8-bit samples fit 9 bits
-N_FRAC_MIN, N_FRAC_MAX = 4, 16
-TURN, OCTANT = 256, 32  # in LSB of the phase
-AMP_MAX = 255
+from models.parameters.divider import (
+    AMP_MAX,
+    N_FRAC_MAX,
+    N_FRAC_MIN,
+    OCTANT,
+    SAMPLE_MAX,
+    SAMPLE_MIN,
+    TURN,
+    phase_thresholds,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +48,6 @@ def quad_divide(x, y, n_frac=8, noise_floor=0):
     """
     check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     octant, larger, smaller = fold(*operands(x, y, noise_floor))
-    zero = larger == 0
     ratio = np.minimum((smaller << n_frac) // np.maximum(larger, 1), 2**n_frac - 1)
     index = np.searchsorted(phase_thresholds(n_frac), ratio, side="right")
     return unfold(octant, larger, ratio, index, noise_floor)
@@ -96,19 +99,6 @@ def unfold(octant, larger, ratio, index, noise_floor):
         amp_valid=~zero & (larger >= noise_floor),
         amp=np.minimum(larger, AMP_MAX).astype(np.uint8),
     )
-
-
-@cache
-def phase_thresholds(n_frac):
-    """T_1..T_32, a tuple: the index is the number of thresholds that the ratio has reached.
-
-    A ratio r stands for the cell [r, r + 1) / 2^n_frac; its index is the phase of the cell's centre, rounded:
-    r + 1/2 >= 2^n_frac * tan(2 pi (k - 1/2) / 256). No tangent there is rational, so there is no tie. The last
-    thresholds saturate with the ratio, so that a ratio of 1 always reaches 32.
-    """
-    k = np.arange(1, OCTANT + 1)
-    edges = 2**n_frac * np.tan(2 * np.pi * (k - 0.5) / TURN) - 0.5
-    return tuple(int(t) for t in np.minimum(np.ceil(edges), 2**n_frac - 1))
 
 
 def phase_error(phase, x, y):

@@ -6,6 +6,13 @@ from models.digital.cordic import cordic
 from models.digital.divider import quad_divide
 
 
+def divide(variant, n_frac, iterations, x, y, noise_floor=0):
+    """QuadResult that ``variant`` must give; arguments as in `quad_divide` and `cordic`."""
+    if variant == "cordic":
+        return cordic(x, y, iterations, noise_floor)
+    return quad_divide(x, y, n_frac, noise_floor)
+
+
 def phase_samples(taps, chip, noise_floor=0):
     """Phase and amplitude of every pixel; returns two int16 arrays (...).
 
@@ -15,8 +22,5 @@ def phase_samples(taps, chip, noise_floor=0):
     """
     taps = np.asarray(taps, np.int32)
     x, y = taps[..., 0] - taps[..., 2], taps[..., 3] - taps[..., 1]
-    if chip.divider == "cordic":
-        found = cordic(x, y, chip.cordic_iterations, noise_floor)
-    else:
-        found = quad_divide(x, y, chip.n_frac, noise_floor)
+    found = divide(chip.divider, chip.n_frac, chip.cordic_iterations, x, y, noise_floor)
     return found.phase.astype(np.int16), np.where(found.amp_valid, found.amp, 0).astype(np.int16)

@@ -2,7 +2,8 @@
 
 from .array import COLS_MAX, ROWS_MAX, ArrayParameters
 from .checks import ParameterError, check_choice, check_int, check_real
-from .chip import DIVIDERS, LANES, ChipParameters
+from .chip import LANES, ChipParameters
+from .divider import DIVIDERS
 from .electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters
 from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, AmpTiming, FrameParameters, Window
@@ -10,4 +11,29 @@ from .optics import OpticsParameters
 from .sensor import SensorParameters
 from .tile import PixelType, TileParameters
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "ALL_TYPES",
+    "COLS_MAX",
+    "DIVIDERS",
+    "ELEMENTARY_CHARGE",
+    "LANES",
+    "MODES",
+    "ROWS_MAX",
+    "SAMPLES_PER_PIXEL",
+    "AmpTiming",
+    "ArrayParameters",
+    "ChipParameters",
+    "ConverterParameters",
+    "ElectricalParameters",
+    "EnergyParameters",
+    "FrameParameters",
+    "OpticsParameters",
+    "ParameterError",
+    "PixelType",
+    "SensorParameters",
+    "TileParameters",
+    "Window",
+    "check_choice",
+    "check_int",
+    "check_real",
+]

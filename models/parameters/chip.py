@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from .checks import check_choice, check_int, check_real
+from .divider import DIVIDERS, ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 
 LANES = (1, 2, 4, 8, 16, 32)
-DIVIDERS = ("radix2", "radix4", "pipelined", "cordic")
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,6 @@ class ChipParameters:
     def __post_init__(self):
         check_choice("lanes", self.lanes, LANES)
         check_choice("divider", self.divider, DIVIDERS)
-        check_int("n_frac", self.n_frac, 4, 16)
-        check_int("cordic_iterations", self.cordic_iterations, 4, 16)
+        check_int("n_frac", self.n_frac, N_FRAC_MIN, N_FRAC_MAX)
+        check_int("cordic_iterations", self.cordic_iterations, ITERATIONS_MIN, ITERATIONS_MAX)
         check_real("f_clk", self.f_clk, 1e3, 1e9)

@@ -4,7 +4,7 @@ from .cordic_rtl import Cordic
 from .quad_divider_cl import QuadDividerCL
 from .quad_divider_fl import QuadDividerFL
 from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
-from .variants import golden, quad_divider, ratio_bits, timing
+from .variants import quad_divider, ratio_bits, timing
 
 __all__ = [
     "Cordic",
@@ -13,7 +13,6 @@ __all__ = [
     "QuadDividerPipelined",
     "QuadDividerRadix2",
     "QuadDividerRadix4",
-    "golden",
     "quad_divider",
     "ratio_bits",
     "timing",

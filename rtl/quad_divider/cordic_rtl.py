@@ -2,8 +2,8 @@
 
 from pymtl3 import Bits4, Component, InPort, OutPort, Wire, clog2, concat, mk_bits, sext, trunc, update, update_ff, zext
 
-from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN, angles
 from models.parameters import check_int
+from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
 from rtl.messages import DivReq, div_resp
 
 from .angle_rtl import Fold, Unfold
@@ -117,7 +117,7 @@ class CordicDatapath(Component):
         s.rotation.y //= s.y
         s.rotation.z //= s.z
         for k in range(ITERATIONS_MAX):
-            s.angles[k * angle_bits : (k + 1) * angle_bits] //= angles(iterations)[k] if k < iterations else 0
+            s.angles[k * angle_bits : (k + 1) * angle_bits] //= cordic_angles(iterations)[k] if k < iterations else 0
         s.nearest.z //= s.z
         s.unfold.octant //= s.octant
         s.unfold.larger //= s.larger

@@ -5,7 +5,8 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from rtl.messages import DivReq, div_resp
 
-from .variants import ratio_bits, response, timing
+from .quad_divider_fl import response
+from .variants import ratio_bits, timing
 
 
 class QuadDividerCL(Component):

@@ -3,9 +3,18 @@
 from pymtl3 import Component, InPort, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
+from models.digital.phase import divide
 from rtl.messages import DivReq, div_resp
 
-from .variants import check_variant, ratio_bits, response
+from .variants import check_variant, ratio_bits
+
+
+def response(variant, n_frac, iterations, request, noise_floor):
+    """The DivResp that ``variant`` must give to the DivReq ``request``."""
+    r = divide(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
+    return div_resp(ratio_bits(variant, n_frac))(
+        int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp)
+    )
 
 
 class QuadDividerFL(Component):

@@ -1,9 +1,7 @@
 """The variants by name, and what each takes: the registry behind the block's parameters."""
 
-from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN, cordic
-from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN, quad_divide
 from models.parameters import DIVIDERS, check_choice, check_int
-from rtl.messages import div_resp
+from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 
 from .cordic_rtl import RATIO_BITS, Cordic
 from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDividerRadix4
@@ -30,21 +28,6 @@ def quad_divider(variant, n_frac=8, iterations=10):
 def ratio_bits(variant, n_frac=8):
     """Width of the response's ratio: n_frac, or CORDIC's own width for a ratio that is 0."""
     return RATIO_BITS if variant == "cordic" else n_frac
-
-
-def golden(variant, n_frac, iterations, x, y, noise_floor=0):
-    """QuadResult that ``variant`` must give."""
-    if variant == "cordic":
-        return cordic(x, y, iterations, noise_floor)
-    return quad_divide(x, y, n_frac, noise_floor)
-
-
-def response(variant, n_frac, iterations, request, noise_floor):
-    """The DivResp that ``variant`` must give to the DivReq ``request``."""
-    r = golden(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
-    return div_resp(ratio_bits(variant, n_frac))(
-        int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp)
-    )
 
 
 def timing(variant, n_frac=8, iterations=10):

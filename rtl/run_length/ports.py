@@ -3,8 +3,6 @@
 from pymtl3 import Bits2, Bits7, Bits8, Bits16, Bits24, Bits32, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from models.digital.stream import StreamHeader
-from models.parameters import MODES, Window
 from rtl.messages import ScanMsg
 
 HEADER_PORTS = {
@@ -35,22 +33,3 @@ def add_ports(s):
     s.left_out = InPort(Bits32)
     s.send = SendIfcRTL(Bits8)
     s.frame_sync = OutPort()
-
-
-def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
-    """The StreamHeader that the ports of ``s`` ask for."""
-    window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
-    return StreamHeader(
-        rows,
-        cols,
-        lanes,
-        tile_rows,
-        tile_cols,
-        window,
-        MODES[int(s.mode)],
-        bool(s.phase),
-        int(s.decimation),
-        int(s.mask),
-        int(s.threshold),
-        int(s.frame_number),
-    )

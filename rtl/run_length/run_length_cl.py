@@ -9,7 +9,8 @@ from models.digital.stream.trailer import row_mark, trailer
 from rtl.messages import END, FRAME, ROW, SAMPLE
 
 from .control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
-from .ports import add_ports, header_of
+from .ports import add_ports
+from .run_length_fl import header_of
 
 QUEUE = 2  # bytes between the encoder and the link
 

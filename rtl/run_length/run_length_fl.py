@@ -4,11 +4,31 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from models.digital.stream import encode_marked_row
+from models.digital.stream import StreamHeader, encode_marked_row
 from models.digital.stream.trailer import trailer
+from models.parameters import MODES, Window
 from rtl.messages import END, FRAME, ROW, SAMPLE
 
-from .ports import add_ports, header_of
+from .ports import add_ports
+
+
+def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
+    """The StreamHeader that the ports of ``s`` ask for."""
+    window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
+    return StreamHeader(
+        rows,
+        cols,
+        lanes,
+        tile_rows,
+        tile_cols,
+        window,
+        MODES[int(s.mode)],
+        bool(s.phase),
+        int(s.decimation),
+        int(s.mask),
+        int(s.threshold),
+        int(s.frame_number),
+    )
 
 
 class RunLengthFL(Component):

@@ -6,7 +6,7 @@ import random
 import cocotb
 
 from rtl.messages import DivReq
-from rtl.quad_divider.variants import response
+from rtl.quad_divider.quad_divider_fl import response
 
 from .agents import Bench, Driver, Monitor, Stream, check
 

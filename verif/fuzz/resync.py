@@ -8,9 +8,8 @@ from flow.frame import job
 from flow.frame.request import request
 from models.digital.chip import golden_frame
 from models.digital.stream import decode_stream
-from models.digital.stream.header import HEADER_BYTES
-from models.digital.stream.trailer import TRAILER_BYTES
 from models.parameters import MODES
+from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 FRAMES = {**{mode: (mode, False) for mode in MODES}, "phase": ("tof", True)}
 SIZES = {"edge": (96, 144)}  # rows, cols of the array that sees the default scene

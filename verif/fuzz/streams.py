@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from models.digital.stream import StreamHeader, encode_frame
-from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES, MAGIC
 from models.parameters import LANES, MODES, FrameParameters, ParameterError, TileParameters, Window
+from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, MAGIC
 
 SMALL_TILE = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
 TILES = TileParameters(), SMALL_TILE

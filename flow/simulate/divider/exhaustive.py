@@ -11,11 +11,12 @@ import numpy as np
 from tqdm import tqdm
 
 from base.tools import ToolError
-from models.digital.cordic import ITERATIONS_MAX, ITERATIONS_MIN
-from models.digital.divider import N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN, QuadResult, phase_error
+from models.digital.divider import QuadResult, phase_error
+from models.digital.phase import divide
 from models.parameters import DIVIDERS, ChipParameters, ParameterError, SensorParameters, check_int
+from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN
 from rtl.export import translate
-from rtl.quad_divider import golden, quad_divider, ratio_bits, timing
+from rtl.quad_divider import quad_divider, ratio_bits, timing
 
 from .simulator import program, simulate
 
@@ -76,7 +77,7 @@ def compare(bench, x, y, config, noise_floor, seed):
     variant, n_frac, _ = config
     responses, run = simulate(bench, pack(x, y), noise_floor, seed)
     got = unpack(responses, ratio_bits(variant, n_frac))
-    return count_mismatches(got, golden(*config, x, y, noise_floor)), got, run
+    return count_mismatches(got, divide(*config, x, y, noise_floor)), got, run
 
 
 def errors(phase, x, y):
@@ -107,7 +108,7 @@ def measure(variant, n_frac=8, iterations=10, rtl=True):
         "mega_cycles_per_s": None,
     }
     if not rtl:
-        worst, rms = errors(golden(variant, n_frac, iterations, x, y).phase, x, y)
+        worst, rms = errors(divide(variant, n_frac, iterations, x, y).phase, x, y)
         return found | {"worst": worst, "rms": rms}
     config = variant, n_frac, iterations
     bench = program(*verilog(*config))

@@ -2,9 +2,10 @@
 
 import numpy as np
 
-from .header import CRC, HEADER_BYTES
+from models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BYTES
+
 from .payload import base_of, decode_rows, one_byte_changes
-from .trailer import TRAILER_BYTES, frame_crc, read_trailer
+from .trailer import frame_crc, read_trailer
 
 
 class Body:

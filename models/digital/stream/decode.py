@@ -3,13 +3,13 @@
 import numpy as np
 
 from models.parameters import ParameterError, TileParameters
+from models.parameters.stream_format import COUNTED_BYTES, HEADER_BYTES, MAGIC, TRAILER_BYTES
 
 from .body import Body
 from .frame import DecodedFrame
-from .header import HEADER_BYTES, MAGIC, StreamError, read_header
+from .header import StreamError, read_header
 from .payload import frame_ends
 from .resync import Search
-from .trailer import COUNTED_BYTES, TRAILER_BYTES
 
 MEMORY_MAX = 1 << 30  # bytes of samples that decode_stream returns at most
 SEARCH_MAX = 1 << 28, 64  # samples decoded on trial to find rows again: at most so many, and more for each byte

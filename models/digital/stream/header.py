@@ -1,6 +1,5 @@
 """The header of a frame in the byte stream (docs/stream.md, Header)."""
 
-import struct
 import zlib
 from dataclasses import dataclass
 from functools import lru_cache
@@ -21,16 +20,9 @@ from models.parameters import (
     check_choice,
     check_int,
 )
+from models.parameters.stream_format import CRC, FIELD_BYTES, HEADER_BYTES, HEADER_FIELDS, MAGIC, VERSION
 
 from .crc import one_byte_errors
-
-MAGIC = b"TLBT"
-VERSION = 1
-
-_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sH")
-CRC = struct.Struct(">I")
-FIELD_BYTES = _FIELDS.size
-HEADER_BYTES = FIELD_BYTES + CRC.size
 
 
 class StreamError(ParameterError):
@@ -112,7 +104,7 @@ class StreamHeader:
         """The header with its CRC-32: HEADER_BYTES bytes."""
         w = self.window
         flags = self.decimation << 4 | self.phase << 2 | MODES.index(self.mode)
-        fields = _FIELDS.pack(
+        fields = HEADER_FIELDS.pack(
             MAGIC,
             VERSION,
             flags,
@@ -204,7 +196,7 @@ def read_header(data):
         raise StreamError("header CRC-32 does not fit, and no change of one byte mends it")
     sent, position = found
     (magic, version, flags, threshold, lanes, tile, rows, cols, row0, row1, col0, col1, mask, frame_number) = (
-        _FIELDS.unpack_from(sent)
+        HEADER_FIELDS.unpack_from(sent)
     )
     if magic != MAGIC:
         raise StreamError(f"starts with {magic!r}: a frame starts with {MAGIC!r}")

@@ -8,9 +8,9 @@ another file, inlined here, has changed.
 import numpy as np
 from numba import njit
 
+from models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC, TRAILER_BYTES, TRAILER_ROW
+
 from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
-from .header import MAGIC
-from .trailer import COUNTED_BYTES, COUNTS, TRAILER_BYTES, TRAILER_ROW
 
 START = (3, 4, 0, 128)  # k, r2, run, credit at the start of a row
 K_MAX, R2_MAX, CREDIT_MAX = 7, 12, 255

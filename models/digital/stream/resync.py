@@ -8,9 +8,9 @@ if not. A trial is believed when its index is plausible and the row (or trailer)
 import numpy as np
 
 from models.parameters import ROWS_MAX
+from models.parameters.stream_format import COUNTED_BYTES
 
 from .payload import check_row, find_row, row_bytes_max, row_fits
-from .trailer import COUNTED_BYTES
 
 
 class Search:

@@ -1,18 +1,11 @@
 """Row marks and the trailer of a frame (docs/stream.md, Row mark, Trailer)."""
 
-import struct
 import zlib
 
 from models.parameters import check_int
+from models.parameters.stream_format import COUNTED_BYTES, COUNTS, CRC, FIELD_BYTES, MARK, TRAILER_BYTES, TRAILER_ROW
 
 from .crc import crc16
-from .header import CRC, FIELD_BYTES
-
-TRAILER_ROW = 0xFFFF  # stands for the row index in the trailer's mark
-MARK = struct.Struct(">H")
-COUNTS = struct.Struct(">II")
-COUNTED_BYTES = COUNTS.size + MARK.size
-TRAILER_BYTES = COUNTED_BYTES + CRC.size
 
 
 def row_mark(payload, row):

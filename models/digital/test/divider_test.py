@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.cordic import angles, cordic, nearest_even, rotate
-from models.digital.divider import QuadResult, fold, phase_error, phase_thresholds, quad_divide
+from models.digital.cordic import cordic, nearest_even, rotate
+from models.digital.divider import QuadResult, fold, phase_error, quad_divide
 from models.parameters import ParameterError
+from models.parameters.divider import cordic_angles, phase_thresholds
 
 SAMPLES = np.arange(-256, 256)
 X, Y = np.meshgrid(SAMPLES, SAMPLES)
@@ -132,7 +133,7 @@ def test_cordic_state_stays_in_its_stated_range(iterations):
     _, x, y = fold(X, Y)
     state = x << iterations, y << iterations, np.zeros_like(x)
     one = 1 << iterations
-    for i, angle in enumerate(angles(iterations), start=1):
+    for i, angle in enumerate(cordic_angles(iterations), start=1):
         state = rotate(*state, i, angle)
         x, y, z = state
         assert x.min() >= 0 and x.max() < 421.6 * one and -128 * one <= y.min() and y.max() <= 256 * one
@@ -143,7 +144,7 @@ def test_cordic_angles_in_60_digits():
     getcontext().prec = 60
     pi = 4 * exact_atan(Decimal(1), 200)
     for iterations in WIDTHS:
-        for i, angle in enumerate(angles(iterations), start=1):
+        for i, angle in enumerate(cordic_angles(iterations), start=1):
             exact = exact_atan(Decimal(2) ** -i) * 128 / pi * 2**iterations
             assert abs(angle - exact) < Decimal("0.5")
 

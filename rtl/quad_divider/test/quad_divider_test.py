@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from models.parameters import DIVIDERS, ParameterError
 from rtl.messages import DivReq
 from rtl.quad_divider import QuadDividerCL, QuadDividerFL, quad_divider, timing
-from rtl.quad_divider.variants import response
+from rtl.quad_divider.quad_divider_fl import response
 from rtl.reset import shown_behind_reset
 from rtl.testbench import build
 

@@ -8,10 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked_row
-from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
 from models.digital.stream.payload import check_row
 from models.digital.stream.test.frames import header_of, headers, samples_of
-from models.digital.stream.trailer import TRAILER_BYTES
+from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
 FRAMES = {
     "edge": header_of(12, 30, threshold=4),

@@ -3,9 +3,8 @@ from pathlib import Path
 import pytest
 
 from models.digital.stream import decode_stream
-from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
 from models.digital.stream.test.examples import EXAMPLES, small_frame
-from models.digital.stream.trailer import TRAILER_BYTES
+from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
 DOCUMENT = (Path(__file__).parents[4] / "docs" / "stream.md").read_text()
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from models.digital.stream import StreamHeader, encode_frame, encode_marked_row
-from models.digital.stream.header import FIELD_BYTES, HEADER_BYTES
 from models.digital.stream.payload import START, base_of, code_sample
 from models.parameters import FrameParameters, Window
+from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES
 
 FIELDS = (
     ("magic", 4),

@@ -1,0 +1,18 @@
+"""Fields and sizes of the byte stream (docs/stream.md): the golden encoder, the decoder and the RTL share them."""
+
+import struct
+
+MAGIC = b"TLBT"
+VERSION = 1
+
+HEADER_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sH")
+CRC = struct.Struct(">I")
+FIELD_BYTES = HEADER_FIELDS.size
+HEADER_BYTES = FIELD_BYTES + CRC.size
+
+MARK = struct.Struct(">H")
+COUNTS = struct.Struct(">II")
+COUNT_BYTES = COUNTS.size
+COUNTED_BYTES = COUNT_BYTES + MARK.size
+TRAILER_BYTES = COUNTED_BYTES + CRC.size
+TRAILER_ROW = 0xFFFF  # replaces the row index in the trailer's mark
