@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from models.digital.cordic import angles
 from models.digital.divider import quad_divide
+from models.parameters.divider import cordic_angles
 from models.parameters.registers import register_map
 
 
@@ -31,7 +31,7 @@ def phase_of_ratio(proof):
 def cordic_angle(proof):
     """cordic_angle(i): atan(2^-(i + 1)) as the golden CORDIC counts it."""
     iterations = proof.sensor_parameters.chip.cordic_iterations
-    return case("cordic_angle", 4, 5 + iterations, angles(iterations))
+    return case("cordic_angle", 4, 5 + iterations, cordic_angles(iterations))
 
 
 def type_at(proof):
