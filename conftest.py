@@ -5,7 +5,7 @@ is missing it is skipped with the reason. A property fails with the first input 
 """
 
 import importlib.util
-import re
+from pathlib import Path
 
 import pytest
 from hypothesis import Phase, settings
@@ -16,6 +16,7 @@ settings.load_profile("first")
 
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
 LAYOUTS = "cells/extract", "cells/compact", "cells/lef", "cells/test"
+NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
 
 
@@ -40,28 +41,33 @@ def pytest_addoption(parser):
         default="icarus",
         help="simulator of the netlists; Verilator knows no X (%(default)s)",
     )
-    group.addoption("--cells", action="append", default=[], metavar="FILE", help="models of the netlists' cells")
+    group.addoption(
+        "--cells", action="append", default=[], type=Path, metavar="FILE", help="models of the netlists' cells"
+    )
 
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: runs with --all only")
-    for option in config.getoption("netlist"):
-        match = re.fullmatch(r"(\w+)=([^:]+)(?::(\w+))?", option)
-        if not match:
-            raise pytest.UsageError(f"--netlist = {option!r}: must be NAME=FILE or NAME=FILE:MODULE")
-        from rtl import icarus_level
+    if not config.getoption("netlist"):
+        return
+    from models.parameters import ParameterError
+    from rtl.harness.netlists import Netlists, netlist, netlist_in_icarus
+    from rtl.harness.testbench import hooked
+    from verif.coverage.netlists import netlist_in_verilator
 
-        icarus_level.netlists[match[1]] = match[2], match[3]
-        icarus_level.cells[:] = config.getoption("cells")
-    if config.getoption("netlist") and config.getoption("netlist_in") == "verilator":
-        from rtl import icarus_level
-        from verif.coverage.netlists import in_verilator
-
-        icarus_level.start = in_verilator
+    simulate = netlist_in_verilator if config.getoption("netlist_in") == "verilator" else netlist_in_icarus
+    try:
+        netlists = {given.name: given for given in map(netlist, config.getoption("netlist"))}
+    except ParameterError as error:
+        raise pytest.UsageError(str(error)) from None
+    config.stash[NETLISTS] = Netlists(netlists, config.getoption("cells"), simulate)
+    substitutes = hooked(substitute=config.stash[NETLISTS].substitute)
+    substitutes.__enter__()
+    config.add_cleanup(lambda: substitutes.__exit__(None, None, None))
 
 
 def pytest_collection_modifyitems(config, items):
-    from rtl.icarus import MISSING, installed
+    from rtl.harness.icarus import MISSING, installed
 
     in_icarus = [item for item in items if getattr(item.cls, "verilog", None) == "icarus"]
     if config.getoption("netlist"):
@@ -81,9 +87,9 @@ def pytest_sessionfinish(session):
     options = session.config.option
     if not options.netlist or options.collectonly or getattr(options, "dist", "no") != "no":
         return
-    from rtl.icarus_level import asked, netlists
-
-    if unused := sorted(set(netlists) - asked):
+    netlists = session.config.stash[NETLISTS]
+    if unused := netlists.unused():
         raise pytest.UsageError(
-            f"--netlist = {', '.join(unused)}: no test built that; built were: {', '.join(sorted(asked)) or 'none'}"
+            f"--netlist = {', '.join(unused)}: no test built that; built were: "
+            f"{', '.join(sorted(netlists.built)) or 'none'}"
         )

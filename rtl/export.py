@@ -1,18 +1,9 @@
-"""`python -m rtl.export`: one readable Verilog file a top, the same bytes from run to run, linted.
-
-What PyMTL translates gets module names without parameters in them, paths relative to the repository, and
-types named as in the sources.
-"""
+"""`python -m rtl.export`: one Verilog file for each top, linted on demand."""
 
 import argparse
 import os
-import re
 import sys
-import tempfile
-import warnings
 from pathlib import Path
-
-from pymtl3.passes.backends.verilog import VerilogTranslationPass
 
 from base.paths import ROOT
 from models.parameters import (
@@ -23,84 +14,14 @@ from models.parameters import (
     SensorParameters,
     TileParameters,
 )
+from rtl.harness.translate import translate_component
 from rtl.lint import LintError, lint
-from rtl.tops import TOPS, build_top
-
-COLUMNS = "200"  # PyMTL folds lines at the terminal's width
-
-
-def module_names(top, name):
-    """Module name of every component below the elaborated ``top``: dict component -> str.
-
-    A class's name; where a design holds a class with several parameter sets, the later ones (in the order
-    of their instance names) are numbered: Queue, Queue_2.
-    """
-    names, sets, taken = {top: name}, {}, {name}
-    for component in sorted(top.get_all_components(), key=repr):
-        if component is top:
-            continue
-        cls = type(component).__name__
-        key = (cls, repr(component._dsl.args), repr(sorted(component._dsl.kwargs.items())))
-        if key not in sets:
-            number = 1
-            while (candidate := cls if number == 1 else f"{cls}_{number}") in taken:
-                number += 1
-            sets[key] = candidate
-            taken.add(candidate)
-        names[component] = sets[key]
-    return names
-
-
-def _without_unused_constants(module):
-    """PyMTL declares constants that only gave a slice its width."""
-    for name in re.findall(r"(?m)^  localparam .*? (\w+)\s+=", module):
-        if len(re.findall(rf"\b{name}\b", module)) == 1:
-            module = re.sub(rf"(?m)^  localparam .*? {name}\s+=.*\n", "", module)
-    return module
-
-
-def tidy(text):
-    """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants."""
-    text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
-    text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
-    text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
-    text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)
-    text = text.replace("always_comb begin", "always @* begin")  # Icarus 11.0 loops in the first (its issue 508)
-    structs = sorted(set(re.findall(r"(?m)^} (\w+);", text)))
-    short = [name.partition("__")[0] for name in structs]
-    for name, plain in zip(structs, short, strict=True):
-        if short.count(plain) == 1:
-            text = re.sub(rf"\b{name}\b", plain, text)
-    text = "endmodule".join(map(_without_unused_constants, text.split("endmodule")))
-    lines = [line.rstrip() for line in text.splitlines()]
-    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
+from rtl.tops import PACKERS, TOPS, build_top
 
 
 def translate(name, sensor):
     """The Verilog of top ``name`` for ``sensor``, as text. Raises ParameterError."""
     return translate_component(build_top(name, sensor), name)
-
-
-def translate_component(top, name):
-    """The Verilog of the unelaborated component ``top`` as module ``name``, as text."""
-    top.elaborate()
-    for component, module in module_names(top, name).items():
-        component.set_metadata(VerilogTranslationPass.explicit_module_name, module)
-    top.set_metadata(VerilogTranslationPass.enable, True)
-    before, columns = Path.cwd(), os.environ.get("COLUMNS")
-    with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # PyMTL3 3.1.17's translator warns about its own code
-        os.chdir(folder)  # it writes into the working directory
-        os.environ["COLUMNS"] = COLUMNS
-        try:
-            top.apply(VerilogTranslationPass())
-            return tidy(Path(top.get_metadata(VerilogTranslationPass.translated_filename)).read_text())
-        finally:
-            os.chdir(before)
-            if columns is None:
-                os.environ.pop("COLUMNS")
-            else:
-                os.environ["COLUMNS"] = columns
 
 
 def write(path, text):
@@ -117,7 +38,13 @@ def write(path, text):
 def arguments():
     sensor = SensorParameters()
     parser = argparse.ArgumentParser(prog="python -m rtl.export", description=__doc__.splitlines()[0])
-    parser.add_argument("--top", action="append", choices=TOPS, help="a top (may be repeated); default: every one")
+    parser.add_argument(
+        "--top",
+        action="append",
+        choices=(*TOPS, *PACKERS),
+        metavar="TOP",
+        help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or a packer: {', '.join(PACKERS)}",
+    )
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "verilog", help="folder of the files")
     parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")
     parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down (%(default)s)")

@@ -5,7 +5,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
-from rtl.testbench import verilator_folder
+from base.verilator import verilator_folder
 
 WAIVERS = Path(__file__).parent / "waivers.vlt"
 

@@ -1,15 +1,19 @@
 """Every top that can be exported: its name and how to build it for a sensor."""
 
-from models.parameters import ParameterError
+from collections.abc import Callable
+
+from pymtl3 import Component
+
+from models.parameters import ParameterError, SensorParameters
 
 
-def amp_ctrl(sensor):
+def amp_ctrl(sensor: SensorParameters) -> Component:
     from rtl.amp_ctrl import AmpCtrl
 
     return AmpCtrl()
 
 
-def readout_seq(sensor):
+def readout_seq(sensor: SensorParameters) -> Component:
     from rtl.readout_seq import ReadoutSeq
 
     return ReadoutSeq(
@@ -22,22 +26,22 @@ def readout_seq(sensor):
     )
 
 
-def edge_adc(sensor):
+def edge_adc(sensor: SensorParameters) -> Component:
     from rtl.edge_adc import EdgeAdc
 
     return EdgeAdc()
 
 
-def adc_bank(sensor):
+def adc_bank(sensor: SensorParameters) -> Component:
     from rtl.adc_bank import AdcBank
 
     return AdcBank(sensor.chip.lanes)
 
 
-def divider(variant):
+def divider(variant: str) -> Callable[[SensorParameters], Component]:
     """How to build one variant of the quadrature divider."""
 
-    def build(sensor):
+    def build(sensor: SensorParameters) -> Component:
         from rtl.quad_divider import quad_divider
 
         return quad_divider(variant, sensor.chip.n_frac, sensor.chip.cordic_iterations)
@@ -45,25 +49,25 @@ def divider(variant):
     return build
 
 
-def phase_path(sensor):
+def phase_path(sensor: SensorParameters) -> Component:
     from rtl.phase_path import PhasePath
 
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
-def run_length(sensor):
+def run_length(sensor: SensorParameters) -> Component:
     from rtl.run_length import RunLength
 
     return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
 
 
-def reg_file(sensor):
+def reg_file(sensor: SensorParameters) -> Component:
     from rtl.reg_file import RegFile
 
     return RegFile(sensor.tile_rows - 1, sensor.tile_cols - 1)
 
 
-def asp_chip(sensor):
+def asp_chip(sensor: SensorParameters) -> Component:
     from rtl.asp_chip import AspChip
 
     return AspChip(
@@ -79,7 +83,9 @@ def asp_chip(sensor):
     )
 
 
-TOPS = {  # each imports its block when it is built: a block that is being changed stops only itself
+TOPS: dict[
+    str, Callable[[SensorParameters], Component]
+] = {  # each imports its block when it is built: a block that is being changed stops only itself
     "AmpCtrl": amp_ctrl,
     "ReadoutSeq": readout_seq,
     "EdgeAdc": edge_adc,
@@ -94,9 +100,16 @@ TOPS = {  # each imports its block when it is built: a block that is being chang
     "AspChip": asp_chip,
 }
 
+# Of rtl.run_length.candidates: exported by name only, to measure their sizes
+PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePacker", "PayloadPacker"
 
-def build_top(name, sensor):
-    """The unelaborated component of top ``name`` for ``sensor`` (SensorParameters). Raises ParameterError."""
+
+def build_top(name: str, sensor: SensorParameters) -> Component:
+    """The unelaborated component of top or packer ``name`` for ``sensor``. Raises ParameterError."""
+    if name in PACKERS:
+        from rtl.run_length import candidates
+
+        return getattr(candidates, name)()
     if name not in TOPS:
         raise ParameterError(f"top = {name!r}: must be one of {', '.join(TOPS)}")
     return TOPS[name](sensor)

@@ -27,7 +27,14 @@ def gates_of_packers():
     """NAND2 equivalents of every format's packer: dict format -> float, or None where Yosys is missing."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         result = subprocess.run(
-            [sys.executable, "-m", "rtl.run_length.candidates", "--out", folder],
+            [
+                sys.executable,
+                "-m",
+                "rtl.export",
+                "--out",
+                folder,
+                *(f"--top={packer}" for _, packer in FORMATS.values()),
+            ],
             cwd=ROOT,
             capture_output=True,
             text=True,

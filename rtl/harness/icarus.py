@@ -1,45 +1,47 @@
-"""A module driven in Icarus: programs compiled once, and a simulation that answers inputs with outputs.
+"""Verilog in Icarus: programs compiled once, and a module driven line by line.
 
-Icarus is event-driven and 4-state: what a register holds before its reset is X here, and an X that a port shows
-after reset is an error.
+Icarus is event-driven and 4-state: a register is X before its reset, and an X at a port after reset is an error.
 """
 
-import contextlib
 import hashlib
 import os
 import shutil
 import subprocess
 import tempfile
-import weakref
+from collections.abc import Sequence
 from pathlib import Path
 
-from rtl.ports import places, split, total_width
+from base.paths import BUILD
 
-PROGRAMS = Path(__file__).parents[1] / "build" / "icarus"
+from .driven import Driven, SimulationError
+from .ports import Port, places, split, total_width
+
+PROGRAMS = BUILD / "icarus"
 MISSING = "iverilog: not found; install it with: make tools (Debian: apt-get install iverilog)"
 TIMESCALE = "`timescale 1ns/1ps\n"
 
 
-class IcarusError(RuntimeError):
-    """Icarus is missing, refused a file or ended early; the message holds what it said."""
+class IcarusError(SimulationError):
+    """Icarus is missing, refused a file or ended early; the message holds its output."""
 
 
-def installed():
+def installed() -> bool:
+    """True if Icarus is installed."""
     return bool(shutil.which("iverilog") and shutil.which("vvp"))
 
 
-def instance(top, ports):
-    """Verilog of an instance `dut` of module ``top`` between clk, `in` and `got`, packed as ``rtl.ports.places``."""
+def instance(top: str, ports: Sequence[Port]) -> str:
+    """Verilog of an instance `dut` of module ``top`` between clk, `in` and `got`, packed as `places` does."""
     pins = [".clk(clk)"]
     for group, vector in zip(split(ports), ("in", "got")):
         pins += [f".{port.name}({vector}[{low} +: {port.width}])" for port, low in places(group).items()]
     return f"  {top} dut (\n    " + ",\n    ".join(pins) + "\n  );\n"
 
 
-def driven(top, ports):
-    """Verilog of a bench that takes a line of inputs from stdin and writes the outputs, in binary, to stdout.
+def driven_bench(top: str, ports: Sequence[Port]) -> str:
+    """Verilog of module DrivenBench: it reads a line of inputs from stdin and writes the outputs of ``top`` to stdout.
 
-    A line: 1 for a clock edge ahead of the new inputs or 0, and the inputs in hexadecimal.
+    A line of inputs: 1 for a clock edge ahead of the new inputs or 0, and the inputs in hexadecimal. Outputs: binary.
     """
     inputs, outputs = split(ports)
     return f"""{TIMESCALE}module DrivenBench;
@@ -63,8 +65,8 @@ endmodule
 """
 
 
-def compile_program(program, sources, top, texts=()):
-    """Compile module ``top`` of the Verilog files ``sources`` and the Verilog ``texts`` to ``program``, a path.
+def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Sequence[str] = ()) -> None:
+    """Compile module ``top`` of the Verilog files ``sources`` and the Verilog ``texts`` to the file ``program``.
 
     Raises IcarusError.
     """
@@ -75,7 +77,7 @@ def compile_program(program, sources, top, texts=()):
         files = [f"{folder}/text{number}.v" for number in range(len(texts))]
         for file, text in zip(files, texts):
             Path(file).write_text(text)
-        files += map(str, sources)  # behind the bench: its time scale is that of cells that have none
+        files += map(str, sources)  # after the bench: cells without a time scale take the bench's
         part = program.with_name(f".{program.name}.part-{os.getpid()}")
         result = subprocess.run(
             ["iverilog", "-g2012", "-s", top, "-o", part, *files], capture_output=True, text=True, timeout=300
@@ -85,8 +87,8 @@ def compile_program(program, sources, top, texts=()):
         os.replace(part, program)
 
 
-def kept_program(name, sources, top, texts=()):
-    """As `compile_program`, to a file that is kept for the same sources and texts: its path."""
+def kept_program(name: str, sources: Sequence[Path], top: str, texts: Sequence[str] = ()) -> Path:
+    """The program of `compile_program` in a file that is kept for the same sources and texts. Raises IcarusError."""
     digest = hashlib.sha256(top.encode())
     for part in (*(Path(source).read_bytes() for source in sources), *(text.encode() for text in texts)):
         digest.update(len(part).to_bytes(8, "big") + part)
@@ -96,43 +98,8 @@ def kept_program(name, sources, top, texts=()):
     return program
 
 
-class Driven:
-    """A simulation that is asked line by line: `step` gives it inputs and takes its outputs, as packed numbers.
-
-    command: of a program that answers lines as `driven` does.
-    """
-
-    def __init__(self, command, ports):
-        self.outputs = split(ports)[1]
-        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        self._end = weakref.finalize(self, _end, self.process)
-        self.send, self.flush = self.process.stdin.write, self.process.stdin.flush
-        self.receive = self.process.stdout.readline
-
-    def step(self, edge, inputs):
-        """Settled outputs for ``inputs``, after a clock edge with the old ones if ``edge``: text of 0, 1, x and z."""
-        try:
-            self.send(b"%d %x\n" % (edge, inputs))
-            self.flush()
-        except BrokenPipeError:
-            pass  # what it said stands in what is left to read
-        line = self.receive()
-        if not line or line.strip(b"01xz\n"):
-            said = line + self.process.stdout.read(2000)
-            said = said.decode(errors="replace").strip() or "it said nothing"
-            raise IcarusError(f"the simulation ended early: {said}")
-        return line
-
-    def unknown(self, line):
-        """The ports that show X or Z in an answer: list of str, 'recv__rdy = x'."""
-        bits = line.decode().strip()[::-1]
-        values = {port.name: bits[low : low + port.width][::-1] for port, low in places(self.outputs).items()}
-        return [f"{name} = {value}" for name, value in values.items() if value.strip("01")]
-
-
-def _end(process):
-    with contextlib.suppress(OSError):
-        process.stdin.close()
-    process.kill()
-    process.wait()
-    process.stdout.close()
+def in_icarus(
+    name: str, top: str, ports: Sequence[Port], sources: Sequence[Path] = (), texts: Sequence[str] = ()
+) -> Driven:
+    """Module ``top`` of ``sources`` and ``texts``, running in Icarus; name: of its program. Raises IcarusError."""
+    return Driven(["vvp", "-n", kept_program(name, sources, "DrivenBench", [driven_bench(top, ports), *texts])], ports)

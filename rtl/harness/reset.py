@@ -4,16 +4,16 @@ import random
 
 from pymtl3 import mk_bits
 
-from rtl.ports import ports_of, split, validity
+from rtl.harness.ports import ports_of, split, validity
 
 CYCLES = 4  # that are looked at behind a reset
 BEFORE = 60  # with any inputs, ahead of it
 
 
-def shown_behind_reset(sim, before=BEFORE):
+def shown_after_reset(sim, before=BEFORE):
     """Outputs in the cycles behind a reset, inputs 0: list of dict path -> value; a message counts while it is valid.
 
-    sim: as rtl.testbench.build gives it. before: cycles of any inputs ahead of the reset, 0 for a level that checks
+    sim: as rtl.harness.testbench.build gives it. before: cycles of any inputs ahead of the reset, 0 for a level that checks
     what it is given.
     """
     inputs, outputs = split(ports_of(sim))

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from models.parameters import ParameterError
-from rtl.icarus import IcarusError
+from rtl.harness.icarus import IcarusError
 from rtl.tops import TOPS
 
 from .record import RecordError, record

@@ -1,9 +1,11 @@
-"""A pytest plugin that records what tests do at a component's ports: `-p rtl.replay.recorder`, Verilog level too."""
+"""Pytest plugins: one level's tests only, and a record of what they do at a component's ports."""
 
 from pathlib import Path
 
-from rtl import testbench
-from rtl.ports import packed, ports_of, split
+import pytest
+
+from rtl.harness.ports import packed, ports_of, split
+from rtl.harness.testbench import hooked
 
 from .trace import Trace
 
@@ -11,7 +13,7 @@ LEVELS = ("cls", "component", "level")  # names under which a test class holds t
 
 
 class Recorder:
-    """Traces of the components of class ``cls`` that `rtl.testbench.build` makes, at one level.
+    """Traces of the components of class ``cls`` that `rtl.harness.testbench.build` makes, at one level.
 
     cls: name of the class. verilog: of simulators of the translated Verilog, else of those of PyMTL.
     """
@@ -21,7 +23,7 @@ class Recorder:
         self.parts, self.test = [], ""
 
     def observe(self, top, dut, verilog):
-        """See rtl.testbench.observers."""
+        """See rtl.harness.testbench.hooked."""
         if type(dut).__name__ != self.cls or verilog != self.verilog:
             return None
         ports, arguments = ports_of(dut), (*dut._dsl.args, *dut._dsl.kwargs.values())
@@ -82,13 +84,14 @@ class Plugin(OneLevel):
         super().__init__(level == "Verilog")
         self.recorder, self.folder = Recorder(cls, self.verilog), Path(folder)
 
-    def pytest_sessionstart(self):
-        testbench.observers.append(self.recorder.observe)
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtestloop(self):
+        with hooked(observe=self.recorder.observe):
+            return (yield)
 
     def pytest_runtest_setup(self, item):
         self.recorder.test = item.nodeid
 
     def pytest_sessionfinish(self):
-        testbench.observers.remove(self.recorder.observe)
         for trace in self.recorder.traces():
             trace.save(self.folder)

@@ -5,8 +5,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from rtl.icarus import TIMESCALE, IcarusError, compile_program, instance
-from rtl.ports import places, split, total_width, validity
+from rtl.harness.icarus import TIMESCALE, IcarusError, compile_program, instance
+from rtl.harness.ports import places, split, total_width, validity
 
 from .trace import load
 

@@ -7,16 +7,17 @@ import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from rtl.ports import Port, places, split
+from rtl.harness.ports import Port, places, split
+from rtl.harness.translate import translate_component
 
 
 @dataclass
 class Trace:
     """Every cycle of the simulators of one component with one parameter set.
 
-    cls, module, arguments: the component, `cls(*arguments)` of `module`. ports: of rtl.ports.ports_of.
+    cls, module, arguments: the component, `cls(*arguments)` of `module`. ports: of rtl.harness.ports.ports_of.
     lines: a cycle each, 'fresh inputs outputs': fresh is 1 in a simulator's first cycle, where registers hold
-    anything; the rest are hexadecimal numbers packed as rtl.ports.places, settled ahead of the clock edge.
+    anything; the rest are hexadecimal numbers packed as rtl.harness.ports.places, settled ahead of the clock edge.
     tests: (first cycle, name) of what drove them, ascending.
     """
 
@@ -41,8 +42,6 @@ class Trace:
 
     def verilog(self):
         """Its Verilog as text; the module is named `cls`."""
-        from rtl.export import translate_component
-
         return translate_component(self.component(), self.cls)
 
     def test_at(self, cycle):

@@ -9,7 +9,8 @@ import pytest
 
 from base.paths import ROOT
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
-from rtl.export import main, tidy, translate
+from rtl.export import main, translate
+from rtl.harness.translate import tidy
 from rtl.lint import LintError, lint
 from rtl.tops import TOPS
 

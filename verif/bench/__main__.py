@@ -8,7 +8,7 @@ from pathlib import Path
 
 from base.jobs import Job, run
 from models.parameters import ParameterError
-from rtl.icarus import MISSING, installed
+from rtl.harness.icarus import MISSING, installed
 from verif.results import OUT, digest_of, write_step
 
 from .exposure import FRAMES

@@ -4,7 +4,7 @@ import numpy as np
 
 from models.parameters.registers import frame_writes
 from rtl.asp_chip.test.chip_bench import ChipBench
-from rtl.testbench import build
+from rtl.harness.testbench import build
 from rtl.tops import build_top
 
 from .exposure import FRONT_END, SENSOR, TRIMS, samples

@@ -10,11 +10,11 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from base.paths import ROOT
+from base.verilator import verilator_folder
 from models.parameters import ArrayParameters, ChipParameters, SensorParameters
 from rtl.export import translate
-from rtl.icarus import MISSING, installed
-from rtl.ports import ports_of
-from rtl.testbench import verilator_folder
+from rtl.harness.icarus import MISSING, installed
+from rtl.harness.ports import ports_of
 from rtl.tops import build_top
 
 from . import exposure

@@ -6,7 +6,7 @@
 // every value FIRST..LAST of the input `mutant`, a fresh model each, to its first difference.
 // --points: Verilator's coverage; FILE.first has it behind the first cycle, in which constants take their values.
 // --states: 'register reset from to times' a line, of registers in consecutive cycles.
-// `program --drive MUTANT`: takes lines from stdin and answers with the outputs, as a driven bench of rtl/icarus.py.
+// `program --drive MUTANT`: takes lines from stdin and answers with the outputs, as a driven bench of rtl/harness/icarus.py.
 
 #include <cstdint>
 #include <cstdio>

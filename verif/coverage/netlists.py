@@ -1,18 +1,13 @@
 """Netlists of `pytest --netlist` in Verilator: compiled as recorded traces are, driven line by line as in Icarus."""
 
-from pathlib import Path
-
-from rtl import icarus_level
-from rtl.ports import ports_of
+from rtl.harness.driven import Driven
+from rtl.harness.ports import ports_of
 
 from .program import compile_program
 
 
-def in_verilator(dut, name):
-    """Command of the simulation of the netlist given for ``name``, in Icarus where none was. Raises ProgramError."""
-    if name not in icarus_level.netlists:
-        return icarus_level.in_icarus(dut, name)
-    icarus_level.asked.add(name)
-    path, module = icarus_level.netlists[name]
-    text = "".join(Path(file).read_text() for file in (*icarus_level.cells, path))
-    return [compile_program(text, module or type(dut).__name__, ports_of(dut)).folder / "replay", "--drive", "0"]
+def netlist_in_verilator(dut, given, cells):
+    """The Netlist ``given`` for the elaborated component ``dut``, running in Verilator. Raises ProgramError."""
+    text, ports = "".join(file.read_text() for file in (*cells, given.path)), ports_of(dut)
+    program = compile_program(text, given.module or type(dut).__name__, ports)
+    return Driven([program.folder / "replay", "--drive", "0"], ports)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rtl.ports import places, port_signals, split
+from rtl.harness.ports import places, port_signals, split
 from rtl.replay import Trace
 
 Values = npt.NDArray[Any]  # int64, one per cycle; Python integers for ports of more than 63 bits

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from base.cache import cached, digest
 from base.tools import run
-from rtl.ports import places, split, total_width, validity
-from rtl.testbench import verilator_folder
+from base.verilator import verilator_folder
+from rtl.harness.ports import places, split, total_width, validity
 from verif.results import ROOT
 
 CACHE = ROOT / "build" / "replay"

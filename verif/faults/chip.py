@@ -15,7 +15,7 @@ from models.digital.pattern import PatternEnd
 from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
 from models.parameters.registers import command, frame_writes, register_map, write_transfers
 from rtl.export import translate
-from rtl.icarus import kept_program
+from rtl.harness.icarus import kept_program
 
 from .waveform import BUSY, Trace, reset, rest, transfer, transfers
 

@@ -5,7 +5,7 @@ import tempfile
 from pathlib import Path
 
 from base.tools import ToolTimeout
-from rtl.ports import Port, split, validity
+from rtl.harness.ports import Port, split, validity
 from verif.coverage.program import tool
 from verif.results import ROOT
 

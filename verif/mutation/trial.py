@@ -8,10 +8,10 @@ import sys
 import pytest
 from hypothesis import Phase, settings
 
-from rtl import testbench
-from rtl.export import translate_component
-from rtl.icarus import Driven
-from rtl.ports import ports_of
+from rtl.harness.driven import Driven
+from rtl.harness.ports import ports_of
+from rtl.harness.testbench import hooked
+from rtl.harness.translate import translate_component
 from rtl.replay import whole_level
 from rtl.replay.recorder import OneLevel
 from verif.coverage.program import compile_program
@@ -61,8 +61,8 @@ class Trial(OneLevel):
         self.head, self.verilog_text, self.mutant, self.cycles = head, verilog, mutant, cycles
         self.failed, self.took_place = "", False
 
-    def stand_in(self, dut, verilog):
-        """See rtl.testbench.stand_ins."""
+    def substitute(self, dut, verilog, _name):
+        """See rtl.harness.testbench.hooked."""
         name, arguments = type(dut).__name__, (*dut._dsl.args, *dut._dsl.kwargs.values())
         if name == self.head.cls:
             if verilog is not self.verilog or arguments != self.head.arguments:
@@ -74,15 +74,14 @@ class Trial(OneLevel):
         number = self.mutant.number if self.mutant else 0
         return Limited([program.folder / "replay", "--drive", str(number)], ports, self.cycles)
 
-    def pytest_sessionstart(self):
-        testbench.stand_ins.append(self.stand_in)
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtestloop(self):
+        with hooked(substitute=self.substitute):
+            return (yield)
 
     def pytest_runtest_logreport(self, report):
         if report.failed and not self.failed:
             self.failed = report.nodeid
-
-    def pytest_sessionfinish(self):
-        testbench.stand_ins.remove(self.stand_in)
 
 
 def same_module(head, cls, arguments):

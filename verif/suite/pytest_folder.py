@@ -53,7 +53,7 @@ def run_folder(folder, root=ROOT, options=("--all",)):
             *options,
             *files,
         ]
-        # Compiled models lie in a folder a worker (rtl/testbench.py): two folders' tests must not share one.
+        # Compiled models lie in a folder a worker (rtl/harness/testbench.py): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:
             done = finish(command, {"PYTEST_XDIST_WORKER": worker}, root, SECONDS)

@@ -10,11 +10,10 @@ from hypothesis import strategies as st
 from flow.formats.tokens import FORMATS
 from models.digital.stream import encode_payload
 from models.digital.stream.payload import base_of
+from rtl.harness.testbench import build
 from rtl.run_length import candidates
-from rtl.run_length.packer_rtl import PayloadPacker
-from rtl.testbench import build
 
-PACKERS = {name: getattr(candidates, packer, PayloadPacker) for name, (_, packer) in FORMATS.items()}
+PACKERS = {name: getattr(candidates, packer) for name, (_, packer) in FORMATS.items()}
 CODES = st.lists(st.one_of(st.just(0), st.just(0), st.integers(-128, 127), st.integers(-9, 9)), max_size=60)
 BURSTS = st.lists(st.booleans(), min_size=1, max_size=8).filter(any)
 

@@ -10,7 +10,7 @@ import numpy as np
 from base.cache import cached, digest
 from base.paths import BUILD
 from base.tools import run
-from rtl.testbench import verilator_folder
+from base.verilator import verilator_folder
 
 CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"

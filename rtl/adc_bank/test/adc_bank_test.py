@@ -14,10 +14,10 @@ from models.afe import Converter, FrontEnd
 from models.digital.scan import Scan
 from models.parameters import MODES, ConverterParameters, FrameParameters, Window
 from rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
-from rtl.afe_fl import AfeFL
+from rtl.harness.afe_fl import AfeFL
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
-from rtl.reset import shown_behind_reset
-from rtl.testbench import build
 
 ROWS, COLS, LANES = 3, 104, 8  # three groups, the last one partial
 RNG = np.random.default_rng(5)
@@ -266,8 +266,8 @@ class TestAdcBankRTL(TestAdcBankCL):
     cls = AdcBank
 
     def test_what_a_reset_leaves(self):
-        golden = shown_behind_reset(build(AdcBankFL(LANES)), before=0)
-        assert shown_behind_reset(build(self.cls(LANES), self.verilog, f"AdcBank{LANES}")) == golden
+        golden = shown_after_reset(build(AdcBankFL(LANES)), before=0)
+        assert shown_after_reset(build(self.cls(LANES), self.verilog, f"AdcBank{LANES}")) == golden
 
 
 class TestAdcBankVerilog(TestAdcBankRTL):

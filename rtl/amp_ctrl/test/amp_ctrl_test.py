@@ -10,8 +10,8 @@ from models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
 from models.parameters import AmpTiming
 from rtl.amp_ctrl import AmpCtrl, AmpCtrlFL
 from rtl.amp_ctrl.ports import DURATIONS
-from rtl.reset import shown_behind_reset
-from rtl.testbench import build
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 
 # A test that several levels inherit runs on each of them: that is meant.
 SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
@@ -165,7 +165,7 @@ class TestAmpCtrlRTL(TestAmpCtrlFL):
     level = AmpCtrl
 
     def test_what_a_reset_leaves(self, sim):
-        assert shown_behind_reset(sim) == shown_behind_reset(build(AmpCtrlFL()), before=0)
+        assert shown_after_reset(sim) == shown_after_reset(build(AmpCtrlFL()), before=0)
 
 
 class TestAmpCtrlVerilog(TestAmpCtrlRTL):

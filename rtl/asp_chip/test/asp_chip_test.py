@@ -19,7 +19,7 @@ from models.parameters import (
 )
 from models.parameters.registers import command, frame_writes, read_transfer, register_map
 from rtl.asp_chip import AspChip, AspChipFL
-from rtl.testbench import build
+from rtl.harness.testbench import build
 
 from .chip_bench import ChipBench
 

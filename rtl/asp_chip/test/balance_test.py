@@ -4,7 +4,7 @@ import pytest
 
 from models.parameters import TileParameters
 from rtl.asp_chip.balance_rtl import Balance
-from rtl.testbench import build
+from rtl.harness.testbench import build
 
 SMALL_TILE = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
 

@@ -5,7 +5,7 @@ import pytest
 
 from models.digital.pattern import PatternEnd, pattern_value
 from rtl.asp_chip.pattern_rtl import Pattern
-from rtl.testbench import build
+from rtl.harness.testbench import build
 
 
 def test_pattern_makes_every_code_and_runs_of_zeros():

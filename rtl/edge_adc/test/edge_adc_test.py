@@ -11,8 +11,8 @@ from models.afe import Converter
 from models.digital.sar import convert
 from models.parameters import ConverterParameters
 from rtl.edge_adc import EdgeAdc, EdgeAdcCL, EdgeAdcFL
-from rtl.reset import shown_behind_reset
-from rtl.testbench import build
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 
 ROUGH = Converter.draw(ConverterParameters(inl=2, dnl=0.5, offset=2, noise=1.5, ktc=1, seed=3), 1)
 IDEAL = Converter.ideal(1)
@@ -197,8 +197,8 @@ class TestEdgeAdcRTL(TestEdgeAdcCL):
     cls = EdgeAdc
 
     def test_what_a_reset_leaves(self):
-        golden = shown_behind_reset(simulator(EdgeAdcFL, False), before=0)
-        assert shown_behind_reset(simulator(self.cls, self.verilog)) == golden
+        golden = shown_after_reset(simulator(EdgeAdcFL, False), before=0)
+        assert shown_after_reset(simulator(self.cls, self.verilog)) == golden
 
 
 class TestEdgeAdcVerilog(TestEdgeAdcRTL):

@@ -1,10 +1,12 @@
-"""The Icarus level: as PyMTL, cycle by cycle, through a harness too; an X behind the reset fails."""
+"""The Icarus level equals PyMTL in every cycle, in a harness too; an X after the reset fails."""
 
 import pytest
 from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
 
-from rtl.icarus import MISSING, IcarusError, installed
-from rtl.testbench import build
+from rtl.harness.driven import SimulationError
+from rtl.harness.icarus import MISSING, installed
+from rtl.harness.netlists import Netlists, netlist
+from rtl.harness.testbench import build, hooked
 
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
 LEVELS = False, "icarus"
@@ -90,14 +92,12 @@ def test_x_must_not_leave_reset():
         build(Careless(), "icarus")
 
 
-def test_a_simulation_that_ends_early_says_so(monkeypatch, tmp_path):
-    from rtl import icarus_level
-
+def test_a_simulation_that_ends_early_says_so(tmp_path):
     path = tmp_path / "Counter.v"
     path.write_text(
         "module Counter(input clk, reset, input [3:0] step, output [3:0] value, output carry);\n"
         "  assign value = 0, carry = 0;\n  initial #150 $finish;\nendmodule\n"
     )
-    monkeypatch.setitem(icarus_level.netlists, "Counter", (path, None))
-    with pytest.raises(IcarusError, match="ended early"):
+    netlists = Netlists({"Counter": netlist(f"Counter={path}")})
+    with pytest.raises(SimulationError, match="ended early"), hooked(substitute=netlists.substitute):
         seen(build(Counter(), "icarus"), STEPS)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from models.digital.phase import phase_samples
 from models.parameters import ChipParameters
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.phase_path import PhasePath, PhasePathCL, PhasePathFL
-from rtl.reset import shown_behind_reset
-from rtl.testbench import build
 
 LANES = 8
 SETTINGS = settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
@@ -170,8 +170,8 @@ class TestPhasePathRTL(TestPhasePathCL):
     cls = PhasePath
 
     def test_what_a_reset_leaves(self):
-        golden = shown_behind_reset(simulator(PhasePathCL, False, self.chip), before=0)
-        assert shown_behind_reset(simulator(self.cls, self.verilog, self.chip)) == golden
+        golden = shown_after_reset(simulator(PhasePathCL, False, self.chip), before=0)
+        assert shown_after_reset(simulator(self.cls, self.verilog, self.chip)) == golden
 
 
 class TestPhasePathVerilog(TestPhasePathRTL):

@@ -9,11 +9,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from models.parameters import DIVIDERS, ParameterError
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 from rtl.messages import DivReq
 from rtl.quad_divider import QuadDividerCL, QuadDividerFL, quad_divider, timing
 from rtl.quad_divider.quad_divider_fl import response
-from rtl.reset import shown_behind_reset
-from rtl.testbench import build
 
 SETTINGS = settings(
     max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.differing_executors]
@@ -195,8 +195,8 @@ class TestRTL(TestCL):
 
     def test_what_a_reset_leaves(self):
         for config in self.configs:
-            golden = shown_behind_reset(simulator(QuadDividerFL, False, config), before=0)
-            assert shown_behind_reset(simulator(type(self).component, self.verilog, config)) == golden, config
+            golden = shown_after_reset(simulator(QuadDividerFL, False, config), before=0)
+            assert shown_after_reset(simulator(type(self).component, self.verilog, config)) == golden, config
 
 
 class TestVerilog(TestRTL):

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from models.digital.amp_ctrl import row_cycles
 from models.parameters import AmpTiming, ParameterError
+from rtl.harness.reset import shown_after_reset
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
-from rtl.reset import shown_behind_reset
 
 from .bench import SMALL_TILE, Bench, Record, Size, amp_ctrl, amplifiers, bank, messages, simulator
 
@@ -317,8 +317,8 @@ class TestReadoutSeqRTL(TestReadoutSeqCL):
 
     def test_what_a_reset_leaves(self):
         for size in self.sizes:
-            golden = shown_behind_reset(simulator(ReadoutSeqFL, size, False), before=0)
-            assert shown_behind_reset(simulator(self.cls, size, self.verilog)) == golden, size
+            golden = shown_after_reset(simulator(ReadoutSeqFL, size, False), before=0)
+            assert shown_after_reset(simulator(self.cls, size, self.verilog)) == golden, size
 
 
 class TestReadoutSeqVerilog(TestReadoutSeqRTL):

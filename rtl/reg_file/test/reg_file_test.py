@@ -16,9 +16,9 @@ from models.parameters.registers import (
     status_transfers,
     write_transfers,
 )
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 from rtl.reg_file import RegFile, RegFileFL, chip_config
-from rtl.reset import shown_behind_reset
-from rtl.testbench import build
 
 from .spi_host import SpiHost
 
@@ -355,8 +355,8 @@ class TestRTL(TestFL):
     component = RegFile
 
     def test_what_a_reset_leaves(self):
-        golden = shown_behind_reset(build(RegFileFL(LAST_ROW, LAST_COL)), before=0)
-        assert shown_behind_reset(self.bench().sim) == golden
+        golden = shown_after_reset(build(RegFileFL(LAST_ROW, LAST_COL)), before=0)
+        assert shown_after_reset(self.bench().sim) == golden
 
 
 class TestVerilog(TestRTL):

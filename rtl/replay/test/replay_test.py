@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from rtl import testbench
-from rtl.icarus import MISSING, installed
+from rtl.harness.icarus import MISSING, installed
+from rtl.harness.testbench import build, hooked
 from rtl.replay import load, record, replay, replay_files
 from rtl.replay.__main__ import main
 from rtl.replay.record import ROOT
@@ -131,15 +131,12 @@ def test_several_simulators_follow_one_another():
     from rtl.replay.recorder import Recorder
 
     recorder = Recorder("EdgeAdc")
-    testbench.observers.append(recorder.observe)
-    try:
+    with hooked(observe=recorder.observe):
         for test, ticks in (("one", 5), ("two", 7)):
             recorder.test = test
-            sim = testbench.build(EdgeAdc())
+            sim = build(EdgeAdc())
             for _ in range(ticks):
                 sim.sim_tick()
-    finally:
-        testbench.observers.remove(recorder.observe)
     (trace,) = recorder.traces()
     assert [line[0] for line in trace.lines].count("1") == 2 and len(trace.lines) == 5 + 7 + 2 * 3
     assert [trace.test_at(cycle) for cycle in (0, 7, 8)] == ["one", "one", "two"]

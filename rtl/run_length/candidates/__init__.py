@@ -1,10 +1,12 @@
-"""Packers of token formats that were measured and not chosen, to know their size (docs/stream.md, Choice of format).
+"""Packers of the token formats that were compared by size (docs/stream.md, Choice of format), PayloadPacker chosen.
 
-They have the ports of PayloadPacker and equal the encoders of flow.formats.tokens byte for byte.
+All have the ports of PayloadPacker; their bytes equal those of the encoders of flow.formats.tokens.
 """
+
+from rtl.run_length.packer_rtl import PayloadPacker
 
 from .byte_pair_rtl import BytePairPacker
 from .nibble_rtl import NibblePacker
 from .rice_rtl import AdaptiveRicePacker, FixedRicePacker
 
-__all__ = ["AdaptiveRicePacker", "BytePairPacker", "FixedRicePacker", "NibblePacker"]
+__all__ = ["AdaptiveRicePacker", "BytePairPacker", "FixedRicePacker", "NibblePacker", "PayloadPacker"]

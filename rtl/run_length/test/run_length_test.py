@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from models.digital.stream import StreamHeader, decode_stream, encode_frame
 from models.digital.stream.test.frames import samples_of
 from models.parameters import MODES, FrameParameters, Window
+from rtl.harness.reset import shown_after_reset
+from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
-from rtl.reset import shown_behind_reset
 from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
-from rtl.testbench import build
 
 ROWS, COLS, LANES = 12, 36, 4
 ALWAYS = [True]
@@ -288,8 +288,8 @@ class TestRunLength(TestRunLengthCL):
     cls = RunLength
 
     def test_what_a_reset_leaves(self):
-        golden = shown_behind_reset(simulator(RunLengthFL, False), before=0)
-        assert shown_behind_reset(simulator(self.cls, self.verilog)) == golden
+        golden = shown_after_reset(simulator(RunLengthFL, False), before=0)
+        assert shown_after_reset(simulator(self.cls, self.verilog)) == golden
 
     def test_all_bits_of_the_header(self):
         """The ports of a header, whatever they say; the other levels look at what is a frame only."""

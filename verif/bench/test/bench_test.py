@@ -5,7 +5,7 @@ import json
 import pytest
 
 from models.digital.chip import golden_frame
-from rtl.icarus import MISSING, installed
+from rtl.harness.icarus import MISSING, installed
 from verif.bench import simulation
 from verif.bench.__main__ import CHIP, SAME, main, summary
 from verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples

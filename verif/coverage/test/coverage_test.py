@@ -8,8 +8,8 @@ import pytest
 
 from base.tools import ToolError
 from models.parameters import ParameterError
-from rtl import testbench
 from rtl.edge_adc import EdgeAdc
+from rtl.harness.testbench import build, hooked
 from rtl.replay.recorder import Recorder
 from rtl.tops import TOPS
 from verif.coverage.measure import Point, measure, sources_of
@@ -25,16 +25,13 @@ CYCLES = [(1, 1, 0)] * 3 + [(1, 0, 1)] * 30 + [(0, 0, 1)] * 30  # go, reset, com
 def recorded(cls, component, cycles):
     """The Trace of ``component``, of class ``cls``, with the inputs of ``cycles``, a dict each."""
     recorder = Recorder(cls)
-    testbench.observers.append(recorder.observe)
-    try:
-        sim = testbench.build(component)
+    with hooked(observe=recorder.observe):
+        sim = build(component)
         for inputs in cycles:
             for name, value in inputs.items():
                 port = getattr(sim, name)
                 port @= value
             sim.sim_tick()
-    finally:
-        testbench.observers.remove(recorder.observe)
     (trace,) = recorder.traces()
     return trace
 

@@ -7,8 +7,8 @@ import pytest
 
 from models.parameters import SensorParameters
 from rtl.asp_chip.balance_rtl import Balance
-from rtl.export import translate_component
-from rtl.ports import Port, ports_of
+from rtl.harness.ports import Port, ports_of
+from rtl.harness.translate import translate_component
 from rtl.tops import build_top
 from verif.coverage.program import compile_program
 from verif.coverage.test.coverage_test import recorded, recorded_cycles
@@ -102,10 +102,10 @@ def planted(trace, folder, of, number):
 BLIND = """
 from models.parameters import SensorParameters
 from rtl.asp_chip.balance_rtl import Balance
-from rtl.export import translate_component
-from rtl.ports import Port, ports_of
+from rtl.harness.translate import translate_component
+from rtl.harness.ports import Port, ports_of
 from rtl.tops import build_top
-from rtl.testbench import build
+from rtl.harness.testbench import build
 
 def test_looks_at_nothing():
     sim = build(Balance((1, 0, 3, 2), 2, 2, 2, 4))
@@ -128,7 +128,7 @@ def test_what_no_test_checks_survives(tmp_path):
     seeing.write_text(BLIND.replace("nothing", "the_trim") + "    assert sim.balance == 2\n")
     assert not attempt(head, verilog, None, [seeing], 1000).failed
     failed = [m for m in mutants if attempt(head, verilog, m, [seeing], 1000).failed]
-    assert 0 < len(failed) and all(compare(verilog, "Balance", head.ports, m.number)[0] == DIFFERENT for m in failed)
+    assert len(failed) > 0 and all(compare(verilog, "Balance", head.ports, m.number)[0] == DIFFERENT for m in failed)
 
 
 def test_judged(tmp_path):

@@ -1,0 +1,64 @@
+"""Netlists that the Icarus level of the tests runs on, in place of the translated Verilog (`pytest --netlist`)."""
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pymtl3 import Component
+
+from models.parameters import ParameterError
+
+from .driven import Driven
+from .icarus import IcarusError, in_icarus
+from .ports import ports_of
+
+
+@dataclass(frozen=True)
+class Netlist:
+    """A Verilog file with ``module``, in place of what the tests build as ``name``; None: the class's name."""
+
+    name: str
+    path: Path
+    module: str | None = None
+
+
+def netlist(option: str) -> Netlist:
+    """The Netlist of NAME=FILE or NAME=FILE:MODULE. Raises ParameterError."""
+    match = re.fullmatch(r"(\w+)=([^:]+)(?::(\w+))?", option)
+    if not match:
+        raise ParameterError(f"--netlist = {option!r}: must be NAME=FILE or NAME=FILE:MODULE")
+    return Netlist(match[1], Path(match[2]), match[3])
+
+
+def netlist_in_icarus(dut: Component, given: Netlist, cells: Sequence[Path]) -> Driven:
+    """The netlist ``given`` for the elaborated component ``dut``, running in Icarus. Raises IcarusError."""
+    return in_icarus(given.name, given.module or type(dut).__name__, ports_of(dut), [given.path, *cells])
+
+
+@dataclass(frozen=True)
+class Netlists:
+    """Netlists by the name that tests give `build`, with the models of their ``cells``; built: names that tests built.
+
+    simulate: gives the running simulation of a Netlist.
+    """
+
+    netlists: Mapping[str, Netlist]
+    cells: Sequence[Path] = ()
+    simulate: Callable[[Component, Netlist, Sequence[Path]], Driven] = netlist_in_icarus
+    built: set[str] = field(default_factory=set)
+
+    def substitute(self, dut: Component, verilog: bool | str, name: str) -> Driven | None:
+        """See rtl.harness.testbench.hooked."""
+        if verilog != "icarus":
+            return None
+        self.built.add(name)
+        if not (given := self.netlists.get(name)):
+            return None
+        if not given.path.is_file():
+            raise IcarusError(f"netlist = {given.path}: no such file")
+        return self.simulate(dut, given, self.cells)
+
+    def unused(self) -> list[str]:
+        """Names of the netlists that no test built."""
+        return sorted(set(self.netlists) - self.built)
