@@ -16,7 +16,7 @@ def default_codes():
 
     from flow.frame import job
     from flow.frame.request import request
-    from models.digital.chip import golden_frame
+    from models.chip import golden_frame
 
     asked = request()
     scene, todo = job.see(asked)

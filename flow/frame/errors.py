@@ -10,7 +10,7 @@ import numpy as np
 
 from base.charts import curves
 from models.capture import CaptureOperator
-from models.digital.chip import golden_frame
+from models.chip import golden_frame
 from models.pixel.weights import raw_weights
 
 from . import hardware

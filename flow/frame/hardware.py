@@ -8,7 +8,7 @@ from flow.simulate import bench_program, run_frame
 from flow.simulate.frame import host_script
 from flow.simulate.verilator import Build
 from models.afe import write_converter, write_samples
-from models.parameters.registers import command, decode_status, frame_writes, status_transfers, write_transfers
+from models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import numpy as np
 from base.files import check_folder, staged
 from models.afe import trim_codes, trim_gain
 from models.capture import Exposure, capture
-from models.digital.chip import front_end_of, golden_frame
+from models.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
 from models.pixel.trim import optical_gains
 from models.plan import plan

@@ -7,16 +7,10 @@ from pathlib import Path
 
 import cocotb
 
-from models.digital.chip import golden_frame
+from models.chip import golden_frame
+from models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
 from models.digital.pattern import PatternEnd
-from models.parameters.registers import (
-    command,
-    decode_status,
-    frame_writes,
-    register_map,
-    status_transfers,
-    write_transfers,
-)
+from models.parameters.registers import register_map
 
 from .agents import Bench, Monitor, Spi, Stopped, Stream, check, known
 from .exposure import FRAMES, FRONT_END, SENSOR, TRIMS, samples

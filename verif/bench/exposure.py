@@ -3,7 +3,7 @@
 import numpy as np
 
 from models.afe import write_converter, write_samples
-from models.digital.chip import front_end_of
+from models.chip import front_end_of
 from models.parameters import (
     AmpTiming,
     ArrayParameters,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from models.parameters.registers import frame_writes
+from models.digital.host import frame_writes
 from rtl.asp_chip.test.chip_bench import ChipBench
 from rtl.harness.testbench import build
 from rtl.tops import build_top

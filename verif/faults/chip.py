@@ -10,10 +10,11 @@ import numpy as np
 from base.tools import ToolError, finish
 from flow.frame.hardware import build_of
 from flow.simulate.verilator import bare_program
-from models.digital.chip import golden_frame
+from models.chip import golden_frame
+from models.digital.host import command, frame_writes, write_transfers
 from models.digital.pattern import PatternEnd
 from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
-from models.parameters.registers import command, frame_writes, register_map, write_transfers
+from models.parameters.registers import register_map
 from rtl.export import translate
 from rtl.harness.icarus import kept_program
 

@@ -1,16 +1,9 @@
 """Inputs for the host's functions and the register file's golden model: replies, writes, transfers, any of them."""
 
+from models.digital.host import decode_status, frame_writes, read_transfer, status_transfers, write_transfers
 from models.digital.registers import ADDRESS_MAX, RegisterBank
 from models.parameters import MODES, AmpTiming, FrameParameters, ParameterError, Window
-from models.parameters.registers import (
-    decode_status,
-    frame_writes,
-    read_transfer,
-    register_map,
-    status_transfers,
-    trim_range,
-    write_transfers,
-)
+from models.parameters.registers import register_map, trim_range
 
 from .checks import demand
 

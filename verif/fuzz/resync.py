@@ -6,7 +6,7 @@ import numpy as np
 
 from flow.frame import job
 from flow.frame.request import request
-from models.digital.chip import golden_frame
+from models.chip import golden_frame
 from models.digital.stream import decode_stream
 from models.parameters import MODES
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES

@@ -7,8 +7,8 @@ from flow.frame import hardware, job
 from flow.frame.request import request
 from flow.simulate.frame import host_script
 from flow.simulate.verilator import bare_program
+from models.digital.host import command, frame_writes, write_transfers
 from models.parameters import FrameParameters
-from models.parameters.registers import command, frame_writes, write_transfers
 
 ROUNDS = 7
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from flow.frame import hardware
 from flow.frame.request import request
 from flow.simulate.icarus import icarus_program
-from models.digital.chip import front_end_of, golden_frame
+from models.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
 from models.parameters import MODES, ConverterParameters, SensorParameters, Window
 

@@ -22,7 +22,7 @@ class GateFrames(Step):
 
     def run(self, inputs, outputs):
         from flow.frame.hardware import build_of, simulate
-        from models.digital.chip import front_end_of, golden_frame
+        from models.chip import front_end_of, golden_frame
         from models.parameters import FrameParameters, SensorParameters, Window
 
         sensor = SensorParameters()

@@ -88,7 +88,7 @@ def in_frame(parameters, folder, trace):
     from flow.frame.hardware import build_of, simulate
     from flow.frame.job import expose, see
     from flow.frame.request import request
-    from models.digital.chip import golden_frame
+    from models.chip import golden_frame
 
     design = folder / "hierarchy.json"
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])

@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 
 from models.afe import Converter, FrontEnd, trim_codes, trim_gain
+from models.afe.trim import TRIM_BITS, TRIM_MAX, TRIM_MIN
 from models.parameters import ConverterParameters, ParameterError, TileParameters
+from models.parameters.registers import register_map, trim_range
 
 TRIM = tuple(range(-480, 480, 40))
 RNG = np.random.default_rng(3)
@@ -23,6 +25,13 @@ def test_trim_takes_the_end_of_its_range():
         trim_codes(np.nan)
     with pytest.raises(ParameterError, match="trim"):
         trim_gain(512)
+
+
+def test_the_registers_hold_every_trim():
+    trims = register_map().trims
+    assert {f.width for f in trims} == {TRIM_BITS} and all(f.signed for f in trims)
+    assert trim_range() == (TRIM_MIN, TRIM_MAX)
+    assert trim_gain(trims[0].reset) == 1
 
 
 def test_values_of_every_mode():

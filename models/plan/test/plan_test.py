@@ -1,17 +1,11 @@
-"""What the plan leaves out changes no sample (or less than a stated bound) and does save the work."""
-
-from dataclasses import replace
+"""What a plan reads, what it leaves out and why."""
 
 import numpy as np
 import pytest
 
-from models.afe import FrontEnd, trim_codes
-from models.capture import Exposure, capture
-from models.capture.operator import rounding
 from models.parameters import ArrayParameters, FrameParameters, ParameterError, SensorParameters, Window
-from models.pixel import demodulate, depth_of, optical_gains, phase_of
 from models.plan import plan
-from models.scene import Sampling, Scene, load
+from models.scene import Sampling, load
 
 ROWS, COLS = 38, 62
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS))
@@ -22,26 +16,8 @@ def _scene(name, **sampling):
     return load(name, Sampling(ROWS, COLS, **sampling))
 
 
-def _samples(scene, made, frame, noise=1.0):
-    return capture(scene, SENSOR, made, Exposure(SENSOR.electrical, frame.timing, SENSOR.chip.f_clk, noise))
-
-
 def _what(made):
     return {entry["what"] for entry in made.left_out}
-
-
-@pytest.mark.parametrize(
-    "mask,window", [(0x000F00, FULL), (1 << 5, FULL), (0xFFFFFF, Window(2, 4, 3, 3)), (0xF0F0F0, Window(9, 9, 0, 10))]
-)
-@pytest.mark.parametrize("mode", ["edge", "tof"])
-def test_unread_pixels(mask, window, mode):
-    frame = FrameParameters(window, mode=mode, mask=mask)
-    scene = _scene("motorcycle")
-    made = plan(scene, SENSOR, frame)
-    everything = replace(made, read=np.ones_like(made.read))
-    assert 0 < made.read.sum() < ROWS * COLS and "unread pixels" in _what(made)
-    part, whole = _samples(scene, made, frame), _samples(scene, everything, frame)
-    np.testing.assert_array_equal(part[:, made.read], whole[:, made.read])
 
 
 def test_decimation_reads_every_second_tile():
@@ -50,79 +26,9 @@ def test_decimation_reads_every_second_tile():
     np.testing.assert_array_equal(np.argwhere(tiles) % 2, 0)
 
 
-def test_one_view_where_there_is_no_angle():
-    frame = FrameParameters(FULL)
-    few = _scene("coins", focus=0.0)
-    made = plan(few, SENSOR, frame)
-    assert not made.angular and "views" in _what(made)
-    many = Scene("copies", 5, np.ascontiguousarray(few.full_light_field), few.image)
-    assert plan(many, SENSOR, frame).angular
-    a, b = _samples(few, made, frame, noise=0), _samples(many, plan(many, SENSOR, frame), frame, noise=0)
-    assert np.abs(a - b).max() <= rounding("float64", 5) * a.max()
-
-
-def test_unpolarized_light_needs_no_factor():
-    frame = FrameParameters(FULL)
-    plain = _scene("motorcycle")
-    zero = replace(plain, polarization=np.zeros((2, ROWS, COLS)))
-    made = [plan(s, SENSOR, frame) for s in (plain, zero)]
-    assert "polarization" in _what(made[0]) and made[1].polarized
-    np.testing.assert_array_equal(_samples(plain, made[0], frame), _samples(zero, made[1], frame))
-
-
-def test_polarization_reaches_the_samples():
-    frame = FrameParameters(FULL)
-    scene = _scene("polarized:100")
-    samples = _samples(scene, plan(scene, SENSOR, frame), frame, noise=0)[0].sum(-1)
-    kinds = SENSOR.tile.type_map(ROWS, COLS)
-    ratio = samples[kinds == 2].mean() / samples[kinds == 0].mean()  # gamma 90 against 0, all psi alike
-    assert samples[kinds == 0].std() > 10 and abs(ratio - 1) < 0.1
-
-
-@pytest.mark.parametrize("name,captures", [("coins", 1), ("motorcycle", 3), ("tilted", 3)])
-def test_taps_of_a_static_scene(name, captures):
-    frame = FrameParameters(FULL, mode="tof")
-    scene = _scene(name)
-    short = plan(scene, SENSOR, frame)
-    long = plan(replace(scene, static=False), SENSOR, frame)
-    assert (short.captures, long.captures) == (captures, 4)
-    a, b = _samples(scene, short, frame, noise=0), _samples(scene, long, frame, noise=0)
-    assert a.shape == (4, ROWS, COLS, 2)
-    # Sums of views**2 terms, rounded in another order, of a mean and a wave of up to its size; and phases, rounded.
-    phase = phase_of(scene.depth.max(), SENSOR.electrical.f_mod)
-    assert np.abs(a - b).max() <= (4 * rounding("float64", 5) + phase * np.finfo(float).eps) * 255
-
-
-def test_taps_give_the_depth_back():
-    scene, frame = _scene("motorcycle"), FrameParameters(FULL, mode="tof")
-    taps = _samples(scene, plan(scene, SENSOR, frame), frame, noise=0).sum(-1)
-    error = depth_of(demodulate(taps)[0], SENSOR.electrical.f_mod) - scene.depth
-    assert np.median(np.abs(error)) < 0.01
-
-
 def test_other_modes_capture_once():
     made = plan(_scene("motorcycle"), SENSOR, FrameParameters(FULL, mode="image"))
     assert (made.taps, made.captures) == (1, 1) and "time-of-flight taps" in _what(made) and not made.flat.any()
-
-
-@pytest.mark.parametrize("name", ["motorcycle", "point", "edge:70", "flat:70", "saturated", "black", "flat:150"])
-@pytest.mark.parametrize("threshold,n_cm", [(6, 0), (12, 0), (12, 3)])
-def test_flat_tiles_really_convert_nothing(name, threshold, n_cm):
-    frame = FrameParameters(FULL, threshold=threshold)
-    frame = replace(frame, timing=replace(frame.timing, n_cm=n_cm, t_int=512 // (n_cm + 1)))
-    scene = _scene(name)
-    made = plan(scene, SENSOR, frame)
-    gains = optical_gains(SENSOR.tile, SENSOR.optics)
-    samples = capture(scene, SENSOR, made, Exposure(SENSOR.electrical, frame.timing, SENSOR.chip.f_clk, 0), gains)
-    end = FrontEnd(SENSOR.electrical.difference_gain, tuple(trim_codes(gains).tolist()))
-    codes = np.abs(end.values(samples, "edge")[0])
-    flat = np.repeat(np.repeat(made.flat, 4, 0), 6, 1)[:ROWS, :COLS]
-    if name in ("flat:70", "black"):
-        assert flat.all()
-    if name == "saturated":
-        assert not flat.any()  # full wells are out of balance
-    if flat.any():
-        assert codes[flat].max() < threshold - 0.5
 
 
 def test_flat_tiles_only_where_a_window_comparison_runs():

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.chip import golden_frame
+from models.chip import golden_frame
+from models.digital.host import command, frame_writes, read_transfer
 from models.digital.pattern import PatternEnd
 from models.parameters import (
     MODES,
@@ -17,7 +18,7 @@ from models.parameters import (
     SensorParameters,
     Window,
 )
-from models.parameters.registers import command, frame_writes, read_transfer, register_map
+from models.parameters.registers import register_map
 from rtl.asp_chip import AspChip, AspChipFL
 from rtl.harness.testbench import build
 

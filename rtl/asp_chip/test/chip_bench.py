@@ -4,7 +4,8 @@ import random
 
 import numpy as np
 
-from models.parameters.registers import command, decode_status, register_map, status_transfers, write_transfers
+from models.digital.host import command, decode_status, status_transfers, write_transfers
+from models.parameters.registers import register_map
 from rtl.reg_file.test.spi_host import SpiHost
 
 CHIP = register_map()

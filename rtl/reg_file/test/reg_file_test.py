@@ -5,17 +5,10 @@ from dataclasses import replace
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from models.digital.host import command, decode_status, frame_writes, read_transfer, status_transfers, write_transfers
 from models.digital.registers import ADDRESS_MAX, RegisterBank
 from models.parameters import MODES, AmpTiming, FrameParameters, Window
-from models.parameters.registers import (
-    command,
-    decode_status,
-    frame_writes,
-    read_transfer,
-    register_map,
-    status_transfers,
-    write_transfers,
-)
+from models.parameters.registers import register_map
 from rtl.harness.reset import shown_after_reset
 from rtl.harness.testbench import build
 from rtl.reg_file import RegFile, RegFileFL, chip_config

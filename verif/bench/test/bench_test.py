@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from models.digital.chip import golden_frame
+from models.chip import golden_frame
 from rtl.harness.icarus import MISSING, installed
 from verif.bench import simulation
 from verif.bench.__main__ import CHIP, SAME, main, summary

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.parameters.registers import command
+from models.digital.host import command
 from rtl.harness.icarus import MISSING, installed
 from verif.faults.chip import configured, quiet, run, start
 from verif.faults.waveform import PULSE_HIGH, PULSE_LOW, RDY, RESET, rest, transfer

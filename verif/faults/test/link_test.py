@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from models.parameters.registers import command, read_transfer, register_map
+from models.digital.host import command, read_transfer
+from models.parameters.registers import register_map
 from verif.faults.chip import FRAMES, configured, golden, quiet, run, start
 from verif.faults.waveform import BUSY, RDY, VAL, reset, rest, status_wave, transfer
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from models.parameters.registers import frame_writes, read_transfer, register_map
+from models.digital.host import frame_writes, read_transfer
+from models.parameters.registers import register_map
 from verif.faults.chip import FRAMES, frame_of, golden, quiet, run, start
 from verif.faults.waveform import BUSY, rest, status_wave, transfer
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from models.digital.host import command, read_transfer
 from models.digital.stream import decode_stream
-from models.parameters.registers import command, read_transfer, register_map
+from models.parameters.registers import register_map
 from verif.faults.chip import FRAMES, configured, golden, quiet, resets, run, start
 from verif.faults.waveform import BUSY, HOLD, MISO, PULSE_HIGH, PULSE_LOW, RESET, SYNC, VAL, rest, status_wave, transfer
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from models.parameters.registers import command, read_transfer, register_map
+from models.digital.host import command, read_transfer
+from models.parameters.registers import register_map
 from verif.faults.chip import golden, quiet, resets, run
 from verif.faults.waveform import BUSY, CSN, RDY, SCLK, reset, rest, status_wave, transfer
 

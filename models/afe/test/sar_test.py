@@ -1,3 +1,5 @@
+"""The conversion of whole arrays against one decision after another, on ideal and on drawn converters."""
+
 import numpy as np
 import pytest
 from hypothesis import given, settings

@@ -2,8 +2,7 @@
 
 from models.parameters.checks import ParameterError, check_int
 from models.parameters.frame import MODES
-
-from .map import register_map, trim_range
+from models.parameters.registers import register_map, trim_range
 
 WRITE = 0x80  # bit 7 of the command byte; the rest is the address
 TRANSFER_MAX = 255  # bytes of one transfer
