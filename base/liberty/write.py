@@ -1,6 +1,10 @@
 """A Liberty tree as text."""
 
+from collections.abc import Iterable
+
 import numpy as np
+
+from base.liberty.group import Group, Scalar, Value
 
 # Attributes whose values are bare words in Liberty, not texts in quotes
 _WORDS = {
@@ -21,38 +25,42 @@ _WORDS = {
 }
 
 
-def text(group, depth=0):
+def text(group: Group) -> str:
     """``group`` as Liberty text, two spaces a level."""
-    pad, inner = "  " * depth, "  " * (depth + 1)
-    lines = [f"{pad}{group.kind} ({', '.join(_argument(a) for a in group.arguments)}) {{"]
+    return "\n".join([*_lines(group, ""), ""])
+
+
+def _lines(group: Group, pad: str) -> Iterable[str]:
+    inner = pad + "  "
+    yield f"{pad}{group.kind} ({', '.join(_argument(a) for a in group.arguments)}) {{"
     for name, value in group.attributes.items():
-        for one in value if isinstance(value, list) and value and isinstance(value[0], tuple) else [value]:
-            lines.append(inner + _attribute(name, one, inner))
-    lines += [text(inside, depth + 1) for inside in group.groups]
-    return "\n".join([*lines, pad + "}"])
+        repeated = [one for one in value if isinstance(one, tuple)] if isinstance(value, list) else []
+        for one in repeated or [value]:
+            yield inner + _attribute(name, one, inner)
+    for inside in group.groups:
+        yield from _lines(inside, inner)
+    yield pad + "}"
 
 
-def _argument(argument):
+def _argument(argument: str) -> str:
     return argument if argument.replace("_", "").replace("-", "").isalnum() else f'"{argument}"'
 
 
-def _attribute(name, value, pad):
-    if isinstance(value, np.ndarray) or name in ("values", "index_1", "index_2"):
-        rows = np.atleast_2d(value)
-        if name == "values":
-            inside = f", \\\n{pad}  ".join(_numbers(row) for row in rows)
-            return f"values ({inside});"
-        return f"{name} ({_numbers(rows[0])});"
+def _attribute(name: str, value: Value, pad: str) -> str:
     if isinstance(value, tuple):
         return f"{name} ({', '.join(_plain(v) for v in value)});"
+    if isinstance(value, list | np.ndarray):
+        rows = [_numbers(row) for row in np.atleast_2d(np.asarray(value, dtype=float))]
+        inside = f", \\\n{pad}  ".join(rows)
+        return f"{name} ({inside});"
     return f"{name} : {_plain(value, name)};"
 
 
-def _numbers(row):
+def _numbers(row: Iterable[float]) -> str:
     return '"' + ", ".join(f"{v:.7g}" for v in row) + '"'
 
 
-def _plain(value, name=""):
+def _plain(value: Scalar, name: str = "") -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, int | float):

@@ -1,9 +1,9 @@
 """The embedded backend: its steps in order, for a design and a process."""
 
-import re
 import sys
 from dataclasses import dataclass
 
+from base.liberty.read import is_library
 from base.paths import ROOT
 from base.steps.versions import version
 from base.tools import ToolError, finish
@@ -83,7 +83,7 @@ class Options:
                     f"liberty = {path}: no such file; without LIBERTY the cells are measured, "
                     "once, into build/layout/shared/timing.*/<corner>.lib"
                 )
-            if not re.match(r"\s*(/\*.*?\*/\s*)*library\s*\(", path.read_text(errors="replace")[:10_000], re.S):
+            if not is_library(path):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
         if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")

@@ -14,7 +14,8 @@ from base.files import insert
 from base.tools import ToolError, run
 from flow.layout.design import design
 from models.parameters import ParameterError
-from platforms.sky130 import functional
+from platforms.sky130 import cells as sky130_hd
+from platforms.sky130 import functions
 from platforms.sky130.tinytapeout import FULL, core_um2
 
 from .stat import counted
@@ -58,7 +59,7 @@ def fit(name, folder):
     rtl(chosen, folder)
     for file in (f"{project.top}.v", BUS):
         (folder / file).write_text((TOPS / file).read_text())
-    (folder / "cells.lib").write_text(functional.liberty())
+    (folder / "cells.lib").write_text(functions.small_liberty())
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
     script.write_text(
         SCRIPT.format(
@@ -66,13 +67,13 @@ def fit(name, folder):
             liberty=folder / "cells.lib",
             stat=stat,
             netlist=netlist,
-            constant=f"{functional.LIBRARY}__{functional.CONSTANT}",
+            constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}",
             sources=" ".join(str(folder / file) for file in sources(project, chosen)),
         )
     )
     run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())
-    flip_flops = len(re.findall(rf"(?m)^\s+{functional.LIBRARY}__{functional.FLIP_FLOP} ", netlist.read_text()))
+    flip_flops = len(re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__{functions.FLIP_FLOP} ", netlist.read_text()))
     return Fit(name, project.tiles, cells, flip_flops, area, core_um2(project.tiles)), netlist
 
 

@@ -6,11 +6,10 @@ import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
+from base.liberty.read import without
 from base.tools import ToolError, finish
 from models.parameters import ParameterError
 from platforms.openroad import CORNERS
-
-from .liberty import without
 
 SCRIPTS = Path(__file__).parent / "tcl"
 INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"

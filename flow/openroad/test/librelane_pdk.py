@@ -9,17 +9,26 @@ import re
 import shutil
 from pathlib import Path
 
+from base.liberty.group import Group
+from base.liberty.read import parse
+from base.liberty.write import text
 from platforms.openroad import process
-from platforms.sky130 import functional
+from platforms.sky130 import cells as sky130_hd
+from platforms.sky130 import functions
 
 KNOWN = process("sky130")
 CORNERS = {"tt_025C_1v80": "typical", "ss_100C_1v60": "slow", "ff_n40C_1v95": "fast"}
-TABLE = 'index_1("0.01, 0.5"); index_2("0.001, 0.1");'
-UNITS = (
-    'voltage_unit : "1V"; current_unit : "1mA"; pulling_resistance_unit : "1kohm"; leakage_power_unit : "1nW"; '
-    "nom_voltage : 1.8; nom_temperature : 25; nom_process : 1; default_max_transition : 1.5; lu_table_template(t) "
-    f"{{ variable_1 : input_net_transition; variable_2 : total_output_net_capacitance; {TABLE} }}"
-)
+AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.1]}
+UNITS = {
+    "voltage_unit": "1V",
+    "current_unit": "1mA",
+    "pulling_resistance_unit": "1kohm",
+    "leakage_power_unit": "1nW",
+    "nom_voltage": 1.8,
+    "nom_temperature": 25,
+    "nom_process": 1,
+    "default_max_transition": 1.5,
+}
 
 
 def make(root):
@@ -32,7 +41,7 @@ def make(root):
         *((root / path).parent for path in (KNOWN.cell_lef, KNOWN.tech_lef, KNOWN.liberty["slow"])),
     ):
         folder.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(functional.folder() / "tech" / Path(KNOWN.tech_lef).name, root / KNOWN.tech_lef)
+    shutil.copyfile(sky130_hd.folder() / "tech" / Path(KNOWN.tech_lef).name, root / KNOWN.tech_lef)
     lefs = [path.read_text() for path in _files("lef") if ".magic." not in path.name]
     (root / KNOWN.cell_lef).write_text("".join(text.replace("END LIBRARY", "") for text in lefs) + "END LIBRARY\n")
     ports = "\n".join(
@@ -41,30 +50,36 @@ def make(root):
         if path.name.removesuffix(".blackbox.v")[-1].isdigit()
     )
     (cells / "verilog" / f"{KNOWN.library}.v").write_text(ports)
-    text = with_delays(functional.liberty())
+    timed = with_delays(functions.small_liberty())
     for corner in CORNERS.values():
-        (root / KNOWN.liberty[corner]).write_text(text)
+        (root / KNOWN.liberty[corner]).write_text(timed)
     (library / "empty").write_text("")
     (tech / "config.tcl").write_text(_tcl({"STD_CELL_LIBRARY": KNOWN.library}))
     (library / "config.tcl").write_text(_tcl(_variables(root, cells, library / "empty")))
 
 
-def with_delays(text):
+def with_delays(liberty):
     """A Liberty text of functions and areas with the same delay at every output."""
-    first, *cells = re.split(r"(?m)^(?= cell\()", text)
-    return first.replace(' time_unit : "1ns";', f' time_unit : "1ns"; {UNITS}') + "".join(map(_delayed, cells))
+    tree = parse(liberty)
+    tree.attributes |= UNITS
+    variables = {"variable_1": "input_net_transition", "variable_2": "total_output_net_capacitance"}
+    tree.groups.insert(0, Group("lu_table_template", ("t",), variables | AXES))
+    for cell in tree.all("cell"):
+        _delay(cell)
+    return text(tree)
 
 
-def _delayed(cell):
-    inputs = ["CLK"] if "ff(" in cell else re.findall(r"pin\((\w+)\) { direction : input;", cell)
-    kind = "timing_type : rising_edge;" if "ff(" in cell else "timing_sense : non_unate;"
-    tables = " ".join(
-        f'{name}(t) {{ {TABLE} values("0.05, 0.5", "0.1, 0.6"); }}'
-        for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition")
-    )
-    timing = " ".join(f'timing() {{ related_pin : "{pin}"; {kind} {tables} }}' for pin in inputs)
-    cell = cell.replace("direction : input;", "direction : input; capacitance : 0.002;")
-    return re.sub(r"(direction : output;[^}]*)}", rf"\1 max_capacitance : 0.2; {timing} }}", cell)
+def _delay(cell):
+    inputs, flip_flop = cell.all("pin", direction="input"), cell.one("ff")
+    for pin in inputs:
+        pin.attributes["capacitance"] = 0.002
+    for pin in cell.all("pin", direction="output"):
+        pin.attributes["max_capacitance"] = 0.2
+        kind = {"timing_type": "rising_edge"} if flip_flop else {"timing_sense": "non_unate"}
+        for related in ["CLK"] if flip_flop else [pin.name for pin in inputs]:
+            timing = pin.add("timing", related_pin=related, **kind)
+            for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition"):
+                timing.add(name, "t", **AXES, values=[[0.05, 0.5], [0.1, 0.6]])
 
 
 def _variables(root, cells, empty):
@@ -141,4 +156,4 @@ def _tcl(values):
 
 
 def _files(suffix):
-    return sorted((functional.folder() / "cells").glob(f"*/{functional.LIBRARY}__*.{suffix}"))
+    return sorted((sky130_hd.folder() / "cells").glob(f"*/{sky130_hd.LIBRARY}__*.{suffix}"))

@@ -12,7 +12,7 @@ from flow.openroad.__main__ import main
 from flow.openroad.test import librelane_pdk
 from flow.openroad.tinytapeout import PROJECTS
 from flow.openroad.write import ROOT
-from platforms.sky130 import functional
+from platforms.sky130 import cells as sky130_hd
 from platforms.sky130.tinytapeout import SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
@@ -31,7 +31,7 @@ def lacking():
     if not PYTHON.is_file():
         return "LibreLane is not installed in build/librelane (make librelane)"
     try:
-        functional.folder()
+        sky130_hd.folder()
     except ToolError as error:
         return str(error)
     return ""

