@@ -1,22 +1,26 @@
-"""A design laid out with all its steps and the blocks in it, its results under their names."""
+"""Lay out one design with the macros in it: all steps, the results under the design's name, the report."""
 
 import json
 import shutil
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from base.files import staged
 from base.steps import Runner, StepError
 from platforms.coriolis import process
 
-from .chain import files, layout
-from .design import folder_name, macro_designs
-from .macros import check_same, given
+from .chain import input_files
+from .design import Design, folder_name, macro_designs
+from .macros import check_same, macro_files
 from .netlist.netlist import Netlist
+from .options import Options
 from .power.energy import blocks
-from .report import history
 from .report.metrics import broken, summarize
-from .report.page import page
+from .report.page import Picture, write_report
 from .report.picture import by_block, render
+from .search import lay_out_smallest
 
 RESULTS = {
     "gds": "fill.gds",
@@ -39,70 +43,58 @@ BY_CORNER = {
 FIRST = "sdf", "lib"  # of the first corner, also under the design's name alone
 
 
-def figures(folder, name, runner, options):
-    """Draw the cells by block where they are placed; (file, words) of this and of the voltage drop: list."""
-    found, first = [], next(iter(options.corners), "")
-    whole = "assemble" if "assemble.netlist" in runner.paths else "place_route"
-    if f"{whole}.netlist" in runner.paths and f"ir_drop_{first}.picture" in runner.paths:
-        placement, areas, plan = (
-            json.loads(runner.paths[key].read_text())
-            for key in (f"{whole}.placement", "library.areas", "floorplan.floorplan")
-        )
-        netlist = Netlist.read(runner.paths[f"{whole}.netlist"])
-        by_block(
-            folder / f"{name}.blocks.png",
-            netlist,
-            placement["instances"],
-            areas,
-            process(options.pdk)[0],
-            blocks(netlist),
-            plan,
-        )
-        found = [(f"{name}.blocks.png", "The cells by block"), (f"{name}.{first}.ir_drop.png", "Voltage drop")]
-    return found
+def lay_out(design: Design, options: Options, out: Path, note: Callable[[str], None]) -> tuple[Runner, dict[str, Any]]:
+    """Lay out ``design``, its macros before it; (its Runner, its summary). The results of each are in its folder in ``out``.
 
-
-def laid_out(chosen, settings, out, note):
-    """Lay out ``chosen``, and before it the blocks that are hardened in it: (Runner, summary); what came of each lies
-    in its folder in ``out``. Raises StepError for a block that breaks a limit."""
+    Raises StepError for a macro that breaks a limit.
+    """
     runners = {}
-    for block in macro_designs(chosen):
-        own = replace(settings, utilization=block.utilization)
-        runners[block.name], summary = laid_out(block, own, out, lambda text, name=block.name: note(f"{name}: {text}"))
+    for macro in macro_designs(design):
+        own = replace(options, utilization=macro.utilization)
+        runners[macro.name], summary = lay_out(macro, own, out, lambda text, name=macro.name: note(f"{name}: {text}"))
         if wrong := broken(summary):
-            raise StepError(f"{chosen.name}: its block {block.name} is not whole: {wrong[0]}")
-    folder = out / folder_name(chosen, settings.pdk)
-    provided = files(chosen, settings, folder)
-    check_same(chosen, provided["rtl"], runners)
-    runner = Runner(folder / "steps", provided | given(chosen, runners, settings.corners), note, out / "shared")
-    summary = summarize(chosen, settings, runner, layout(chosen, settings, runner))
-    publish(folder, chosen.name, settings, runner, summary)
+            raise StepError(f"{design.name}: its block {macro.name} breaks a limit: {wrong[0]}")
+    folder = out / folder_name(design, options.pdk)
+    files = input_files(design, options, folder)
+    check_same(design, files["rtl"], runners)
+    runner = Runner(folder / "steps", files | macro_files(design, runners, options.corners), note, out / "shared")
+    summary = summarize(design, options, runner, lay_out_smallest(design, options, runner))
+    publish(folder, design.name, options, runner, summary)
     return runner, summary
 
 
-def publish(folder, name, settings, runner, summary):
+def publish(folder: Path, name: str, options: Options, runner: Runner, summary: dict[str, Any]) -> None:
     """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
+    tech = process(options.pdk)[0]
     results = RESULTS | {
         f"{corner}.{suffix}": source.format(corner)
-        for corner in settings.corners
+        for corner in options.corners
         for suffix, source in BY_CORNER.items()
     }
-    for suffix in FIRST if settings.corners else ():
-        results[suffix] = BY_CORNER[suffix].format(next(iter(settings.corners)))
+    for suffix in FIRST if options.corners else ():
+        results[suffix] = BY_CORNER[suffix].format(options.corners[0])
     with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:
-        for suffix, source in results.items():  # an earlier run's go where this one has none
+        for suffix, source in results.items():  # results of an earlier run are removed where this one has none
             if source in runner.paths:
                 shutil.copyfile(runner.paths[source], part / f"{name}.{suffix}")
         if "fill.gds" in runner.paths:
-            render(runner.paths["fill.gds"], part / f"{name}.png", process(settings.pdk)[0])
-        pictures = figures(part, name, runner, settings)
+            render(runner.paths["fill.gds"], part / f"{name}.png", tech)
+        pictures = draw(part, name, runner, options)
         picture = f"{name}.png" if (part / f"{name}.png").exists() else None
-        tell(part, folder, summary, broken(summary), process(settings.pdk)[0], picture, pictures)
+        write_report(part, folder, summary, broken(summary), tech, picture, pictures)
 
 
-def tell(part, folder, summary, lines, known, picture, pictures):
-    """Write summary, history and page into ``part``, which will be in ``folder``. The rest is as of `report.page`."""
-    runs = history.continued(folder / "history.jsonl", summary)
-    (part / "history.jsonl").write_text(history.written(runs))
-    (part / "report.html").write_text(page(summary, lines, known, runs, picture, pictures))
-    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Picture]:
+    """Draw the cells by block; pictures of this and of the IR drop, none where the layout has no power."""
+    first = next(iter(options.corners), "")
+    step = "assemble" if "assemble.netlist" in runner.paths else "place_route"
+    if f"{step}.netlist" not in runner.paths or f"ir_drop_{first}.picture" not in runner.paths:
+        return []
+    placement, areas, plan = (
+        json.loads(runner.paths[key].read_text())
+        for key in (f"{step}.placement", "library.areas", "floorplan.floorplan")
+    )
+    netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), process(options.pdk)[0]
+    file = f"{name}.blocks.png"
+    by_block(folder / file, netlist, placement["instances"], areas, tech, blocks(netlist), plan)
+    return [Picture(file, "Cells by block"), Picture(f"{name}.{first}.ir_drop.png", "IR drop")]

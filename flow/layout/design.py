@@ -1,4 +1,4 @@
-"""The designs: a block's top, its clock, what surrounds it, and the tests that its netlist must pass."""
+"""The designs: top module, clock, I/O constraints, macros, and the tests that the netlist must pass."""
 
 from dataclasses import dataclass, field
 
@@ -8,14 +8,14 @@ from platforms.coriolis import PROCESSES
 
 @dataclass(frozen=True)
 class Clock:
-    """port: of the clock. period_ns; uncertainty_ns: of an edge, setup; hold_uncertainty_ns: hold."""
+    """The clock. port: its name. uncertainty_ns: of an edge, for setup; hold_uncertainty_ns: for hold."""
 
     port: str = "clk"
     period_ns: float = field(default=20.0, metadata={"unit": "ns"})
     uncertainty_ns: float = field(default=0.25, metadata={"unit": "ns"})
     hold_uncertainty_ns: float = field(default=0.05, metadata={"unit": "ns"})
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.5, 1e4)
         check_real("uncertainty_ns", self.uncertainty_ns, 0, self.period_ns / 2)
         check_real("hold_uncertainty_ns", self.hold_uncertainty_ns, 0, self.period_ns / 2)
@@ -23,7 +23,7 @@ class Clock:
 
 @dataclass(frozen=True)
 class IoConstraints:
-    """Delays outside as a share of the period; the slew at inputs (ns); the load of an output (pF)."""
+    """Delays outside as a share of the period, the slew at inputs, the load of an output."""
 
     input_delay: float = 0.2
     output_delay: float = 0.2
@@ -33,38 +33,41 @@ class IoConstraints:
 
 @dataclass(frozen=True)
 class MacroPlacement:
-    """A block in a design that is laid out by itself before. instance: its path in the Verilog. design: its name here.
-    at: shares of the width and of the height that are left free to its west and its south.
+    """A macro in a design: another design, laid out before it.
+
+    instance: path in the Verilog. design: name in DESIGNS. at: shares of the free width and height to its west and south.
     """
 
     instance: str
     design: str
-    at: tuple = (0.5, 0.0)
+    at: tuple[float, float] = (0.5, 0.0)
 
 
 @dataclass(frozen=True)
 class Design:
-    """top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: as what the
-    block's tests build it with the same parameters, for `pytest --netlist`. utilization: where the search for the
-    smallest area begins; density_variation: of the placer. A block whose tests have a size of their own is laid out in
-    that size. divider, n_frac: of the chip in whose frame the block is watched. macros: tuple of MacroPlacement.
+    """A block that can be laid out.
+
+    top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: names under which
+    the block's tests build it with these parameters, for `pytest --netlist`; a block whose tests have a size of their
+    own is laid out in that size. utilization: where the search for the smallest area begins. density_variation: of the
+    placer. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
     """
 
     name: str
     top: str
     folder: str
-    netlist_names: tuple = ()
-    options: tuple = ()
+    netlist_names: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
     utilization: float = 0.88
     density_variation: float = 0.05
     divider: str = "radix4"
     n_frac: int = 8
-    macros: tuple = ()
+    macros: tuple[MacroPlacement, ...] = ()
     clock: Clock = Clock()
     io: IoConstraints = IoConstraints()
 
 
-def divider(name, variant, n_frac=8):
+def divider(name: str, variant: str, n_frac: int = 8) -> Design:
     """The Design of a variant of the divider with ``n_frac`` fraction bits."""
     top = {
         "radix2": "QuadDividerRadix2",
@@ -83,7 +86,7 @@ def divider(name, variant, n_frac=8):
     )
 
 
-DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest wires of flow.layout.sensor
+DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest nets of flow.layout.sensor
 DESIGNS = {
     made.name: made
     for made in (
@@ -109,7 +112,7 @@ DESIGNS = {
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
         Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
         Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, io=DIE),
-        # of the thesis (B.3.2): both blocks hardened, the rest around them
+        # As in the thesis (B.3.2): both blocks are macros
         Design(
             "asp_chip_macros",
             "AspChip",
@@ -126,20 +129,19 @@ DESIGNS = {
 }
 
 
-def design(name):
-    """The Design of that name. Raises ParameterError."""
+def design(name: str) -> Design:
+    """Look up a Design by its name. Raises ParameterError."""
     if name not in DESIGNS:
         raise ParameterError(f"DESIGN = {name!r}: must be one of {', '.join(DESIGNS)}")
     return DESIGNS[name]
 
 
-def flat_design(name):
-    """The same, of those that are laid out whole. Raises ParameterError for one with blocks of its own."""
+def flat_design(name: str) -> Design:
+    """Look up a Design without macros by its name. Raises ParameterError, also for one with macros."""
     found = design(name)
     if found.macros:
         raise ParameterError(
-            f"DESIGN = {name!r}: must be without blocks laid out before it: only make layout of "
-            "the embedded backend has these"
+            f"DESIGN = {name!r}: must be without macros: only make layout with the Coriolis backend supports these"
         )
     return found
 
@@ -154,6 +156,6 @@ def macro_modules(design: Design) -> tuple[str, ...]:
     return tuple(dict.fromkeys(DESIGNS[placement.design].top for placement in design.macros))
 
 
-def folder_name(design, pdk):
-    """Of a design's results: its own name, that of the process behind it where it is not the usual one."""
+def folder_name(design: Design, pdk: str) -> str:
+    """Name of the folder of a design's results; the process is part of it unless it is the default one."""
     return design.name if pdk == PROCESSES[0] else f"{design.name}-{pdk}"

@@ -1,11 +1,14 @@
-"""The blocks of a design that are laid out before it, each a design of its own."""
+"""Macros: designs that are laid out before the design that contains them."""
 
-from base.steps import StepError
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
-from .design import macro_designs
+from base.steps import Runner, StepError
+
+from .design import Design, macro_designs
 from .netlist.verilog import modules
 
-# Of a block's run, what a design that holds it is given as macro.<module>.<part>
+# Of a macro's run, what the design around it is given as macro.<module>.<part>
 PARTS = {
     "lef": "lef.lef",
     "gds": "fill.gds",
@@ -16,21 +19,25 @@ PARTS = {
 }
 
 
-def given(design, runners, corners=()):
-    """dict file name -> Path for the design's Runner. runners: dict name of a block's Design -> Runner of its run.
-    corners: of timing, where there is one."""
+def macro_files(design: Design, runners: Mapping[str, Runner], corners: Sequence[str] = ()) -> dict[str, Path]:
+    """Files of the macros for the design's Runner, by name. runners: of the macros' runs, by the name of the design.
+
+    corners: of timing.
+    """
     parts = PARTS | {corner: f"block_liberty_{corner}.liberty" for corner in corners}
     return {
-        f"macro.{block.top}.{part}": runners[block.name].paths[source]
-        for block in macro_designs(design)
+        f"macro.{macro.top}.{part}": runners[macro.name].paths[source]
+        for macro in macro_designs(design)
         for part, source in parts.items()
     }
 
 
-def check_same(design, rtl, runners):
-    """Raise StepError unless the design's Verilog (file ``rtl``) holds what its blocks were laid out from."""
+def check_same(design: Design, rtl: Path, runners: Mapping[str, Runner]) -> None:
+    """Raise StepError unless the design's Verilog (file ``rtl``) contains the modules that its macros were laid out from."""
     own = modules(rtl.read_text())
-    for block in macro_designs(design):
-        for name, text in modules(runners[block.name].paths["rtl"].read_text()).items():
+    for macro in macro_designs(design):
+        for name, text in modules(runners[macro.name].paths["rtl"].read_text()).items():
             if own.get(name) != text:
-                raise StepError(f"{design.name}: its Verilog has another {name} than {block.name}, which is laid out")
+                raise StepError(
+                    f"{design.name}: its module {name} differs from that of {macro.name}, which is laid out"
+                )

@@ -1,30 +1,55 @@
-"""What a design's runs came to, one line a run that changed a figure: history.jsonl beside its summary."""
+"""The run history of a design: history.jsonl beside its summary, a line for every run that changed a figure."""
 
 import json
+from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from .text import as_text
 
 # Names in summary.json; of a dict by corner the least counts, of power, its first
 FIGURES = {
     "area_um2": "area, um2",
     "utilization": "utilization",
     "cells": "cells",
-    "wire_um": "wires, um",
-    "f_max_mhz": "MHz at most",
+    "wire_um": "wire length, um",
+    "f_max_mhz": "highest clock, MHz",
     "wns_ns": "setup slack, ns",
     "whs_ns": "hold slack, ns",
     "power_uw": "power, uW",
     "open_nets": "open nets",
-    "drc_violations": "rules broken",
+    "drc_violations": "DRC violations",
     "antenna_violations": "antennas",
-    "lvs_match": "layout and netlist",
-    "equivalence": "netlist = Verilog",
+    "lvs_match": "LVS",
+    "equivalence": "equivalence",
 }
 
 
-def figures(summary):
-    """dict of FIGURES from the summary, a number a name."""
+@dataclass(frozen=True)
+class Run:
+    """One run. when: UTC. figures: those of FIGURES. seconds: of all steps, also of those kept from earlier runs."""
 
-    def one(name, value):
+    when: str
+    figures: dict[str, Any]
+    seconds: int
+
+    @classmethod
+    def read(cls, line: str) -> "Run":
+        """Parse a line of the file."""
+        values = json.loads(line)
+        return cls(values.pop("when"), values, values.pop("seconds"))
+
+    def line(self) -> str:
+        """Line of the file."""
+        return json.dumps({"when": self.when, **self.figures, "seconds": self.seconds}) + "\n"
+
+
+def figures(summary: dict[str, Any]) -> dict[str, Any]:
+    """FIGURES of a summary, one value a name."""
+
+    def one(name: str, value: Any) -> Any:
         if not isinstance(value, dict):
             return value
         return next(iter(value.values()), None) if name == "power_uw" else min(value.values(), default=None)
@@ -32,35 +57,23 @@ def figures(summary):
     return {name: one(name, summary.get(name)) for name in FIGURES}
 
 
-def continued(path, summary):
-    """List of dicts, the runs that the file ``path`` tells of and this one, the newest last; ``when`` is UTC.
-
-    A run with the figures of the one before is no new line. Seconds are those of all steps, also of those kept.
-    """
-    runs = [json.loads(line) for line in path.read_text().splitlines()] if path.exists() else []
+def history(path: Path, summary: dict[str, Any]) -> list[Run]:
+    """Runs in the file ``path`` and this one, the newest last; a run with the figures of the one before is left out."""
+    runs = list(map(Run.read, path.read_text().splitlines())) if path.exists() else []
     found = figures(summary)
-    if not runs or {name: runs[-1].get(name) for name in FIGURES} != found:
+    if not runs or runs[-1].figures != found:
         when = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S")
-        runs.append({"when": when, **found, "seconds": round(sum(summary["wall_s"].values()))})
+        runs.append(Run(when, found, round(sum(summary["wall_s"].values()))))
     return runs
 
 
-def written(runs):
-    """The text of the file."""
-    return "".join(f"{json.dumps(run)}\n" for run in runs)
-
-
-def table(runs, most=12):
-    """(names of the columns, rows of (text, whether it differs from the run before)), the newest run first."""
+def table(runs: Sequence[Run], most: int = 12) -> tuple[list[str], list[list[tuple[str, bool]]]]:
+    """Names of the columns; rows of (text, whether it differs from the run before), the newest run first."""
     rows = []
     for before, run in zip([None, *runs], runs, strict=False):
-        row = [(run["when"], False)]
-        row += [(_text(run.get(name)), before is not None and before.get(name) != run.get(name)) for name in FIGURES]
-        rows.append([*row, (f"{run['seconds']:,}", False)])
+        row = [(run.when, False)]
+        for name in FIGURES:
+            value = run.figures.get(name)
+            row.append((as_text(value, ("match", "differ")), before is not None and before.figures.get(name) != value))
+        rows.append([*row, (f"{run.seconds:,}", False)])
     return ["UTC", *FIGURES.values(), "seconds"], rows[::-1][:most]
-
-
-def _text(value):
-    if isinstance(value, bool):
-        return "match" if value else "differ"
-    return "-" if value is None else f"{value:,}" if isinstance(value, (int, float)) else str(value)

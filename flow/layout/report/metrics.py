@@ -1,32 +1,53 @@
-"""What a layout came to: summary.json, and the limits of rules.json that it must keep."""
+"""Figures of a layout: summary.json, and the limits of rules.json that it must keep."""
 
 import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
+from base.steps import Runner
+from flow.layout.design import Design
+from flow.layout.options import Options
 from models.parameters import ChipParameters, EnergyParameters
 
 CHIP = "AspChip"
 # Parts of the power in [Jayasuriya2017, Table 6.1] and the blocks of AspChip that do their digital work; pixels,
-# amplifiers and the converters' comparators are analog. What Table 6.1's sensor did not have is no part of it
+# amplifiers and the converters' comparators are analog. What the sensor of Table 6.1 did not have is in none of them
 TABLE_6_1 = {"pixel_array": (), "amplifiers": ("amp",), "timing": ("seq", "regs", "balancer"), "adcs": ("bank",)}
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
 
-def summarize(design, options, runner, tried):
-    """The contract of summary.json, as a dict; what was not run is None."""
+@dataclass
+class Attempt:
+    """One floorplan with its placement and routing.
+
+    aspect: width by height. open_segments: that the router left; None where it gave up or macros found no place.
+    rules_broken: of design and antennas; None without a layout.
+    """
+
+    utilization: float
+    aspect: float
+    density_variation: float
+    open_segments: int | None = None
+    rules_broken: int | None = None
+
+
+def summarize(design: Design, options: Options, runner: Runner, attempts: Sequence[Attempt]) -> dict[str, Any]:
+    """Content of summary.json; what was not run is None."""
     records = runner.records
 
-    def metric(step, name):
+    def metric(step: str, name: str) -> Any:
         return records[step]["metrics"].get(name) if step in records else None
 
-    def by_corner(name, step="sta"):
+    def by_corner(name: str, step: str = "sta") -> dict[str, Any] | None:
         return {
             corner: metric(f"{step}_{corner}", name) for corner in options.corners if f"{step}_{corner}" in records
         } or None
 
-    area, first = metric("floorplan", "core_area_um2"), next(iter(options.corners), "")
-    slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9  # the chip's clock by that of the layout
-    cells = "assemble" if design.macros else "synthesis"  # with those of its blocks and all buffers, or alone
+    first = next(iter(options.corners), "")
+    slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9  # factor to the chip's clock
+    cells = "assemble" if design.macros else "synthesis"  # with those of its macros and all clock buffers, or without
     tools = {}
     for record in records.values():
         tools |= record["tools"]
@@ -38,10 +59,10 @@ def summarize(design, options, runner, tried):
         "cells": metric(cells, "cells"),
         "flip_flops": metric(cells, "flip_flops"),
         "cell_area_um2": metric(cells, "cell_area_um2"),
-        "area_um2": metric("stream_out", "area_um2") or area,
-        "utilization": tried[-1]["utilization"],
-        "tried": tried,
-        "macros": {hard.instance: hard.design for hard in design.macros} or None,
+        "area_um2": metric("stream_out", "area_um2") or metric("floorplan", "core_area_um2"),
+        "utilization": attempts[-1].utilization,
+        "attempts": [asdict(attempt) for attempt in attempts],
+        "macros": {macro.instance: macro.design for macro in design.macros} or None,
         "wire_um": metric("assemble", "wire_um") or metric("reroute", "wire_um"),
         "open_nets": metric("reroute", "open_nets"),
         "rerouted_nets": metric("reroute", "rerouted_nets"),
@@ -56,7 +77,7 @@ def summarize(design, options, runner, tried):
         "density_violations": metric("fill", "density_violations"),
         "fill_squares": metric("fill", "squares"),
         "equivalence": metric("equivalence", "equivalence"),
-        "timing_rests_on": timing(options),
+        "timing_rests_on": timing_basis(options),
         **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
         **{name: by_corner(name, "sta_blocks") for name in ("blocks_wns_ns", "blocks_whs_ns")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
@@ -79,14 +100,16 @@ def summarize(design, options, runner, tried):
     }
 
 
-def at_chip_clock(energies):
-    """uW by corner at the clock of the thesis's chip, from pJ a cycle; the digital part, without the pins' loads."""
+def at_chip_clock(energies: dict[str, float] | None) -> dict[str, float] | None:
+    """Power (uW) by corner at the clock of the thesis's chip, from pJ a cycle; output loads are left out."""
     return energies and {corner: round(pj * ChipParameters().f_clk / 1e6, 3) for corner, pj in energies.items()}
 
 
-def table_6_1(by_block, slowed):
-    """dict part -> [uW in the thesis, uW here], None without a power. by_block: dict block -> uW; slowed: factor to
-    the clock of the thesis's chip. Its parts are first, then what is here besides: the clock's tree, other blocks."""
+def table_6_1(by_block: dict[str, float] | None, slowed: float) -> dict[str, list[float | None]] | None:
+    """Map each part to [uW in the thesis, uW here]; None without power. Parts of Table 6.1 are first, then other blocks.
+
+    by_block: uW. slowed: factor to the clock of the thesis's chip.
+    """
     if by_block is None:
         return None
     found = {
@@ -100,8 +123,8 @@ def table_6_1(by_block, slowed):
     return found | {block: [None, round(slowed * uw, 3)] for block, uw in by_block.items() if block not in counted}
 
 
-def gate_tests(records):
-    """passed, failed: of all simulations of netlists; of each of them what it passed and failed. None without one."""
+def gate_tests(records: Mapping[str, dict[str, Any]]) -> dict[str, Any] | None:
+    """Tests passed and failed in all netlist simulations, then in each of them; None without one."""
     runs = {
         name: {kind: record["metrics"][kind] for kind in ("passed", "failed")}
         for name, record in records.items()
@@ -110,26 +133,26 @@ def gate_tests(records):
     return {kind: sum(run[kind] for run in runs.values()) for kind in ("passed", "failed")} | runs if runs else None
 
 
-def timing(options):
-    """What the timing figures rest on, in words."""
+def timing_basis(options: Options) -> str:
+    """What the timing figures rest on."""
     if not options.corners:
         return "no timing: cells by area alone"
     cells = ", ".join(path.name for path in options.liberty) or f"measured at {', '.join(options.corners)}"
     return (
-        f"cells: {cells}; wires: area and edge capacitance to the substrate and resistance from the router's "
-        "wires, no coupling; power: transitions of the netlist in its recorded trace"
+        f"cells: {cells}; parasitics: area and edge capacitance to the substrate and resistance of the "
+        "routed segments, no coupling; power: transitions of the netlist in its recorded trace"
     )
 
 
-def broken(summary, rules=RULES):
-    """Rules that ``summary`` breaks: list of 'name = value: must be ...'.
+def broken(summary: dict[str, Any], rules: Mapping[str, dict[str, Any]] = RULES) -> list[str]:
+    """Rules that ``summary`` breaks, a line 'name = value: must be ...' each.
 
-    rules: dict name -> {"is": value} or {"most": number} or {"least": number}, a dot in a name for a dict in the
-    summary; every value of a dict must keep the rule. What was not measured breaks it, but with "if_measured".
+    rules: name -> {"is": value}, {"most": number} or {"least": number}; a dot in a name leads into a dict of the
+    summary. Every value of a dict must keep the rule; a figure that was not measured breaks it unless "if_measured".
     """
     found = []
     for name, rule in rules.items():
-        value = summary
+        value: Any = summary
         for part in name.split("."):
             value = value.get(part) if isinstance(value, dict) else None
         if value is None and rule.get("if_measured"):
@@ -144,7 +167,7 @@ def broken(summary, rules=RULES):
     return found
 
 
-def _keeps(value, rule):
+def _keeps(value: Any, rule: Mapping[str, Any]) -> bool:
     return (
         value is not None
         and ("is" not in rule or value == rule["is"])

@@ -1,18 +1,24 @@
-"""The page of a layout: its picture, the figures against their limits, the steps."""
+"""The report of a layout: summary.json, history.jsonl and report.html with picture, figures against limits, steps."""
 
+import json
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader
 
-from . import history
-from .picture import PALETTE
+from platforms.coriolis import Embedded
 
-PLAIN = (
+from .history import Run, history, table
+from .picture import PALETTE
+from .text import as_text
+
+NOT_FIGURES = (
     "design",
     "top",
     "backend",
     "pdk",
-    "tried",
+    "attempts",
     "wall_s",
     "peak_mib",
     "tools",
@@ -29,26 +35,66 @@ PARTS = {
 BY_CORNER = (
     ("wns_ns", "setup slack, ns"),
     ("whs_ns", "hold slack, ns"),
-    ("blocks_wns_ns", "setup slack by the blocks' Liberty, ns"),
-    ("blocks_whs_ns", "hold slack by the blocks' Liberty, ns"),
-    ("setup_margin_ns", "least seen, setup, ns"),
-    ("slews_over", "slews longer than any the cells were measured at"),
+    ("blocks_wns_ns", "setup slack by the macros' Liberty, ns"),
+    ("blocks_whs_ns", "hold slack by the macros' Liberty, ns"),
+    ("setup_margin_ns", "least simulated setup margin, ns"),
+    ("slews_over", "slews beyond the cells' tables"),
     ("worst_slew_ns", "the longest of these, ns"),
-    ("hold_margin_ns", "least seen, hold, ns"),
+    ("hold_margin_ns", "least simulated hold margin, ns"),
     ("power_uw", "power, uW"),
-    ("energy_pj_cycle", "pJ a cycle"),
-    ("power_at_chip_clock_uw", "power at 10 MHz, the chip's clock, uW"),
-    ("supply_drop_mv", "supply's drop, mV"),
-    ("ground_rise_mv", "ground's rise, mV"),
-    ("model_error_ns", "block's Liberty off by, ns"),
+    ("energy_pj_cycle", "energy a cycle, pJ"),
+    ("power_at_chip_clock_uw", "power at the chip's clock, 10 MHz, uW"),
+    ("supply_drop_mv", "IR drop, supply, mV"),
+    ("ground_rise_mv", "IR drop, ground, mV"),
+    ("model_error_ns", "error of the block's Liberty, ns"),
 )
 
 
-def page(summary, broken, known, runs, picture=None, pictures=()):
-    """The report as HTML text. broken: lines of `summary.broken`; known: Embedded; runs: of `history.continued`;
-    picture: of the layout, file name beside it; pictures: further (file name, what it shows)."""
+class Picture(NamedTuple):
+    """A picture in the folder of the report."""
+
+    file: str
+    caption: str
+
+
+class Tile(NamedTuple):
+    """A figure at the top of the page. kind: 'good', 'bad' or ''."""
+
+    value: Any
+    label: str
+    kind: str
+
+
+def write_report(
+    part: Path,
+    folder: Path,
+    summary: dict[str, Any],
+    broken: Sequence[str],
+    tech: Embedded,
+    picture: str | None = None,
+    pictures: Sequence[Picture] = (),
+) -> None:
+    """Write summary, history and page into ``part``, whose files will be in ``folder``. Other arguments: see `page`."""
+    runs = history(folder / "history.jsonl", summary)
+    (part / "history.jsonl").write_text("".join(run.line() for run in runs))
+    (part / "report.html").write_text(page(summary, broken, tech, runs, picture, pictures))
+    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+
+
+def page(
+    summary: dict[str, Any],
+    broken: Sequence[str],
+    tech: Embedded,
+    runs: Sequence[Run],
+    picture: str | None = None,
+    pictures: Sequence[Picture] = (),
+) -> str:
+    """Render the report as HTML.
+
+    broken: lines of `metrics.broken`. picture: file name of the layout's, beside the page. pictures: further ones.
+    """
     environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
-    key = [(wire.name, f"#{color:06x}") for wire, color in zip(known.wires, PALETTE)]
+    key = [(wire.name, f"#{color:06x}") for wire, color in zip(tech.wires, PALETTE)]
     return environment.get_template("page.html").render(
         s=summary,
         broken=broken,
@@ -60,17 +106,17 @@ def page(summary, broken, known, runs, picture=None, pictures=()):
         corners=_corners(summary),
         blocks=_blocks(summary),
         table=_table(summary),
-        history=history.table(runs),
+        history=table(runs),
     )
 
 
-def _tiles(s, broken):
-    """What a reader looks for first: dicts value, label, kind ('good', 'bad' or '')."""
+def _tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
+    """What a reader looks for first."""
 
-    def tile(value, label, rule=None):
+    def tile(value: Any, label: str, rule: str | None = None) -> Tile:
         bad = rule and any(line.startswith(rule) for line in broken)
         kind = "bad" if bad else "" if rule is None or value is None else "good"
-        return {"value": "-" if value is None else value, "label": label, "kind": kind}
+        return Tile("-" if value is None else value, label, kind)
 
     tests = s["gate_tests"] or {}
     return [
@@ -78,50 +124,46 @@ def _tiles(s, broken):
         tile(s["utilization"], "utilization"),
         tile(s["cells"] and f"{s['cells']:,}", "cells"),
         tile(s["open_nets"], "open nets", "open_nets"),
-        tile(s["drc_violations"], "rules broken", "drc_violations"),
-        tile({True: "match", False: "differ"}.get(s["lvs_match"]), "layout and netlist", "lvs_match"),
-        tile(s["equivalence"], "netlist = Verilog", "equivalence"),
-        tile(tests.get("passed"), "tests passed on the netlist", "gate_tests"),
-        tile(s["f_max_mhz"], "MHz at most"),
+        tile(s["drc_violations"], "DRC violations", "drc_violations"),
+        tile({True: "match", False: "differ"}.get(s["lvs_match"]), "LVS", "lvs_match"),
+        tile(s["equivalence"], "equivalence", "equivalence"),
+        tile(tests.get("passed"), "netlist tests passed", "gate_tests"),
+        tile(s["f_max_mhz"], "MHz, highest clock"),
         tile(s["antenna_violations"], "antennas", "antenna_violations"),
     ]
 
 
-def _corners(s):
-    """(names of the corners, rows (words, value a corner)) of what is known by corner, or None without timing."""
-    corners = list(s.get("wns_ns") or ())
+def _corners(s: dict[str, Any]) -> tuple[list[str], list[tuple[str, list[Any]]]] | None:
+    """Names of the corners and rows (label, value a corner) of the figures by corner; None without timing."""
+    corners: list[str] = list(s.get("wns_ns") or ())
     rows = [(words, [s[name].get(corner) for corner in corners]) for name, words in BY_CORNER if s.get(name)]
     return (corners, rows) if corners else None
 
 
-def _blocks(s):
-    """(block, uW, share) by power, the largest first."""
+def _blocks(s: dict[str, Any]) -> list[tuple[str, float, float]]:
+    """Rows (block, uW, share), the largest power first."""
     found = s.get("power_by_block_uw") or {}
     return [(name, value, value / (sum(found.values()) or 1)) for name, value in found.items()]
 
 
-def _table(s):
-    """(part, uW in Table 6.1, uW here), '-' where there is none."""
+def _table(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows (part, uW in Table 6.1, uW here), '-' for none."""
     return [
-        (PARTS.get(part, part), *("-" if uw is None else f"{uw:,.1f}" for uw in pair))
+        (PARTS.get(part) or part, *("-" if uw is None else f"{uw:,.1f}" for uw in pair))
         for part, pair in (s.get("table_6_1") or {}).items()
     ]
 
 
-def _figures(s):
-    """(name, value as text) of everything that is a figure."""
+def _figures(s: dict[str, Any]) -> list[tuple[str, str]]:
+    """Rows (name, value as text) of the figures without a table of their own."""
 
-    def text(value):
+    def text(value: Any) -> str:
         if isinstance(value, dict):
             return ", ".join(f"{name}: {text(v)}" for name, v in value.items())
-        if isinstance(value, list):
-            return ", ".join(map(str, value)) or "-"
-        if isinstance(value, bool):
-            return "yes" if value else "no"
-        return "-" if value is None else f"{value:,}" if isinstance(value, (int, float)) else str(value)
+        return ", ".join(map(str, value)) or "-" if isinstance(value, list) else as_text(value)
 
     return [
         (name, text(value))
         for name, value in s.items()
-        if name not in PLAIN and name not in dict(BY_CORNER) and name != "power_by_block_uw"
+        if name not in NOT_FIGURES and name not in dict(BY_CORNER) and name != "power_by_block_uw"
     ]

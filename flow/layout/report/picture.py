@@ -1,11 +1,17 @@
-"""A layout as a picture: KLayout's own rendering, without its window."""
+"""Pictures of a layout: KLayout's own rendering, without its window; the cells by block."""
 
-PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # wires, from the lowest up
+from pathlib import Path
+from typing import Any
+
+from flow.layout.netlist.netlist import Netlist
+from platforms.coriolis import Embedded
+
+PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
 BACKGROUND = "#101014"
 
 
-def render(gds, png, known, side=2400):
-    """Write the layout ``gds`` as a picture of ``side`` x ``side`` pixels. known: Embedded, whose wires are drawn."""
+def render(gds: Path, png: Path, tech: Embedded, side: int = 2400) -> None:
+    """Write the metal layers of the layout ``gds`` as a picture of ``side`` x ``side`` pixels."""
     import klayout.lay as lay
 
     view = lay.LayoutView()
@@ -14,7 +20,7 @@ def render(gds, png, known, side=2400):
     view.set_config("text-visible", "false")
     view.load_layout(str(gds), False)
     view.max_hier()
-    colors = {(wire.layer, wire.datatype): color for wire, color in zip(known.wires, PALETTE)}
+    colors = {(wire.layer, wire.datatype): color for wire, color in zip(tech.wires, PALETTE)}
     layers = view.begin_layers()
     while not layers.at_end():
         shown = layers.current().dup()
@@ -30,9 +36,20 @@ def render(gds, png, known, side=2400):
     view.save_image(str(png), side, side)
 
 
-def by_block(png, netlist, placed, areas, known, found, plan):
-    """Write the cells' places, coloured by block. placed: of the placement, in the netlist's order; areas: cell -> um2;
-    found: instance -> block; plan: width_um, height_um."""
+def by_block(
+    png: Path,
+    netlist: Netlist,
+    placed: list[list[Any]],
+    areas: dict[str, float],
+    tech: Embedded,
+    found: dict[str, str],
+    plan: dict[str, Any],
+) -> None:
+    """Draw the cells, coloured by block.
+
+    placed: instances of the placement, in the netlist's order. areas: cell -> um2. found: instance -> block. plan: with
+    width_um and height_um.
+    """
     from matplotlib.collections import PatchCollection
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
@@ -42,9 +59,9 @@ def by_block(png, netlist, placed, areas, known, found, plan):
     groups = {}
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if instance.name in found and instance.pins:
-            width, down, left = areas[cell] / known.row_um, orientation in ("6", "2"), orientation in ("4", "2")
+            width, down, left = areas[cell] / tech.row_um, orientation in ("6", "2"), orientation in ("4", "2")
             groups.setdefault(found[instance.name], []).append(
-                Rectangle((x - width * left, y - known.row_um * down), width, known.row_um)
+                Rectangle((x - width * left, y - tech.row_um * down), width, tech.row_um)
             )
     for k, (block, boxes) in enumerate(sorted(groups.items(), key=lambda item: -len(item[1]))):
         axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))

@@ -8,8 +8,9 @@ from pathlib import Path
 from base.files import staged
 from base.paths import ROOT
 from base.steps import Runner, StepError
-from flow.layout.block import laid_out, tell
+from flow.layout.block import lay_out
 from flow.layout.report.metrics import broken
+from flow.layout.report.page import Picture, write_report
 from flow.layout.report.picture import render
 from flow.layout.steps.antenna import AntennaParameters
 from flow.layout.steps.drc import Drc, DrcParameters
@@ -46,7 +47,7 @@ RESULTS = {
 }
 
 
-def sensor_steps(chip, settings, extra=()):
+def die_steps(chip, settings, extra=()):
     """The die's steps in order. chip: Design; settings: Options; extra: as of DiePlanParameters."""
     pdk, clock, io = settings.pdk, chip.clock, chip.io
     drc = Drc(DrcParameters(pdk))
@@ -69,13 +70,13 @@ def sensor_steps(chip, settings, extra=()):
     ]
 
 
-def laid_out_sensor(chip, settings, analog, out, note):
+def lay_out_sensor(chip, settings, analog, out, note):
     """(path of summary.json, limits broken). analog: folder of a user's blocks, or None; out: folder of all designs.
     Raises ParameterError, StepError for a chip that breaks a limit."""
     thick(settings.pdk)  # a process without one is told before anything runs
     folder = Path(out) / SENSOR
     blocks, frames, extra = analog_module.files(folder / "frames", settings.pdk, analog)
-    core, summary = laid_out(chip, settings, out, lambda text: note(f"{CHIP}: {text}"))
+    core, summary = lay_out(chip, settings, out, lambda text: note(f"{CHIP}: {text}"))
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} is not whole: {wrong[0]}")
     given = {name: core.paths[source] for name, source in PARTS.items()} | {
@@ -85,12 +86,12 @@ def laid_out_sensor(chip, settings, analog, out, note):
 
 
 def die(chip, settings, given, frames, extra, folder, note):
-    """As `laid_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
+    """As `lay_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
     names of the blocks that are no circuits; extra: pins of the others that lead to the die's."""
     platform = ROOT / "platforms" / settings.pdk.replace("-", "_")
     given = given | {"platform": platform / "coriolis.py", "thick": platform / "die.py"}
     runner = Runner(folder / "steps", given, note)
-    runner.run_all(sensor_steps(chip, settings, extra))
+    runner.run_all(die_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)
     lines, known = broken(summary, RULES), process(settings.pdk)[0]
     known = replace(known, wires=(*known.wires, thick(settings.pdk).wire))
@@ -100,13 +101,13 @@ def die(chip, settings, given, frames, extra, folder, note):
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
         by_block(part / f"{SENSOR}.blocks.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
         render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", known)
-        tell(
+        write_report(
             part,
             folder,
             summary,
             lines,
             known,
             f"{SENSOR}.png",
-            [(f"{SENSOR}.blocks.png", "The blocks; hatched: a frame, no circuit")],
+            [Picture(f"{SENSOR}.blocks.png", "Blocks; hatched: black box, no circuit")],
         )
     return folder / "summary.json", lines

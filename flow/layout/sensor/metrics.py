@@ -3,7 +3,7 @@
 import json
 from pathlib import Path
 
-from flow.layout.report.metrics import timing
+from flow.layout.report.metrics import timing_basis
 
 from .plan import BLOCKS
 from .sta import DieSta
@@ -44,7 +44,7 @@ def summarize(name, settings, runner, frames):
         "cells": None,
         "area_um2": metrics["area_um2"],
         "utilization": metrics["utilization"],
-        "tried": [],
+        "attempts": [],
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
         "frames": frames,
         "circuits": [block for block in BLOCKS if block not in frames],
@@ -72,7 +72,7 @@ def summarize(name, settings, runner, frames):
         "equivalence": None,
         "gate_tests": None,
         "power_uw": None,
-        "timing_rests_on": f"the chip, its ports with the die's wires{extrapolated(sta)}; {timing(settings)}",
+        "timing_rests_on": f"the chip, its ports with the die's wires{extrapolated(sta)}; {timing_basis(settings)}",
         **{
             key: {corner: found[key] for corner, found in sta.items()} or None
             for key in DieSta.metrics

@@ -22,7 +22,7 @@ EFFORTS, VARIATIONS, UTILIZATIONS = (1, 2, 3), (0.05, 0.15, 0.3), (0.76, 0.84, 0
 
 
 def arguments():
-    parser = argparse.ArgumentParser(prog="python -m flow.layout.sweep", description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(prog="python -m flow.layout.sweep", description=__doc__)
     parser.add_argument("what", choices=("pareto", "effort"), help="variants of the divider; effort of the placer")
     parser.add_argument(
         "--liberty",

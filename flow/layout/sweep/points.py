@@ -4,8 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from base.steps import Runner
-from flow.layout.chain import Options, files, front, judged, layout, timed, tries
+from flow.layout.chain import attempts, input_files, routing_steps, synthesis_steps, timing_steps
 from flow.layout.design import divider
+from flow.layout.options import Options
+from flow.layout.search import lay_out_smallest
 from flow.layout.steps.extraction import Extraction, ExtractionParameters
 
 VARIANTS = ("radix2", "radix4", "pipelined", "cordic")
@@ -29,14 +31,14 @@ def variant_point(design, liberty, out, pdk="sky130"):
     """
     options = Options(pdk, design.utilization, tuple(map(Path, liberty)))
     runner = _runner(design, options, out)
-    tried = layout(design, options, runner, _measured)
+    tried = lay_out_smallest(design, options, runner, _signoff)
     made = {
         "name": design.name,
         "variant": design.divider,
         "bits": design.n_frac,
         "tries": len(tried),
-        "utilization": tried[-1]["utilization"],
-        "closed": tried[-1]["rules_broken"] == 0,
+        "utilization": tried[-1].utilization,
+        "closed": tried[-1].rules_broken == 0,
     }
     if not made["closed"]:
         return made
@@ -55,8 +57,8 @@ def variant_point(design, liberty, out, pdk="sky130"):
     }
 
 
-def _measured(design, options):
-    return [Extraction(ExtractionParameters(options.pdk)), *timed(design, options)]
+def _signoff(design, options):
+    return [Extraction(ExtractionParameters(options.pdk)), *timing_steps(design, options)]
 
 
 def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky130"):
@@ -65,8 +67,8 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
     options = Options(pdk, utilization, tuple(map(Path, liberty)), effort=effort)
     design = replace(design, density_variation=variation)
     runner = _runner(design, options, out)
-    floorplan, place_route = next(tries(design, options))
-    for step in (*front(design, options), floorplan):
+    floorplan, place_route = next(attempts(design, options))
+    for step in (*synthesis_steps(design, options), floorplan):
         runner.run(step)
     found = runner.run(place_route)
     made = {
@@ -79,14 +81,16 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
     }
     if found["metrics"]["stopped"] is not None:
         return made
-    reroute, *others = judged(design, options)
+    reroute, *others = routing_steps(design, options)
     wires = runner.run(reroute)
     made["seconds"] = round(made["seconds"] + wires["wall_s"], 2)
     if wires["metrics"]["open_nets"]:
         return made
     broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
     runner.run(Extraction(ExtractionParameters(pdk)))
-    slack = [runner.run(step)["metrics"]["wns_ns"] for step in timed(design, options) if step.name.startswith("sta_")]
+    slack = [
+        runner.run(step)["metrics"]["wns_ns"] for step in timing_steps(design, options) if step.name.startswith("sta_")
+    ]
     return made | {
         "closed": not broken,
         "wns_ns": min(slack),
@@ -97,4 +101,4 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
 
 def _runner(design, options, out):
     folder = Path(out) / design.name
-    return Runner(folder / "steps", files(design, options, folder), shared=Path(out).parent / "shared")
+    return Runner(folder / "steps", input_files(design, options, folder), shared=Path(out).parent / "shared")

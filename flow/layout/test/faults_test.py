@@ -3,8 +3,9 @@
 import pytest
 
 from base.steps import Runner
-from flow.layout import chain
+from flow.layout.chain import attempts, routing_steps, synthesis_steps
 from flow.layout.design import Design
+from flow.layout.options import Options
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.lvs import Lvs, LvsParameters
 
@@ -24,13 +25,13 @@ def runner(tmp_path_factory):
     folder = tmp_path_factory.mktemp("counter")
     design = Design("counter", "Counter", "")
     made = Runner(folder / "steps", counter.files(design, counter.VERILOG, folder))
-    options = chain.Options(utilization=0.4, untimed=True)
-    for step in chain.front(design, options):
+    options = Options(utilization=0.4, untimed=True)
+    for step in synthesis_steps(design, options):
         made.run(step)
-    floorplan, place_route = next(chain.tries(design, options))
+    floorplan, place_route = next(attempts(design, options))
     made.run(floorplan)
     assert made.run(place_route)["metrics"]["routed"]
-    for step in chain.judged(design, options)[:3]:  # rerouted, streamed out, filled
+    for step in routing_steps(design, options)[:3]:  # rerouted, streamed out, filled
         made.run(step)
     return made
 

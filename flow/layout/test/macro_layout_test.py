@@ -3,9 +3,11 @@
 import pytest
 
 from base.steps import Runner, StepError
-from flow.layout import chain
+from flow.layout.chain import ASSEMBLED
 from flow.layout.design import DESIGNS, Design, MacroPlacement
-from flow.layout.macros import check_same, given
+from flow.layout.macros import check_same, macro_files
+from flow.layout.options import Options
+from flow.layout.search import lay_out_smallest
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from flow.layout.steps.lef import Lef, LefParameters
@@ -35,7 +37,7 @@ module Pair(input clk, input reset, input [3:0] step, output reg [8:0] sum);
 endmodule
 """
 )
-OPTIONS = chain.Options(utilization=0.4, untimed=True)
+OPTIONS = Options(utilization=0.4, untimed=True)
 INNER = Design("counter", "Counter", "")
 OUTER = Design("pair", "Pair", "", macros=(MacroPlacement("first", "counter", (0.5, 0.0)),))
 
@@ -43,8 +45,8 @@ OUTER = Design("pair", "Pair", "", macros=(MacroPlacement("first", "counter", (0
 def closed(design, verilog, folder, more):
     """The Runner behind a layout of ``design`` that keeps the rules."""
     runner = Runner(folder / design.name, counter.files(design, verilog, folder) | more, shared=folder / "shared")
-    tried = chain.layout(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
-    assert tried[-1]["rules_broken"] == 0, tried
+    tried = lay_out_smallest(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
+    assert tried[-1].rules_broken == 0, tried
     return runner
 
 
@@ -54,7 +56,7 @@ def runners(tmp_path_factory):
     folder, patch = tmp_path_factory.mktemp("pair"), pytest.MonkeyPatch()
     patch.setitem(DESIGNS, "counter", INNER)
     made = {"counter": closed(INNER, counter.VERILOG, folder, {})}
-    yield made | {"pair": closed(OUTER, PAIR, folder, given(OUTER, made))}
+    yield made | {"pair": closed(OUTER, PAIR, folder, macro_files(OUTER, made))}
     patch.undo()
 
 
@@ -63,7 +65,7 @@ def test_it_is_clean_matches_and_is_proven(runners):
     assert runner.run(Drc(DrcParameters()))["metrics"] == {"drc_violations": 0}
     assert runner.run(Lvs(LvsParameters()))["metrics"]["lvs_match"]
     proof = Equivalence(EquivalenceParameters("Pair"))
-    proof.inputs = {name: chain.ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
+    proof.inputs = {name: ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
     assert runner.run(proof)["metrics"] == {
         "equivalence": "proven",
         "registers": 85,
@@ -87,7 +89,7 @@ def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):
     assert not step.run(inputs, {name: tmp_path / file for name, file in step.outputs.items()})["lvs_match"]
 
 
-def test_another_block_in_the_verilog_is_told(runners, tmp_path):
+def test_another_module_in_the_verilog_is_refused(runners, tmp_path):
     (tmp_path / "Pair.v").write_text(PAIR.replace("8'd99", "8'd98"))
-    with pytest.raises(StepError, match="pair: its Verilog has another Counter than counter"):
+    with pytest.raises(StepError, match="pair: its module Counter differs from that of counter"):
         check_same(OUTER, tmp_path / "Pair.v", runners)

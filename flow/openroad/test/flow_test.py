@@ -233,7 +233,7 @@ def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
     assert list(tmp_path.iterdir()) == []
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 3 and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
-    assert "without blocks" in lines[2]
+    assert "without macros" in lines[2]
 
 
 def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path, monkeypatch, capsys):

@@ -1,4 +1,4 @@
-"""Summaries beside one another: a design, the same around a block, and the block."""
+"""Summaries side by side: a design, the same around a macro, and the macro."""
 
 import json
 
@@ -34,11 +34,11 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_a_row_of_each_and_the_time_of_blocks_with_what_is_around_them(folder, capsys):
+def test_rows_and_the_run_time_of_a_design_with_its_macros(folder, capsys):
     assert compare.main(["phase_path", "phase_path_macros", "--out", str(folder)]) == 1  # limits not measured
     table = json.loads((folder / "hierarchy" / "table.json").read_text())
     assert table["run time, s"] == {"phase_path": "20.0", "phase_path_macros": "21.0", "quad_divider, a block": "1.0"}
-    assert table["cells, clock's buffers too"] == {
+    assert table["cells, clock buffers included"] == {
         "phase_path": "100",
         "phase_path_macros": "90",
         "quad_divider, a block": "100",
@@ -48,7 +48,7 @@ def test_a_row_of_each_and_the_time_of_blocks_with_what_is_around_them(folder, c
     assert "phase_path_macros" in capsys.readouterr().out
 
 
-def test_what_was_not_laid_out_is_told(tmp_path, capsys):
+def test_a_missing_layout_is_named(tmp_path, capsys):
     assert compare.main(["phase_path", "phase_path_macros", "--out", str(tmp_path)]) == 2
     assert "make layout DESIGN=phase_path\n" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

@@ -6,8 +6,8 @@ from importlib.util import find_spec
 import pytest
 
 from base.steps import Runner
-from flow.layout.chain import Options
 from flow.layout.design import DESIGNS
+from flow.layout.options import Options
 from flow.layout.report.metrics import broken
 from flow.layout.sensor.die import die
 from flow.layout.sensor.metrics import RULES

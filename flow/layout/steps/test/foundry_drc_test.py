@@ -5,8 +5,6 @@ import shutil
 import pytest
 
 from base.steps import StepError
-from flow.layout.chain import Options, back
-from flow.layout.design import design
 from flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
 from models.parameters import ParameterError
 from platforms.foundry import foundry, installed
@@ -114,11 +112,9 @@ def test_a_technology_that_fails_is_told(root):
         checked(MagicDrc(FoundryDrcParameters("sky130", "top")), root, 150)
 
 
-def test_what_is_installed_is_run(root):
+def test_installed_decks(root):
     assert installed("sky130", {}) == {} and installed("ihp-sg13g2", {"PDK_ROOT": str(root)}) == {}
-    decks = tuple(installed("sky130", {"PDK_ROOT": str(root)}).items())
-    names = {step.name for step in back(design("amp_ctrl"), Options(decks=decks))}
-    assert {"foundry_drc", "magic_drc"} <= names
+    assert set(installed("sky130", {"PDK_ROOT": str(root)})) == {"klayout", "magic"}
     shutil.rmtree(root / "sky130A")
     with pytest.raises(ParameterError, match="PDK_ROOT = .*: must hold sky130A/libs.tech/klayout"):
         installed("sky130", {"PDK_ROOT": str(root)})

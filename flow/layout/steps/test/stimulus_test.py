@@ -1,11 +1,9 @@
 """Where a block lies in the chip, and whether it is the same one."""
 
-import shutil
-
 import pytest
 
 from flow.layout.netlist.verilog import modules
-from flow.layout.steps.stimulus import Stimulus, StimulusParameters, instance_of, middle, results
+from flow.layout.steps.stimulus import instance_of, middle, results
 from models.parameters import Window
 
 BLOCK = """
@@ -38,24 +36,6 @@ def test_the_first_instance_is_found():
 def test_the_tiles_of_the_middle(tiles, columns):
     made = middle(Window(0, 6, 0, 4), tiles)
     assert (made.row0, made.row1, made.col0, made.col1) == (3, 3, *columns)
-
-
-@pytest.mark.skipif(
-    not shutil.which("yosys") or not shutil.which("iverilog"), reason="yosys, iverilog: not found; make tools"
-)
-@pytest.mark.slow
-def test_the_chip_is_watched_as_it_is_laid_out(tmp_path):
-    """A trace of a chip of another size is none of this one: its header says another."""
-    from flow.layout.chain import CHIP_FRAME, Options, files
-    from flow.layout.design import DESIGNS
-
-    given = files(DESIGNS["asp_chip"], Options(), tmp_path)
-    step = Stimulus(StimulusParameters("AspChip", **CHIP_FRAME))
-    found = step.run(
-        {name: given[source] for name, source in step.inputs.items()},
-        {name: tmp_path / file for name, file in step.outputs.items()},
-    )
-    assert found["source"] == "frame" and found["cycles"] > 10_000
 
 
 def test_results_are_what_left():

@@ -1,0 +1,48 @@
+"""What a user chooses for a layout: process, utilization, cells' timing, effort, the foundry's decks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from base.liberty.read import is_library
+from models.parameters import ParameterError, check_int, check_real
+from platforms.coriolis import process
+
+LEAST_UTILIZATION = 0.20  # of the search's last attempt
+
+
+@dataclass(frozen=True)
+class Options:
+    """Choices for one layout.
+
+    pdk: process. utilization: cells' area by core area at which the search begins. liberty: characterized cells, a file
+    a corner; () for the process's corners, measured now. untimed: whether there is no timing at all. effort: of the
+    placer, 1..3. decks: pairs (name, path) of the foundry's own checks (`platforms.foundry`).
+    """
+
+    pdk: str = "sky130"
+    utilization: float = 0.8
+    liberty: tuple[Path, ...] = ()
+    untimed: bool = False
+    effort: int = 2
+    decks: tuple[tuple[str, Path], ...] = ()
+
+    @property
+    def corners(self) -> tuple[str, ...]:
+        """Names of the corners, that of synthesis first."""
+        if self.untimed:
+            return ()
+        return tuple(path.stem for path in self.liberty) or process(self.pdk)[0].corners
+
+    def __post_init__(self) -> None:
+        for path in self.liberty:
+            if not path.is_file():
+                raise ParameterError(
+                    f"liberty = {path}: no such file; without LIBERTY the cells are measured, "
+                    "once, into build/layout/shared/timing.*/<corner>.lib"
+                )
+            if not is_library(path):
+                raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
+        if len({path.stem for path in self.liberty}) != len(self.liberty):
+            raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
+        check_real("utilization", self.utilization, LEAST_UTILIZATION, 0.95)
+        check_int("effort", self.effort, 1, 3)

@@ -1,0 +1,53 @@
+"""The search for the smallest area whose layout keeps all design rules."""
+
+from base.steps import Runner
+from base.steps.versions import version
+from models.parameters import ParameterError
+from platforms.coriolis import process
+
+from .chain import Signoff, all_steps, attempts, routing_steps, signoff_steps, synthesis_steps
+from .design import Design
+from .options import Options
+from .report.metrics import Attempt
+
+
+def lay_out_smallest(
+    design: Design, options: Options, runner: Runner, signoff: Signoff = signoff_steps
+) -> list[Attempt]:
+    """Run all steps with ``runner``; the attempts, of which the last closes if any does.
+
+    An attempt closes when every net is routed, by the router or by `reroute`, and no rule of design or antennas is
+    broken. signoff: function (design, options) -> the steps after it. Raises ParameterError where macros find no place
+    in any attempt, ToolError for a missing tool, before anything runs.
+    """
+    version(f"python {process(options.pdk)[0].wheel}")
+    for step in all_steps(design, options, signoff):
+        for tool in step.tools:
+            version(tool)
+    for step in synthesis_steps(design, options):
+        runner.run(step)
+    tried, placed, misfit = [], 0, None
+    for floorplan, place_route in attempts(design, options):
+        shape = floorplan.parameters
+        attempt = Attempt(shape.utilization, shape.aspect, place_route.parameters.density_variation)
+        tried.append(attempt)
+        try:
+            runner.run(floorplan)
+        except ParameterError as error:
+            misfit = error
+            continue
+        placed += 1
+        found = runner.run(place_route)["metrics"]
+        attempt.open_segments = found["open_segments"]
+        reroute, *checks = routing_steps(design, options)
+        if found["stopped"] is None and not runner.run(reroute)["metrics"]["open_nets"]:
+            attempt.rules_broken = sum(
+                record["metrics"].get(f"{step.name}_violations", 0)
+                for step, record in zip(checks, runner.run_all(checks), strict=True)
+            )
+            if not attempt.rules_broken:
+                runner.run_all(signoff(design, options))
+                return tried
+    if misfit and not placed:
+        raise misfit
+    return tried

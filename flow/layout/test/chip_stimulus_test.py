@@ -1,0 +1,25 @@
+"""The stimulus of the whole chip: recorded in the chip that is laid out."""
+
+import shutil
+
+import pytest
+
+from flow.layout.chain import CHIP_FRAME, input_files
+from flow.layout.design import DESIGNS
+from flow.layout.options import Options
+from flow.layout.steps.stimulus import Stimulus, StimulusParameters
+
+
+@pytest.mark.skipif(
+    not shutil.which("yosys") or not shutil.which("iverilog"), reason="yosys, iverilog: not found; make tools"
+)
+@pytest.mark.slow
+def test_the_chip_is_watched_as_it_is_laid_out(tmp_path):
+    """A trace of a chip of another size is none of this one: its header says another."""
+    given = input_files(DESIGNS["asp_chip"], Options(), tmp_path)
+    step = Stimulus(StimulusParameters("AspChip", **CHIP_FRAME))
+    found = step.run(
+        {name: given[source] for name, source in step.inputs.items()},
+        {name: tmp_path / file for name, file in step.outputs.items()},
+    )
+    assert found["source"] == "frame" and found["cycles"] > 10_000
