@@ -5,16 +5,16 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from cells.extract import extract
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.library import schematic_spice, written
+from cells.extract import extract
 from cells.lef import header as lef_header
 from cells.netlist import spice
 from models.parameters import ParameterError
+from platforms.extraction import extraction_platform
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import models as sky130
-from platforms.sky130 import process as sky130_layout
 
 LIBRARIES = ("sky130_hd", "compact")
 NETLISTS = ("extracted", "capacitances", "devices", "schematic")
@@ -69,16 +69,20 @@ def source(library, name, netlist="extracted"):
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
     if library not in LIBRARIES:
         return Source(name, spice.subcircuit(spice.source(_file(library)), name), None)
-    strays = {"strays": netlist in ("extracted", "capacitances"), "wires": netlist == "extracted"}
+    parasitics = {"capacitors": netlist in ("extracted", "capacitances"), "resistors": netlist == "extracted"}
     if library == "compact":
         if netlist == "schematic":
             return Source(name, schematic_spice(schematics()[name], Canvas()), _compact_areas()[name])
-        return Source(name, extract(COMPACT / "compact.gds", name, sky130_layout, **strays), _compact_areas()[name])
+        return Source(
+            name,
+            extract(COMPACT / "compact.gds", name, extraction_platform("sky130"), **parasitics),
+            _compact_areas()[name],
+        )
     gds = sky130_hd.file(name, "gds")
     text = (
         sky130_hd.file(name, "spice").read_text()
         if netlist == "schematic"
-        else extract(gds, gds.stem, sky130_layout, **strays)
+        else extract(gds, gds.stem, extraction_platform("sky130"), **parasitics)
     )
     return Source(name, text, area(sky130_hd.file(name, "lef").read_text()))
 

@@ -10,25 +10,21 @@ from pathlib import Path
 from base.files import staged
 from base.gds import write_gds
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
-from platforms import openroad
-from platforms.coriolis import process
-from platforms.die import thick
-from platforms.openroad import layer_names
+from platforms.coriolis import coriolis_platform
+from platforms.die import top_metal
 
 from .blocks import DEEP_UM, AnalogSizes, blocks
 
-# Of Embedded.wires: of pins in the north and south, and in the west and east
+# Of CoriolisPlatform.wires: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 4, 3
 WIDE_UM = 0.4  # of a signal's pin
 
 
 def layer(pin, pdk):
-    """(wire, its name in LEF) of a pin."""
-    known, above = process(pdk)[0], thick(pdk)
+    """The Layer of a pin."""
     if pin.supply:
-        return above.wire, above.lef
-    wire = known.wires[VERTICAL if pin.side in ("north", "south") else ACROSS]
-    return wire, layer_names(pdk)[wire.layer, wire.datatype]
+        return top_metal(pdk).metal
+    return coriolis_platform(pdk).metals[VERTICAL if pin.side in ("north", "south") else ACROSS]
 
 
 def box(pin, block, supply_um, grid_um):
@@ -44,11 +40,10 @@ def box(pin, block, supply_um, grid_um):
 
 def lef(block, pdk, supply_um):
     """The LEF of a block as text: outline, pins, and what lies deeper than these an obstruction on their layers."""
-    known = process(pdk)[0]
+    known = coriolis_platform(pdk)
     found = {}
     for pin in block.pins:
-        _, name = layer(pin, pdk)
-        found.setdefault(pin.name, []).append((pin, name, box(pin, block, supply_um, known.grid_um)))
+        found.setdefault(pin.name, []).append((pin, layer(pin, pdk).lef, box(pin, block, supply_um, known.grid_um)))
     lines = [
         "VERSION 5.8 ;",
         'BUSBITCHARS "[]" ;',
@@ -78,17 +73,17 @@ def frame(block, pdk, supply_um):
     """The klayout.db.Layout of a block's frame: its pins with their names, and its outline."""
     import klayout.db as db
 
-    known, layout = process(pdk)[0], db.Layout()
+    known, layout = coriolis_platform(pdk), db.Layout()
     layout.dbu = 0.001
     cell = layout.create_cell(block.name)
     for pin in block.pins:
-        wire, _ = layer(pin, pdk)
+        metal = layer(pin, pdk)
         corners = db.DBox(*box(pin, block, supply_um, known.grid_um))
         text = db.DText(pin.name, corners.center().x, corners.center().y)
-        cell.shapes(layout.layer(wire.layer, wire.datatype)).insert(corners)
-        for datatype in (known.pin_datatype, known.label_datatype):
-            cell.shapes(layout.layer(wire.layer, datatype)).insert(text)
-    cell.shapes(layout.layer(*openroad.process(pdk).outline)).insert(db.DBox(0, 0, block.width_um, block.height_um))
+        cell.shapes(layout.layer(*metal.gds)).insert(corners)
+        for named in (metal.pin, metal.label):
+            cell.shapes(layout.layer(*named)).insert(text)
+    cell.shapes(layout.layer(*known.outline)).insert(db.DBox(0, 0, block.width_um, block.height_um))
     return layout
 
 

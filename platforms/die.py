@@ -1,32 +1,21 @@
-"""What a whole die asks of a process beyond the blocks' wires: the thick wire above them. One object a process."""
+"""What a whole die needs of a process beyond the blocks' metals: the thick metal above them."""
 
-import importlib
 from dataclasses import dataclass
 
-from models.parameters import ParameterError
-
-from .coriolis import Cut, Wire
+from .layers import Layer, Via
+from .load import module
 
 PROCESSES = ("sky130",)
 
 
 @dataclass(frozen=True)
-class Thick:
-    """The wire above the highest of Embedded.wires. lef: its name in LEF. width_um, space_um: least.
+class TopMetal:
+    """The metal above the highest of CoriolisPlatform.metals, and the via between the two."""
 
-    cut: joins it to that highest wire; cut.enclosure_um is that by the thick wire, below_um that by the other.
-    """
-
-    wire: Wire
-    lef: str
-    width_um: float
-    space_um: float
-    cut: Cut
-    below_um: float
+    metal: Layer
+    via: Via
 
 
-def thick(pdk):
-    """The Thick of ``pdk``. Raises ParameterError."""
-    if pdk not in PROCESSES:
-        raise ParameterError(f"pdk = {pdk}: must be one of {', '.join(PROCESSES)} for a whole die")
-    return importlib.import_module(f"platforms.{pdk.replace('-', '_')}.die").THICK
+def top_metal(pdk: str) -> TopMetal:
+    """The top metal of ``pdk``. Raises ParameterError for a process without one."""
+    return module(pdk, "die", PROCESSES, " for a whole die").TOP

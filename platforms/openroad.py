@@ -1,12 +1,12 @@
-"""What the OpenROAD backend must know of a process with its foundry's standard cells: one object a process.
+"""What the OpenROAD backend needs of a process with its foundry's standard cells: one object a process.
 
 Paths are those of a PDK as open_pdks installs it (ciel, volare), relative to PDK_ROOT.
 """
 
-import importlib
 from dataclasses import dataclass
 
-from models.parameters import ParameterError
+from .layers import GdsLayer
+from .load import module
 
 PROCESSES = ("sky130",)
 CORNERS = ("slow", "typical", "fast")
@@ -14,7 +14,7 @@ CORNERS = ("slow", "typical", "fast")
 
 @dataclass(frozen=True)
 class Strap:
-    """A layer of power straps, um; pitch_um: of a pair; pitch_um = 0: the cells' rails."""
+    """Power straps on a layer (LEF name). pitch_um: of a pair; 0 for the cells' rails."""
 
     layer: str
     width_um: float
@@ -23,65 +23,58 @@ class Strap:
 
 
 @dataclass(frozen=True)
-class OpenRoad:
-    """name: of the process; library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane.
+class OpenRoadPlatform:
+    """A process with its standard cells for OpenROAD.
 
-    liberty: dict of CORNERS -> path. tech_lef, cell_lef, cell_gds, cell_models, rcx_rules: paths; cell_models: tuple of
-    Verilog; rcx_rules: tuple, of which the PDK has one. supply, ground: (net, pins of cells). high, low: cell and pin
-    of a constant, 'cell/pin'. diode: cell against antennas. tap: cell, every tap_um. straps: tuple of Strap, joined in
-    their order. pins: layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers.
-    kept_free: share of their tracks that global routing leaves to the detailed router. signal_rc, clock_rc: layers
-    whose wires stand for all before routing. fill: cells by their whole names, since OpenROAD took patterns for regular
-    expressions once, for globs later. dont_use: patterns of cells. gds: dict wire or cut -> (layer, datatype).
-    outline: (layer, datatype) of the die. pin_datatype, label_datatype: of GDS.
-    utilization_share: of what a design asks for, which is meant for cells packed without padding or timing repair.
+    library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty: path for each of
+    CORNERS. tech_lef, cell_lef, cell_gds, cell_models, rcx_rules: paths; cell_models: of Verilog; of rcx_rules the PDK
+    has one. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. diode: cell
+    against antennas. tap: cell, every tap_um. straps: connected in their order. pins: layers of (horizontal, vertical)
+    pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks that global routing leaves
+    to the detailed router. signal_rc, clock_rc: layers whose resistance and capacitance represent all before routing.
+    fill: cells by their full names, since OpenROAD took patterns for regular expressions once, for globs later.
+    dont_use: patterns of cells. gds: LEF name of a layer or via -> GDS layer. outline: GDS layer of the die's.
+    pin_datatype, label_datatype: of GDS. utilization_share: of a design's utilization, which is meant for cells packed
+    without padding or timing repair.
     """
 
     name: str
     library: str
     orfs_platform: str
     pdk: str
-    liberty: dict
+    liberty: dict[str, str]
     tech_lef: str
     cell_lef: str
     cell_gds: str
-    cell_models: tuple
-    rcx_rules: tuple
+    cell_models: tuple[str, ...]
+    rcx_rules: tuple[str, ...]
     site: str
     site_um: float
     row_um: float
-    supply: tuple
-    ground: tuple
+    supply: tuple[str, tuple[str, ...]]
+    ground: tuple[str, tuple[str, ...]]
     high: str
     low: str
     diode: str
     tap: str
     tap_um: float
     clock_buffer: str
-    straps: tuple
-    pins: tuple
-    signal: tuple
-    clock: tuple
+    straps: tuple[Strap, ...]
+    pins: tuple[str, str]
+    signal: tuple[str, str]
+    clock: tuple[str, str]
     signal_rc: str
     clock_rc: str
-    fill: tuple
-    dont_use: tuple
-    gds: dict
-    outline: tuple
+    fill: tuple[str, ...]
+    dont_use: tuple[str, ...]
+    gds: dict[str, GdsLayer]
+    outline: GdsLayer
     pin_datatype: int
     label_datatype: int
     utilization_share: float = 0.6
     kept_free: float = 0.5
 
 
-def process(pdk):
-    """The OpenRoad of ``pdk``. Raises ParameterError."""
-    if pdk not in PROCESSES:
-        raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(PROCESSES)} with BACKEND=openroad")
-    return importlib.import_module(f"platforms.{pdk.replace('-', '_')}.openroad").PROCESS
-
-
-def layer_names(pdk):
-    """dict (GDS layer, datatype) -> name of the layer in LEF, where it is not that of the wire."""
-    known = process(pdk).gds if pdk in PROCESSES else {}
-    return {numbers: name for name, numbers in known.items()}
+def openroad_platform(pdk: str) -> OpenRoadPlatform:
+    """The process ``pdk`` for OpenROAD. Raises ParameterError."""
+    return module(pdk, "openroad", PROCESSES, " with BACKEND=openroad").PLATFORM

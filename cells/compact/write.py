@@ -7,7 +7,7 @@ from cells.compact.liberty import liberty
 from cells.compact.library import NAME, SITE, pins
 from cells.compact.verilog import verilog
 from cells.lef import abstract, header
-from platforms.sky130.process import PROCESS
+from platforms.extraction import extraction_platform
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
 BLOCKAGES = '''"""What the router must go round inside the cells: their own met1."""
@@ -79,7 +79,7 @@ def _spice(cells):
 
 
 def _lef(cells, canvas, gds):
-    macros = (abstract(gds, cell.name, PROCESS, pins(cell.schematic), SITE) for cell in cells)
+    macros = (abstract(gds, cell.name, extraction_platform("sky130"), pins(cell.schematic), SITE) for cell in cells)
     return header(SITE, canvas.site, canvas.height) + "\n".join(macros) + "\nEND LIBRARY\n"
 
 

@@ -10,10 +10,10 @@ faces it. Gates are left out over active: the transistor model has their capacit
 import math
 from collections import defaultdict
 
-from platforms.process import DIFFUSION
+from platforms.layers import DIFFUSION
 
 
-def capacitances(found, process):
+def capacitances(found, tech):
     """{(net, net): fF}, the names of each pair sorted. found: cells.extract.devices.Layout."""
     total = defaultdict(float)
 
@@ -21,38 +21,38 @@ def capacitances(found, process):
         if a != b:
             total[min(a, b), max(a, b)] += attofarad / 1000
 
-    crossings = {(c.upper, c.lower): c for c in process.crossings}
-    _areas(found, process, crossings, add)
+    crossings = {(c.upper, c.lower): c for c in tech.crossings}
+    _areas(found, tech, crossings, add)
     strips = _Rectangles(found)
-    for wire in process.wires:
-        for net, region in found.shapes[wire.name].items():
+    for wire in tech.conductors:
+        for net, region in found.shapes[wire.lef].items():
             for edge in region.merged().edges().each():
-                _edge(edge, net, wire, strips, process, crossings, add)
+                _edge(edge, net, wire, strips, tech, crossings, add)
     return dict(total)
 
 
-def _below(wire, process):
+def _below(wire, tech):
     """Conductors under ``wire``, the nearest first; diffusion under all."""
-    names = [w.name for w in process.wires]
-    return [*reversed(names[: names.index(wire.name)]), DIFFUSION]
+    names = [w.lef for w in tech.conductors]
+    return [*reversed(names[: names.index(wire.lef)]), DIFFUSION]
 
 
-def _areas(found, process, crossings, add):
+def _areas(found, tech, crossings, add):
     um2 = found.dbu**2
-    for wire in process.wires:
-        for net, region in found.shapes[wire.name].items():
+    for wire in tech.conductors:
+        for net, region in found.shapes[wire.lef].items():
             rest = region.merged()
-            for lower in _below(wire, process):
-                if wire.name == "poly":
+            for lower in _below(wire, tech):
+                if wire.lef == "poly":
                     rest -= found.active
                     continue
                 for other, below in found.shapes[lower].items():
                     if rest.bbox().touches(below.bbox()):
                         area = (rest & below).area() * um2
-                        add(net, other, area * crossings[wire.name, lower].overlap)
+                        add(net, other, area * crossings[wire.lef, lower].overlap_af_um2)
                         rest -= below
             for bulk, well in found.wells.items():
-                add(net, bulk, (rest & well).area() * um2 * wire.area)
+                add(net, bulk, (rest & well).area() * um2 * wire.area_af_um2)
 
 
 class _Rectangles:
@@ -91,13 +91,13 @@ def _split(nets, dbu):
     return found
 
 
-def _edge(edge, net, wire, strips, process, crossings, add):
+def _edge(edge, net, wire, strips, tech, crossings, add):
     """All that one edge of ``net`` on ``wire`` sees."""
-    names = [w.name for w in process.wires]
-    own = names.index(wire.name)
-    layers = {name: list(strips.beside(strips.layers[name], edge, process.halo)) for name in [*names, DIFFUSION]}
-    wells = list(strips.beside(strips.wells, edge, process.halo))
-    active = list(strips.beside(strips.active, edge, process.halo)) if wire.name == "poly" else []
+    names = [w.lef for w in tech.conductors]
+    own = names.index(wire.lef)
+    layers = {name: list(strips.beside(strips.layers[name], edge, tech.halo_um)) for name in [*names, DIFFUSION]}
+    wells = list(strips.beside(strips.wells, edge, tech.halo_um))
+    active = list(strips.beside(strips.active, edge, tech.halo_um)) if wire.lef == "poly" else []
     start, end = sorted((edge.p1.y, edge.p2.y) if edge.p1.x == edge.p2.x else (edge.p1.x, edge.p2.x))
     cuts = {start * strips.dbu, end * strips.dbu}
     for rectangles in (*layers.values(), wells, active):
@@ -111,8 +111,12 @@ def _edge(edge, net, wire, strips, process, crossings, add):
             name: [(r[0], r[1], r[4]) for r in rectangles if r[2] <= a + 1e-6 and r[3] >= b - 1e-6]
             for name, rectangles in (*layers.items(), ("well", wells), ("active", active))
         }
-        facing = min(here[wire.name], default=(process.halo, 0, net))
-        add(net, facing[2], length * wire.sidewall / 2 / (facing[0] + wire.offset) if facing[2] != net else 0.0)
+        facing = min(here[wire.lef], default=(tech.halo_um, 0, net))
+        add(
+            net,
+            facing[2],
+            length * wire.sidewall_af_um / 2 / (facing[0] + wire.sidewall_offset_um) if facing[2] != net else 0.0,
+        )
         free = [(0.0, facing[0])]
         if not (here["active"] and min(here["active"])[0] < 1e-6):  # not along a channel
             _down(free, here, net, wire, names[:own], length, crossings, add)
@@ -121,22 +125,22 @@ def _edge(edge, net, wire, strips, process, crossings, add):
 
 def _down(free, here, net, wire, below, length, crossings, add):
     for lower in [*reversed(below), DIFFUSION]:
-        if wire.name == "poly":
+        if wire.lef == "poly":
             free = _without(free, here["active"])
             continue
-        crossing = crossings[wire.name, lower]
+        crossing = crossings[wire.lef, lower]
         for near, far, other in _pieces(free, here[lower]):
-            add(net, other, length * crossing.down * _share(crossing.overlap, near, far))
+            add(net, other, length * crossing.down_af_um * _share(crossing.overlap_af_um2, near, far))
         free = _without(free, here[lower])
     for near, far, bulk in _pieces(free, here["well"]):
-        add(net, bulk, length * wire.fringe * _share(wire.area, near, far))
+        add(net, bulk, length * wire.fringe_af_um * _share(wire.area_af_um2, near, far))
 
 
 def _up(free, here, net, wire, above, length, crossings, add):
     for upper in above:
-        crossing = crossings[upper, wire.name]
+        crossing = crossings[upper, wire.lef]
         for near, far, other in _pieces(free, here[upper]):
-            add(net, other, length * crossing.up * _share(crossing.overlap, near, far))
+            add(net, other, length * crossing.up_af_um * _share(crossing.overlap_af_um2, near, far))
         free = _without(free, here[upper])
 
 

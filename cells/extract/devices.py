@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import klayout.db as db
 
 from models.parameters import ParameterError
-from platforms.process import DIFFUSION
+from platforms.layers import DIFFUSION
 
 MARKS = ("hvtp", "lvtn", "library")
 
@@ -41,7 +41,8 @@ class Layout:
 
     ports: the names that labels give; dbu: um. active: all diffusion, gates included. islands: 'n' or 'p' -> net ->
 
-    sources and drains; cuts: for every one of Process.cuts its region; labels: net -> [(wire, point)], highest first.
+    sources and drains; vias: region of every one of ExtractionPlatform.vias; labels: net -> [(layer, point)], highest
+    first.
     """
 
     dbu: float
@@ -51,7 +52,7 @@ class Layout:
     wells: dict = field(default_factory=dict)
     active: db.Region = None
     islands: dict = field(default_factory=dict)
-    cuts: list = field(default_factory=list)
+    vias: list = field(default_factory=list)
     labels: dict = field(default_factory=dict)
 
 
@@ -69,62 +70,62 @@ def read_cell(gds, name):
     return layout, cell
 
 
-def find(gds, name, process):
-    """The Layout of cell ``name`` in the file ``gds`` on ``process`` (platforms.process.Process)."""
+def find(gds, name, tech):
+    """The Layout of cell ``name`` in the file ``gds`` in the process ``tech`` (ExtractionPlatform)."""
     layout, cell = read_cell(gds, name)
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, cell, []))
-    layers = _layers(l2n, layout, process, cell.bbox())
+    layers = _layers(l2n, layout, tech, cell.bbox())
     for kind in "np":
         extractor = db.DeviceExtractorMOS4Transistor(kind)
         l2n.extract_devices(
             extractor,
             {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"], "P": layers["poly"], "W": layers[f"{kind}bulk"]},
         )
-    _connect(l2n, layers, process)
+    _connect(l2n, layers, tech)
     l2n.extract_netlist()
     circuit = l2n.netlist().top_circuit()
-    found = _collect(l2n, circuit, layers, process)
+    found = _collect(l2n, circuit, layers, tech)
     found.dbu = layout.dbu
     strips = {
-        mark: db.Region(cell.begin_shapes_rec(layout.layer(*process.devices[mark])))
+        mark: db.Region(cell.begin_shapes_rec(layout.layer(*tech.devices[mark])))
         for mark in MARKS
-        if mark in process.devices
+        if mark in tech.devices
     }
     found.devices = [_device(device, found, strips) for device in circuit.each_device()]
-    found.cuts = [db.Region(list(layers[f"cut{i}"].each_merged())) for i in range(len(process.cuts))]
-    found.labels = _labels(layout, cell, process)
+    found.vias = [db.Region(list(layers[via.lef].each_merged())) for via in tech.vias]
+    found.labels = _labels(layout, cell, tech)
     return found
 
 
-def _labels(layout, cell, process):
+def _labels(layout, cell, tech):
     found = {}
-    for wire in reversed(process.wires):
+    for wire in reversed(tech.conductors):
         for layer in (wire.pin, wire.label):
             for shape in cell.shapes(layout.layer(*layer)).each(db.Shapes.STexts):
-                found.setdefault(shape.text_string, []).append((wire.name, db.Point() + shape.text_trans.disp))
+                found.setdefault(shape.text_string, []).append((wire.lef, db.Point() + shape.text_trans.disp))
     return found
 
 
-def _layers(l2n, layout, process, box):
+def _layers(l2n, layout, tech, box):
     """Every region by name; all registered, so that their nets can be asked for."""
 
     def drawn(name, spec):
         return l2n.make_layer(layout.layer(*spec), name)
 
-    raw = {name: drawn(name, spec) for name, spec in process.devices.items() if name not in MARKS}
-    layers = {wire.name: drawn(wire.name, wire.layer) for wire in process.wires}
+    raw = {name: drawn(name, spec) for name, spec in tech.devices.items() if name not in MARKS}
+    layers = {wire.lef: drawn(wire.lef, wire.gds) for wire in tech.conductors}
     layers |= {
-        f"{wire.name}.label": l2n.make_text_layer(layout.layer(*wire.label), f"{wire.name}.label")
-        for wire in process.wires
+        f"{wire.lef}.label": l2n.make_text_layer(layout.layer(*wire.label), f"{wire.lef}.label")
+        for wire in tech.conductors
     }
     layers |= {
-        f"{wire.name}.pinlabel": l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.name}.pinlabel")
-        for wire in process.wires
+        f"{wire.lef}.pinlabel": l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.lef}.pinlabel")
+        for wire in tech.conductors
     }
-    for i, spec in enumerate(process.well_labels):
+    for i, spec in enumerate(tech.well_labels):
         layers[f"well.label{i}"] = l2n.make_text_layer(layout.layer(*spec), f"well.label{i}")
-    for i, (spec, _, _) in enumerate(process.cuts):
-        layers[f"cut{i}"] = drawn(f"cut{i}", spec)
+    for via in tech.vias:
+        layers[via.lef] = drawn(via.lef, via.gds)
     active = raw["diff"] + raw.get("tap", db.Region())
     nwell, poly = raw["nwell"], layers["poly"]
     pwell = db.Region(box.enlarged(1000)) - nwell
@@ -147,30 +148,30 @@ def _layers(l2n, layout, process, box):
     return layers | made
 
 
-def _connect(l2n, layers, process):
+def _connect(l2n, layers, tech):
     diffusions = [layers[name] for name in ("nsd", "psd", "ntap", "ptap")]
-    own = [layers[wire.name] for wire in process.wires] + diffusions + [layers["nbulk"], layers["pbulk"]]
+    own = [layers[wire.lef] for wire in tech.conductors] + diffusions + [layers["nbulk"], layers["pbulk"]]
     for region in own:
         l2n.connect(region)
-    for wire in process.wires:
-        l2n.connect(layers[wire.name], layers[f"{wire.name}.label"])
-        l2n.connect(layers[wire.name], layers[f"{wire.name}.pinlabel"])
+    for wire in tech.conductors:
+        l2n.connect(layers[wire.lef], layers[f"{wire.lef}.label"])
+        l2n.connect(layers[wire.lef], layers[f"{wire.lef}.pinlabel"])
     l2n.connect(layers["pbulk"], layers["ntap"])
     l2n.connect(layers["nbulk"], layers["ptap"])
-    for i, bulk in enumerate(("pbulk", "nbulk")[: len(process.well_labels)]):
+    for i, bulk in enumerate(("pbulk", "nbulk")[: len(tech.well_labels)]):
         l2n.connect(layers[bulk], layers[f"well.label{i}"])
-    for i, (_, lowers, upper) in enumerate(process.cuts):
-        cut = layers[f"cut{i}"]
+    for via in tech.vias:
+        cut = layers[via.lef]
         l2n.connect(cut)
-        l2n.connect(cut, layers[upper])
-        for lower in lowers:
+        l2n.connect(cut, layers[via.above])
+        for lower in via.below:
             for region in diffusions if lower == DIFFUSION else [layers[lower]]:
                 l2n.connect(cut, region)
 
 
-def _collect(l2n, circuit, layers, process):
+def _collect(l2n, circuit, layers, tech):
     found = Layout(dbu=0, ports=set(), devices=[], active=db.Region(list(layers["active"].each_merged())))
-    groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {wire.name: (wire.name,) for wire in process.wires}
+    groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {wire.lef: (wire.lef,) for wire in tech.conductors}
     found.shapes = {conductor: {} for conductor in groups}
     found.islands = {"n": {}, "p": {}}
     for net in circuit.each_net():

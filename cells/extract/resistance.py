@@ -13,7 +13,7 @@ import klayout.db as db
 from klayout import pex
 
 from models.parameters import ParameterError
-from platforms.process import DIFFUSION
+from platforms.layers import DIFFUSION
 
 IDEAL = 1e-3  # ohm a square of a diffusion, in which the transistor's model has the resistance
 LEAST = 1e-3  # ohm; what is less is as much
@@ -33,7 +33,7 @@ class Resistances:
     terminals: dict
 
 
-def resistances(found, process):
+def resistances(found, tech):
     """Resistances of a Layout (cells.extract.devices)."""
     resistors, terminals = [], {i: {} for i in range(len(found.devices))}
     sides = {net: [] for net in {d for device in found.devices for d in (device.drain, device.gate, device.source)}}
@@ -48,9 +48,7 @@ def resistances(found, process):
                 terminals[i][role] = node
         if len(ports) > 1:
             kept = {
-                pair: siemens
-                for pair, siemens in _conductances(net, ports, found, process).items()
-                if siemens > 1 / MOST
+                pair: siemens for pair, siemens in _conductances(net, ports, found, tech).items() if siemens > 1 / MOST
             }
             if set(range(len(ports))) - {end for pair in kept for end in pair}:
                 raise ParameterError(f"net = {net}: no resistance below {MOST:g} ohm joins its {len(ports)} terminals")
@@ -99,30 +97,32 @@ def _spot(point):
     return db.Region(db.Box(point, point).enlarged(1))
 
 
-def _conductances(net, ports, found, process):
+def _conductances(net, ports, found, tech):
     """{(a, b): S} of ``net``: its ports, numbered in their order, and inner nodes, numbered from there."""
-    names = ["n", "p", *(wire.name for wire in process.wires)]
+    names = ["n", "p", *(layer.lef for layer in tech.conductors)]
     number = {name: k for k, name in enumerate(names)}
-    tech, geometry = pex.RExtractorTech(), {}
+    rules, geometry = pex.RExtractorTech(), {}
     for name in names:
         region = (found.islands[name] if name in found.islands else found.shapes[name]).get(net)
         if region is not None:
             geometry[number[name]] = region.merged()
             conductor = pex.RExtractorTechConductor()
             conductor.layer = number[name]
-            conductor.resistance = IDEAL if name in found.islands else process.wire(name).sheet
-            tech.add_conductor(conductor)
-    for k, (cut, (_, lowers, upper)) in enumerate(zip(found.cuts, process.cuts, strict=True)):
-        for lower in [name for name in names if name in lowers or (name in found.islands and DIFFUSION in lowers)]:
-            if number[lower] in geometry and number[upper] in geometry:
+            conductor.resistance = IDEAL if name in found.islands else tech.conductor(name).sheet_ohm
+            rules.add_conductor(conductor)
+    for k, (region, via) in enumerate(zip(found.vias, tech.vias, strict=True)):
+        for lower in [
+            name for name in names if name in via.below or (name in found.islands and DIFFUSION in via.below)
+        ]:
+            if number[lower] in geometry and number[via.above] in geometry:
                 _via(
-                    tech,
+                    rules,
                     geometry,
                     len(names) * (k + 1) + number[lower],
                     number[lower],
-                    number[upper],
-                    cut & geometry[number[lower]] & geometry[number[upper]],
-                    process.contacts[lower],
+                    number[via.above],
+                    region & geometry[number[lower]] & geometry[number[via.above]],
+                    tech.contact_ohm[lower],
                 )
     points, polygons = {}, {}
     for layer, shape, _ in ports:
@@ -130,7 +130,7 @@ def _conductances(net, ports, found, process):
     flat = {
         layer: [part for region in regions for part in region.merged().each()] for layer, regions in polygons.items()
     }
-    network = _network(found.dbu, tech, geometry, points, flat)
+    network = _network(found.dbu, rules, geometry, points, flat)
     return _reduced(network, [(number[layer], shape) for layer, shape, _ in ports], flat)
 
 

@@ -10,30 +10,30 @@ from models.parameters import ParameterError
 SMALLEST = 1e-4  # fF; less is left out
 
 
-def extract(gds, name, platform, ports=None, strays=True, wires=True):
+def extract(gds, name, tech, ports=None, capacitors=True, resistors=True):
     """SPICE text of cell ``name`` in the file ``gds``: transistors in um and um2, capacitors in fF, resistors in ohm.
 
-    platform: a module with PROCESS (platforms.process.Process) and model(kind, width, marks). ports: their
+    ports: their
     names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else sorted.
-    strays: with capacitances; wires: with resistances. Raises ParameterError when GDS, cell or ports do not fit.
+    Raises ParameterError when GDS, cell or ports do not fit.
     """
-    found = find(gds, name, platform.PROCESS)
+    found = find(gds, name, tech)
     ports = tuple(ports or _schematic_ports(Path(gds), name) or sorted(found.ports))
     if set(ports) != found.ports:
         raise ParameterError(
             f"ports = {' '.join(ports)}: must be those labelled in {gds}, cell {name}: {' '.join(sorted(found.ports))}"
         )
     lines = [f".subckt {name} {' '.join(ports)}"]
-    ohmic = resistances(found, platform.PROCESS) if wires else Resistances([], {})
+    ohmic = resistances(found, tech) if resistors else Resistances([], {})
     for i, d in enumerate(found.devices):
         at = {"drain": d.drain, "gate": d.gate, "source": d.source, **ohmic.terminals.get(i, {})}
         lines.append(
-            f"X{i} {at['drain']} {at['gate']} {at['source']} {d.bulk} {platform.model(d.kind, d.w, d.marks)} "
+            f"X{i} {at['drain']} {at['gate']} {at['source']} {d.bulk} {tech.model(d.kind, d.w, d.marks)} "
             f"w={d.w:.4g} l={d.l:.4g} ad={d.ad:.4g} as={d.as_:.4g} pd={d.pd:.4g} ps={d.ps:.4g} "
             f"sa={d.sa:.4g} sb={d.sb:.4g}"
         )
-    if strays:
-        pairs = sorted(capacitances(found, platform.PROCESS).items())
+    if capacitors:
+        pairs = sorted(capacitances(found, tech).items())
         lines += [f"C{i} {a} {b} {value:.4f}f" for i, ((a, b), value) in enumerate(pairs) if value >= SMALLEST]
     lines += [f"R{i} {a} {b} {value:.5g}" for i, (a, b, value) in enumerate(ohmic.resistors)]
     return "\n".join([*lines, ".ends", ""])

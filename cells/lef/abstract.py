@@ -10,7 +10,7 @@ import klayout.db as db
 
 from cells.extract.devices import find, read_cell
 from models.parameters import ParameterError
-from platforms.process import DIFFUSION
+from platforms.layers import DIFFUSION
 
 DIRECTIONS = ("INPUT", "OUTPUT", "INOUT")
 USES = ("SIGNAL", "CLOCK", "POWER", "GROUND")
@@ -38,15 +38,15 @@ def header(site, width, height):
     )
 
 
-def abstract(gds, name, process, pins, site):
+def abstract(gds, name, tech, pins, site):
     """LEF macro of cell ``name`` in the file ``gds``. pins: name -> Pin, in order; site: name of its placement site.
 
-    process: platforms.process.Process. Wells and poly are left out: rows take care of the first, and nobody
+    Wells and poly are left out: rows take care of the first, and nobody
     routes on the second. Raises ParameterError when a pin has no metal in the cell, or the cell no outline.
     """
-    found = find(gds, name, process)
-    outline = _outline(gds, name, process)
-    metals = [wire.name for wire in process.wires if wire.name != "poly"]
+    found = find(gds, name, tech)
+    outline = _outline(gds, name, tech)
+    metals = [layer.lef for layer in tech.conductors if layer.lef != "poly"]
     lines = [
         f"MACRO {name}",
         "  CLASS CORE ;",
@@ -67,13 +67,13 @@ def abstract(gds, name, process, pins, site):
     return "\n".join([*lines, f"END {name}", ""])
 
 
-def _outline(gds, name, process):
+def _outline(gds, name, tech):
     layout, cell = read_cell(gds, name)
-    boxes = (db.Region(cell.begin_shapes_rec(layout.layer(*layer))).bbox() for layer in process.outlines)
+    boxes = (db.Region(cell.begin_shapes_rec(layout.layer(*layer))).bbox() for layer in tech.outlines)
     for box in boxes:
         if not box.empty():
             return box.to_dtype(layout.dbu)
-    raise ParameterError(f"cell = {name!r}: must have an outline on one of the GDS layers {process.outlines}")
+    raise ParameterError(f"cell = {name!r}: must have an outline on one of the GDS layers {tech.outlines}")
 
 
 def _pin(pin, kind, found, metals):

@@ -10,8 +10,8 @@ from base.progress import Steps
 from base.steps import StepError
 from base.tools import ToolError
 from models.parameters import ParameterError, check_choice
-from platforms.coriolis import PROCESSES
 from platforms.foundry import installed
+from platforms.load import PROCESSES
 
 from .block import lay_out
 from .chain import all_steps

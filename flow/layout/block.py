@@ -9,7 +9,7 @@ from typing import Any
 
 from base.files import staged
 from base.steps import Runner, StepError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from .chain import input_files
 from .design import Design, folder_name, macro_designs
@@ -65,7 +65,7 @@ def lay_out(design: Design, options: Options, out: Path, note: Callable[[str], N
 
 def publish(folder: Path, name: str, options: Options, runner: Runner, summary: dict[str, Any]) -> None:
     """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
-    tech = process(options.pdk)[0]
+    tech = coriolis_platform(options.pdk)
     results = RESULTS | {
         f"{corner}.{suffix}": source.format(corner)
         for corner in options.corners
@@ -94,7 +94,7 @@ def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Pict
         json.loads(runner.paths[key].read_text())
         for key in (f"{step}.placement", "library.areas", "floorplan.floorplan")
     )
-    netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), process(options.pdk)[0]
+    netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), coriolis_platform(options.pdk)
     file = f"{name}.blocks.png"
     by_block(folder / file, netlist, placement["instances"], areas, tech, blocks(netlist), plan)
     return [Picture(file, "Cells by block"), Picture(f"{name}.{first}.ir_drop.png", "IR drop")]

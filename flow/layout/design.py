@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from models.parameters import ParameterError, check_real
-from platforms.coriolis import PROCESSES
+from platforms.load import PROCESSES
 
 
 @dataclass(frozen=True)

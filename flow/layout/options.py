@@ -5,7 +5,7 @@ from pathlib import Path
 
 from base.liberty.read import is_library
 from models.parameters import ParameterError, check_int, check_real
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 LEAST_UTILIZATION = 0.20  # of the search's last attempt
 
@@ -31,7 +31,7 @@ class Options:
         """Names of the corners, that of synthesis first."""
         if self.untimed:
             return ()
-        return tuple(path.stem for path in self.liberty) or process(self.pdk)[0].corners
+        return tuple(path.stem for path in self.liberty) or coriolis_platform(self.pdk).corners
 
     def __post_init__(self) -> None:
         for path in self.liberty:

@@ -3,7 +3,7 @@
 from base.steps import Runner
 from base.steps.versions import version
 from models.parameters import ParameterError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from .chain import Signoff, all_steps, attempts, routing_steps, signoff_steps, synthesis_steps
 from .design import Design
@@ -20,7 +20,7 @@ def lay_out_smallest(
     broken. signoff: function (design, options) -> the steps after it. Raises ParameterError where macros find no place
     in any attempt, ToolError for a missing tool, before anything runs.
     """
-    version(f"python {process(options.pdk)[0].wheel}")
+    version(f"python {coriolis_platform(options.pdk).wheel}")
     for step in all_steps(design, options, signoff):
         for tool in step.tools:
             version(tool)

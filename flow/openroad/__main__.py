@@ -11,7 +11,7 @@ from base.progress import Steps
 from base.tools import ToolError
 from flow.layout.design import DESIGNS, flat_design
 from models.parameters import ParameterError
-from platforms.openroad import process
+from platforms.openroad import openroad_platform
 
 from .merge import merge
 from .metrics import broken, summarize
@@ -33,7 +33,7 @@ def arguments():
 def main(argv=None):
     options = arguments().parse_args(argv)
     try:
-        chosen, known = flat_design(options.design), process(options.pdk)
+        chosen, known = flat_design(options.design), openroad_platform(options.pdk)
         folder = options.out / f"{chosen.name}-openroad"
         check_folder("out", folder)
         written = write(chosen, known, folder)

@@ -1,14 +1,18 @@
 """SKY130 with sky130_fd_sc_hd for OpenROAD.
 
-Files: as open_pdks lays out sky130A. Straps, pins' layers, taps and routing layers: what OpenROAD's own test flow
-(test/sky130hd) and flow-scripts' platform sky130hd use. GDS numbers: SkyWater's layer table.
+Files: as open_pdks installs sky130A. Straps, layers of pins, taps and routing layers: what OpenROAD's own test flow
+(test/sky130hd) and flow-scripts' platform sky130hd use.
 """
 
-from platforms.openroad import OpenRoad, Strap
+from itertools import chain, zip_longest
+
+from platforms.openroad import OpenRoadPlatform, Strap
+
+from . import layers
 
 _CELLS = "sky130A/libs.ref/sky130_fd_sc_hd"
 
-PROCESS = OpenRoad(
+PLATFORM = OpenRoadPlatform(
     name="sky130",
     library="sky130_fd_sc_hd",
     orfs_platform="sky130hd",
@@ -44,20 +48,8 @@ PROCESS = OpenRoad(
     fill=tuple(f"sky130_fd_sc_hd__fill_{width}" for width in (1, 2, 4, 8)),
     # probes have metal on all layers; lpflow cells belong to designs with several supplies
     dont_use=("sky130_fd_sc_hd__probe*", "sky130_fd_sc_hd__lpflow*"),
-    gds={
-        "li1": (67, 20),
-        "mcon": (67, 44),
-        "met1": (68, 20),
-        "via": (68, 44),
-        "met2": (69, 20),
-        "via2": (69, 44),
-        "met3": (70, 20),
-        "via3": (70, 44),
-        "met4": (71, 20),
-        "via4": (71, 44),
-        "met5": (72, 20),
-    },
-    outline=(235, 4),
-    pin_datatype=16,
-    label_datatype=5,
+    gds={part.lef: part.gds for part in chain(*zip_longest(layers.METALS, layers.VIAS)) if part},
+    outline=layers.PRBOUNDARY,
+    pin_datatype=layers.PIN,
+    label_datatype=layers.LABEL,
 )

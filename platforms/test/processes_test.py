@@ -7,7 +7,9 @@ import pytest
 
 from base.paths import ROOT
 from models.parameters import ParameterError
-from platforms.coriolis import PROCESSES, modules, process
+from platforms.coriolis import coriolis_platform
+from platforms.extraction import extraction_platform
+from platforms.load import PROCESSES
 from platforms.patience import patience
 
 # "sky130" in quotes: a default
@@ -28,15 +30,17 @@ def test_no_step_knows_a_process():
 
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_figures_fit_each_other(pdk):
-    known, _ = process(pdk)
+    known = coriolis_platform(pdk)
     assert known.name == pdk
-    _, layers = modules(pdk)
-    assert {upper for _, _, upper in layers.PROCESS.cuts} <= {wire.name for wire in layers.PROCESS.wires}
+    cell_tech = extraction_platform(pdk)
+    assert {via.above for via in cell_tech.vias} <= {layer.lef for layer in cell_tech.conductors}
+    for lower, via, upper in zip(known.metals, known.vias, known.metals[1:], strict=False):
+        assert (via.below, via.above) == ((lower.lef,), upper.lef)
     assert abs(known.row_um / known.site_um - round(known.row_um / known.site_um)) < 1e-9  # else wells overlap
-    assert len(known.cuts) == len(known.wires) - 1
+    assert len(known.vias) == len(known.metals) - 1
     for size in (known.row_um, known.site_um, known.strap_um, *known.pin_pitch_um.values()):
         assert abs(size / known.grid_um - round(size / known.grid_um)) < 1e-6
-    assert all(cut.size_um + 2 * cut.enclosure_um < known.strap_um for cut in known.cuts)
+    assert all(cut.size_um + 2 * cut.enclosure_um < known.strap_um for cut in known.vias)
     assert known.fill.density < known.fill.density_most and known.fill.clearance_um >= known.fill.space_um
     assert list(known.fill.sides_um) == sorted(known.fill.sides_um, reverse=True)
 
@@ -45,22 +49,22 @@ def test_figures_fit_each_other(pdk):
 @pytest.mark.filterwarnings("ignore:gate oxide:DeprecationWarning")  # c4m-pdk-ihpsg13g2's own
 @pytest.mark.parametrize("pdk", PROCESSES)
 def test_what_the_wheel_says_agrees(pdk):
-    known, _ = process(pdk)
+    known = coriolis_platform(pdk)
     if not importlib.util.find_spec("pdkmaster"):
         pytest.skip("pdkmaster: not installed; make layout installs it")
     with patience():
         tech = importlib.import_module(f"{known.package}.pdkmaster")
-    for wire in (*known.wires, *known.cuts):
-        assert tech.gds_layers[wire.name] == (wire.layer, wire.datatype)
-    for wire in known.wires[1:]:
+    for wire in (*known.metals, *known.vias):
+        assert tech.gds_layers[wire.name] == wire.gds
+    for wire in known.metals[1:]:
         rules, fill = tech.tech.primitives[wire.name], known.fill
         assert min(fill.sides_um) >= rules.min_width and min(fill.sides_um) ** 2 >= (rules.min_area or 0)
         assert fill.space_um >= rules.min_space
-    for cut in known.cuts:
+    for cut in known.vias:
         rules = tech.tech.primitives[cut.name]
         assert cut.size_um == pytest.approx(rules.width) and cut.space_um >= rules.min_space
 
 
 def test_a_process_that_is_none():
     with pytest.raises(ParameterError, match="must be one of sky130, ihp-sg13g2"):
-        process("gf180mcu")
+        coriolis_platform("gf180mcu")

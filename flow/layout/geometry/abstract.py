@@ -19,12 +19,11 @@ def ports(verilog):
     return found
 
 
-def abstract(gds, directions, known, names):
+def abstract(gds, directions, known):
     """Text of the LEF of the GDS's top cell.
 
-    directions: dict pin -> 'input' or 'output'; the supplies are pins too. known: platforms.coriolis.Embedded.
-    names: dict (GDS layer, datatype) -> name of the layer in LEF, where it is not that of the wire. Raises
-    ParameterError for a port without metal.
+    directions: dict pin -> 'input' or 'output'; the supplies are pins too. Raises ParameterError
+    for a port without metal.
     """
     import klayout.db as db
 
@@ -35,8 +34,8 @@ def abstract(gds, directions, known, names):
     box = top.bbox()
     die = db.Box(0, 0, box.right // site * site, box.top // row * row)  # wells reach farther
     found = {}
-    for wire in known.wires:
-        for net, pin in _pins(layout, top, die, wire, known, strap=wire is known.wires[-1]):
+    for wire in known.metals:
+        for net, pin in _pins(layout, top, die, wire, known, strap=wire is known.metals[-1]):
             found.setdefault(net, []).append((wire, pin))
     charged = antennas(layout, top, known, found, set(directions))
     lacking = sorted((set(directions) | set(SUPPLIES)) - set(found))
@@ -44,7 +43,7 @@ def abstract(gds, directions, known, names):
         raise ParameterError(f"gds = {gds}: must have metal for the pins {', '.join(lacking[:5])}")
 
     def rectangles(layer, boxes, indent):
-        yield f"{indent}LAYER {names.get((layer.layer, layer.datatype), layer.name)} ;"
+        yield f"{indent}LAYER {layer.lef} ;"
         for part in boxes:
             corners = (part.left, part.bottom, part.right, part.top)
             yield f"{indent}  RECT {' '.join(f'{value * layout.dbu:.3f}' for value in corners)} ;"
@@ -64,7 +63,7 @@ def abstract(gds, directions, known, names):
             f"  PIN {name}",
             f"    DIRECTION {direction} ;",
             f"    USE {USES.get(name, 'SIGNAL')} ;",
-            *_antenna(charged.get(name), names),
+            *_antenna(charged.get(name)),
             "    PORT",
         ]
         for wire, pin in found[name]:
@@ -72,7 +71,7 @@ def abstract(gds, directions, known, names):
         lines += ["    END", f"  END {name}"]
     lines.append("  OBS")
     keep_off = round(max(known.pin_pitch_um.values()) / layout.dbu)
-    for wire in known.wires:
+    for wire in known.metals:
         pins = db.Region([pin for boxes in found.values() for of, pin in boxes if of is wire]).sized(keep_off)
         rest = (db.Region(die) - pins).decompose_trapezoids_to_region(db.Polygon.TD_htrapezoids)
         lines += rectangles(wire, (part.bbox() for part in rest.each()), "    ")
@@ -83,7 +82,7 @@ def antennas(layout, top, known, found, signals):
     """What the nets of the pins ``found`` gather and bear: dict net -> (um2 of gates, um2 of diffusions, list of
     (Wire, um2 of side walls)), all wires joined. signals: nets that are asked for."""
 
-    l2n, gate, diffusion, wires = next(connected(layout, top, known, [len(known.wires) - 1]))
+    l2n, gate, diffusion, wires = next(connected(layout, top, known, [len(known.metals) - 1]))
 
     def area(net, region):
         return l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu**2
@@ -91,21 +90,21 @@ def antennas(layout, top, known, found, signals):
     made = {}
     for name in sorted(signals & set(found)):
         wire, pin = found[name][0]
-        net = l2n.probe_net(wires[known.wires.index(wire)], pin.center())
+        net = l2n.probe_net(wires[known.metals.index(wire)], pin.center())
         if net is not None:
             sides = [
                 (of, l2n.shapes_of_net(net, metal, True).merged().perimeter() * layout.dbu * of.thickness_um)
-                for of, metal in zip(known.wires, wires, strict=True)
+                for of, metal in zip(known.metals, wires, strict=True)
             ]
             made[name] = area(net, gate), area(net, diffusion), [(of, side) for of, side in sides if side]
     return made
 
 
-def _antenna(charged, names):
+def _antenna(charged):
     """Lines of LEF. charged: as of `antennas`, or None."""
     gate, diffusion, sides = charged or (0, 0, [])
     for wire, side in sides:
-        layer = names.get((wire.layer, wire.datatype), wire.name)
+        layer = wire.lef
         yield f"    ANTENNAPARTIALMETALSIDEAREA {side:.4f} LAYER {layer} ;"
     if gate:
         yield "    ANTENNAMODEL OXIDE1 ;"
@@ -114,7 +113,7 @@ def _antenna(charged, names):
         yield f"    ANTENNADIFFAREA {diffusion:.4f} ;"
 
 
-def read_back(lef, gds, directions, known, names):
+def read_back(lef, gds, directions, known):
     """What is wrong with the file ``lef`` as KLayout reads it, against ``gds``: list of str, the rest as `abstract`.
 
     Every pin must be there, on metal of its layer, and all other metal inside the outline under an obstruction or
@@ -132,10 +131,10 @@ def read_back(lef, gds, directions, known, names):
         return made.shapes(layers[name]) if name in layers else db.Shapes()
 
     wrong, labelled, outline = [], set(), db.Region(shapes("OUTLINE"))
-    for wire in known.wires:
-        name = names.get((wire.layer, wire.datatype), wire.name)
+    for wire in known.metals:
+        name = wire.lef
         pins, obstructions = (db.Region(shapes(f"{name}.{kind}")) for kind in ("PIN", "OBS"))
-        metal = db.Region(top.begin_shapes_rec(drawn.layer(wire.layer, wire.datatype))).merged()
+        metal = db.Region(top.begin_shapes_rec(drawn.layer(*wire.gds))).merged()
         labelled |= {shape.text.string for shape in shapes(f"{name}.LABEL").each(db.Shapes.STexts)}
         if not (pins - metal).is_empty():
             wrong.append(f"{name}: a pin where there is no metal")
@@ -159,8 +158,8 @@ def _pins(layout, top, die, wire, known, strap):
             db.Box(die.right - edge, die.bottom, beyond.right, die.top),
         ]
     )
-    metal = db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype))).merged()
-    texts = db.Texts(top.shapes(layout.layer(wire.layer, known.pin_datatype)))
+    metal = db.Region(top.begin_shapes_rec(layout.layer(*wire.gds))).merged()
+    texts = db.Texts(top.shapes(layout.layer(*wire.pin)))
     for polygon in metal.each():
         shape = db.Region(polygon)
         for net in sorted({text.string for text in (texts & shape).each()}):

@@ -18,7 +18,7 @@ def grow(layout, top, wires, rules):
     for wire in wires:
         least = round(rules[wire.name]["area"] / layout.dbu**2)
         space = round(rules[wire.name]["space"] / layout.dbu)
-        layer = layout.layer(wire.layer, wire.datatype)
+        layer = layout.layer(*wire.gds)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
         for polygon in metal.with_area(1, least, False).each() if least else ():
             others = metal - db.Region(polygon)

@@ -22,10 +22,10 @@ class Macro:
     straps: tuple
 
     @classmethod
-    def read(cls, path, known, names):
-        """From a LEF as the step `lef` writes it. known: Embedded; names: see `layer_names`. Raises ParameterError."""
+    def read(cls, path, known):
+        """From a LEF as the step `lef` writes it. Raises ParameterError."""
         text = Path(path).read_text()
-        wires = {names.get((wire.layer, wire.datatype), wire.name): wire.name for wire in known.wires}
+        wires = {wire.lef: wire.name for wire in known.metals}
         found = {pin.name: pin for pin in lef.pins(text)}
         straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found[net].boxes)
         pieces = {

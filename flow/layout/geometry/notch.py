@@ -12,7 +12,7 @@ def fill(layout, top, wires, spaces):
 
     filled = 0
     for wire in wires:
-        layer = layout.layer(wire.layer, wire.datatype)
+        layer = layout.layer(*wire.gds)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
         found = [
             db.Polygon(pair.bbox())
@@ -21,7 +21,7 @@ def fill(layout, top, wires, spaces):
         found += [
             hole
             for hole in (metal + db.Region(found)).merged().holes().each()
-            if hole.area() * layout.dbu**2 < wire.hole_um2
+            if hole.area() * layout.dbu**2 < wire.min_hole_um2
         ]
         for polygon in found:
             top.shapes(layer).insert(polygon)

@@ -16,7 +16,7 @@ def trim(layout, top, wires, spaces):
 
     cuts = 0
     for wire in wires:
-        layer = layout.layer(wire.layer, wire.datatype)
+        layer = layout.layer(*wire.gds)
         space = round(spaces[wire.name] / layout.dbu)
         boxes = []
         for pair in db.Region(top.begin_shapes_rec(layer)).space_check(space, True, db.Region.Projection).each():

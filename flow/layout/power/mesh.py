@@ -17,16 +17,16 @@ class Metal:
 
 
 def metal(known):
-    """Metal of an Embedded: rails on its lowest wire, straps on its highest, stacks as straps.py draws them."""
-    low, high = known.wires[0], known.wires[-1]
+    """Metal of an CoriolisPlatform: rails on its lowest wire, straps on its highest, stacks as straps.py draws them."""
+    low, high = known.metals[0], known.metals[-1]
     stack = 0.0
-    for cut in known.cuts:
+    for cut in known.vias:
         across, along = (
             int((side - 2 * cut.enclosure_um + cut.space_um) / (cut.size_um + cut.space_um) + 1e-9)
             for side in (known.strap_um, known.rail_overlap_um)
         )
         stack += cut.ohm / (across * along)
-    return Metal(low.ohm / known.rail_um, high.ohm / known.strap_um, stack)
+    return Metal(low.sheet_ohm / known.rail_um, high.sheet_ohm / known.strap_um, stack)
 
 
 def drops(rails, straps, height, taps, metal, breaks=(), gaps=()):

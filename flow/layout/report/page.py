@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from jinja2 import Environment, FileSystemLoader
 
-from platforms.coriolis import Embedded
+from platforms.coriolis import CoriolisPlatform
 
 from .history import Run, history, table
 from .picture import PALETTE
@@ -70,7 +70,7 @@ def write_report(
     folder: Path,
     summary: dict[str, Any],
     broken: Sequence[str],
-    tech: Embedded,
+    tech: CoriolisPlatform,
     picture: str | None = None,
     pictures: Sequence[Picture] = (),
 ) -> None:
@@ -84,7 +84,7 @@ def write_report(
 def page(
     summary: dict[str, Any],
     broken: Sequence[str],
-    tech: Embedded,
+    tech: CoriolisPlatform,
     runs: Sequence[Run],
     picture: str | None = None,
     pictures: Sequence[Picture] = (),
@@ -94,7 +94,7 @@ def page(
     broken: lines of `metrics.broken`. picture: file name of the layout's, beside the page. pictures: further ones.
     """
     environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
-    key = [(wire.name, f"#{color:06x}") for wire, color in zip(tech.wires, PALETTE)]
+    key = [(wire.name, f"#{color:06x}") for wire, color in zip(tech.metals, PALETTE)]
     return environment.get_template("page.html").render(
         s=summary,
         broken=broken,

@@ -4,13 +4,13 @@ from pathlib import Path
 from typing import Any
 
 from flow.layout.netlist.netlist import Netlist
-from platforms.coriolis import Embedded
+from platforms.coriolis import CoriolisPlatform
 
 PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
 BACKGROUND = "#101014"
 
 
-def render(gds: Path, png: Path, tech: Embedded, side: int = 2400) -> None:
+def render(gds: Path, png: Path, tech: CoriolisPlatform, side: int = 2400) -> None:
     """Write the metal layers of the layout ``gds`` as a picture of ``side`` x ``side`` pixels."""
     import klayout.lay as lay
 
@@ -20,7 +20,7 @@ def render(gds: Path, png: Path, tech: Embedded, side: int = 2400) -> None:
     view.set_config("text-visible", "false")
     view.load_layout(str(gds), False)
     view.max_hier()
-    colors = {(wire.layer, wire.datatype): color for wire, color in zip(tech.wires, PALETTE)}
+    colors = {wire.gds: color for wire, color in zip(tech.metals, PALETTE)}
     layers = view.begin_layers()
     while not layers.at_end():
         shown = layers.current().dup()
@@ -41,7 +41,7 @@ def by_block(
     netlist: Netlist,
     placed: list[list[Any]],
     areas: dict[str, float],
-    tech: Embedded,
+    tech: CoriolisPlatform,
     found: dict[str, str],
     plan: dict[str, Any],
 ) -> None:

@@ -29,7 +29,7 @@ class Marks:
 
 
 def marks(layout, wiring, known, levels=None):
-    """Marks of KLayout's ``layout`` on ``levels``, all without; known: Embedded."""
+    """Marks of KLayout's ``layout`` on ``levels``, all without; known: CoriolisPlatform."""
     import klayout.db as db
 
     top, close = layout.top_cell(), []

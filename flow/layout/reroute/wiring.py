@@ -38,8 +38,8 @@ class Wiring:
 
     @classmethod
     def of(cls, known, rules):
-        """known: Embedded. rules: of the library step, "wires" and "cuts" in um."""
-        asked = [rules["wires"][wire.name] for wire in known.wires]
+        """known: CoriolisPlatform. rules: of the library step, "wires" and "cuts" in um."""
+        asked = [rules["wires"][wire.name] for wire in known.metals]
         layers = tuple(
             Layer(
                 w.name,
@@ -50,7 +50,7 @@ class Wiring:
                 round(a["area"] * 1e6),
                 across=level % 2 == 1,
             )
-            for level, (w, a) in enumerate(zip(known.wires, asked, strict=True))
+            for level, (w, a) in enumerate(zip(known.metals, asked, strict=True))
         )
         cuts = tuple(
             Cut(
@@ -63,7 +63,7 @@ class Wiring:
                     for above, side in enumerate(("below", "above"))
                 ),
             )
-            for level, c in enumerate(known.cuts)
+            for level, c in enumerate(known.vias)
         )
         pitch = known.pin_pitch_um
         return cls(layers, cuts, (round(pitch["vertical"] * 500), round(pitch["horizontal"] * 500)))

@@ -18,4 +18,4 @@ class DieAntenna(Antenna):
 
     def known(self):
         known = super().known()
-        return replace(known, wires=known.wires[:VERTICAL], cuts=known.cuts[: VERTICAL - 1])
+        return replace(known, metals=known.metals[:VERTICAL], vias=known.vias[: VERTICAL - 1])

@@ -4,7 +4,7 @@
 def nets(gds, cells, known, thick):
     """list of sets of (block, pin): what each net of the top cell joins.
 
-    cells: dict cell -> block. known: Embedded; thick: Thick. A pin of a block is named by its text on the wire's pin
+    cells: dict cell -> block. known: CoriolisPlatform; thick: TopMetal. A pin of a block is named by its text on the wire's pin
     layer in the block's own cell, one of the die ('die') by that in the top cell; metal of a block without a name is
     ('block', '?...'). KLayout extracts the wires and cuts of all cells, transistors aside.
     """
@@ -15,13 +15,13 @@ def nets(gds, cells, known, thick):
     (top,) = layout.top_cells()
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
     metal = []
-    for wire in (*known.wires, thick.wire):
-        metal.append(l2n.make_polygon_layer(layout.layer(wire.layer, wire.datatype), wire.name))
-        names = l2n.make_text_layer(layout.layer(wire.layer, known.pin_datatype), f"{wire.name}_pin")
+    for wire in (*known.metals, thick.metal):
+        metal.append(l2n.make_polygon_layer(layout.layer(*wire.gds), wire.name))
+        names = l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.name}_pin")
         l2n.connect(metal[-1])
         l2n.connect(metal[-1], names)
-    for level, cut in enumerate((*known.cuts, thick.cut)):
-        between = l2n.make_polygon_layer(layout.layer(cut.layer, cut.datatype), cut.name)
+    for level, cut in enumerate((*known.vias, thick.via)):
+        between = l2n.make_polygon_layer(layout.layer(*cut.gds), cut.name)
         l2n.connect(between)
         l2n.connect(metal[level], between)
         l2n.connect(between, metal[level + 1])

@@ -15,8 +15,8 @@ from flow.layout.report.picture import render
 from flow.layout.steps.antenna import AntennaParameters
 from flow.layout.steps.drc import Drc, DrcParameters
 from flow.layout.steps.sta import StaParameters
-from platforms.coriolis import process
-from platforms.die import thick
+from platforms.coriolis import coriolis_platform
+from platforms.die import top_metal
 
 from . import analog as analog_module
 from .antenna import DieAntenna
@@ -73,7 +73,7 @@ def die_steps(chip, settings, extra=()):
 def lay_out_sensor(chip, settings, analog, out, note):
     """(path of summary.json, limits broken). analog: folder of a user's blocks, or None; out: folder of all designs.
     Raises ParameterError, StepError for a chip that breaks a limit."""
-    thick(settings.pdk)  # a process without one is told before anything runs
+    top_metal(settings.pdk)  # a process without one is told before anything runs
     folder = Path(out) / SENSOR
     blocks, frames, extra = analog_module.files(folder / "frames", settings.pdk, analog)
     core, summary = lay_out(chip, settings, out, lambda text: note(f"{CHIP}: {text}"))
@@ -93,8 +93,8 @@ def die(chip, settings, given, frames, extra, folder, note):
     runner = Runner(folder / "steps", given, note)
     runner.run_all(die_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)
-    lines, known = broken(summary, RULES), process(settings.pdk)[0]
-    known = replace(known, wires=(*known.wires, thick(settings.pdk).wire))
+    lines, known = broken(summary, RULES), coriolis_platform(settings.pdk)
+    known = replace(known, metals=(*known.metals, top_metal(settings.pdk).metal))
     results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in settings.corners}
     with staged(folder, [f"{SENSOR}.{suffix}" for suffix in results]) as part:
         for suffix, source in results.items():

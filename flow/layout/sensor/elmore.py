@@ -35,7 +35,7 @@ def net(reaches, y, driver, tracks, known, pin_pf):
     """(fF of all wires, dict (block, pin) -> ns behind the driver, its own resistance left out).
 
     reaches: dicts of routing.Reach; y: of the trunk, nm; driver: (block, pin). tracks: dict of routing.Tracks. known:
-    Embedded. pin_pf: of every pin but the driver's.
+    CoriolisPlatform. pin_pf: of every pin but the driver's.
     """
     edges, pins = tree(reaches, y, tracks, known)
     loads = {node: pin_pf * 1000 for end, node in pins.items() if end != driver}
@@ -48,8 +48,10 @@ def tree(reaches, y, tracks, known):
     pin, and of the chip's pins three cuts and a stub."""
 
     def wire(level, length, width, cuts=()):
-        parts = [(known.wires[level].name, length / 1000, width / 1000)]
-        parts += [(f"{known.wires[cut].name}_{known.cuts[cut].name}_{known.wires[cut + 1].name}", 0, 0) for cut in cuts]
+        parts = [(known.metals[level].name, length / 1000, width / 1000)]
+        parts += [
+            (f"{known.metals[cut].name}_{known.vias[cut].name}_{known.metals[cut + 1].name}", 0, 0) for cut in cuts
+        ]
         femto, ohm = parasitics(parts, known)
         return ohm, femto
 

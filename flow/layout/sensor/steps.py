@@ -7,10 +7,8 @@ from base.gds import write_gds
 from base.steps import Step, StepError
 from flow.layout.reroute import wiring as wiring_module
 from flow.layout.reroute.wiring import Wiring
-from platforms import openroad
-from platforms.coriolis import process
-from platforms.die import thick
-from platforms.openroad import layer_names
+from platforms.coriolis import coriolis_platform
+from platforms.die import top_metal
 
 from . import arrange, channel, connectivity, plan, routing, shapes, supplies, verilog
 from .plan import BLOCKS, CORE, Block, DieParameters, nm
@@ -53,16 +51,13 @@ class DiePlan(Step):
     uses = (arrange, channel, plan, routing, shapes, supplies, verilog, wiring_module)
 
     def run(self, inputs, outputs):
-        p, known = self.parameters, process(self.parameters.pdk)[0]
-        wiring, names = Wiring.of(known, json.loads(inputs["rules"].read_text())), layer_names(p.pdk)
-        layers = [
-            names.get((wire.layer, wire.datatype), wire.name)
-            for wire in (wiring.layers[routing.STUB], wiring.layers[routing.VERTICAL])
-        ]
+        p, known = self.parameters, coriolis_platform(self.parameters.pdk)
+        wiring = Wiring.of(known, json.loads(inputs["rules"].read_text()))
+        layers = [known.metals[level].lef for level in (routing.STUB, routing.VERTICAL)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
         tracks = routing.Tracks.of(wiring)
         made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
-        metal, pins = supplies.metal(made, p.die, tracks, wiring, thick(p.pdk))
+        metal, pins = supplies.metal(made, p.die, tracks, wiring, top_metal(p.pdk))
         outputs["plan"].write_text(json.dumps(described(made, metal, pins, p.die, tracks)) + "\n")
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
         area = p.die.width_um * p.die.height_um
@@ -126,7 +121,7 @@ class DieGds(Step):
         import klayout.db as db
 
         made, layout = json.loads(inputs["plan"].read_text()), db.Layout()
-        known, _ = process(self.parameters.pdk)
+        known = coriolis_platform(self.parameters.pdk)
         layout.dbu = 0.001
         top = layout.create_cell(TOP)
         cells = {name: layout.create_cell(block["cell"]) for name, block in made["blocks"].items()}
@@ -147,7 +142,7 @@ class DieGds(Step):
                 for of in (known.pin_datatype, known.label_datatype):
                     middle = db.Trans(db.Box(*box).center() - db.Point())
                     top.shapes(layout.layer(layer, of)).insert(db.Text(net, middle))
-        outline = openroad.process(self.parameters.pdk).outline
+        outline = known.outline
         top.shapes(layout.layer(*outline)).insert(db.Box(0, 0, *made["die"]))
         write_gds(layout, outputs["gds"])
         return {"rectangles": len(made["shapes"])}
@@ -185,7 +180,9 @@ class DieMatch(Step):
     def run(self, inputs, outputs):
         made = json.loads(inputs["plan"].read_text())
         cells = {block["cell"]: name for name, block in made["blocks"].items()}
-        found = connectivity.nets(inputs["gds"], cells, process(self.parameters.pdk)[0], thick(self.parameters.pdk))
+        found = connectivity.nets(
+            inputs["gds"], cells, coriolis_platform(self.parameters.pdk), top_metal(self.parameters.pdk)
+        )
         opens, shorts = connectivity.compare(found, made["nets"])
         outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n")
         return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}

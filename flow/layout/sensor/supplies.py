@@ -9,10 +9,10 @@ from .plan import ANALOG, CORE, DIGITAL, SUPPLIES, check_way, nm
 def metal(made, die, tracks, wiring, thick):
     """(list of all Shapes of an Arranged, dict net -> those at the die's edge that are its pins).
 
-    thick: Thick.
+    thick: TopMetal.
     """
     found, ends = supplies(made.blocks, die, wiring, thick)
-    pins = {net: [shapes.drawn(thick.wire, net, *box) for box in boxes] for net, boxes in ends.items()}
+    pins = {net: [shapes.drawn(thick.metal, net, *box) for box in boxes] for net, boxes in ends.items()}
     for net, reaches in made.routes.items():
         found += shapes.signal(net, reaches, made.y[net], tracks, wiring)
         pins |= {net: [shapes.pad(reach, die, tracks, wiring)] for reach in reaches if reach.block == "die"}
@@ -35,7 +35,7 @@ def supplies(blocks, die, wiring, thick):
             if boxes:
                 found += _bar(net, side, boxes, die, wiring.layers[-1], thick)
                 pins.setdefault(net, []).extend((left, box[1], right, box[3]) for box in boxes)
-    half = nm(thick.cut.size_um + 2 * thick.below_um) // 2
+    half = nm(thick.via.size_um + 2 * thick.via.enclosure_below_um) // 2
     for net, at in straps:
         for box in (box for of, _, box in lines if of == net):
             found += cuts(net, (at - half, box[1], at + half, box[3]), thick)
@@ -50,7 +50,7 @@ def _bar(net, side, boxes, die, below, thick):
     across = (left, min(box[1] for box in boxes), left + bar, max(box[3] for box in boxes))
     yield shapes.drawn(below, net, *across)
     for box in boxes:
-        yield shapes.drawn(thick.wire, net, *box)
+        yield shapes.drawn(thick.metal, net, *box)
         yield from cuts(net, (max(box[0], across[0]), box[1], min(box[2], across[2]), box[3]), thick)
 
 
@@ -70,10 +70,12 @@ def _from_blocks(blocks, die, thick):
             (pin, side, box)
             for side in ("west", "east")
             for pin, of, box in blocks[name].at(side)
-            if pin in ANALOG and of == thick.lef
+            if pin in ANALOG and of == thick.metal.lef
         ]
         if lacking := set(ANALOG) - {pin for pin, *_ in found}:
-            raise StepError(f"{name}: its pin {min(lacking)} reaches neither its west nor its east side on {thick.lef}")
+            raise StepError(
+                f"{name}: its pin {min(lacking)} reaches neither its west nor its east side on {thick.metal.lef}"
+            )
         for pin, side, box in found:
             check_way(blocks, name, pin, box, side)
             yield pin, side, ((0, *box[1:]) if side == "west" else (*box[:2], nm(die.width_um), box[3]))
@@ -90,15 +92,15 @@ def _in_north(die):
 
 def cuts(net, box, thick):
     """As many cuts to the thick wire as its rules allow in ``box``, in its middle."""
-    size, space = nm(thick.cut.size_um), nm(thick.cut.space_um)
+    size, space = nm(thick.via.size_um), nm(thick.via.space_um)
     pitch, counts, starts = size + space, [], []
-    for low, high, room in ((box[0], box[2], thick.below_um), (box[1], box[3], thick.cut.enclosure_um)):
+    for low, high, room in ((box[0], box[2], thick.via.enclosure_below_um), (box[1], box[3], thick.via.enclosure_um)):
         count = max((high - low - 2 * nm(room) + space) // pitch, 0)
         counts.append(count)
         starts.append((low + high - count * pitch + space) // 10 * 5)
     return [
         shapes.drawn(
-            thick.cut,
+            thick.via,
             net,
             starts[0] + i * pitch,
             starts[1] + j * pitch,

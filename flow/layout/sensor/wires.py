@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from base.steps import Step
 from flow.layout.timing import parasitics
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from . import elmore
 from .plan import CORE
@@ -49,7 +49,7 @@ class DieWires(Step):
 
     def run(self, inputs, outputs):
         p, plan = self.parameters, json.loads(inputs["plan"].read_text())
-        known, _ = process(p.pdk)
+        known = coriolis_platform(p.pdk)
         nets = {}
         for net, route in plan["routes"].items():
             driver = tuple(plan["drivers"][net])

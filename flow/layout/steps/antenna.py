@@ -8,7 +8,7 @@ import json
 from dataclasses import dataclass
 
 from base.steps import Step
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 
 @dataclass(frozen=True)
@@ -34,19 +34,19 @@ class Antenna(Step):
         known, layout = self.known(), db.Layout()
         layout.read(str(inputs["gds"]))
         found = {
-            known.wires[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
+            known.metals[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
             for level, bad in violations(layout, layout.top_cell(), known).items()
         }
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
 
     def known(self):
-        """Embedded, with the wires that are looked at."""
-        return process(self.parameters.pdk)[0]
+        """CoriolisPlatform, with the wires that are looked at."""
+        return coriolis_platform(self.parameters.pdk)
 
 
 def connected(layout, top, known, levels):
-    """Yields (LayoutToNetlist, gates, diffusions, wires: Regions of known.wires[:level + 1]) of every one of
+    """Yields (LayoutToNetlist, gates, diffusions, wires: Regions of known.metals[:level + 1]) of every one of
     ``levels``, all up to that wire joined. What an earlier one told of is gone with the next."""
     import klayout.db as db
 
@@ -63,31 +63,31 @@ def connected(layout, top, known, levels):
     for a, b in ((gate, gate), (diffusion, diffusion), (layers["poly"], gate), (diffusion, layers["contact"])):
         l2n.connect(a, b)
     below, wires = layers["contact"], []
-    for level, wire in enumerate(known.wires):
-        wires.append(l2n.make_polygon_layer(layout.layer(wire.layer, wire.datatype), wire.name))
+    for level, wire in enumerate(known.metals):
+        wires.append(l2n.make_polygon_layer(layout.layer(*wire.gds), wire.name))
         l2n.connect(wires[-1])
         l2n.connect(below, wires[-1])
         if level in levels:
             l2n.extract_netlist()
             yield l2n, gate, diffusion, list(wires)
             l2n.reset_extracted()
-        if level < len(known.cuts):
-            cut = known.cuts[level]
-            below = l2n.make_polygon_layer(layout.layer(cut.layer, cut.datatype), cut.name)
+        if level < len(known.vias):
+            cut = known.vias[level]
+            below = l2n.make_polygon_layer(layout.layer(*cut.gds), cut.name)
             l2n.connect(below)
             l2n.connect(wires[-1], below)
 
 
 def violations(layout, top, known, levels=None):
-    """dict level -> klayout.db.Region, known.wires[level] of the nets on which it is too large for their gates, for
+    """dict level -> klayout.db.Region, known.metals[level] of the nets on which it is too large for their gates, for
     ``levels``, all without."""
     import klayout.db as db
 
     found, safe = {}, 1e9  # for what has a diffusion, in the check of what has none
-    levels = range(len(known.wires)) if levels is None else levels
+    levels = range(len(known.metals)) if levels is None else levels
     for l2n, gate, diffusion, wires in connected(layout, top, known, levels):
         level = len(wires) - 1
-        wire = known.wires[level]
+        wire = known.metals[level]
         base, more = wire.antenna_diffusion
         factors = (0.0, wire.thickness_um) if known.antenna_walls else (1.0, 0.0)  # of the metal's area, its edges
         bad = db.Region()

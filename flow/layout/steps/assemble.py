@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from base.gds import write_gds
 from base.steps import Step
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import assembly as assembly_module
 from ..geometry.assembly import flat, together
@@ -66,7 +66,7 @@ class Assemble(Step):
             inputs["gds"],
             outputs["gds"],
             [(inputs[f"{block['cell']}.gds"], block) for block in placed],
-            process(self.parameters.pdk)[0],
+            coriolis_platform(self.parameters.pdk),
         )
         cells = inputs["cells"].read_text()
         own = [inputs[f"{module}.spice"].read_text().removesuffix(cells) for module in self.parameters.macros]
@@ -92,7 +92,7 @@ def put_in(source, target, blocks, known):
     options.cell_conflict_resolution = db.LoadLayoutOptions.CellConflictResolution.SkipNewCell  # of the library
     for number, (path, block) in enumerate(blocks):
         stood, (left, bottom, *_) = layout.cell(f"{BLOCK}{number}"), block["outer"]
-        for numbers in [(part.layer, part.datatype) for part in (*known.wires, *known.cuts)]:
+        for numbers in [part.gds for part in (*known.metals, *known.vias)]:
             layer = layout.layer(*numbers)
             top.shapes(layer).insert(
                 db.Region(stood.shapes(layer)).moved(round(left / layout.dbu), round(bottom / layout.dbu))

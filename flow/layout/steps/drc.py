@@ -5,7 +5,7 @@ import re
 from dataclasses import dataclass
 
 from base.steps import Step, StepError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from . import klayout_decks
 from .klayout_decks import run_deck, violations
@@ -38,7 +38,7 @@ class Drc(Step):
     def run(self, inputs, outputs):
         log = outputs["report"].with_suffix(".log")
         deck = with_flat_spaces(inputs["deck"].read_text())
-        outputs["deck"].write_text("\n".join([deck, *holes(process(self.parameters.pdk)[0])]) + "\n")
+        outputs["deck"].write_text("\n".join([deck, *holes(coriolis_platform(self.parameters.pdk))]) + "\n")
         status = run_deck(
             outputs["deck"],
             {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "", "REPORT_FILE": outputs["report"].resolve()},
@@ -72,11 +72,11 @@ def with_flat_spaces(deck):
 
 
 def holes(known):
-    """Lines for a deck: the least areas of holes that ``known`` (Embedded) has beyond PDKMaster's rules."""
-    for wire in known.wires:
-        if wire.hole_um2:
+    """Lines for a deck: the least areas of holes that ``known`` (CoriolisPlatform) has beyond PDKMaster's rules."""
+    for wire in known.metals:
+        if wire.min_hole_um2:
             yield f"{wire.name} = input({wire.layer}, {wire.datatype})"
             yield (
-                f'{wire.name}.holes.with_area(nil, {wire.hole_um2}).output("{wire.name} hole", '
+                f'{wire.name}.holes.with_area(nil, {wire.min_hole_um2}).output("{wire.name} hole", '
                 f'"{wire.name} minimum area of a hole")'
             )

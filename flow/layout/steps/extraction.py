@@ -9,7 +9,7 @@ import json
 from dataclasses import dataclass
 
 from base.steps import Step
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..timing import parasitics as parasitics_module
@@ -39,7 +39,7 @@ class Extraction(Step):
     uses = (parasitics_module,)
 
     def run(self, inputs, outputs):
-        known, _ = process(self.parameters.pdk)
+        known = coriolis_platform(self.parameters.pdk)
         netlist = Netlist.read(inputs["netlist"])
         wires = json.loads(inputs["placement"].read_text())["wires"]
         there = {net for instance in netlist.instances for net in instance.pins.values()}

@@ -7,7 +7,7 @@ import numpy as np
 
 from base.gds import write_gds
 from base.steps import Step
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import boxes as boxes_module
 from ..geometry.boxes import boxes
@@ -40,14 +40,14 @@ class Fill(Step):
     def run(self, inputs, outputs):
         import klayout.db as db
 
-        known, _ = process(self.parameters.pdk)
+        known = coriolis_platform(self.parameters.pdk)
         layout = db.Layout()
         layout.read(str(inputs["gds"]))
         top, squares = layout.top_cell(), 0
-        before = {wire.name: densest(layout, top, wire, known.fill) for wire in known.wires}
-        for wire in known.wires[1:]:
+        before = {wire.name: densest(layout, top, wire, known.fill) for wire in known.metals}
+        for wire in known.metals[1:]:
             squares += fill(layout, top, wire, known.fill)
-        after = {wire.name: densest(layout, top, wire, known.fill) for wire in known.wires}
+        after = {wire.name: densest(layout, top, wire, known.fill) for wire in known.metals}
         write_gds(layout, outputs["gds"])
         dense = {name: density for name, density in after.items() if density > known.fill.density_most}
         told = {"before": before, "after": after, "too dense": dense}
@@ -59,7 +59,7 @@ def fill(layout, top, wire, rules):
     """Draw the squares of one wire's layer into the cell ``top``; returns how many."""
     import klayout.db as db
 
-    layer, die = layout.layer(wire.layer, wire.datatype), top.bbox()
+    layer, die = layout.layer(*wire.gds), top.bbox()
     metal = db.Region(top.begin_shapes_rec(layer)).merged()
     wanted = rules.density * die.area() - metal.area()
     space, clearance = (round(value / layout.dbu) for value in (rules.space_um, rules.clearance_um))
@@ -118,7 +118,7 @@ def densest(layout, top, wire, rules):
     import klayout.db as db
 
     box, size = top.bbox(), round(rules.window_um / layout.dbu)
-    metal, found = db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype))).merged(), []
+    metal, found = db.Region(top.begin_shapes_rec(layout.layer(*wire.gds))).merged(), []
     for left in range(box.left, max(box.left + 1, box.right - size // 2), size // 2):
         for bottom in range(box.bottom, max(box.bottom + 1, box.top - size // 2), size // 2):
             window = db.Box(left, bottom, left + size, bottom + size) & box

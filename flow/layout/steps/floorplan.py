@@ -7,8 +7,7 @@ from itertools import pairwise
 
 from base.steps import Step, StepError
 from models.parameters import ParameterError, check_real
-from platforms.coriolis import process
-from platforms.openroad import layer_names
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import macro as macro_module
 from ..geometry.macro import Macro
@@ -68,9 +67,9 @@ class Floorplan(Step):
 
     def run(self, inputs, outputs):
         p = self.parameters
-        known, _ = process(p.pdk)
+        known = coriolis_platform(p.pdk)
         netlist, areas = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
-        macros = [(name, Macro.read(inputs[module], known, layer_names(p.pdk)), at) for name, module, *at in p.macros]
+        macros = [(name, Macro.read(inputs[module], known), at) for name, module, *at in p.macros]
         modules = {macro.name for _, macro, _ in macros}
         unknown = sorted({i.cell for i in netlist.instances} - set(areas) - modules)
         if unknown:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from base.steps import Step
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..power import mesh as mesh_module
@@ -54,7 +54,7 @@ class IrDrop(Step):
         self.inputs = self.inputs | {"power": f"power_{parameters.corner}.instances"}
 
     def run(self, inputs, outputs):
-        known, _ = process(self.parameters.pdk)
+        known = coriolis_platform(self.parameters.pdk)
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text())
         placed = json.loads(inputs["placement"].read_text())
         cells = drawing(

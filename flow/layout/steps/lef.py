@@ -3,8 +3,7 @@
 from dataclasses import dataclass
 
 from base.steps import Step, StepError
-from platforms.coriolis import process
-from platforms.openroad import layer_names
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import abstract as abstract_module
 from ..geometry import macro
@@ -31,9 +30,8 @@ class Lef(Step):
 
     def run(self, inputs, outputs):
         pdk = self.parameters.pdk
-        known, directions = process(pdk)[0], ports(inputs["verilog"].read_text())
-        names = layer_names(pdk)
-        outputs["lef"].write_text(abstract(inputs["gds"], directions, known, names))
-        if wrong := read_back(outputs["lef"], inputs["gds"], directions, known, names):
+        known, directions = coriolis_platform(pdk), ports(inputs["verilog"].read_text())
+        outputs["lef"].write_text(abstract(inputs["gds"], directions, known))
+        if wrong := read_back(outputs["lef"], inputs["gds"], directions, known):
             raise StepError(f"lef: read back, it differs from the GDS: {'; '.join(wrong)}")
         return {"pins": len(directions)}

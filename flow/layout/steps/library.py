@@ -9,7 +9,8 @@ from dataclasses import asdict, dataclass, field
 from base.gds import write_gds
 from base.steps import Step, StepError
 from base.tools import run
-from platforms.coriolis import modules, process
+from platforms.coriolis import coriolis_platform, standard_cells
+from platforms.extraction import device_models, extraction_platform
 
 from ..netlist.netlist import SUPPLIES
 from ..timing import liberty
@@ -61,10 +62,10 @@ class Library(Step):
     tools = ("yosys", "python pdkmaster", "python c4m-flexcell", "python klayout")
 
     def run(self, inputs, outputs):
-        known, make = process(self.parameters.pdk)
+        known = coriolis_platform(self.parameters.pdk)
         package = importlib.import_module(known.package)
         description = importlib.import_module(f"{known.package}.pdkmaster")
-        library = make()
+        library = standard_cells(self.parameters.pdk)
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         outputs["geometry"].write_text(json.dumps(geometry(known), indent=1) + "\n")
         outputs["rules"].write_text(json.dumps(wiring_rules(known, description.tech.primitives), indent=1) + "\n")
@@ -73,9 +74,9 @@ class Library(Step):
         areas = {cell.name: _area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
-        models, layers = modules(self.parameters.pdk)
+        models, cell_tech = device_models(self.parameters.pdk), extraction_platform(self.parameters.pdk)
         logic = [name for name in ports if not name.startswith(UNUSED)]
-        found = liberty.functions(outputs["gds"], logic, models, layers)
+        found = liberty.functions(outputs["gds"], logic, models, cell_tech)
         outputs["liberty"].write_text(
             liberty.liberty(
                 {name: cell for name, cell in found.items() if not cell[1] or cell[1].kind == "ff"}, ports, areas
@@ -96,9 +97,7 @@ def geometry(known):
     """What of the process decides where wires lie, and not how they behave: what layouts are made anew for."""
     made = asdict(known)
     del made["fill"], made["rail_um"], made["corners"]
-    for wire in made["wires"]:
-        for name in ("area_af_um2", "edge_af_um", "ohm", "thickness_um", "antenna_ratio", "antenna_diffusion"):
-            del wire[name]
+    made["metals"] = [{"name": metal.name, "gds": metal.gds, "hole_um2": metal.min_hole_um2} for metal in known.metals]
     return made
 
 
@@ -108,8 +107,8 @@ def wiring_rules(known, primitives):
     def enclosure(made):
         return [float(made.first), float(made.second)]
 
-    wires = {wire.name: primitives[wire.name] for wire in known.wires}
-    cuts = {cut.name: (primitives[cut.name], level) for level, cut in enumerate(known.cuts)}
+    wires = {wire.name: primitives[wire.name] for wire in known.metals}
+    cuts = {cut.name: (primitives[cut.name], level) for level, cut in enumerate(known.vias)}
     return {
         "space_um": {name: float(wire.min_space) for name, wire in wires.items()},
         "wires": {
@@ -118,8 +117,8 @@ def wiring_rules(known, primitives):
         },
         "cuts": {
             name: {
-                "below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.wires[level])),
-                "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.wires[level + 1])),
+                "below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.metals[level])),
+                "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.metals[level + 1])),
             }
             for name, (cut, level) in cuts.items()
         },
@@ -151,7 +150,7 @@ def _coriolis(folder, description, library, known):
 def narrowed(text, known, primitives):
     """The export for Coriolis with the tracks of the highest wire as near as its pads may lie: PDKMaster keeps room
     there for cuts to the wire above, of which there are none (1.48 um instead of 0.68 um in SKY130)."""
-    wire, cut = known.wires[-1], known.cuts[-1]
+    wire, cut = known.metals[-1], known.vias[-1]
     pad = cut.size_um + 2 * cut.enclosure_um
     numbers = [pad + float(primitives[wire.name].min_space), pad]
     begin = text.index(f"metal = tech.getLayer('{wire.name}')")
@@ -164,7 +163,7 @@ def narrowed(text, known, primitives):
         r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({numbers[0]:g}), u({numbers[1]:g})", gauge, count=1
     )
     head, pads = with_short_pads(
-        head, known.wires[-2].name, known.wires[-1].name, cut, float(primitives[known.wires[-2].name].min_area or 0)
+        head, known.metals[-2].name, known.metals[-1].name, cut, float(primitives[known.metals[-2].name].min_area or 0)
     )
     if not enclosures or not tracks or not pads:
         raise StepError(f"library: PDKMaster's export has no gauge of {wire.name} that could be narrowed")

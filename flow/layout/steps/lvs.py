@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 
 from base.steps import Step, StepError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..netlist import netlist as netlist_module
 from ..netlist.netlist import SUPPLIES, Netlist
@@ -35,7 +35,7 @@ class Lvs(Step):
     tools = ("klayout",)
 
     def run(self, inputs, outputs):
-        known, _ = process(self.parameters.pdk)
+        known = coriolis_platform(self.parameters.pdk)
         deck = hierarchical(inputs["deck"].read_text(), known.active)
         outputs["deck"].write_text(with_ports(deck, Netlist.read(inputs["netlist"])))
         log = outputs["report"].with_suffix(".log")

@@ -13,8 +13,7 @@ from base.paths import ROOT
 from base.steps import Step, StepError
 from base.tools import finish
 from models.parameters import check_int, check_real
-from platforms.coriolis import process
-from platforms.openroad import layer_names
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import macro as macro_module
 from ..geometry.macro import Macro
@@ -98,7 +97,7 @@ class PlaceRoute(Step):
             for name in ("gds", "netlist", "placement", "shapes"):
                 outputs[name].write_text("")
             return dict.fromkeys(self.metrics) | {"routed": False, "stopped": result["stopped"]}
-        make_solid(outputs["gds"], request["macros"], process(self.parameters.pdk)[0])
+        make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
         final = routed_netlist(netlist, names, result["instances"], blocks)
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
@@ -132,7 +131,7 @@ class PlaceRoute(Step):
     def request(self, inputs, plan, names, netlist, blocks):
         """What Coriolis is asked for."""
         p = self.parameters
-        known, _ = process(p.pdk)
+        known = coriolis_platform(p.pdk)
         return {
             "cell": MODEL,
             "library": str(inputs["coriolis"].resolve()),
@@ -142,8 +141,8 @@ class PlaceRoute(Step):
                 self.macro(inputs, block, netlist, *blocks[block["instance"]], known) for block in plan["macros"]
             ],
             "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
-            "wires": [asdict(wire) for wire in known.wires],
-            "cuts": [asdict(cut) for cut in known.cuts],
+            "wires": [asdict(wire) for wire in known.metals],
+            "cuts": [asdict(cut) for cut in known.vias],
             **{
                 name: getattr(known, name)
                 for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
@@ -155,7 +154,7 @@ class PlaceRoute(Step):
     def macro(self, inputs, block, netlist, name, pins, known):
         """A block laid out before, by its LEF, as Coriolis is told of it; its pins as [pin, whether it leads anywhere,
         direction, wire, box]."""
-        macro = Macro.read(inputs[block["cell"]], known, layer_names(self.parameters.pdk))
+        macro = Macro.read(inputs[block["cell"]], known)
         ends = Counter(net for instance in netlist.instances for net in instance.pins.values())
         ends.update(net for port in netlist.ports for net in port.bits())
         nets = next(instance.pins for instance in netlist.instances if instance.name == block["instance"])
@@ -191,8 +190,8 @@ def make_solid(gds, blocks, known):
         solid = db.DBox(x - OVER_UM, y - OVER_UM, x + block["width_um"] + OVER_UM, y + block["height_um"] + OVER_UM)
         inside, keep_off = layout.create_cell(f"{block['name']}_solid"), max(known.pin_pitch_um.values())
         cell.insert(db.CellInstArray(inside.cell_index(), db.Trans()))
-        for wire in known.wires[1:]:
-            layer = layout.layer(wire.layer, wire.datatype)
+        for wire in known.metals[1:]:
+            layer = layout.layer(*wire.gds)
             pins = db.Region(cell.shapes(layer)).sized(round(keep_off / layout.dbu))
             inside.shapes(layer).insert(db.Region(solid.to_itype(layout.dbu)) - pins)
     write_gds(layout, gds)

@@ -9,7 +9,7 @@ import joblib
 from base.gds import write_gds
 from base.steps import Step
 from models.parameters import check_int
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import boxes as boxes_module
 from ..netlist import netlist as netlist_module
@@ -19,8 +19,8 @@ from ..reroute import board as board_module
 from ..reroute import negotiate as bargain_module
 from ..reroute import nets, search, violations, window, wiring
 from ..reroute.board import Board
-from ..reroute.violations import Marks, marks, marks_of, shared_out
 from ..reroute.negotiate import bargain
+from ..reroute.violations import Marks, marks, marks_of, shared_out
 from ..reroute.wiring import Wiring
 from . import antenna
 
@@ -85,7 +85,7 @@ class Reroute(Step):
     def run(self, inputs, outputs):
         import klayout.db as db
 
-        p, (known, _) = self.parameters, process(self.parameters.pdk)
+        p, known = self.parameters, coriolis_platform(self.parameters.pdk)
         placement = json.loads(inputs["placement"].read_text())
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         layout, left = db.Layout(), open_nets(inputs["log"].read_text())

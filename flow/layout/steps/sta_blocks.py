@@ -5,7 +5,7 @@ import json
 from dataclasses import dataclass
 
 from base.steps import Step
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..netlist import netlist as netlist_module
 from ..netlist.netlist import Netlist
@@ -48,7 +48,7 @@ class StaBlocks(Step):
 
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["report"].parent
-        known, netlist = process(p.pdk)[0], Netlist.read(inputs["netlist"])
+        known, netlist = coriolis_platform(p.pdk), Netlist.read(inputs["netlist"])
         wires = json.loads(inputs["placement"].read_text())["wires"]
         there = {net for instance in netlist.instances for net in instance.pins.values()}
         files = {name: folder / f"{name}.log" for name in ("verilog", "spef", "sdf")}

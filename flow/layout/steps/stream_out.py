@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from base.gds import write_gds
 from base.steps import Step, StepError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from ..geometry import area, notch, trim
 from ..netlist import netlist as netlist_module
@@ -56,7 +56,7 @@ class StreamOut(Step):
 
     def run(self, inputs, outputs):
         p = self.parameters
-        known, _ = process(p.pdk)
+        known = coriolis_platform(p.pdk)
         netlist = Netlist.read(inputs["netlist"])
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         ports = {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES)
@@ -88,9 +88,9 @@ def relabel(source, target, top_name, names, ports, known, rules):
     (top,) = layout.top_cells()
     top.name = top_name
     found, edges = {}, top.bbox()
-    for wire in known.wires:
-        label = layout.layer(wire.layer, known.label_datatype)
-        pin = layout.layer(wire.layer, known.pin_datatype)
+    for wire in known.metals:
+        label = layout.layer(*wire.label)
+        pin = layout.layer(*wire.pin)
         texts = top.shapes(layout.layer(wire.layer, 0))
         labels = list(texts.each(db.Shapes.STexts))
         for shape in labels:
@@ -103,7 +103,7 @@ def relabel(source, target, top_name, names, ports, known, rules):
             texts.clear()
     if ports - set(found):
         raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(sorted(ports - set(found))[:5])}")
-    kept = {layout.layer(wire.layer, known.pin_datatype): [] for wire in known.wires}
+    kept = {layout.layer(*wire.pin): [] for wire in known.metals}
     for net, texts in found.items():
         for _, layers, place in texts if net in SUPPLIES else [min(texts, key=lambda text: text[0])]:
             kept[layers[-1]].append(place.disp)
@@ -114,9 +114,9 @@ def relabel(source, target, top_name, names, ports, known, rules):
     for info in [info for info in layout.layer_infos() if info.layer == known.blockage_layer]:
         layout.clear_layer(layout.layer(info))
     changed = {
-        "notches": notch.fill(layout, top, known.wires, rules["space_um"]),
-        "trimmed": trim.trim(layout, top, known.wires, rules["space_um"]),
-        "grown": area.grow(layout, top, known.wires, rules["wires"]),
+        "notches": notch.fill(layout, top, known.metals, rules["space_um"]),
+        "trimmed": trim.trim(layout, top, known.metals, rules["space_um"]),
+        "grown": area.grow(layout, top, known.metals, rules["wires"]),
     }
     write_gds(layout, target)
     return top.dbbox(), changed

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from base import jobs
 from base.steps import Step, StepError
-from platforms.coriolis import modules
+from platforms.extraction import device_models, extraction_platform
 
 NS = 1e-9
 MEASURES = "characterize", "spice", "netlist", "liberty", "extract"  # of cells/: whose text decides the result
@@ -53,8 +53,7 @@ class Timing(Step):
         from cells.run import cell_of, job
 
         p = self.parameters
-        models, layers = modules(p.pdk)
-        sources = found(inputs, layers)
+        models, sources = device_models(p.pdk), found(inputs, extraction_platform(p.pdk))
         conditions = [
             Conditions(
                 Corner.parse(corner),
@@ -107,7 +106,7 @@ class Timing(Step):
         return {"cells": len(cells), "simulations": sum(made["simulations"] for made in measured.values()), "failed": 0}
 
 
-def found(inputs, layers):
+def found(inputs, tech):
     """cells.sources.Source of every cell with an input that the library's functions name."""
     from cells.extract import extract
     from cells.sources import Source
@@ -115,4 +114,4 @@ def found(inputs, layers):
     areas = json.loads(inputs["areas"].read_text())
     groups = re.split(r"(?m)^ cell\(", inputs["functions"].read_text())[1:]
     names = [group[: group.index(")")] for group in groups if "direction : input" in group]
-    return [Source(name, extract(inputs["gds"], name, layers), areas[name]) for name in names]
+    return [Source(name, extract(inputs["gds"], name, tech), areas[name]) for name in names]

@@ -71,8 +71,8 @@ def test_a_missing_tool(capsys, tmp_path, monkeypatch, missing):
 
 
 def test_a_missing_pdk(capsys, tmp_path, monkeypatch):
-    tech, library = search.process("sky130")
-    monkeypatch.setattr(search, "process", lambda pdk: (replace(tech, wheel="c4m-pdk-none"), library))
+    tech = search.coriolis_platform("sky130")
+    monkeypatch.setattr(search, "coriolis_platform", lambda pdk: replace(tech, wheel="c4m-pdk-none"))
     assert "c4m-pdk-none: not installed" in reported(capsys, ["quad_divider", "--out", tmp_path / "out"])
 
 

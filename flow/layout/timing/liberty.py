@@ -7,10 +7,10 @@ is an exclusive or.
 CONSTANTS = {"zero": "0", "one": "1"}
 
 
-def functions(gds, names, models, layers):
+def functions(gds, names, models, tech):
     """What the cells ``names`` in ``gds`` do: dict cell -> (dict output -> expression, Storage or None).
 
-    models, layers: the process's modules with its devices and its layers. Cells without an output are left out.
+    models: see `device_models`; tech: ExtractionPlatform. Cells without an output are left out.
     """
     from cells.extract import extract
     from cells.netlist.function import understand
@@ -18,7 +18,7 @@ def functions(gds, names, models, layers):
 
     found = {}
     for name in names:
-        netlist = parse(extract(gds, name, layers, strays=False, wires=False), origin=name)
+        netlist = parse(extract(gds, name, tech, capacitors=False, resistors=False), origin=name)
         constant = {pin: CONSTANTS[pin] for pin in netlist.ports if pin in CONSTANTS}
         if constant:
             found[name] = constant, None

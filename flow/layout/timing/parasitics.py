@@ -10,16 +10,16 @@ from flow.layout.netlist.netlist import OUTPUT_PINS
 
 def parasitics(parts, known):
     """(fF, Ohm) of a net. parts: [[layer, length_um, width_um], ...], a contact with length 0."""
-    wires = {wire.name: wire for wire in known.wires}
-    cuts = {f"{known.wires[k].name}_{cut.name}_{known.wires[k + 1].name}": cut for k, cut in enumerate(known.cuts)}
+    wires = {wire.name: wire for wire in known.metals}
+    cuts = {f"{known.metals[k].name}_{cut.name}_{known.metals[k + 1].name}": cut for k, cut in enumerate(known.vias)}
     attofarad = ohm = 0.0
     for layer, length, width in parts:
         if layer in cuts:
             ohm += cuts[layer].ohm
         elif layer in wires and length:
             wire = wires[layer]
-            attofarad += length * (width * wire.area_af_um2 + 2 * wire.edge_af_um)
-            ohm += length / width * wire.ohm
+            attofarad += length * (width * wire.area_af_um2 + 2 * wire.fringe_af_um)
+            ohm += length / width * wire.sheet_ohm
     return attofarad / 1000, ohm
 
 

@@ -16,11 +16,11 @@ from flow.openroad.test.commands import COMMANDS, OLDER
 from flow.openroad.variables import variables
 from flow.openroad.write import write
 from models.parameters import ParameterError
-from platforms.openroad import CORNERS, process
+from platforms.openroad import CORNERS, openroad_platform
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
 
-KNOWN = process("sky130")
+KNOWN = openroad_platform("sky130")
 SPEF = """*SPEF "IEEE 1481-1998"
 *DESIGN "x"
 *DATE "x"

@@ -12,11 +12,11 @@ from pathlib import Path
 from base.liberty.group import Group
 from base.liberty.read import parse
 from base.liberty.write import text
-from platforms.openroad import process
+from platforms.openroad import openroad_platform
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
 
-KNOWN = process("sky130")
+KNOWN = openroad_platform("sky130")
 CORNERS = {"tt_025C_1v80": "typical", "ss_100C_1v60": "slow", "ff_n40C_1v95": "fast"}
 AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.1]}
 UNITS = {

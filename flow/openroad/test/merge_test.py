@@ -5,11 +5,11 @@ import pytest
 from base.tools import ToolError
 from flow.openroad.merge import merge
 from models.parameters import ParameterError
-from platforms.openroad import process
+from platforms.openroad import openroad_platform
 from platforms.sky130 import cells as sky130_hd
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
-KNOWN = process("sky130")
+KNOWN = openroad_platform("sky130")
 DEF = """VERSION 5.8 ;
 DIVIDERCHAR "/" ;
 BUSBITCHARS "[]" ;

@@ -15,8 +15,8 @@ from verif.coverage.test.coverage_test import recorded, recorded_cycles
 from verif.coverage.testplan import folder_of
 from verif.mutation.__main__ import main, summary
 from verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, promises
-from verif.mutation.mutants import Mutant, generate, shares, with_mutants
 from verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, own_tests
+from verif.mutation.mutants import Mutant, generate, shares, with_mutants
 from verif.mutation.trial import attempt
 from verif.results import ROOT
 

@@ -5,7 +5,7 @@ import pytest
 from base.lef import pins, size
 from flow.layout.geometry.abstract import abstract, ports, read_back
 from models.parameters import ParameterError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
@@ -13,7 +13,7 @@ NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
 
 @pytest.fixture
 def known():
-    return process("sky130")[0]
+    return coriolis_platform("sky130")
 
 
 @pytest.fixture
@@ -21,11 +21,11 @@ def gds(known, tmp_path):
     """Two rows high, ten sites wide; a on the west, q on the east, supplies on straps, wells that reach farther."""
     layout = db.Layout()
     top = layout.create_cell("Two")
-    wire, strap = known.wires[1], known.wires[-1]
+    wire, strap = known.metals[1], known.metals[-1]
 
     def draw(of, net, box, at):
-        top.shapes(layout.layer(of.layer, of.datatype)).insert(db.DBox(*box))
-        top.shapes(layout.layer(of.layer, known.pin_datatype)).insert(db.DText(net, *at))
+        top.shapes(layout.layer(*of.gds)).insert(db.DBox(*box))
+        top.shapes(layout.layer(*of.pin)).insert(db.DText(net, *at))
 
     draw(wire, "a", (-0.1, 1.0, 3.0, 1.3), (2.0, 1.15))
     draw(wire, "q[0]", (5.0, 2.0, 8.1, 2.3), (6.0, 2.15))
@@ -39,7 +39,7 @@ def gds(known, tmp_path):
 
 
 def test_size_and_pins(gds, known):
-    text = abstract(gds, ports(NETLIST), known, {(68, 20): "met1", (71, 20): "met4"})
+    text = abstract(gds, ports(NETLIST), known)
     assert size(text) == (8.0, 11.2)
     found = {pin.name: pin for pin in pins(text)}
     assert set(found) == {"a", "q[0]", "q[1]", "vdd", "vss"}
@@ -49,63 +49,63 @@ def test_size_and_pins(gds, known):
 
 
 def test_a_pin_that_is_an_l_has_a_box_for_each_arm(gds, known, tmp_path):
-    layout, wire = db.Layout(), known.wires[1]
+    layout, wire = db.Layout(), known.metals[1]
     layout.read(str(gds))
-    layout.top_cell().shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(-0.1, 1.0, 0.2, 2.0))
+    layout.top_cell().shapes(layout.layer(*wire.gds)).insert(db.DBox(-0.1, 1.0, 0.2, 2.0))
     layout.write(str(tmp_path / "bent.gds"))
-    (tmp_path / "bent.lef").write_text(abstract(tmp_path / "bent.gds", ports(NETLIST), known, {}))
-    assert read_back(tmp_path / "bent.lef", tmp_path / "bent.gds", ports(NETLIST), known, {}) == []
+    (tmp_path / "bent.lef").write_text(abstract(tmp_path / "bent.gds", ports(NETLIST), known))
+    assert read_back(tmp_path / "bent.lef", tmp_path / "bent.gds", ports(NETLIST), known) == []
     pin = next(pin for pin in pins((tmp_path / "bent.lef").read_text()) if pin.name == "a")
     assert sorted(box for _, box in pin.boxes) == [(0.0, 1.0, 0.3, 1.3), (0.0, 1.3, 0.2, 2.0)]
 
 
 def test_obstructions_cover_all_but_the_pins(gds, known, tmp_path):
-    (tmp_path / "two.lef").write_text(abstract(gds, ports(NETLIST), known, {}))
+    (tmp_path / "two.lef").write_text(abstract(gds, ports(NETLIST), known))
     layout = db.Layout()
     layout.read(str(tmp_path / "two.lef"))
     areas = {}
     for info in layout.layer_infos():
         areas[info.name] = db.Region(layout.top_cell().shapes(layout.layer(info))).merged()
-    obstructed, pin = areas["m1.OBS"], areas["m1.PIN"]
+    obstructed, pin = areas["met1.OBS"], areas["met1.PIN"]
     assert (obstructed & pin.sized(300)).is_empty()
     assert obstructed.area() > 0.9 * 8000 * 11200
-    assert areas["li.OBS"].area() == 8000 * 11200
+    assert areas["li1.OBS"].area() == 8000 * 11200
 
 
 def test_a_port_without_metal_is_named(gds, known):
     with pytest.raises(ParameterError, match="must have metal for the pins lost"):
-        abstract(gds, ports(NETLIST) | {"lost": "input"}, known, {})
+        abstract(gds, ports(NETLIST) | {"lost": "input"}, known)
 
 
 def test_what_a_pin_bears_is_what_its_net_has(gds, known):
     layout = db.Layout()
     layout.read(str(gds))
     top = layout.top_cell()
-    (li, m1), mcon = known.wires[:2], known.cuts[0]
+    (li, m1), mcon = known.metals[:2], known.vias[0]
     for layer, *box in (
         (known.active, 1.0, 0.4, 2.0, 0.9),
         (known.poly, 1.4, 0.2, 1.6, 1.4),
         (known.contact, 1.45, 1.1, 1.55, 1.2),
-        ((li.layer, li.datatype), 1.3, 1.0, 1.7, 1.4),
-        ((mcon.layer, mcon.datatype), 1.45, 1.1, 1.55, 1.2),
+        (li.gds, 1.3, 1.0, 1.7, 1.4),
+        (mcon.gds, 1.45, 1.1, 1.55, 1.2),
     ):
         top.shapes(layout.layer(*layer)).insert(db.DBox(*box))
     layout.write(str(gds))
-    pin = abstract(gds, ports(NETLIST), known, {}).partition("PIN a")[2].partition("END a")[0]
+    pin = abstract(gds, ports(NETLIST), known).partition("PIN a")[2].partition("END a")[0]
     assert "ANTENNAGATEAREA 0.1000 ;" in pin  # 0.2 x 0.5 um2
-    assert f"ANTENNAPARTIALMETALSIDEAREA {2 * (3.1 + 0.3) * m1.thickness_um:.4f} LAYER m1 ;" in pin
-    assert f"ANTENNAPARTIALMETALSIDEAREA {4 * 0.4 * li.thickness_um:.4f} LAYER li ;" in pin
+    assert f"ANTENNAPARTIALMETALSIDEAREA {2 * (3.1 + 0.3) * m1.thickness_um:.4f} LAYER met1 ;" in pin
+    assert f"ANTENNAPARTIALMETALSIDEAREA {4 * 0.4 * li.thickness_um:.4f} LAYER li1 ;" in pin
     assert "ANTENNADIFFAREA" not in pin
 
 
 def test_an_abstract_that_lies_is_found(gds, known, tmp_path):
     lef = tmp_path / "two.lef"
-    directions, text = ports(NETLIST), abstract(gds, ports(NETLIST), known, {})
+    directions, text = ports(NETLIST), abstract(gds, ports(NETLIST), known)
     lef.write_text(text)
-    assert read_back(lef, gds, directions, known, {}) == []
+    assert read_back(lef, gds, directions, known) == []
     lef.write_text(text.replace("0.000 1.000 0.300 1.300", "0.000 3.000 0.300 3.300"))
-    assert read_back(lef, gds, directions, known, {})[0] == "m1: a pin where there is no metal"
+    assert read_back(lef, gds, directions, known)[0] == "met1: a pin where there is no metal"
     lef.write_text(text.partition("  OBS")[0] + "END Two\nEND LIBRARY\n")
-    assert "m1: metal that is neither pin nor obstruction" in read_back(lef, gds, directions, known, {})
+    assert "met1: metal that is neither pin nor obstruction" in read_back(lef, gds, directions, known)
     lef.write_text(text.replace("PIN a\n", "PIN b\n").replace("END a\n", "END b\n"))
-    assert read_back(lef, gds, directions, known, {}) == ["pins that differ: a, b"]
+    assert read_back(lef, gds, directions, known) == ["pins that differ: a, b"]

@@ -3,7 +3,7 @@
 import pytest
 
 from flow.layout.geometry.area import grow
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 RULES = {"area": 0.144, "space": 0.21}
@@ -11,17 +11,17 @@ RULES = {"area": 0.144, "space": 0.21}
 
 @pytest.fixture
 def known():
-    return process("ihp-sg13g2")[0]
+    return coriolis_platform("ihp-sg13g2")
 
 
 def metal(known, boxes):
     """(how many grew, Region behind that) of ``boxes`` (um) on the second wire."""
-    layout, wire = db.Layout(), known.wires[1]
+    layout, wire = db.Layout(), known.metals[1]
     top = layout.create_cell("top")
     for box in boxes:
-        top.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(*box))
+        top.shapes(layout.layer(*wire.gds)).insert(db.DBox(*box))
     count = grow(layout, top, [wire], {wire.name: RULES})
-    return count, db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype))).merged()
+    return count, db.Region(top.begin_shapes_rec(layout.layer(*wire.gds))).merged()
 
 
 def test_a_pad_alone_grows_to_the_least_area(known):

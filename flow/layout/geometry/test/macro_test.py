@@ -10,7 +10,7 @@ from flow.layout.steps.floorplan import FloorplanParameters, free, placed
 from flow.layout.steps.ir_drop import breaks
 from flow.layout.steps.place_route import plain_blocks, routed_netlist
 from models.parameters import ParameterError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 LEF = """VERSION 5.8 ;
 MACRO Block
@@ -58,13 +58,13 @@ END Block
 
 @pytest.fixture
 def known():
-    return process("sky130")[0]
+    return coriolis_platform("sky130")
 
 
 @pytest.fixture
 def block(known, tmp_path):
     (tmp_path / "block.lef").write_text(LEF)
-    return Macro.read(tmp_path / "block.lef", known, {(68, 20): "met1", (69, 20): "met2", (71, 20): "met4"})
+    return Macro.read(tmp_path / "block.lef", known)
 
 
 def test_a_pin_is_met_where_it_is_farthest_from_others(block):

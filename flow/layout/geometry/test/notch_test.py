@@ -3,17 +3,17 @@
 import pytest
 
 from flow.layout.geometry import notch
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
-WIRE = process("sky130")[0].wires[1]
+WIRE = coriolis_platform("sky130").metals[1]
 
 
 def filled(*boxes):
     """(how many slits were filled, the metal behind that) of boxes in nm."""
     layout = db.Layout()
     top = layout.create_cell("top")
-    shapes = top.shapes(layout.layer(WIRE.layer, WIRE.datatype))
+    shapes = top.shapes(layout.layer(*WIRE.gds))
     for box in boxes:
         shapes.insert(db.Box(*box))
     return notch.fill(layout, top, (WIRE,), {WIRE.name: 0.14}), db.Region(shapes).merged()

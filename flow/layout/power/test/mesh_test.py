@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from flow.layout.power.mesh import Metal, drops, metal
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 METAL = Metal(rail=2.0, strap=0.5, stack=3.0)
 
@@ -44,8 +44,10 @@ def test_drops_follow_the_current_at_every_scale(scale):
     rng = np.random.default_rng(1)
     taps = [(int(rng.integers(40)), float(rng.uniform(0, 500)), float(rng.uniform(0, 1e-5))) for _ in range(2000)]
     rails, straps = [11.2 * k for k in range(40)], [20.0 + 45 * k for k in range(11)]
-    one, lost = drops(rails, straps, 448.0, taps, metal(process("sky130")[0]))
-    more, lost_more = drops(rails, straps, 448.0, [(r, x, scale * i) for r, x, i in taps], metal(process("sky130")[0]))
+    one, lost = drops(rails, straps, 448.0, taps, metal(coriolis_platform("sky130")))
+    more, lost_more = drops(
+        rails, straps, 448.0, [(r, x, scale * i) for r, x, i in taps], metal(coriolis_platform("sky130"))
+    )
     assert np.allclose(more, scale * one, rtol=1e-9)
     assert max(lost, lost_more) < 1e-9 and (one > 0).all()
 

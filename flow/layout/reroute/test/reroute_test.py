@@ -6,16 +6,16 @@ import pytest
 
 from flow.layout.geometry.test.gate import gate
 from flow.layout.reroute.board import Board
-from flow.layout.reroute.violations import Marks, marks, shared_out
 from flow.layout.reroute.negotiate import bargain
 from flow.layout.reroute.nets import routed
+from flow.layout.reroute.violations import Marks, marks, shared_out
 from flow.layout.reroute.wiring import Wiring
 from flow.layout.steps.reroute import open_nets
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
-KNOWN, _ = process("sky130")
+KNOWN = coriolis_platform("sky130")
 RULES = {
     "wires": {
         "li": {"width": 0.17, "space": 0.17, "area": 0},

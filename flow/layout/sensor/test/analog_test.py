@@ -10,7 +10,7 @@ from flow.layout import __main__ as command
 from flow.layout.sensor.analog import check, files
 from flow.layout.sensor.plan import BLOCKS
 from models.parameters import ParameterError
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from . import small
 
@@ -81,7 +81,7 @@ def test_files_that_lack(capsys, frames, tmp_path):
     (folder / "row_driver.gds").unlink()
     assert "mine: must have row_driver.gds" in told("asp_sensor", "--analog", folder)
     assert "must be with DESIGN=asp_sensor alone" in told("quad_divider", "--analog", folder)
-    assert "pdk = ihp-sg13g2: must be one of sky130 for a whole die" in told("asp_sensor", "--pdk", "ihp-sg13g2")
+    assert "pdk = 'ihp-sg13g2': must be one of sky130 for a whole die" in told("asp_sensor", "--pdk", "ihp-sg13g2")
     assert not (tmp_path / "out").exists()
 
 
@@ -98,9 +98,9 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
     assert small.match(given, tmp_path)["open_nets"] == 1  # its GDS does not have the pin yet
     layout = db.Layout()
     layout.read(str(given["adc_lanes.gds"]))
-    cell, wire = layout.cell("adc_lanes"), process("sky130")[0].wires[4]
+    cell, wire = layout.cell("adc_lanes"), coriolis_platform("sky130").metals[4]
     inner = layout.create_cell("Core")  # as the chip's: two cells of one name are not one
-    inner.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(1.8, 0, 2.2, 2))
+    inner.shapes(layout.layer(*wire.gds)).insert(db.DBox(1.8, 0, 2.2, 2))
     cell.insert(db.CellInstArray(inner.cell_index(), db.Trans()))
     cell.shapes(layout.layer(wire.layer, 16)).insert(db.DText("vref", 2, 1))
     layout.write(str(given["adc_lanes.gds"]))

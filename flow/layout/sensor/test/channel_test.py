@@ -9,11 +9,11 @@ from flow.layout.reroute.wiring import Wiring
 from flow.layout.sensor.channel import check_apart, free, left_edge
 from flow.layout.sensor.routing import Reach, Tracks, trunks
 from flow.layout.sensor.shapes import signal
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from . import small
 
-KNOWN = process("sky130")[0]
+KNOWN = coriolis_platform("sky130")
 WIRING = Wiring.of(KNOWN, small.RULES)
 TRACKS = Tracks.of(WIRING)
 SPANS = st.dictionaries(

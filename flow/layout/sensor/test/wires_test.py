@@ -10,7 +10,7 @@ from flow.layout.sensor.elmore import delays
 from flow.layout.sensor.sta import over
 from flow.layout.sensor.wires import DieWires, DieWiresParameters
 from flow.layout.steps.antenna import AntennaParameters
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 from . import small
 
@@ -47,7 +47,7 @@ def wires(tmp_path_factory):
 def test_a_net_by_hand(wires):
     """tap[0]: from the chip to the row driver and the column amplifiers; capacitance by length and width."""
     _, nets, _, plan = wires
-    known, tracks, route = process("sky130")[0], plan["tracks"], plan["routes"]["tap[0]"]
+    known, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
     assert len(route["reaches"]) == 3 and nets["tap[0]"]["driver"] == "core"
     xs = [reach["x"] for reach in route["reaches"]]
     lengths = {
@@ -57,7 +57,7 @@ def test_a_net_by_hand(wires):
     (core,) = [reach for reach in route["reaches"] if reach["block"] == "core"]
     lengths[1, core["box"][3] - core["box"][1]] = max(core["box"][0] - core["x"], core["x"] - core["box"][2])
     femto = sum(
-        length * 1e-6 * (width / 1000 * known.wires[level].area_af_um2 + 2 * known.wires[level].edge_af_um)
+        length * 1e-6 * (width / 1000 * known.metals[level].area_af_um2 + 2 * known.metals[level].fringe_af_um)
         for (level, width), length in lengths.items()
     )
     assert nets["tap[0]"]["wire_ff"] == pytest.approx(femto, abs=1e-3)
@@ -98,7 +98,7 @@ def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
     """300 um of the trunks' wire at a gate of 0.03 um2; of the verticals' wire nothing is said."""
     import klayout.db as db
 
-    known, layout = process("sky130")[0], db.Layout()
+    known, layout = coriolis_platform("sky130"), db.Layout()
     cell = layout.create_cell("gate")
 
     def draw(pair, *box):
@@ -106,10 +106,10 @@ def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
 
     draw(known.active, -0.1, -0.5, 0.1, 0.5)
     draw(known.poly, -1, -0.075, 1, 0.075)
-    for pair in (known.contact, *((cut.layer, cut.datatype) for cut in known.cuts)):
+    for pair in (known.contact, *(cut.gds for cut in known.vias)):
         draw(pair, 0.8, -0.05, 0.9, 0.05)
-    for wire in known.wires:
-        draw((wire.layer, wire.datatype), 0.7, -0.15, 1.1, 0.15)
+    for wire in known.metals:
+        draw(wire.gds, 0.7, -0.15, 1.1, 0.15)
     draw(layer, 0.7, -0.15, 300, 0.15)
     layout.write(str(tmp_path / "die.gds"))
     given = {"die_gds.gds": tmp_path / "die.gds"} | small.PLATFORM

@@ -4,15 +4,15 @@ import pytest
 
 from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.timing.parasitics import parasitics, spef
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 
 def test_a_wire_counts_with_its_area_both_edges_and_its_squares():
-    known, _ = process("sky130")
-    m1, via = known.wires[1], known.cuts[1]
+    known = coriolis_platform("sky130")
+    m1, via = known.metals[1], known.vias[1]
     femtofarad, ohm = parasitics([["m1", 10.0, 0.2], ["m1_via_m2", 0, 0]], known)
-    assert femtofarad == pytest.approx(10 * (0.2 * m1.area_af_um2 + 2 * m1.edge_af_um) / 1000)
-    assert ohm == pytest.approx(10 / 0.2 * m1.ohm + via.ohm)
+    assert femtofarad == pytest.approx(10 * (0.2 * m1.area_af_um2 + 2 * m1.fringe_af_um) / 1000)
+    assert ohm == pytest.approx(10 / 0.2 * m1.sheet_ohm + via.ohm)
 
 
 def test_a_bracket_is_a_bus_only_in_a_port():

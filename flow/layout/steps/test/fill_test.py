@@ -3,23 +3,23 @@
 import pytest
 
 from flow.layout.steps.fill import densest, fill
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
 
 @pytest.fixture(params=["sky130", "ihp-sg13g2"])
 def known(request):
-    return process(request.param)[0]
+    return coriolis_platform(request.param)
 
 
 def drawn(known, boxes, side=60):
     """(layout, top cell, wire): a die of ``side`` um with ``boxes`` on the second wire."""
-    layout, wire = db.Layout(), known.wires[1]
+    layout, wire = db.Layout(), known.metals[1]
     top = layout.create_cell("top")
     top.shapes(layout.layer(*known.active)).insert(db.DBox(0, 0, side, side))
     for box in boxes:
-        top.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(*box))
+        top.shapes(layout.layer(*wire.gds)).insert(db.DBox(*box))
     return layout, top, wire
 
 
@@ -31,10 +31,10 @@ def test_an_empty_layer_gets_its_density(known):
 
 def test_squares_keep_their_distance(known):
     layout, top, wire = drawn(known, [(x, 5, x + 0.3, 55) for x in range(5, 50, 7)])
-    region = db.Region(top.shapes(layout.layer(wire.layer, wire.datatype)))
+    region = db.Region(top.shapes(layout.layer(*wire.gds)))
     wires = region.dup()
     fill(layout, top, wire, known.fill)
-    squares = db.Region(top.shapes(layout.layer(wire.layer, wire.datatype))) - wires
+    squares = db.Region(top.shapes(layout.layer(*wire.gds))) - wires
     assert squares.count() > 20
     assert (squares.sized(round(known.fill.clearance_um * 1000) - 1) & wires).is_empty()
     assert squares.space_check(round(known.fill.space_um * 1000)).count() == 0

@@ -1,7 +1,7 @@
 """What is written of the cells for other tools."""
 
 from flow.layout.steps.library import transistors, with_short_pads
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 SPICE = """.subckt inv_x1 vdd vss i nq
 Xnmos vss i nq vss sg13_lv_nmos l=1.3e-07 w=7.8e-07
@@ -21,13 +21,13 @@ def test_a_transistor_is_one_and_a_cell_stays_a_cell():
 
 
 def test_pads_below_the_highest_wire_are_as_long_as_their_area_asks():
-    known, _ = process("sky130")
+    known = coriolis_platform("sky130")
     text = (
         "via = tech.getLayer('m2_via2_m3')\n    setEnclosures(via, metal, (u(0.085), u(0.09)))\n"
         "via = tech.getLayer('m3_via3_m4')\n    setEnclosures(via, metal, (u(0.49), u(0.09)))\n"
     )
-    made, found = with_short_pads(text, "m3", "m4", known.cuts[-1], 0.24)
+    made, found = with_short_pads(text, "m3", "m4", known.vias[-1], 0.24)
     assert found == 1 and made == text.replace("u(0.49)", "u(0.22)")  # (0.2 + 2 x 0.22) x 0.38 um2 = 0.243
-    assert with_short_pads(text, "m3", "m4", known.cuts[-1], 0.9)[0] == text  # never longer than they were
-    assert with_short_pads(text, "m3", "m4", known.cuts[-1], 0.0)[0] == text.replace("u(0.49)", "u(0.09)")
-    assert with_short_pads("", "m3", "m4", known.cuts[-1], 0.24) == ("", 0)
+    assert with_short_pads(text, "m3", "m4", known.vias[-1], 0.9)[0] == text  # never longer than they were
+    assert with_short_pads(text, "m3", "m4", known.vias[-1], 0.0)[0] == text.replace("u(0.49)", "u(0.09)")
+    assert with_short_pads("", "m3", "m4", known.vias[-1], 0.24) == ("", 0)

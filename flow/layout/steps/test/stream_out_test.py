@@ -4,7 +4,7 @@ import pytest
 
 from base.steps import StepError
 from flow.layout.steps.stream_out import relabel
-from platforms.coriolis import process
+from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 RULES = {
@@ -17,14 +17,14 @@ RULES = {
 def routed(tmp_path):
     """As Coriolis writes it, texts on datatype 0: net w0 is the port a, on the west; a second of its labels lies on
     nothing; the supplies are strapped."""
-    known, layout = process("sky130")[0], db.Layout()
+    known, layout = coriolis_platform("sky130"), db.Layout()
     top = layout.create_cell("block")
     for wire, box, texts in (
-        (known.wires[1], (-0.1, 1.0, 3.0, 1.3), [("w0", 0.0, 1.15), ("w0", 5.0, 8.0)]),
-        (known.wires[2], (0.0, 8.0, 10.0, 8.2), [("w1", 2.0, 8.1)]),
-        (known.wires[-1], (1.0, 0.0, 2.2, 10.0), [("vdd", 1.6, 0.0), ("vdd", 1.6, 5.0)]),
+        (known.metals[1], (-0.1, 1.0, 3.0, 1.3), [("w0", 0.0, 1.15), ("w0", 5.0, 8.0)]),
+        (known.metals[2], (0.0, 8.0, 10.0, 8.2), [("w1", 2.0, 8.1)]),
+        (known.metals[-1], (1.0, 0.0, 2.2, 10.0), [("vdd", 1.6, 0.0), ("vdd", 1.6, 5.0)]),
     ):
-        top.shapes(layout.layer(wire.layer, wire.datatype)).insert(db.DBox(*box))
+        top.shapes(layout.layer(*wire.gds)).insert(db.DBox(*box))
         for net, x, y in texts:
             top.shapes(layout.layer(wire.layer, 0)).insert(db.DText(net, x, y))
     # a wire of the port's, the port itself, a wire that was moved away

@@ -6,7 +6,7 @@ import json
 import pytest
 
 from flow.layout.steps.timing import found
-from platforms.coriolis import modules
+from platforms.extraction import device_models, extraction_platform
 from platforms.sky130 import cells
 
 pytestmark = pytest.mark.skipif(
@@ -28,7 +28,7 @@ FUNCTIONS = """library(sky130) {
 def test_a_source_for_every_cell_with_an_input(tmp_path):
     from cells.run import cell_of  # it reads layouts
 
-    models, layers = modules("sky130")
+    models = device_models("sky130")
     inputs = {
         "areas": tmp_path / "areas.json",
         "functions": tmp_path / "functions.lib",
@@ -36,6 +36,6 @@ def test_a_source_for_every_cell_with_an_input(tmp_path):
     }
     inputs["areas"].write_text(json.dumps({"sky130_fd_sc_hd__inv_1": 3.75}))
     inputs["functions"].write_text(FUNCTIONS)
-    (source,) = found(inputs, layers)
+    (source,) = found(inputs, extraction_platform("sky130"))
     assert (source.name, source.area) == ("sky130_fd_sc_hd__inv_1", 3.75)
     assert list(cell_of(source, models).functions) == ["Y"]
