@@ -1,78 +1,84 @@
-"""Power of every cell from the transitions on its nets, a Liberty's tables and the wires' capacitance.
+"""Power of every cell from the transitions on its nets, a Liberty's tables and the nets' parasitic capacitance.
 
 OpenSTA has this too, but Debian's 2.0.17 counts both energies of an output at each of its transitions (twice what the
 Liberty says), takes activities for some pins only, and its `set_power_activity -pins` ends in an error.
 """
 
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from base.liberty.group import Group
 from base.steps import StepError
-from flow.layout.netlist.netlist import OUTPUT_PINS, is_register
+from flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
 
 SLEW_NS = 0.1  # of a pin that OpenSTA has no slew for: constants
+Energy = Callable[[float, float], float]  # (slew ns, load pF) -> pJ
 
 
 @dataclass(frozen=True)
 class Cells:
-    """The cells of a Liberty, tables in ns, pF, pJ, nW. library: Group of cells.liberty."""
+    """The cells of a Liberty, tables in ns, pF, pJ, nW. library: its outermost group."""
 
-    library: object
+    library: Group
 
     @cached_property
-    def cells(self):
+    def cells(self) -> dict[str, Group]:
+        """Groups of the cells, by name."""
         return {group.name: group for group in self.library.all("cell")}
 
     @cached_property
-    def pins(self):
-        """dict (cell, pin) -> its Group."""
+    def pins(self) -> dict[tuple[str, str], Group]:
+        """Groups of the pins, by (cell, pin)."""
         return {(name, pin.name): pin for name, cell in self.cells.items() for pin in cell.all("pin")}
 
     @property
-    def supply_v(self):
-        return self.library.attributes["nom_voltage"]
+    def supply_v(self) -> float:
+        """Nominal supply, V."""
+        return self.library.number("nom_voltage")
 
-    def leakage_nw(self, cell):
-        return self.cells[cell].attributes.get("cell_leakage_power", 0.0) if cell in self.cells else 0.0
+    def leakage_nw(self, cell: str) -> float:
+        """Leakage of a cell, nW; 0 for one that the Liberty does not have."""
+        return self.cells[cell].number("cell_leakage_power", 0.0) if cell in self.cells else 0.0
 
-    def capacitance_pf(self, cell, pin):
+    def capacitance_pf(self, cell: str, pin: str) -> float:
+        """Capacitance of a pin, pF; 0 for one that the Liberty does not have."""
         found = self.pins.get((cell, pin))
-        return found.attributes.get("capacitance", 0.0) if found else 0.0
+        return found.number("capacitance", 0.0) if found else 0.0
 
-    def energies(self, cell, pin):
-        """List of (related pin or None, function (slew ns, load pF) -> pJ a transition, the mean of both edges)."""
+    def energies(self, cell: str, pin: str) -> list[tuple[str, Energy]]:
+        """Pairs (related pin or '', energy of a transition, the mean of both edges) of a pin."""
         key = cell, pin
         if key not in self._energies:
             group = self.pins.get(key)
             self._energies[key] = [
-                (power.attributes.get("related_pin"), _mean(power))
-                for power in (group.all("internal_power") if group else ())
+                (power.text("related_pin"), _mean(power)) for power in (group.all("internal_power") if group else ())
             ]
         return self._energies[key]
 
     @cached_property
-    def _energies(self):
+    def _energies(self) -> dict[tuple[str, str], list[tuple[str, Energy]]]:
         return {}
 
 
-def _mean(power):
-    """Function (slew, load) -> mean of the tables of an internal_power Group."""
-    tables = [_interpolated(power.one(kind)) for kind in ("rise_power", "fall_power") if power.one(kind)]
+def _mean(power: Group) -> Energy:
+    """Mean of the tables of an internal_power group."""
+    tables = [_interpolated(table) for kind in ("rise_power", "fall_power") if (table := power.one(kind))]
     return lambda slew, load: sum(table(slew, load) for table in tables) / max(1, len(tables))
 
 
-def _interpolated(table):
-    """Function (slew, load) of a table with one or two indices; beyond the grid, what its edge has."""
+def _interpolated(table: Group) -> Energy:
+    """Interpolate a table with one or two indices; constant beyond the grid."""
     values = table.array("values")
     slews = table.array("index_1") if "index_1" in table.attributes else np.zeros(1)
     if "index_2" not in table.attributes:
         return lambda slew, load: float(np.interp(slew, slews, np.ravel(values)))
     loads, grid = table.array("index_2"), np.reshape(values, (len(slews), -1))
 
-    def at(slew, load):
+    def at(slew: float, load: float) -> float:
         load = min(max(load, loads[0]), loads[-1])
         return float(np.interp(slew, slews, [np.interp(load, loads, row) for row in grid]))
 
@@ -81,19 +87,27 @@ def _interpolated(table):
 
 @dataclass(frozen=True)
 class Power:
-    """uW of one instance."""
+    """Power of one instance, uW."""
 
     internal: float
     switching: float
     leakage: float
 
     @property
-    def total(self):
+    def total(self) -> float:
+        """Sum of the parts."""
         return self.internal + self.switching + self.leakage
 
 
-def powers(netlist, cells, activity, wire_pf, slews, period_ns):
-    """dict instance name -> Power, of those with pins.
+def powers(
+    netlist: Netlist,
+    cells: Cells,
+    activity: Mapping[str, tuple[float, float]],
+    wire_pf: Mapping[str, float],
+    slews: Mapping[tuple[str, str], float],
+    period_ns: float,
+) -> dict[str, Power]:
+    """Power of every instance with pins, by name.
 
     activity: net -> (transitions a cycle, share of time at 1). wire_pf: net -> pF. slews: (instance, pin) -> ns.
     Raises StepError for a net without activity.
@@ -113,12 +127,19 @@ def powers(netlist, cells, activity, wire_pf, slews, period_ns):
     }
 
 
-def _power(instance, cells, activity, load, slews, mega):
+def _power(
+    instance: Instance,
+    cells: Cells,
+    activity: Mapping[str, tuple[float, float]],
+    load: Mapping[str, float],
+    slews: Mapping[tuple[str, str], float],
+    mega: float,
+) -> Power:
     internal = switching = 0.0
     for pin, net in instance.pins.items():
         toggles = activity[net][0]
         group = cells.pins.get((instance.cell, pin))
-        output = group is not None and group.attributes.get("direction") == "output"
+        output = group is not None and group.text("direction") == "output"
         energies = cells.energies(instance.cell, pin)
         weights = [activity[instance.pins[related]][0] if related in instance.pins else 1.0 for related, _ in energies]
         if not sum(weights):
@@ -132,12 +153,12 @@ def _power(instance, cells, activity, load, slews, mega):
     return Power(internal, switching, cells.leakage_nw(instance.cell) / 1000)
 
 
-def blocks(netlist):
-    """dict instance -> block: of a register, the first part of its name; of a cell, that of most that it drives.
+def blocks(netlist: Netlist) -> dict[str, str]:
+    """Map each instance to a block: of a register, the first part of its name; of a cell, that of most that it drives.
 
-    What only drives clocks is 'clock tree', what drives nothing but ports 'ports'.
+    A cell that only drives clocks is in 'clock tree', one that drives nothing but ports in 'ports'.
     """
-    sinks = {}
+    sinks: dict[str, list[tuple[Instance, str]]] = {}
     for instance in netlist.instances:
         for pin, net in instance.pins.items():
             if pin not in OUTPUT_PINS:
@@ -159,10 +180,10 @@ def blocks(netlist):
     return found
 
 
-def _most(after, found):
-    votes = {}
+def _most(after: list[tuple[Instance, str]], found: Mapping[str, str]) -> str:
+    votes: dict[str, int] = {}
     for sink, pin in after:
         clock = is_register(sink.cell) and re.fullmatch("clk|ck", pin) or found.get(sink.name) == "clock tree"
         name = "clock tree" if clock else found.get(sink.name, "ports")
         votes[name] = votes.get(name, 0) + 1
-    return max(sorted(votes), key=votes.get) if votes else "ports"
+    return max(sorted(votes), key=votes.__getitem__) if votes else "ports"

@@ -13,7 +13,7 @@ from ..power import energy as energy_module
 from ..power.energy import Cells
 from ..timing import boundary as boundary_module
 from ..timing import opensta as opensta_module
-from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, measure
+from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Files, measure
 
 SLEWS = 0.02, 0.07, 0.25, 1.0  # ns
 LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2  # pF
@@ -49,7 +49,7 @@ class BlockLiberty(Step):
     def run(self, inputs, outputs):
         clock, folder = self.parameters.clock, outputs["liberty"].parent
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
-        files = {name: inputs[name] for name in ("liberty", "verilog", "spef")} | {"folder": folder}
+        files = Files(inputs["liberty"], inputs["verilog"], folder, inputs["spef"])
         found = measure(netlist, clock, files, SLEWS, LOADS)
         outputs["liberty"].write_text(
             liberty(
@@ -66,12 +66,7 @@ class BlockLiberty(Step):
         wrapper.write_text(_wrapper(netlist))
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
-        model = measure(
-            netlist,
-            self.parameters.clock,
-            {"liberty": made, "verilog": wrapper, "folder": folder, "top": "Wrapper"},
-            *point,
-        )
+        model = measure(netlist, self.parameters.clock, Files(made, wrapper, folder, top="Wrapper"), *point)
         differences = []
         for name in ("delays", "checks"):
             one, other = getattr(own, name), getattr(model, name)

@@ -1,17 +1,19 @@
-"""A netlist as its ports see it: which input reaches what, and delays and constraints measured there with OpenSTA.
+"""The timing of a netlist at its ports: which input reaches what, and delays and constraints measured with OpenSTA.
 
 Debian's OpenSTA (2.0.17) has no `write_timing_model`: its slacks at a grid of slews and loads are that model here.
 """
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
-from flow.layout.netlist.netlist import OUTPUT_PINS, is_register
+from flow.layout.netlist.netlist import OUTPUT_PINS, Netlist, is_register
 
 from .opensta import opensta
 
 FAR_NS = 100.0  # clock period of the measurement; OpenSTA computes in single precision
-CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027  # beside every grid: where a model made from one is held to its source
+CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027  # off every grid: where a model is compared with its netlist
 LOAD = """
 read_liberty {liberty}
 read_verilog {verilog}
@@ -79,20 +81,38 @@ foreach port {{{inputs}}} {{ puts "PORT $port"; report_net -connections -verbose
 """
 
 
+Point = tuple[float, float]  # of a grid: (slew ns, load pF), or of a constraint (clock's slew, input's slew), ns
+
+
 @dataclass(frozen=True)
 class Boundary:
-    """capacitance: input -> pF. delays: (from, output, edge) -> {(slew ns, load pF): ns}. slews: (output, edge) -> the
-    same. checks: (input, 'max' or 'min', edge) -> {(clock's slew, input's slew): ns}: setup and hold."""
+    """Timing at the ports, ns.
 
-    capacitance: dict
-    delays: dict
-    slews: dict
-    checks: dict
+    capacitance: input -> pF. delays: (from, output, edge) -> table. slews: (output, edge) -> table. checks: (input,
+    'max' or 'min', edge) -> table of setup or hold. A table maps points of the grid to ns.
+    """
+
+    capacitance: dict[str, float]
+    delays: dict[tuple[str, str, str], dict[Point, float]]
+    slews: dict[tuple[str, str], dict[Point, float]]
+    checks: dict[tuple[str, str, str], dict[Point, float]]
 
 
-def reach(netlist, clock):
-    """(pairs (input, output) joined by cells alone, inputs that reach a register), each sorted, the clock left out."""
-    drives, ends = {}, set()
+@dataclass(frozen=True)
+class Files:
+    """What OpenSTA reads. folder: of its scripts. top: the module, where it is not that of the netlist."""
+
+    liberty: Path
+    verilog: Path
+    folder: Path
+    spef: Path | None = None
+    top: str = ""
+
+
+def reach(netlist: Netlist, clock: str) -> tuple[list[tuple[str, str]], list[str]]:
+    """Pairs (input, output) joined by cells alone, and inputs that reach a register; both sorted, the clock left out."""
+    drives: dict[str, set[str]] = {}
+    ends = set()
     for instance in netlist.instances:
         outputs = set(instance.pins).intersection(OUTPUT_PINS)
         for pin in set(instance.pins) - outputs:
@@ -100,9 +120,9 @@ def reach(netlist, clock):
                 ends.add(instance.pins[pin])
             else:
                 drives.setdefault(instance.pins[pin], set()).update(instance.pins[out] for out in outputs)
-    outputs = {net for port in netlist.ports if port.direction == "output" for net in port.bits()}
+    outputs = set(_nets(netlist, "output"))
     pairs, kept = [], []
-    for source in (net for port in netlist.ports if port.direction == "input" for net in port.bits()):
+    for source in _nets(netlist, "input"):
         seen, todo = {source}, [source]
         while todo:
             new = drives.get(todo.pop(), set()) - seen
@@ -114,59 +134,58 @@ def reach(netlist, clock):
     return sorted(pairs), sorted(kept)
 
 
-def measure(netlist, clock, files, slews, loads):
-    """The Boundary of ``netlist`` (Netlist). files: paths liberty, verilog, folder (of scripts), spef where
-    there is one; top: the module where it is not that of the netlist. slews: ns, loads: pF. Raises
-    StepError, ToolError."""
+def _nets(netlist: Netlist, direction: str) -> list[str]:
+    return [net for port in netlist.ports if port.direction == direction for net in port.bits()]
+
+
+def measure(netlist: Netlist, clock: str, files: Files, slews: Sequence[float], loads: Sequence[float]) -> Boundary:
+    """Measure ``netlist`` on the grid of ``slews`` (ns) and ``loads`` (pF). Raises StepError, ToolError."""
     pairs, registered = reach(netlist, clock)
-    nets = {
-        way: [net for port in netlist.ports if port.direction == way for net in port.bits()]
-        for way in ("input", "output")
-    }
+    inputs, outputs = _nets(netlist, "input"), _nets(netlist, "output")
     words = {
         "clock": clock,
-        "top": files.get("top", netlist.name),
+        "top": files.top or netlist.name,
         "period": FAR_NS,
-        "liberty": files["liberty"],
-        "verilog": files["verilog"],
-        "spef": f"read_spef {files['spef']}" if files.get("spef") else "",
+        "liberty": files.liberty,
+        "verilog": files.verilog,
+        "spef": f"read_spef {files.spef}" if files.spef else "",
         "slews": " ".join(map(str, slews)),
         "loads": " ".join(map(str, loads)),
         "pairs": " ".join(f"{{{a}}} {{{b}}}" for a, b in pairs),
     }
-
-    def ask(script, folder, **more):
-        lists = {name: " ".join(f"{{{net}}}" for net in value) for name, value in more.items()}
-        said.append(opensta(folder / f"boundary{len(said)}.log", (LOAD + script).format(**words | lists)))
-
-    said = []
-    ask(OUTPUTS, files["folder"], outputs=nets["output"], inputs=[net for net in nets["input"] if net != clock])
+    runs = [(OUTPUTS, {"outputs": outputs, "inputs": [net for net in inputs if net != clock]})]
     if pairs:
-        ask(THROUGH, files["folder"], inputs=sorted({a for a, _ in pairs}))
+        runs.append((THROUGH, {"inputs": sorted({a for a, _ in pairs})}))
     if registered:
-        ask(CONSTRAINTS, files["folder"], inputs=registered)
-    ask(PORTS, files["folder"], inputs=nets["input"])
-    return _boundary("\n".join(said))
+        runs.append((CONSTRAINTS, {"inputs": registered}))
+    runs.append((PORTS, {"inputs": inputs}))
+    printed = []
+    for k, (script, ports) in enumerate(runs):
+        lists = {name: " ".join(f"{{{net}}}" for net in nets) for name, nets in ports.items()}
+        printed.append(opensta(files.folder / f"boundary{k}.log", (LOAD + script).format(**words | lists)))
+    return _boundary("\n".join(printed))
 
 
-def _boundary(said):
-    """From what OpenSTA printed."""
-    capacitance, delays, slews, checks, at = {}, {}, {}, {}, None
-    for line in said.splitlines():
+def _boundary(printed: str) -> Boundary:
+    """Parse OpenSTA's output of the scripts."""
+    found, at, port = Boundary({}, {}, {}, {}), (0.0, 0.0), ""
+    for line in printed.splitlines():
         word, *rest = line.split() or [""]
         if word == "DELAY" and rest[-1] != "none":
-            source, port, edge, slew, load, slack = rest
-            delays.setdefault((source, port, edge), {})[float(slew), float(load)] = FAR_NS - float(slack)
+            source, output, edge, slew, load, slack = rest
+            found.delays.setdefault((source, output, edge), {})[float(slew), float(load)] = FAR_NS - float(slack)
         elif word == "CHECK" and rest[-1] != "none":
-            port, kind, edge, clock_slew, slew, slack = rest
-            checks.setdefault((port, kind, edge), {})[float(clock_slew), float(slew)] = (
+            source, kind, edge, clock_slew, slew, slack = rest
+            found.checks.setdefault((source, kind, edge), {})[float(clock_slew), float(slew)] = (
                 FAR_NS - float(slack) if kind == "max" else -float(slack)
             )
-        elif word in ("SLEW", "PORT"):
-            at = tuple(map(float, rest)) if word == "SLEW" else rest[0]
-        elif found := re.match(r"(\S+) \^ \S+?:(\S+) v \S+?:(\S+)", line):
-            for edge, value in (("rise", found[2]), ("fall", found[3])):
-                slews.setdefault((found[1], edge), {})[at] = float(value)
+        elif word == "SLEW":
+            at = float(rest[0]), float(rest[1])
+        elif word == "PORT":
+            port = rest[0]
+        elif match := re.match(r"(\S+) \^ \S+?:(\S+) v \S+?:(\S+)", line):
+            for edge, value in (("rise", match[2]), ("fall", match[3])):
+                found.slews.setdefault((match[1], edge), {})[at] = float(value)
         elif line.startswith(" Total capacitance:"):  # one number, a range, or these for rise and fall
-            capacitance[at] = max(map(float, re.findall(r"\d+\.\d+", line)))
-    return Boundary(capacitance, delays, slews, checks)
+            found.capacitance[port] = max(map(float, re.findall(r"\d+\.\d+", line)))
+    return found

@@ -1,11 +1,10 @@
-"""Clock, delays outside, slews and loads of a design as SDC: one text for the mapper, the STA and OpenROAD."""
+"""Clock, I/O delays, slews and loads of a design as SDC: one text for synthesis, STA and OpenROAD."""
+
+from flow.layout.design import Design
 
 
-def sdc(design, propagated=True):
-    """The SDC of a Design (ns, pF), for OpenSTA and OpenROAD.
-
-    propagated: whether the clock is that of its tree; not before there is one.
-    """
+def sdc(design: Design, propagated: bool = True) -> str:
+    """Text of the SDC (ns, pF). propagated: whether the clock has the delays of its tree, once there is one."""
     clock, io = design.clock, design.io
     return "\n".join(
         [

@@ -1,20 +1,22 @@
-"""A recorded trace driven into a netlist in Icarus at its clock's full rate, with delays; transitions are counted.
+"""A recorded trace replayed through a netlist in Icarus at the clock's full rate, with delays; transitions are counted.
 
-A trace (rtl/replay's): lines 'fresh inputs outputs', hexadecimal, packed port by port, the first lowest; fresh marks
+A trace (rtl/replay's) has lines 'fresh inputs outputs', hexadecimal, packed port by port, the first lowest; fresh marks
 a simulator's first cycle, where registers hold anything.
 """
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from base.steps import StepError
 from base.tools import ToolError, finish, run
 from flow.layout.netlist.names import plain_names
 from flow.layout.netlist.netlist import Instance, Netlist
 
-from .delays import constrained, icarus, specified
+from .delays import Delays, constrained, icarus, specified
 
 BENCH = """`timescale 1ns/1ps
 module Replay;
@@ -84,11 +86,12 @@ module Count (input a);
 endmodule
 """
 SETTLED = 8  # cycles after which a reset has been taken, and transitions count
+CLOCK_PIN = "clk"  # of the library's registers
 
 
 @dataclass(frozen=True)
 class Timing:
-    """period_ns of the clock; input_delay, output_delay: of the surroundings, as shares of it."""
+    """Period of the clock; I/O delays outside as shares of it."""
 
     period_ns: float
     input_delay: float
@@ -97,27 +100,38 @@ class Timing:
 
 @dataclass(frozen=True)
 class Replayed:
-    """cycles; wrong: of them, with an output that differs or is X; first: what the first of them say. margins: the
-    least seen of setup and hold, ns, None without delays. late: checks that failed. activity: net -> (transitions a
-    cycle, share of time at 1), where asked for."""
+    """Result of a replay.
+
+    cycles: simulated; wrong: those with an output that differs or is X; first: lines about the first of these. margins:
+    the least of setup and hold, ns, None without delays. late: lines about failed checks. activity: net -> (transitions
+    a cycle, share of time at 1), where counted.
+    """
 
     cycles: int
     wrong: int
-    first: tuple
-    margins: tuple | None
-    late: tuple
-    activity: dict
+    first: tuple[str, ...]
+    margins: tuple[float, float] | None
+    late: tuple[str, ...]
+    activity: dict[str, tuple[float, float]]
 
 
-def replay(netlist, cells, trace, timing, folder, delays=None, count=False):
-    """Drive the trace whose head is the file ``trace`` (.json; its lines beside it, .trace) into ``netlist``: Replayed.
+def replay(
+    netlist: Netlist,
+    cells: str,
+    trace: Path,
+    timing: Timing,
+    folder: Path,
+    delays: Delays | None = None,
+    count: bool = False,
+) -> Replayed:
+    """Replay the trace whose head is the file ``trace`` (.json; its lines beside it, .trace) through ``netlist``.
 
-    cells: Verilog of the cells, text. folder: for files. delays: Delays, or None for none. count: whether to count
-    transitions. Raises ToolError, StepError.
+    cells: Verilog of the cells. folder: of the files that Icarus reads. count: whether to count transitions. Raises
+    ToolError, StepError.
     """
     nets = plain_names(netlist, "")
     names = {instance.name: f"x{k}" for k, instance in enumerate(netlist.instances)}
-    head = json.loads(Path(trace).read_text())
+    head = json.loads(trace.read_text())
     (folder / "cells.log").write_text(specified(cells, delays, netlist) if delays else cells)
     (folder / "netlist.log").write_text(_netlist(netlist, nets, names, delays, count))
     (folder / "bench.log").write_text(_bench(netlist.name, head["ports"], timing, folder if delays else None))
@@ -136,14 +150,14 @@ def replay(netlist, cells, trace, timing, folder, delays=None, count=False):
             *(folder / f"{name}.log" for name in ("bench", "netlist", "cells")),
         ]
     )
-    done = finish(["vvp", "-n", program, f"+trace={Path(trace).with_suffix('.trace')}"])
+    done = finish(["vvp", "-n", program, f"+trace={trace.with_suffix('.trace')}"])
     program.unlink()
-    if "SDF ERROR" in done.stdout + done.stderr or "SDF WARNING" in done.stdout + done.stderr:
-        said = next(line for line in (done.stdout + done.stderr).splitlines() if "SDF" in line)
-        raise StepError(f"replay: Icarus did not annotate all delays: {said}")
+    output = done.stdout + done.stderr
+    if lost := next((line for line in output.splitlines() if "SDF ERROR" in line or "SDF WARNING" in line), None):
+        raise StepError(f"replay: Icarus did not annotate all delays: {lost}")
     end = re.search(r"^END (\d+) (\d+)$", done.stdout, re.M)
     if done.returncode or not end or int(end[1]) != head["cycles"]:
-        raise ToolError(f"vvp: the replay ended early: {(done.stdout + done.stderr).strip()[-300:]}")
+        raise ToolError(f"vvp: the replay ended early: {output.strip()[-300:]}")
     margin = re.search(r"^MARGIN (\S+) (\S+)$", done.stdout, re.M)
     back = {plain: net for net, plain in nets.items()}
     found = re.findall(r"^NET Replay\.dut\.n(w\d+) (\d+) (\S+)$", done.stdout, re.M)
@@ -152,14 +166,16 @@ def replay(netlist, cells, trace, timing, folder, delays=None, count=False):
         int(end[1]),
         int(end[2]),
         tuple(re.findall(r"^WRONG .*$", done.stdout, re.M)),
-        (float(margin[1]), float(margin[2])) if delays else None,
+        (float(margin[1]), float(margin[2])) if delays and margin else None,
         tuple(re.findall(r"^(?:SETUP|HOLD) .*$", done.stdout, re.M)),
         {back[plain]: (int(changes) / cycles, float(high)) for plain, changes, high in found},
     )
 
 
-def _netlist(netlist, nets, names, delays, count):
-    """The netlist with short names, the checks of its registers and counters of its nets."""
+def _netlist(
+    netlist: Netlist, nets: Mapping[str, str], names: Mapping[str, str], delays: Delays | None, count: bool
+) -> str:
+    """Verilog of the netlist with short names, the checks of its registers and counters of its nets."""
     ports = {net for port in netlist.ports for net in port.bits()}
     short = {net: net if net in ports else plain for net, plain in nets.items()}
     renamed = Netlist(
@@ -170,24 +186,20 @@ def _netlist(netlist, nets, names, delays, count):
         ),
     )
     lines = []
-    for k, (instance, pin, setup, hold) in enumerate(constrained(delays, netlist) if delays else ()):
-        clock = instance.pins[CLOCK_PIN]
+    for k, check in enumerate(constrained(delays, netlist) if delays else ()):
+        pins = check.instance.pins
         lines.append(
-            f"  Check #(.SETUP({setup:.4f}), .HOLD({hold:.4f})) k{k} (.clk({short[clock]}), "
-            f".d({short[instance.pins[pin]]}));"
+            f"  Check #(.SETUP({check.setup:.4f}), .HOLD({check.hold:.4f})) k{k} (.clk({short[pins[CLOCK_PIN]]}), "
+            f".d({short[pins[check.pin]]}));"
         )
     if count:
         lines += [f"  Count n{plain} (.a({short[net]}));" for net, plain in nets.items()]
     return renamed.verilog().replace("endmodule", "\n".join([*lines, "endmodule"]))
 
 
-CLOCK_PIN = "clk"
-
-
-def _bench(top, ports, timing, folder):
+def _bench(top: str, ports: Sequence[dict[str, Any]], timing: Timing, folder: Path | None) -> str:
     """Verilog of the bench. ports: of the trace's head, in the order in which they are packed."""
-    pins, widths, cares = [".clk(clk)"], {"in": 0, "got": 0}, []
-    valid = {}
+    pins, widths, cares, valid = [".clk(clk)"], {"in": 0, "got": 0}, [], {}
     for port in ports:
         name, vector = port["path"].replace(".", "__"), "got" if port["output"] else "in"
         pins.append(f".{name}({vector}[{widths[vector]} +: {port['width']}])")

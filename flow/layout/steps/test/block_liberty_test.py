@@ -1,4 +1,4 @@
-"""A block's ports as OpenSTA times them, by hand; the Liberty made of that, read back; faults in it are found."""
+"""The timing at a block's ports, by hand; the Liberty generated from it, read back; faults in it are found."""
 
 import json
 import shutil
@@ -8,7 +8,7 @@ import pytest
 from base.steps import StepError
 from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from flow.layout.timing.boundary import measure, reach
+from flow.layout.timing.boundary import Files, measure, reach
 from flow.layout.timing.parasitics import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
@@ -41,7 +41,7 @@ def test_delays_and_constraints_by_hand(files, tmp_path):
     found = measure(
         small.shift(),
         "clk",
-        {name: files[name] for name in ("liberty", "verilog", "spef")} | {"folder": tmp_path},
+        Files(files["liberty"], files["verilog"], tmp_path, files["spef"]),
         (0.1,),
         (0.04,),
     )
@@ -55,7 +55,7 @@ def test_delays_and_constraints_by_hand(files, tmp_path):
     assert found.capacitance == pytest.approx({"clk": 0.04, "a": 0.03})
 
 
-def test_the_liberty_stands_for_the_block(files, tmp_path):
+def test_the_liberty_has_the_timing_of_the_block(files, tmp_path):
     step = BlockLiberty(BlockLibertyParameters("tt"))
     assert step.run(files, {"liberty": tmp_path / "block.lib"}) == {
         "model_error_ns": pytest.approx(0, abs=2e-4),
@@ -73,7 +73,7 @@ def test_a_model_without_an_arc_is_found(files, tmp_path):
     with pytest.raises(StepError, match="does not find the arcs"):
         step.checked(
             small.shift(),
-            {name: files[name] for name in ("liberty", "verilog", "spef")} | {"folder": tmp_path},
+            Files(files["liberty"], files["verilog"], tmp_path, files["spef"]),
             tmp_path / "block.lib",
             tmp_path,
         )

@@ -35,7 +35,7 @@ def played(folder, netlist, timing=EASY, sdf=SDF, inverted=1, count=False):
 def test_what_is_read_of_an_sdf():
     found = delays.read(SDF)
     assert found.paths["u0"] == [("i", "nq", 0.2, 0.4)]
-    assert found.wires["first.d_reg", "q"] == (0.25, 0.25)
+    assert found.nets["first.d_reg", "q"] == (0.25, 0.25)
     assert found.checks["first.d_reg"] == {"i": [0.2, 0.1]}  # the later of both edges
 
 
