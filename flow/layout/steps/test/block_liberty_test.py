@@ -39,11 +39,7 @@ def test_reach():
 
 def test_delays_and_constraints_by_hand(files, tmp_path):
     found = measure(
-        small.shift(),
-        "clk",
-        Files(files["liberty"], files["verilog"], tmp_path, files["spef"]),
-        (0.1,),
-        (0.04,),
+        small.shift(), "clk", Files(files["liberty"], files["verilog"], tmp_path, files["spef"]), (0.1,), (0.04,)
     )
     load = 0.001 + 0.999 / 0.999 * (0.04 - 0.001)  # the tables are straight: 1 ns over 0.999 pF
     rise = (load - 0.001) / 0.999
