@@ -80,16 +80,16 @@ stability: $(READY)  ## stiff and extreme cases: bound against measured
 
 .PHONY: formats
 formats: $(READY)  ## stream formats and scan orders compared: build/formats/
-	@$(PY) -m flow.formats --document docs/stream.md
+	@$(PY) -m talbot formats --document docs/stream.md
 
 .PHONY: sizes
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
-	@$(PY) -m flow.sizes --document README.md
+	@$(PY) -m talbot sizes --document README.md
 
 .PHONY: layout
 layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, DESIGN=quad_divider, or the whole die, DESIGN=asp_sensor, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib' ANALOG=folder]
 ifeq ($(BACKEND),openroad)
-	@$(PY) -m flow.openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
+	@$(PY) -m talbot openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 else
 	@$(PY) -m flow.layout $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK)) \
 		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
@@ -125,7 +125,7 @@ librelane: $(TESTS_READY) $(LAYOUT_READY) have-tools $(LIBRELANE)/.ready  ## Lib
 
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte
-	@$(PY) -m flow.handoff --design $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
+	@$(PY) -m talbot handoff --design $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)

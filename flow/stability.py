@@ -1,19 +1,25 @@
-"""Stiff and extreme cases, optical and digital: what is expected of each, and what came out.
+"""Stiff and extreme cases, optical and digital: the bound of each, and what was measured.
 
 Every case runs with NumPy's warnings raised as errors; the digital ones go through the chip's Verilog.
 """
 
+import json
 import sys
 import warnings
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from tqdm import tqdm
 
+from base.files import check_folder, staged
 from flow.frame import hardware, job
 from flow.frame.request import request
 from flow.frame.summary import summarize
 from models.digital.divider import quad_divide
-from models.stability import Case, optical_cases
+from models.stability import Case, optical_cases, table
 
 SINGLE_TYPE = 1 << 13
 # (name, arguments of `request`); few sizes, since each compiles a simulator
@@ -35,15 +41,32 @@ FRAMES = (
 )
 
 
-def run():
-    """All cases: list of Case. Takes minutes when the simulators are not cached; shows a progress bar."""
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot stability`."""
+    parser.add_argument("--json", type=Path, help="also write the table to this file")
+
+
+def run(options: Namespace) -> int:
+    """Print the table of all cases; 1 where a bound is missed."""
+    if options.json:
+        check_folder("json", options.json.parent)
+    cases = all_cases()
+    print(table(cases))
+    if options.json:
+        with staged(options.json.parent) as part:
+            (part / options.json.name).write_text(json.dumps([vars(case) for case in cases], indent=1) + "\n")
+    return 0 if all(case.ok for case in cases) else 1
+
+
+def all_cases() -> list[Case]:
+    """Measure all cases: minutes when the simulators are not cached; shows a progress bar."""
     with warnings.catch_warnings(), np.errstate(all="raise", under="ignore"):
         warnings.simplefilter("error")
         frames = tqdm(FRAMES, desc="frames", file=sys.stderr, disable=None)
         return [*optical_cases(), *divider_cases(), *(frame_case(*frame) for frame in frames)]
 
 
-def frame_case(name, arguments):
+def frame_case(name: str, arguments: dict[str, Any]) -> Case:
     """A frame through the Verilog: no byte may differ from the golden model, and every figure is finite."""
     asked = request(**arguments)
     scene, todo = job.see(asked)
@@ -57,7 +80,7 @@ def frame_case(name, arguments):
     )
 
 
-def divider_cases():
+def divider_cases() -> list[Case]:
     """The divider where it is stiff: equal operands, zeros, full scale, every sign."""
     full = np.array([-256, -255, 255])
     corners = [np.ravel(a) for a in np.meshgrid(full, full)]
@@ -76,11 +99,13 @@ def divider_cases():
         out.append(Case(f"divider: {name}", "phase within 0.75 LSB of atan2", f"{worst:.3f} LSB", worst <= 0.75))
     zero = quad_divide(np.array([0]), np.array([0]))
     right = bool(zero.zero[0]) and not (zero.ratio[0] or zero.octant[0] or zero.phase[0] or zero.amp_valid[0])
-    out.append(Case("divider: x = y = 0", "zero flag, every other output 0", "so" if right else "not so", right))
+    out.append(
+        Case("divider: x = y = 0", "zero flag, every other output 0", "they are" if right else "they are not", right)
+    )
     return out
 
 
-def phase_error(x, y):
+def phase_error(x: npt.NDArray[np.integer], y: npt.NDArray[np.integer]) -> npt.NDArray[np.float64]:
     """Phase of the divider less atan2, the short way round, in LSB."""
     exact = np.arctan2(y, x) * 256 / (2 * np.pi)
     return np.mod(quad_divide(x, y).phase - exact + 128, 256) - 128

@@ -1,60 +1,48 @@
-"""`python -m talbot COMMAND`: the one program that the make targets call.
+"""The open design flow for angle-sensitive-pixel sensors.
 
-Exit status: 0 right, 1 the chip and its golden model differ, a bound is missed or a stream is damaged, 2 bad input
-or environment (one line on standard error says which field, value and range) or Ctrl-C, 143 terminated.
+Exit status: 0 right, 1 a check fails (the chip and its golden model differ, a bound is missed, a stream is damaged),
+2 bad input or environment (one line on standard error: field, value and range) or Ctrl-C, 143 terminated.
 """
 
 import argparse
-import os
+import importlib
 import signal
 import sys
+from collections.abc import Sequence
 
-from base.tools import ToolError
-from models.parameters import ParameterError
+from base.command import Parser, add_command, execute
 
-from . import commands
+# name -> (module, help). A module is imported when its command is chosen.
+COMMANDS = {
+    "sim": ("flow.frame.command", "a scene through the golden models and the chip's Verilog"),
+    "decode": ("flow.decode", "a byte stream of the chip back to samples (.npz)"),
+    "tradeoff": ("flow.tradeoff.command", "error against run time: tables and plots"),
+    "stability": ("flow.stability", "stiff and extreme cases: bound against measured"),
+    "formats": ("flow.formats.command", "stream formats and scan orders compared"),
+    "sizes": ("flow.sizes.command", "cells and gate equivalents of every block"),
+    "divider": ("flow.simulate.divider.exhaustive", "every input of a divider through its Verilog"),
+    "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
+    "openroad": ("flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
+    "handoff": ("flow.handoff.command", "one archive of a finished layout"),
+}
 
 
-class Parser(argparse.ArgumentParser):
-    """Refuses with one line, as everything else here does."""
-
-    def __init__(self, **options):
-        super().__init__(allow_abbrev=False, **options)
-
-    def error(self, message):
-        _refuse(f"{message} (see {self.prog} --help)")
-        sys.exit(2)
-
-
-def parser():
-    top = Parser(prog="talbot", description="The open design flow for angle-sensitive-pixel sensors.")
-    subs = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (commands.add_sim, commands.add_decode, commands.add_tradeoff, commands.add_stability):
-        add(subs)
+def parser(chosen: str = "") -> Parser:
+    """The parser of all commands, with the arguments of ``chosen`` alone."""
+    top = Parser(prog="talbot", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, (module, text) in COMMANDS.items():
+        sub = commands.add_parser(name, help=text)
+        if name == chosen:
+            add_command(sub, importlib.import_module(module))
     return top
 
 
-def main(argv=None):
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # unwinds, so that nothing half-written stays
-    arguments = parser().parse_args(argv)
-    try:
-        return arguments.run(arguments)
-    except KeyboardInterrupt:
-        _refuse("interrupted; nothing was left half-written")
-    except BrokenPipeError:  # the reader of our output went away
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
-    except (ParameterError, ToolError) as error:
-        _refuse(error)
-    except MemoryError as error:
-        _refuse(f"memory = too little: {error or 'the request does not fit'}")
-    except OSError as error:
-        _refuse(f"file = {error.filename or 'output'}: {error.strerror or error}")
-    return 2
-
-
-def _refuse(message):
-    print(f"talbot: error: {message}", file=sys.stderr)
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command of ``argv`` (default: of this process); returns the exit status."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # unwinds: nothing half-written stays
+    words = sys.argv[1:] if argv is None else argv
+    return execute(parser(words[0] if words else ""), words)
 
 
 if __name__ == "__main__":

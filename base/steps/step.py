@@ -4,10 +4,11 @@ import inspect
 import sys
 from dataclasses import dataclass, fields
 
+from base.tools import ToolError
 from models.parameters import ParameterError
 
 
-class StepError(RuntimeError):
+class StepError(ToolError):
     """A step broke its declaration, or a tool's result is not usable; the message says what and where."""
 
 

@@ -6,10 +6,9 @@ import sys
 import time
 from pathlib import Path
 
-import jinja2
-
 from base.files import staged
 from base.liberty import read
+from base.page import render
 from base.tools import ToolError
 from cells import run, sources
 from cells.characterize.conditions import Conditions
@@ -53,8 +52,7 @@ def main(argv=None):
             "off_grid": curve.by_cell(measured),
         }
         with staged(options.out) as part:
-            template = Path(__file__).with_name("index.html").read_text()
-            (part / "index.html").write_text(jinja2.Template(template).render(page))
+            (part / "index.html").write_text(render(Path(__file__).with_name("index.html"), **page))
             figures = {name: page.get(name) for name in ("kinds", "curve", "off_grid", "variants", "alone")}
             (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
     except (ParameterError, ToolError, SimulationError, OSError) as error:

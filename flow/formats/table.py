@@ -25,7 +25,7 @@ def markdown(rows, gates, growths, threshold, source):
     out = [
         "# Token formats and scan orders",
         "",
-        f"Measured on {source}, by `python -m flow.formats`.",
+        f"Measured on {source}, by `talbot formats`.",
         "",
         f"Threshold {threshold}: {known['psnr_db']:.1f} dB, {100 * known['not_zero']:.1f} % of the samples are "
         f"not zero, and their zero-order entropy allows {known['entropy_ratio']:.2f} : 1. Compression (a byte a "

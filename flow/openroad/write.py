@@ -1,12 +1,10 @@
 """All that a design's run needs, in one folder: Verilog, SDC, Tcl, and projects for flow-scripts and LibreLane."""
 
-import sys
 from pathlib import Path
 
 from base.files import staged
-from base.paths import ROOT
-from base.tools import ToolError, finish
 from flow.layout.timing.constraints import sdc
+from rtl.verilog import export_verilog
 
 from .librelane import librelane
 from .orfs import orfs
@@ -17,10 +15,8 @@ from .variables import variables
 
 def rtl(design, folder):
     """The Verilog of a Design, exported now: text. Raises ToolError."""
-    done = finish([sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder, *design.options], cwd=ROOT)
-    if done.returncode:
-        raise ToolError((done.stderr.strip().splitlines() or ["rtl.export failed"])[-1])
-    return (Path(folder) / f"{design.top}.v").read_text()
+    (path,) = export_verilog(folder, [design.top], design.options)
+    return path.read_text()
 
 
 def write(design, known, folder):

@@ -1,9 +1,8 @@
-"""A Verilog file -> its cells, by synthesis."""
+"""Cells of a Verilog file, by synthesis with Yosys and the abstract library cells/gates.lib."""
 
 import json
 import re
 import shutil
-import subprocess
 import tempfile
 from collections import Counter
 from dataclasses import dataclass
@@ -11,13 +10,11 @@ from functools import cache
 from pathlib import Path
 
 from base.paths import ROOT
+from base.tools import ToolError, finish
 
 LIBRARY = ROOT / "cells" / "gates.lib"
 FLIP_FLOP = "DFF"
-
-
-class SizeError(RuntimeError):
-    """Yosys is missing, or refused a file."""
+YOSYS_MISSING = "yosys: not found; install it (Debian and Ubuntu: apt-get install yosys; make tools)"
 
 
 @dataclass(frozen=True)
@@ -33,20 +30,25 @@ class Size:
     flip_flops: int
     gates: float
     flip_flop_gates: float
-    by_type: dict
+    by_type: dict[str, int]
 
 
 @cache
-def areas():
-    """Area of every cell of the library in NAND2 equivalents: dict name -> float."""
+def areas() -> dict[str, float]:
+    """Area of every cell of the library in NAND2 equivalents by name."""
     pairs = re.findall(r"cell \((\w+)\)\s*{\s*area : ([\d.]+);", LIBRARY.read_text())
     return {name: float(area) for name, area in pairs}
 
 
-def synthesize(path, top):
-    """Cells of each type of module ``top`` in the Verilog file ``path``, flattened: Counter. Raises SizeError."""
-    if not shutil.which("yosys"):
-        raise SizeError("yosys: not found; install it (Debian and Ubuntu: apt-get install yosys; make tools)")
+def yosys_installed() -> bool:
+    """Whether Yosys is on PATH."""
+    return shutil.which("yosys") is not None
+
+
+def synthesize(path: Path, top: str) -> Counter[str]:
+    """Cells of each type of module ``top`` in the Verilog file ``path``, flattened. Raises ToolError."""
+    if not yosys_installed():
+        raise ToolError(YOSYS_MISSING)
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
         script = (
@@ -54,19 +56,19 @@ def synthesize(path, top):
             f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
             f"tee -q -o {report} stat -json"
         )
-        result = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
+        result = finish(["yosys", "-q", "-p", script])
         if result.returncode:
             tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])
-            raise SizeError(f"yosys refused {path}:\n{tail}")
+            raise ToolError(f"yosys refused {path}:\n{tail}")
         return Counter(json.loads(report.read_text())["design"]["num_cells_by_type"])
 
 
-def measure(path, top):
-    """Size of module ``top`` in the Verilog file ``path``. Raises SizeError."""
+def measure(path: Path, top: str) -> Size:
+    """Size of module ``top`` in the Verilog file ``path``. Raises ToolError."""
     counts = synthesize(path, top)
     unknown = sorted(set(counts) - set(areas()))
     if unknown:
-        raise SizeError(f"{top}: cells that {LIBRARY.name} does not have: {', '.join(unknown)}")
+        raise ToolError(f"{top}: cells that {LIBRARY.name} does not have: {', '.join(unknown)}")
     return Size(
         top,
         sum(counts.values()),

@@ -8,7 +8,7 @@ def markdown(sizes):
         "",
         "Yosys (synth, dfflibmap, abc) with `cells/gates.lib`, an abstract library of no process; a gate is a"
         " NAND2 equivalent.",
-        "Written by `python -m flow.sizes`; a top includes everything below it.",
+        "Written by `talbot sizes`; a top includes everything below it.",
         "",
         "| top | cells | flip-flops | gates | of them in flip-flops |",
         "|---|---:|---:|---:|---:|",

@@ -14,19 +14,17 @@ def measure(point):
     variant, width = point
     found = exhaustive(variant, n_frac=8 if variant == "cordic" else width, iterations=width)
     pixels = SensorParameters().array.rows * SensorParameters().array.cols
-    return [
-        {
-            "variant": variant,
-            "width": width,
-            "latency": found["latency"],
-            "interval": found["interval"],
-            "worst_lsb": found["worst"],
-            "rms_lsb": found["rms"],
-            "cycles_a_frame": pixels * found["interval"],
-            "simulation_s": found["seconds"],
-            "mismatches": found["mismatches"],
-        }
-    ]
+    return {
+        "variant": variant,
+        "width": width,
+        "latency": found["latency"],
+        "interval": found["interval"],
+        "worst_lsb": found["worst"],
+        "rms_lsb": found["rms"],
+        "cycles_a_frame": pixels * found["interval"],
+        "simulation_s": found["seconds"],
+        "mismatches": found["mismatches"],
+    }
 
 
 def plot(rows):

@@ -19,18 +19,16 @@ def measure(point):
     scene, todo = job.see(asked)
     result = job.read_out(asked, job.expose(asked, scene, todo), hardware.program(asked.sensor, todo.taps))
     summary = summarize(result)
-    return [
-        {
-            "noise": level,
-            "psnr_edges_db": summary["psnr_db"],
-            "conversions": summary["conversions_made"],
-            "bytes": summary["stream_bytes"],
-            "cycles": summary["cycles"],
-            "energy_uj": summary["energy_uj"]["total"],
-            "simulation_s": result.chip.seconds,
-            "mismatches": summary["stream_mismatches"],
-        }
-    ]
+    return {
+        "noise": level,
+        "psnr_edges_db": summary["psnr_db"],
+        "conversions": summary["conversions_made"],
+        "bytes": summary["stream_bytes"],
+        "cycles": summary["cycles"],
+        "energy_uj": summary["energy_uj"]["total"],
+        "simulation_s": result.chip.seconds,
+        "mismatches": summary["stream_mismatches"],
+    }
 
 
 def plot(rows):

@@ -45,16 +45,14 @@ def measure(point):
         times.append(perf_counter() - start)
     error = float(np.abs(pair - best).max() / best.max())
     changed = int((_codes(pair, sensor) != _codes(best, sensor)).sum())
-    return [
-        {
-            "dtype": dtype,
-            "rows": size,
-            "error": error,
-            "codes_changed": changed,
-            "samples": size * size,
-            "capture_ms": 1e3 * min(times),
-        }
-    ]
+    return {
+        "dtype": dtype,
+        "rows": size,
+        "error": error,
+        "codes_changed": changed,
+        "samples": size * size,
+        "capture_ms": 1e3 * min(times),
+    }
 
 
 def plot(rows):

@@ -30,19 +30,17 @@ def measure(point):
     result = job.read_out(asked, exposed, program)
     summary = summarize(result)
     rebuilt = result.rebuilt
-    return [
-        {
-            "threshold": threshold,
-            "psnr_edges_db": summary["psnr_db"],
-            "psnr_image_db": rebuilt.psnr_db,
-            "conversions": summary["conversions_made"],
-            "bytes": summary["stream_bytes"],
-            "cycles": summary["cycles"],
-            "energy_uj": summary["energy_uj"]["total"],
-            "simulation_s": result.chip.seconds,
-            "mismatches": summary["stream_mismatches"],
-        }
-    ]
+    return {
+        "threshold": threshold,
+        "psnr_edges_db": summary["psnr_db"],
+        "psnr_image_db": rebuilt.psnr_db,
+        "conversions": summary["conversions_made"],
+        "bytes": summary["stream_bytes"],
+        "cycles": summary["cycles"],
+        "energy_uj": summary["energy_uj"]["total"],
+        "simulation_s": result.chip.seconds,
+        "mismatches": summary["stream_mismatches"],
+    }
 
 
 def plot(rows):

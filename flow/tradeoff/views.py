@@ -29,16 +29,14 @@ def measure(point):
         _references[light] = exact(sensor.tile.types, sensor.optics, LIGHTS[light])
     optics = replace(sensor.optics, views=views, subsamples=nodes)
     found = sampling_error(sensor.tile.types, optics, LIGHTS[light], _references[light])
-    return [
-        {
-            "light": light,
-            "views": views,
-            "nodes": nodes,
-            "worst": found.worst,
-            "rms": found.rms,
-            "seconds": found.seconds,
-        }
-    ]
+    return {
+        "light": light,
+        "views": views,
+        "nodes": nodes,
+        "worst": found.worst,
+        "rms": found.rms,
+        "seconds": found.seconds,
+    }
 
 
 def plot(rows):

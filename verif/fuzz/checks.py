@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from base.command import main
+from flow import decode
 from models.digital.stream import StreamError, decode_file, decode_stream
-from models.digital.stream.__main__ import main as decode_command
 from models.parameters import TileParameters
 
 
@@ -91,8 +92,8 @@ def check_file(case, frames):
 def _check_command(source, frames):
     said, told = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
-        status = decode_command([str(source)])
-    wanted = 2 if not frames else int(any(frame.errors for frame in frames))
+        status = main(decode, [str(source)])
+    wanted = 2 if not frames else int(not all(frame.complete for frame in frames))
     demand(status == wanted, f"exit status {status}, not {wanted}")
-    demand(len(said.getvalue().splitlines()) == len(frames), "not one line a frame")
+    demand(len(said.getvalue().splitlines()) == len(frames) + bool(frames), "not one line a frame")
     demand(status != 2 or told.getvalue().count("\n") == 1, "an error of more than one line")

@@ -3,7 +3,7 @@
 from importlib.metadata import version
 from pathlib import Path
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from base import page
 
 from .limits import check, limit_text, of_block
 from .merge import COVERAGE, figures, is_rtl, score
@@ -132,10 +132,8 @@ def tools():
 def render(summary, done, problems, fallen, limits, seconds):
     """HTML text. done: list of Outcome. problems, fallen: one-line texts. seconds: of the whole run."""
     points = sum(len(entry["open_points"]) for entry in summary.values())
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined
-    )
-    return environment.get_template("page.html").render(
+    return page.render(
+        Path(__file__).with_name("page.html"),
         tiles=headline(summary, done, len(problems) + len(fallen) + points),
         rows=[row(block, entry, limits) for block, entry in summary.items()],
         coverage=COVERAGE,

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-import jinja2
 import numpy as np
 import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
+from base.page import render
 from cells import report  # noqa: E402 - it imports KLayout
 from cells.liberty.compare import Difference, summary  # noqa: E402
 from cells.report import curve, pictures  # noqa: E402
@@ -61,8 +61,6 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
         "off_grid": curve.by_cell(ERRORS),
         "curve_picture": pictures.error_against_time(curve.table(ERRORS), curve.DEFAULT),
     }
-    html = jinja2.Template(
-        (Path(report.__file__).parent / "index.html").read_text(), undefined=jinja2.StrictUndefined
-    ).render(page)
+    html = render(Path(report.__file__).with_name("index.html"), **page)
     assert "In the reference alone: c: Y B." in html and "Here alone: nothing." in html
     assert "<td>dfxtp_1</td><td>1</td>" in html and "<td>50.0</td>" in html

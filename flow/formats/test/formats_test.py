@@ -6,7 +6,8 @@ import shutil
 import numpy as np
 import pytest
 
-from flow.formats.__main__ import main
+from base.command import main
+from flow.formats import command
 from flow.formats.codes import entropy_bytes, load_codes, thresholded
 from flow.formats.measure import frame_bytes, growth, measure
 from flow.formats.orders import CHIP, ORDERS, segments_of
@@ -81,7 +82,7 @@ def test_command(tmp_path, codes, capsys, monkeypatch):
     document = tmp_path / "d.md"
     document.write_text("before\n<!-- formats -->\nstale\n<!-- end of formats -->\nafter\n")
     arguments = ["--codes", str(tmp_path / "c.npz"), "--out", str(tmp_path / "out"), "--document", str(document)]
-    assert main(arguments) == 0
+    assert main(command, arguments) == 0
     said = capsys.readouterr()
     assert "| byte pairs |" in said.out and "needs Yosys" in said.out and "sizes left out: yosys: not found" in said.err
     with open(tmp_path / "out" / "formats.csv") as file:
@@ -93,9 +94,7 @@ def test_command(tmp_path, codes, capsys, monkeypatch):
 
 @pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
 def test_gates_rank_the_packers():
-    from flow.formats.__main__ import gates_of_packers
-
-    gates = gates_of_packers()
+    gates = command.gates_of_packers()
     assert list(gates) == list(FORMATS)
     assert gates["byte pairs"] < gates["nibbles"] < gates["Golomb-Rice, fixed"] < gates[CHOSEN] < 2500
 
@@ -118,7 +117,7 @@ def test_bad_codes_are_named(tmp_path, content):
 def test_bad_files_are_one_line_and_status_2(tmp_path, capsys):
     (tmp_path / "text.npz").write_text("no archive")
     for name in ("missing.npz", "text.npz"):
-        assert main(["--codes", str(tmp_path / name), "--out", str(tmp_path / "out")]) == 2
+        assert main(command, ["--codes", str(tmp_path / name), "--out", str(tmp_path / "out")]) == 2
         error = capsys.readouterr().err
         assert name in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()

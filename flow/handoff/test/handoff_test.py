@@ -8,9 +8,9 @@ import time
 
 import pytest
 
+from base.command import main
 from base.lef import pins, size
-from flow.handoff import __main__ as command
-from flow.handoff import contents
+from flow.handoff import command, contents
 from flow.handoff.power import powered
 from flow.layout.design import design
 from flow.layout.report.metrics import RULES
@@ -75,7 +75,7 @@ def layouts(tmp_path):
 
 
 def run(layouts, out):
-    return command.main(["--design", NAME, "--layouts", str(layouts), "--out", str(out)])
+    return main(command, ["--design", NAME, "--layouts", str(layouts), "--out", str(out)])
 
 
 def test_made_twice_it_is_the_same_to_the_byte(layouts, tmp_path):

@@ -8,9 +8,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from jinja2 import Environment, FileSystemLoader
-
 from base.files import staged
+from base.page import render
 from base.paths import ROOT
 from flow.layout.design import DESIGNS, design, macro_designs
 from models.parameters import ParameterError
@@ -116,7 +115,6 @@ def main(argv: Sequence[str] | None = None) -> int:
             for path in (options.out / name / f"{name}.blocks.png", options.out / name / f"{name}.png")
             if path.is_file()
         ]
-        environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
         with staged(folder, ["table.json", "report.html"]) as part:
             (part / "table.json").write_text(
                 json.dumps(
@@ -126,8 +124,11 @@ def main(argv: Sequence[str] | None = None) -> int:
                 + "\n"
             )
             (part / "report.html").write_text(
-                environment.get_template("compare.html").render(
-                    names=[name for name, _, _ in made], rows=rows, pictures=pictures
+                render(
+                    Path(__file__).with_name("compare.html"),
+                    names=[name for name, _, _ in made],
+                    rows=rows,
+                    pictures=pictures,
                 )
             )
     except (ParameterError, OSError) as error:

@@ -5,8 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from jinja2 import Environment, FileSystemLoader
-
+from base.page import render
 from platforms.coriolis import CoriolisPlatform
 
 from .history import Run, history, table
@@ -93,9 +92,9 @@ def page(
 
     broken: lines of `metrics.broken`. picture: file name of the layout's, beside the page. pictures: further ones.
     """
-    environment = Environment(loader=FileSystemLoader(Path(__file__).parent), autoescape=True)
     key = [(wire.name, f"#{color:06x}") for wire, color in zip(tech.metals, PALETTE)]
-    return environment.get_template("page.html").render(
+    return render(
+        Path(__file__).with_name("page.html"),
         s=summary,
         broken=broken,
         tiles=_tiles(summary, broken),

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import pytest
 
+from base.command import main
 from base.tools import ToolError, finish
 from flow.layout.design import DESIGNS, design
 from flow.layout.timing.constraints import sdc
-from flow.openroad import __main__ as command
+from flow.openroad import command
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
 from flow.openroad.test import stub
 from flow.openroad.test.commands import COMMANDS, OLDER
@@ -81,7 +82,7 @@ def openroad(tmp_path, monkeypatch):
 @needs_cells
 def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PDK_ROOT", str(pdk))
-    assert command.main(["quad_divider", "--out", str(tmp_path / "out")]) == 0, capsys.readouterr().err
+    assert main(command, ["quad_divider", "--out", str(tmp_path / "out")]) == 0, capsys.readouterr().err
     folder = tmp_path / "out" / "quad_divider-openroad"
     summary = json.loads((folder / "summary.json").read_text())
     assert 500 < summary["cells"] < 1200
@@ -193,7 +194,7 @@ def test_scripts_are_whole_tcl(script, tmp_path):
 def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     """The SDC and sta.tcl, run by the real OpenSTA on a netlist of cells without delays."""
     chosen = design("quad_divider")
-    assert command.main(["quad_divider", "--out", str(tmp_path), "--write-only"]) == 0
+    assert main(command, ["quad_divider", "--out", str(tmp_path), "--write-only"]) == 0
     folder = tmp_path / "quad_divider-openroad"
     (folder / "synthesis.lib").write_text(functions.small_liberty())
     done = finish(["yosys", "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
@@ -227,9 +228,9 @@ def test_variables_are_in_range(name):
 
 
 def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
-    assert command.main(["divider", "--out", str(tmp_path)]) == 2
-    assert command.main(["quad_divider", "--pdk", "tsmc", "--out", str(tmp_path)]) == 2
-    assert command.main(["asp_chip_macros", "--out", str(tmp_path)]) == 2
+    assert main(command, ["divider", "--out", str(tmp_path)]) == 2
+    assert main(command, ["quad_divider", "--pdk", "tsmc", "--out", str(tmp_path)]) == 2
+    assert main(command, ["asp_chip_macros", "--out", str(tmp_path)]) == 2
     assert list(tmp_path.iterdir()) == []
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 3 and "DESIGN = 'divider'" in lines[0] and "pdk = 'tsmc'" in lines[1]
@@ -238,7 +239,7 @@ def test_bad_input_is_one_line_and_status_2(tmp_path, monkeypatch, capsys):
 
 def test_without_openroad_it_says_where_to_get_it_and_what_was_written(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "missing_tools", lambda: ["openroad"])
-    assert command.main(["amp_ctrl", "--out", str(tmp_path)]) == 2
+    assert main(command, ["amp_ctrl", "--out", str(tmp_path)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and "openroad: not found; get it from https://" in error and "floorplan.tcl" in error
     assert (tmp_path / "amp_ctrl-openroad" / "floorplan.tcl").is_file()

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from base.command import main
+from base.paths import ROOT
 from base.tools import ToolError, finish
 from flow.layout.design import design
-from flow.openroad.__main__ import main
+from flow.openroad import command
 from flow.openroad.test import librelane_pdk
 from flow.openroad.tinytapeout import PROJECTS
-from flow.openroad.write import ROOT
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130.tinytapeout import SIZES_UM
 
@@ -52,7 +53,7 @@ def written(tmp_path):
     """written(name): the folder with the files of design ``name``."""
 
     def write(name):
-        assert main([name, "--out", str(tmp_path), "--write-only"]) == 0
+        assert main(command, [name, "--out", str(tmp_path), "--write-only"]) == 0
         return tmp_path / f"{name}-openroad"
 
     return write

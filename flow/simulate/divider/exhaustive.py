@@ -1,19 +1,18 @@
-"""`python -m flow.simulate.divider.exhaustive`: all 2^18 inputs through the Verilog of a divider, against the golden model.
+"""All 2^18 inputs through the Verilog of a divider, against the golden model.
 
 Twice: in order, with a source and a sink that never wait; then in a scrambled order, with random waiting on both
 sides and a noise floor, so that a response that depended on the one before or on back-pressure would differ.
 """
 
-import argparse
 import sys
+from argparse import ArgumentParser, Namespace
 
 import numpy as np
 from tqdm import tqdm
 
-from base.tools import ToolError
 from models.digital.divider import QuadResult, phase_error
 from models.digital.phase import divide
-from models.parameters import DIVIDERS, ChipParameters, ParameterError, SensorParameters, check_int
+from models.parameters import DIVIDERS, ChipParameters, SensorParameters, check_int
 from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN
 from rtl.export import translate
 from rtl.quad_divider import quad_divider, ratio_bits, timing
@@ -139,62 +138,33 @@ def row(found):
     return "".join(cell.rjust(max(len(name), 9) + 2) for name, cell in zip(COLUMNS, cells))
 
 
-def arguments():
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot divider`."""
     chip = ChipParameters()
-    parser = argparse.ArgumentParser(
-        prog="python -m flow.simulate.divider.exhaustive", description=__doc__.split("`: ")[1].splitlines()[0]
-    )
+    several = {"nargs": "+", "type": int, "metavar": "N"}
     parser.add_argument(
-        "--variant",
-        nargs="+",
-        choices=DIVIDERS,
-        default=DIVIDERS,
-        metavar="NAME",
-        help=f"of {', '.join(DIVIDERS)}; default: all",
+        "--variant", nargs="+", choices=DIVIDERS, default=DIVIDERS, metavar="NAME", help=f"of {', '.join(DIVIDERS)}"
     )
-    parser.add_argument(
-        "--n-frac",
-        nargs="+",
-        type=int,
-        default=[chip.n_frac],
-        metavar="N",
-        help="fraction bits of the ratio, 4..16; default: %(default)s",
-    )
-    parser.add_argument(
-        "--iterations",
-        nargs="+",
-        type=int,
-        default=[chip.cordic_iterations],
-        metavar="N",
-        help="of CORDIC, 4..16; default: %(default)s",
-    )
+    parser.add_argument("--n-frac", default=[chip.n_frac], help="fraction bits of the ratio, 4..16", **several)
+    parser.add_argument("--iterations", default=[chip.cordic_iterations], help="of CORDIC, 4..16", **several)
     parser.add_argument("--golden", action="store_true", help="the golden model alone, without Verilog")
-    return parser
 
 
-def main(argv=None):
-    options = arguments().parse_args(argv)
+def run(options: Namespace) -> int:
+    """Print a line for each configuration; 1 where the Verilog and the golden model differ."""
+    for n_frac in options.n_frac:
+        check_int("n-frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
+    for iterations in options.iterations:
+        check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
     configs = [
-        (v, 8, i) if v == "cordic" else (v, i, ChipParameters().cordic_iterations)
-        for v in options.variant
-        for i in (options.iterations if v == "cordic" else options.n_frac)
+        (variant, 8, width) if variant == "cordic" else (variant, width, ChipParameters().cordic_iterations)
+        for variant in options.variant
+        for width in (options.iterations if variant == "cordic" else options.n_frac)
     ]
     mismatches = 0
-    try:
-        for n_frac in options.n_frac:
-            check_int("n-frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
-        for iterations in options.iterations:
-            check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
-        print("".join(name.rjust(max(len(name), 9) + 2) for name in COLUMNS))
-        for config in tqdm(configs, file=sys.stderr, leave=False, disable=None):
-            found = measure(*config, rtl=not options.golden)
-            mismatches += found["mismatches"] or 0
-            tqdm.write(row(found))
-    except (ParameterError, ToolError, OSError) as error:
-        print(f"flow.simulate.divider.exhaustive: {error}", file=sys.stderr)
-        return 2
+    print("".join(name.rjust(max(len(name), 9) + 2) for name in COLUMNS))
+    for config in tqdm(configs, file=sys.stderr, leave=False, disable=None):
+        found = measure(*config, rtl=not options.golden)
+        mismatches += found["mismatches"] or 0
+        tqdm.write(row(found))
     return 1 if mismatches else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -5,8 +5,10 @@ import shutil
 
 import pytest
 
-from flow.sizes.__main__ import main
-from flow.sizes.measure import SizeError, areas, measure
+from base.command import main
+from base.tools import ToolError
+from flow.sizes import command
+from flow.sizes.measure import areas, measure
 
 needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
 
@@ -31,13 +33,13 @@ def test_known_circuit(tmp_path):
 def test_refused_file(tmp_path):
     path = tmp_path / "Bad.v"
     path.write_text("module Bad (input a\n")
-    with pytest.raises(SizeError, match="yosys refused"):
+    with pytest.raises(ToolError, match="yosys refused"):
         measure(path, "Bad")
 
 
 @needs_yosys
 def test_command_writes_both_files(tmp_path, capsys):
-    assert main(["RegFile", "--out", str(tmp_path), "--rows", "8"]) == 0
+    assert main(command, ["RegFile", "--out", str(tmp_path), "--rows", "8"]) == 0
     (size,) = json.loads((tmp_path / "sizes.json").read_text())
     assert size["top"] == "RegFile"
     assert size["cells"] == sum(size["by_type"].values())
@@ -47,11 +49,11 @@ def test_command_writes_both_files(tmp_path, capsys):
 
 def test_missing_yosys(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PATH", str(tmp_path))
-    assert main(["RegFile", "--out", str(tmp_path / "out")]) == 2
+    assert main(command, ["RegFile", "--out", str(tmp_path / "out")]) == 2
     assert "yosys: not found; install it" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
 
 def test_bad_option(tmp_path, capsys):
-    assert main(["RegFile", "--out", str(tmp_path / "out"), "--lanes", "3"]) == 2
+    assert main(command, ["RegFile", "--out", str(tmp_path / "out"), "--lanes", "3"]) == 2
     assert "lanes = 3" in capsys.readouterr().err

@@ -2,14 +2,14 @@ import csv
 
 import pytest
 
-from flow.tradeoff import SWEEPS, run
+from flow.tradeoff.sweeps import SWEEPS, run_sweeps
 from models.parameters import ParameterError
 
 
 @pytest.fixture(scope="module")
 def tables(tmp_path_factory):
     out = tmp_path_factory.mktemp("tradeoff")
-    return out, run(out, quick=True)
+    return out, run_sweeps(out, quick=True)
 
 
 def test_every_sweep_writes_its_table_and_plot(tables):
@@ -46,5 +46,5 @@ def test_more_nodes_err_less_for_uniform_light(tables):
 
 def test_unknown_sweep_is_named(tmp_path):
     with pytest.raises(ParameterError, match="only = 'speed'"):
-        run(tmp_path / "out", ["speed"])
+        run_sweeps(tmp_path / "out", ["speed"])
     assert not (tmp_path / "out").exists()

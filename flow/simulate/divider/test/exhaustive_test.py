@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
+from base.command import main
 from base.tools import ToolError
-from flow.simulate.divider.exhaustive import compare, every_input, main, measure, pack, row, unpack, verilog
+from flow.simulate.divider import exhaustive
+from flow.simulate.divider.exhaustive import compare, every_input, measure, pack, row, unpack, verilog
 from flow.simulate.divider.simulator import program, simulate
 from models.digital.divider import QuadResult, quad_divide
 from models.parameters import DIVIDERS
@@ -64,7 +66,7 @@ def test_names_what_failed():
 
 
 def test_command(capsys):
-    assert main(["--golden", "--variant", "radix2", "cordic", "--n-frac", "4", "16"]) == 0
+    assert main(exhaustive, ["--golden", "--variant", "radix2", "cordic", "--n-frac", "4", "16"]) == 0
     assert len(capsys.readouterr().out.splitlines()) == 4
-    assert main(["--n-frac", "3"]) == 2
+    assert main(exhaustive, ["--n-frac", "3"]) == 2
     assert "n-frac = 3: must be an integer in 4..16" in capsys.readouterr().err

@@ -1,7 +1,7 @@
 import pytest
 
+from flow.frame.arguments import pixel_types, span, window
 from models.parameters import ALL_TYPES, ParameterError, Window
-from talbot.arguments import pixel_types, span, window
 
 FULL = Window(0, 95, 0, 63)
 

@@ -1,4 +1,4 @@
-"""Text of the command line -> validated values. Every refusal names the field, the value and the range."""
+"""Validated values from text of the command line. Every error names the field, the value and the range."""
 
 from models.parameters import ALL_TYPES, ParameterError, Window
 
@@ -12,8 +12,8 @@ TYPE_GROUPS = {
 }
 
 
-def pixel_types(text):
-    """Mask of pixel types from '0xFF00FF', group names ('low,high') or type numbers ('0,2,5'): int."""
+def pixel_types(text: str) -> int:
+    """Mask of pixel types from '0xFF00FF', group names ('low,high') or type numbers ('0,2,5')."""
     mask = 0
     for word in text.split(","):
         word = word.strip().lower()
@@ -26,7 +26,7 @@ def pixel_types(text):
     return mask
 
 
-def window(text, full):
+def window(text: str, full: Window) -> Window:
     """Window in tiles from 'row0:row1,col0:col1', inclusive; 'full' or '' is the whole array."""
     if text in ("", "full"):
         return full
@@ -38,8 +38,8 @@ def window(text, full):
     return Window(row0, row1, col0, col1)
 
 
-def span(field, text, low, high):
-    """Two integers 'a:b' (or one, 'a'), each in low..high, not inverted: tuple."""
+def span(field: str, text: str, low: int, high: int) -> tuple[int, int]:
+    """Two integers 'a:b' (or one, 'a'), each in low..high, not inverted."""
     first, colon, last = text.partition(":")
     a = _number(field, first, low, high)
     b = _number(field, last, low, high) if colon else a
@@ -48,12 +48,12 @@ def span(field, text, low, high):
     return a, b
 
 
-def integer(field, text, low, high):
+def integer(field: str, text: str, low: int, high: int) -> int:
     """An integer in low..high."""
-    return _number(field, str(text), low, high)
+    return _number(field, text, low, high)
 
 
-def real(field, text, low, high):
+def real(field: str, text: str, low: float, high: float) -> float:
     """A number in [low, high]."""
     try:
         value = float(text)
@@ -64,7 +64,7 @@ def real(field, text, low, high):
     return value
 
 
-def _number(field, text, low, high, base=10, also=""):
+def _number(field: str, text: str, low: int, high: int, base: int = 10, also: str = "") -> int:
     try:
         value = int(text, base)
     except ValueError:

@@ -3,8 +3,9 @@ import json
 import numpy as np
 import pytest
 
+from base.command import main
+from flow import decode
 from models.digital.stream import decode_file, encode_frame
-from models.digital.stream.__main__ import main
 from models.digital.stream.test.frames import header_of, samples_of
 
 
@@ -18,10 +19,11 @@ def stream():
 def test_decodes_to_a_file(tmp_path, capsys, stream):
     samples, data = stream
     (tmp_path / "s.bin").write_bytes(data)
-    assert main([str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 0
+    assert main(decode, [str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 0
     assert (
         capsys.readouterr().out
-        == f"frame 9: edge, 12 x 30, threshold 4, 12 of 12 rows, 70 conversions, 290 left out, {len(data)} bytes\n"
+        == "frame 9: edge, 12 x 30, complete; threshold 4, 12 of 12 rows, 70 conversions, 290 left out, "
+        f"{len(data)} bytes\nwritten: {tmp_path / 'd.npz'}\n"
     )
     with np.load(tmp_path / "d.npz") as kept:
         assert np.array_equal(kept["samples"], samples) and kept["read"].all() and kept["bad_rows"].size == 0
@@ -37,11 +39,11 @@ def test_every_frame_has_its_file(tmp_path, stream):
     assert sorted(path.name for path in tmp_path.glob("*.npz")) == ["d-1.npz", "d-2.npz", "d.npz"]
 
 
-def test_damage_is_told_and_the_rest_is_kept(tmp_path, capsys, stream):
+def test_damage_is_reported_and_the_rest_is_kept(tmp_path, capsys, stream):
     samples, data = stream
     (tmp_path / "s.bin").write_bytes(data[:-30])
-    assert main([str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 1
-    error = capsys.readouterr().err
+    assert main(decode, [str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 1
+    error = capsys.readouterr().out
     assert "rows are bad" in error and "trailer" in error
     with np.load(tmp_path / "d.npz") as kept:
         assert kept["bad_rows"].size and not kept["read"][kept["bad_rows"]].any() and kept["made"] == -1
@@ -50,15 +52,15 @@ def test_damage_is_told_and_the_rest_is_kept(tmp_path, capsys, stream):
 @pytest.mark.parametrize("content, message", [(b"", "empty"), (b"no stream", "header"), (bytes(1000), "starts with")])
 def test_no_stream_is_one_line_and_status_2(tmp_path, capsys, content, message):
     (tmp_path / "s.bin").write_bytes(content)
-    assert main([str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 2
+    assert main(decode, [str(tmp_path / "s.bin"), "--out", str(tmp_path / "d.npz")]) == 2
     error = capsys.readouterr().err
-    assert error.startswith("error: ") and message in error and "s.bin" in error and error.count("\n") == 1
+    assert error.startswith("flow.decode: error: ") and message in error and "s.bin" in error and error.count("\n") == 1
     assert not (tmp_path / "d.npz").exists()
 
 
 @pytest.mark.parametrize("name, out", [("missing", "d.npz"), ("", "d.npz"), ("s.bin", "no/folder/d.npz")])
 def test_files_that_cannot_be_are_named(tmp_path, capsys, stream, name, out):
     (tmp_path / "s.bin").write_bytes(stream[1])
-    assert main([str(tmp_path / name), "--out", str(tmp_path / out)]) == 2
+    assert main(decode, [str(tmp_path / name), "--out", str(tmp_path / out)]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and (name or str(tmp_path)) in error or "no/folder" in error

@@ -1,0 +1,91 @@
+"""A command of the program `talbot`: what its module provides, and the one place that runs it and reports errors.
+
+The module's docstring begins with what the command does, and the module has two functions: ``add_arguments(parser)``
+declares the options, ``run(options)`` does the work and returns the exit status: 0, or 1 where a check fails. For bad
+input or a tool that is missing or fails, it raises. In a package the module is command.py.
+"""
+
+import argparse
+import os
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from types import ModuleType
+from typing import Any, NoReturn
+
+from models.parameters import ParameterError
+
+from .tools import ToolError
+
+
+class HelpFormatter(argparse.RawDescriptionHelpFormatter, argparse.ArgumentDefaultsHelpFormatter):
+    """Shows the defaults of options that have one."""
+
+    def _get_help_string(self, action: argparse.Action) -> str | None:
+        return super()._get_help_string(action) if action.default else action.help
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that refuses with one line, takes no abbreviations and shows defaults."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**{"allow_abbrev": False, "formatter_class": HelpFormatter} | options)
+
+    def error(self, message: str) -> NoReturn:
+        """Print the line and exit with status 2."""
+        _report(self.prog.split()[0], f"{message} (see {self.prog} --help)")
+        sys.exit(2)
+
+
+def add_command(parser: argparse.ArgumentParser, command: ModuleType) -> None:
+    """Give ``parser`` the description, arguments and ``run`` of ``command``."""
+    parser.description = command.__doc__
+    command.add_arguments(parser)
+    parser.set_defaults(run=command.run)
+
+
+def main(command: ModuleType, argv: Sequence[str] | None = None) -> int:
+    """Exit status of ``command`` alone: for processes that our code starts, and for tests."""
+    spec = command.__spec__
+    parser = Parser(prog=spec.name.removesuffix(".command") if spec else command.__name__)
+    add_command(parser, command)
+    return execute(parser, argv)
+
+
+def execute(parser: Parser, argv: Sequence[str] | None = None) -> int:
+    """Run the command that ``argv`` chooses: its status; 2 and one line on standard error for what it raises."""
+    options = parser.parse_args(argv)
+    run: Callable[[argparse.Namespace], int] = options.run
+    try:
+        return run(options)
+    except KeyboardInterrupt:
+        message = "interrupted; nothing was left half-written"
+    except BrokenPipeError:  # the reader of our output went away
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except (ParameterError, ToolError) as error:
+        message = one_line(error)
+    except MemoryError as error:
+        message = f"memory = too little: {error or 'the request does not fit'}"
+    except OSError as error:
+        message = f"file = {error.filename or 'output'}: {error.strerror or error}"
+    _report(parser.prog, message)
+    return 2
+
+
+def one_line(error: Exception) -> str:
+    """The first line of an error's message and, of a tool's output after it, the first line with an error."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()] or [type(error).__name__]
+    found = next((line for line in lines[1:] if "error" in line.lower()), lines[-1])
+    return lines[0] if len(lines) == 1 else f"{lines[0]} {found}"
+
+
+def failures(lines: Iterable[str]) -> int:
+    """Print what a check found, a line each, on standard error; the exit status: 1 where there is a line, else 0."""
+    found = list(lines)
+    for line in found:
+        print(line, file=sys.stderr, flush=True)
+    return int(bool(found))
+
+
+def _report(program: str, message: str) -> None:
+    print(f"{program}: error: {message}", file=sys.stderr)

@@ -1,0 +1,50 @@
+"""A byte stream of the chip back to samples: FILE.npz, and a further file for each further frame."""
+
+from argparse import ArgumentParser, Namespace
+from collections.abc import Iterable
+from pathlib import Path
+
+from base.files import check_folder
+from models.digital.stream import decode_file
+from models.digital.stream.frame import DecodedFrame
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Arguments of `talbot decode`."""
+    parser.add_argument("file", type=Path, help="stream.bin of a run, or captured from a chip")
+    parser.add_argument(
+        "--out", type=Path, help="the .npz to write; further frames: X-1.npz ... (default: beside FILE)"
+    )
+
+
+def run(options: Namespace) -> int:
+    """Decode the file and print a line for each frame; 1 where a frame is incomplete."""
+    out = options.out or options.file.with_suffix(".npz")
+    check_folder("out", out.parent)
+    frames = decode_file(options.file, out)
+    for frame in frames:
+        print(describe(frame))
+    print(f"written: {out}")
+    return 0 if all(frame.complete for frame in frames) else 1
+
+
+def describe(frame: DecodedFrame) -> str:
+    """A line: the frame's header, what is wrong with it, and its counts."""
+    h, rows = frame.header, frame.layout.rows.size
+    wrong = [*frame.errors, *([f"bad rows: {ranges(frame.bad_rows)}"] if frame.bad_rows else [])]
+    counts = "counts lost" if frame.made is None else f"{frame.made} conversions, {frame.left_out} left out"
+    return (
+        f"frame {h.frame_number}: {h.mode}, {h.rows} x {h.cols}, {'; '.join(wrong) or 'complete'}; threshold "
+        f"{h.threshold}, {rows - len(frame.bad_rows)} of {rows} rows, {counts}, {frame.stop - frame.start} bytes"
+    )
+
+
+def ranges(numbers: Iterable[int]) -> str:
+    """Sorted integers in short: '3-7, 9', or 'none'."""
+    runs: list[list[int]] = []
+    for n in map(int, numbers):
+        if runs and n == runs[-1][1] + 1:
+            runs[-1][1] = n
+        else:
+            runs.append([n, n])
+    return ", ".join(f"{a}" if a == b else f"{a}-{b}" for a, b in runs) or "none"

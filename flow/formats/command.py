@@ -1,0 +1,59 @@
+"""Token formats and scan orders of the byte stream compared: build/formats/."""
+
+import sys
+import tempfile
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from tqdm import tqdm
+
+from base.charts import save
+from base.files import insert, staged
+from base.paths import ROOT
+from base.table import write_csv
+from flow.sizes.measure import YOSYS_MISSING, yosys_installed
+from flow.sizes.measure import measure as size_of
+from rtl.verilog import export_verilog
+
+from .codes import default_codes, load_codes
+from .measure import THRESHOLDS, growth, measure
+from .table import chart, markdown
+from .tokens import FORMATS
+
+DEFAULT_THRESHOLD = 10
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot formats`."""
+    out = ROOT / "build" / "formats"
+    parser.add_argument("--out", type=Path, default=out, help="folder of formats.csv, formats.md and formats.png")
+    parser.add_argument("--codes", type=Path, help="npz with codes and ideal, both (rows, cols), in place of the scene")
+    parser.add_argument("--document", type=Path, help="also put the tables between the marks of this Markdown file")
+
+
+def run(options: Namespace) -> int:
+    """Measure every format in every order, write and print the tables."""
+    codes, ideal = load_codes(options.codes) if options.codes else default_codes()
+    source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
+    rows = measure(codes, ideal, THRESHOLDS, lambda every: tqdm(every, desc="threshold", disable=None))
+    growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
+    text = markdown(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD, source)
+    with staged(options.out) as part:
+        write_csv(part / "formats.csv", rows)
+        (part / "formats.md").write_text(text)
+        save(chart(rows), part / "formats.png")
+    if options.document:
+        insert(options.document, "formats", text.split("\n", 2)[2].strip() + "\n")
+    print(text, end="")
+    return 0
+
+
+def gates_of_packers() -> dict[str, float] | None:
+    """NAND2 equivalents of every format's packer by format, or None where Yosys is missing. Raises ToolError."""
+    if not yosys_installed():
+        print(f"sizes left out: {YOSYS_MISSING}", file=sys.stderr)
+        return None
+    packers = {name: packer for name, (_, packer) in FORMATS.items()}
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        export_verilog(Path(folder), list(packers.values()))
+        return {name: size_of(Path(folder) / f"{packer}.v", packer).gates for name, packer in packers.items()}

@@ -1,0 +1,92 @@
+"""A scene through the golden models and the Verilog of the whole chip."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from base.progress import Steps
+from models.parameters import LANES, MODES
+
+from . import arguments as text
+
+if TYPE_CHECKING:
+    from .request import FrameRequest
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot sim`: texts, checked by `run`."""
+    add = parser.add_argument
+    add("--scene", default="motorcycle", help="name of a scene (--scene list shows them) or an image file")
+    add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
+    add("--focus", help="disparity of the focal plane, px a view step, -100..100")
+    add("--mode", default="edge", help="one of " + ", ".join(MODES))
+    add("--threshold", default="10", help="edge mode: |code| below this is left out, 0..127")
+    add("--rows", default="384", help="pixels, 1..1024")
+    add("--cols", default="384", help="pixels, 1..1536")
+    add("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS))
+    add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
+    add("--decimation", default="0", help="log2 of the tile step, 0..3")
+    add("--lanes", default="8", help="converters, one of " + ", ".join(map(str, LANES)))
+    add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
+    add("--noise", default="1.0", help="times the physical noise, 0..100")
+    add("--seed", default="1", help="of every random draw, 0..4294967295")
+    add("--out", help="folder for the results (default: build/sim/<scene>)")
+    add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
+
+
+def run(options: Namespace) -> int:
+    """Simulate one frame and print its figures; 1 where the chip and the golden model differ."""
+    from models.scene import scenes
+
+    from .job import STEPS, run
+
+    if options.scene == "list":
+        print("\n".join(sorted(scenes)))
+        return 0
+    asked = _request(options)
+    with Steps(STEPS) as steps:
+        summary = run(asked, note=steps.note)
+    _print_figures(summary, asked.folder)
+    return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
+
+
+def _request(a: Namespace) -> "FrameRequest":
+    """The FrameRequest of the options ``a``. Raises ParameterError."""
+    from .request import request
+
+    rows, cols = text.integer("rows", a.rows, 1, 1024), text.integer("cols", a.cols, 1, 1536)
+    waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
+    focus = None if a.focus is None else text.real("focus", a.focus, -100, 100)
+    return request(
+        rows=rows,
+        cols=cols,
+        lanes=text.integer("lanes", a.lanes, min(LANES), max(LANES)),
+        window=lambda full: text.window(a.window, full),
+        mask=text.pixel_types(a.types),
+        scene=a.scene,
+        depth=a.depth,
+        focus=focus,
+        mode=a.mode,
+        threshold=text.integer("threshold", a.threshold, 0, 127),
+        decimation=text.integer("decimation", a.decimation, 0, 3),
+        phase=a.phase,
+        noise=text.real("noise", a.noise, 0, 100),
+        seed=text.integer("seed", a.seed, 0, 2**32 - 1),
+        out=a.out,
+        waves=waves,
+    )
+
+
+def _print_figures(s: dict[str, Any], folder: Path) -> None:
+    psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.2f} dB"
+    print(
+        f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "
+        f"{s['stream_mismatches']} stream bytes and {s['decoded_mismatches']} decoded samples differ from the model"
+    )
+    print(f"  {s['stream_bytes']:,} bytes for {s['samples']:,} samples ({s['compression_ratio']:.2f}:1) at {psnr}")
+    print(
+        f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
+        f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {s['energy_uj']['total']:.2f} uJ"
+    )
+    print(f"  simulated at {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s; wall clock {sum(s['wall_s'].values()):.1f} s")
+    print(f"  look at {folder / 'report.html'}")

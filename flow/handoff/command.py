@@ -1,0 +1,40 @@
+"""One archive of a finished layout, the same to the byte: build/handoff/<design>.tar.gz."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from base.command import failures
+from base.files import check_folder, staged
+from base.paths import ROOT
+from flow.layout.design import DESIGNS, design, folder_name
+from models.parameters import check_choice
+from platforms.load import PROCESSES
+
+from .archive import archive, sha256
+from .contents import Broken, contents, manifest, waived
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot handoff`."""
+    parser.add_argument("--design", default="quad_divider", help=f"one of {', '.join(DESIGNS)}")
+    parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
+    parser.add_argument("--layouts", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "handoff", help="folder of the archive")
+
+
+def run(options: Namespace) -> int:
+    """Write the archive and print its hash; 1 where the layout breaks a rule that is not waived."""
+    chosen = design(options.design)
+    check_choice("pdk", options.pdk, PROCESSES)
+    check_folder("out", options.out)
+    name = folder_name(chosen, options.pdk)
+    try:
+        files, substitutes = contents(chosen, options.layouts / name, waived(chosen))
+    except Broken as error:
+        return failures(f"{chosen.name}: {line}" for line in str(error).splitlines())
+    files["manifest.json"] = manifest(chosen, files, substitutes)
+    with staged(options.out) as part:
+        archive(part / f"{name}.tar.gz", name, files)
+    path = options.out / f"{name}.tar.gz"
+    print(f"{path}: {len(files)} files, sha256 {sha256(path.read_bytes())}")
+    return 0

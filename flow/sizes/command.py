@@ -1,0 +1,39 @@
+"""Cells, flip-flops and gate equivalents of every block, by synthesis: build/sizes/."""
+
+import json
+import tempfile
+from argparse import ArgumentParser, Namespace
+from dataclasses import asdict
+from pathlib import Path
+
+from base.files import insert, staged
+from base.paths import ROOT
+from rtl.verilog import export_verilog
+
+from .measure import measure
+from .table import markdown, readme_table
+
+SENSOR = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot sizes`."""
+    parser.add_argument("tops", nargs="*", help="tops to measure; default: every one")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "sizes", help="folder of sizes.json and sizes.md")
+    parser.add_argument("--document", type=Path, help="also put the blocks' table between the marks of this file")
+    for name in SENSOR:
+        parser.add_argument(f"--{name.replace('_', '-')}", help="of the sensor: see talbot verilog --help")
+
+
+def run(options: Namespace) -> int:
+    """Synthesize the tops, write and print their table."""
+    sensor = [f"--{name.replace('_', '-')}={value}" for name in SENSOR if (value := getattr(options, name))]
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        sizes = [measure(path, path.stem) for path in export_verilog(Path(folder), options.tops, sensor)]
+    with staged(options.out) as part:
+        (part / "sizes.json").write_text(json.dumps([asdict(size) for size in sizes], indent=1) + "\n")
+        (part / "sizes.md").write_text(markdown(sizes))
+    if options.document:
+        insert(options.document, "sizes", readme_table(sizes))
+    print(markdown(sizes), end="")
+    return 0

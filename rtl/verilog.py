@@ -1,0 +1,17 @@
+"""Verilog of the chip and its blocks, translated in a process of its own."""
+
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from base.paths import ROOT
+from base.tools import run
+
+
+def export_verilog(folder: Path, tops: Sequence[str] = (), options: Sequence[object] = ()) -> list[Path]:
+    """Write <top>.v of each of ``tops`` (default: all) into ``folder``; returns the files.
+
+    options: of the sensor, see `rtl.export`. Raises ToolError.
+    """
+    words = [sys.executable, "-m", "rtl.export", "--out", folder, *(f"--top={top}" for top in tops), *options]
+    return [Path(line) for line in run(words, cwd=ROOT).splitlines()]
