@@ -1,1 +1,1 @@
-"""Bit-true models of everything digital: what the RTL must equal, bit for bit."""
+"""Bit-true models of everything digital: the RTL equals them bit for bit."""

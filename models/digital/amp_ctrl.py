@@ -1,15 +1,19 @@
-"""The amplifier control's waveform, cycle by cycle: what AmpCtrl must put on its pins (rtl/amp_ctrl/README.md)."""
+"""Waveform of the amplifier control, cycle by cycle: the values on the pins of AmpCtrl (rtl/amp_ctrl/README.md)."""
 
+from collections.abc import Generator, Iterable
 from dataclasses import dataclass, fields
 
 import numpy as np
+import numpy.typing as npt
+
+from models.parameters import AmpTiming
 
 TAPS = 4
 
 
 @dataclass(frozen=True)
 class AmpPins:
-    """The outputs of AmpCtrl in one cycle; each 0 or 1, tap 0..3."""
+    """Outputs of AmpCtrl in one cycle; each 0 or 1, tap 0..3."""
 
     pixel_reset: int = 0
     shutter: int = 0
@@ -25,24 +29,38 @@ class AmpPins:
 
 PIN_NAMES = tuple(f.name for f in fields(AmpPins))
 
+Waveform = Generator[AmpPins, bool, None]
 
-def row_waveform(timing, four_tap=False):
-    """One row from the cycle behind `start` to the cycle of `done`: a generator of AmpPins.
 
-    timing: AmpTiming. It is sent hold_free (bool) of the cycle whose pins it has just yielded; the guard
-    before a read lasts until that has been True in its last cycle. Prime it with next().
+def row_waveform(timing: AmpTiming, four_tap: bool = False) -> Waveform:
+    """Pins of one row from the cycle after `start` to the cycle of `done`.
+
+    The generator expects hold_free (bool) of the cycle whose pins it has just yielded; the guard before a read lasts
+    until hold_free is True in its last cycle. Prime it with next().
+
+    Parameters
+    ----------
+    timing : AmpTiming
+        Durations of the phases.
+    four_tap : bool
+        Four sub-frames, one per time-of-flight tap, instead of one.
+
+    Yields
+    ------
+    AmpPins
+        Of each cycle.
     """
     for tap in range(TAPS if four_tap else 1):
         yield from _sub_frame(timing, tap)
     yield AmpPins(done=1)
 
 
-def _sub_frame(t, tap):
-    def phase(length, **high):
+def _sub_frame(t: AmpTiming, tap: int) -> Waveform:
+    def phase(length: int, **high: int) -> Waveform:
         for _ in range(length):
             yield AmpPins(tap=tap, busy=1, **high)
 
-    if tap == 0:  # later taps begin in the guard that ended the tap before
+    if tap == 0:  # later taps begin in the guard that ends the tap before
         yield from phase(t.t_guard)
     yield from phase(t.t_reset, pixel_reset=1)
     yield from phase(t.t_guard)
@@ -58,15 +76,26 @@ def _sub_frame(t, tap):
     for length, reference in ((t.t_settle, 1), (t.t_read, 0)):
         yield from phase(length - 1, read=1, ref_ctl=reference)
         yield AmpPins(tap=tap, busy=1, read=1, ref_ctl=reference, sample=1)
-    # The tap counts up behind the guard, long after the second `sample`, into this tap's capacitors, has ended.
+    # The tap counts up after the guard, long after the end of the second `sample` into this tap's capacitors.
     yield from phase(t.t_guard)
 
 
-def waveform(timing, four_tap, hold_free):
-    """One row for a known pattern of hold_free: dict of pin name -> uint8 array, an entry a cycle.
+def waveform(timing: AmpTiming, four_tap: bool, hold_free: Iterable[bool]) -> dict[str, npt.NDArray[np.uint8]]:
+    """Pins of one row for a known pattern of hold_free.
 
-    timing: AmpTiming. hold_free: bools, entry i for the i-th cycle behind `start`. The arrays end with the cycle of
-    `done`, or with hold_free if that is shorter.
+    Parameters
+    ----------
+    timing : AmpTiming
+        Durations of the phases.
+    four_tap : bool
+        Four sub-frames instead of one.
+    hold_free : iterable of bool
+        Entry i belongs to the i-th cycle after `start`.
+
+    Returns
+    -------
+    dict of str to uint8
+        Pin name to one value per cycle, up to the cycle of `done` or the end of ``hold_free``.
     """
     row, cycles = row_waveform(timing, four_tap), []
     pins = next(row)
@@ -79,8 +108,21 @@ def waveform(timing, four_tap, hold_free):
     return dict(zip(PIN_NAMES, table.T))
 
 
-def row_cycles(timing, four_tap=False):
-    """Cycles from the one behind `start` to the one before `done`, if the hold is free whenever it is asked for."""
+def row_cycles(timing: AmpTiming, four_tap: bool = False) -> int:
+    """Cycles from the one after `start` to the one before `done`, if hold_free is always True.
+
+    Parameters
+    ----------
+    timing : AmpTiming
+        Durations of the phases.
+    four_tap : bool
+        Four sub-frames instead of one.
+
+    Returns
+    -------
+    int
+        Cycles of a row.
+    """
     t = timing
     tap = (
         t.t_reset

@@ -1,4 +1,4 @@
-"""CORDIC in vectoring mode, bit true: the divider's peer, with the same result.
+"""CORDIC in vectoring mode, bit true: an alternative to the divider, with the same result.
 
 The folded vector (larger, smaller), at 0 to 45 degrees, is turned onto the x axis in ``iterations`` steps of
 atan(2^-1), atan(2^-2), ... State, with F = ``iterations`` fraction bits in each:
@@ -14,17 +14,37 @@ to even.
 """
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import check_int
 from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
 
-from .divider import fold, operands, unfold
+from .divider import QuadResult, fold, operands, unfold
+
+Ints = npt.NDArray[np.integer]
 
 
-def cordic(x, y, iterations=10, noise_floor=0):
-    """Phase by CORDIC; returns QuadResult with ratio 0.
+def cordic(x: npt.ArrayLike, y: npt.ArrayLike, iterations: int = 10, noise_floor: int = 0) -> QuadResult:
+    """Phase of vectors by CORDIC.
 
-    x, y: integers in -256..255, broadcastable.  iterations: 4..16.  noise_floor: 0..255.  Raises ParameterError.
+    Parameters
+    ----------
+    x, y : array of int
+        -256..255, broadcastable.
+    iterations : int
+        Steps, 4..16, and as many fraction bits.
+    noise_floor : int
+        Amplitude below which a phase is not valid, 0..255.
+
+    Returns
+    -------
+    QuadResult
+        Of the broadcast shape, with ratio 0.
+
+    Raises
+    ------
+    ParameterError
+        For an argument out of range.
     """
     check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
     octant, larger, smaller = fold(*operands(x, y, noise_floor))
@@ -34,8 +54,23 @@ def cordic(x, y, iterations=10, noise_floor=0):
     return unfold(octant, larger, np.zeros_like(larger), nearest_even(state[2], iterations), noise_floor)
 
 
-def rotate(x, y, z, i, angle):
-    """One step: turn (x, y) by atan(2^-i) towards the x axis and count the angle in z."""
+def rotate(x: Ints, y: Ints, z: Ints, i: int, angle: int) -> tuple[Ints, Ints, Ints]:
+    """One step: turn (x, y) by atan(2^-i) towards the x axis and count the angle in z.
+
+    Parameters
+    ----------
+    x, y, z : array of int
+        State.
+    i : int
+        Number of the step, from 1.
+    angle : int
+        Angle of the step in LSB of z.
+
+    Returns
+    -------
+    tuple of array
+        State after the step.
+    """
     up = y >= 0
     return (
         np.where(up, x + (y >> i), x - (y >> i)),
@@ -44,7 +79,20 @@ def rotate(x, y, z, i, angle):
     )
 
 
-def nearest_even(z, fraction):
-    """z / 2^fraction rounded to nearest, ties to even (``fraction`` at least 1)."""
+def nearest_even(z: Ints, fraction: int) -> Ints:
+    """Round z / 2^fraction to the nearest integer, ties to even.
+
+    Parameters
+    ----------
+    z : array of int
+        Fixed-point values.
+    fraction : int
+        Fraction bits, 1 or more.
+
+    Returns
+    -------
+    array of int
+        Shape of ``z``.
+    """
     whole, half = z >> fraction, 1 << fraction - 1
     return whole + ((z & 2 * half - 1) + (whole & 1) > half)

@@ -6,6 +6,7 @@ Angles are counter-clockwise from +x. The phase is a binary angle: 256 is one tu
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ParameterError, check_int
 from models.parameters.divider import (
@@ -22,29 +23,53 @@ from models.parameters.divider import (
 
 @dataclass(frozen=True, eq=False)
 class QuadResult:
-    """Arrays of the operands' common shape.
+    """Results of a division, arrays of the operands' common shape.
 
-    octant: uint8, 0..7, floor(angle / 45 degrees); an axis or a diagonal belongs to the octant that starts there.
-    ratio: uint16, floor(2^n_frac * min/max) of (|x|, |y|), saturated to 2^n_frac - 1; CORDIC: 0.
-    zero: bool, x = y = 0; octant, ratio and phase are then 0.
-    phase: uint8, binary angle.
-    amp_valid: bool, max(|x|, |y|) >= the noise floor, and not zero (a zero vector has no phase).
-    amp: uint8, max(|x|, |y|), saturated to 255.
+    Attributes
+    ----------
+    octant : uint8
+        0..7, floor(angle / 45 degrees); an axis or a diagonal belongs to the octant that starts there.
+    ratio : uint16
+        floor(2^n_frac * min/max) of (|x|, |y|), saturated to 2^n_frac - 1; CORDIC: 0.
+    zero : bool
+        True where x = y = 0; octant, ratio and phase are then 0.
+    phase : uint8
+        Binary angle.
+    amp_valid : bool
+        max(|x|, |y|) >= the noise floor, and not zero (a zero vector has no phase).
+    amp : uint8
+        max(|x|, |y|), saturated to 255.
     """
 
-    octant: np.ndarray
-    ratio: np.ndarray
-    zero: np.ndarray
-    phase: np.ndarray
-    amp_valid: np.ndarray
-    amp: np.ndarray
+    octant: npt.NDArray[np.integer]
+    ratio: npt.NDArray[np.integer]
+    zero: npt.NDArray[np.bool_]
+    phase: npt.NDArray[np.integer]
+    amp_valid: npt.NDArray[np.bool_]
+    amp: npt.NDArray[np.integer]
 
 
-def quad_divide(x, y, n_frac=8, noise_floor=0):
-    """Divide and look the phase up; returns QuadResult.
+def quad_divide(x: npt.ArrayLike, y: npt.ArrayLike, n_frac: int = 8, noise_floor: int = 0) -> QuadResult:
+    """Divide the smaller component by the larger one and look the phase up.
 
-    x, y: integers in -256..255, broadcastable.  n_frac: 4..16 fraction bits.  noise_floor: 0..255.
-    Raises ParameterError.
+    Parameters
+    ----------
+    x, y : array of int
+        -256..255, broadcastable.
+    n_frac : int
+        Fraction bits of the ratio, 4..16.
+    noise_floor : int
+        Amplitude below which a phase is not valid, 0..255.
+
+    Returns
+    -------
+    QuadResult
+        Of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        For an argument out of range.
     """
     check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     octant, larger, smaller = fold(*operands(x, y, noise_floor))
@@ -53,8 +78,26 @@ def quad_divide(x, y, n_frac=8, noise_floor=0):
     return unfold(octant, larger, ratio, index, noise_floor)
 
 
-def operands(x, y, noise_floor):
-    """x, y as int32 arrays of one shape. Raises ParameterError unless all operands are integers in range."""
+def operands(x: npt.ArrayLike, y: npt.ArrayLike, noise_floor: int) -> tuple[npt.NDArray[np.int32], ...]:
+    """Check and broadcast the operands.
+
+    Parameters
+    ----------
+    x, y : array of int
+        -256..255, broadcastable.
+    noise_floor : int
+        0..255.
+
+    Returns
+    -------
+    tuple of int32
+        x and y, of one shape.
+
+    Raises
+    ------
+    ParameterError
+        Unless all operands are integers in range.
+    """
     check_int("noise_floor", noise_floor, 0, AMP_MAX)
     checked = []
     for field, value in (("x", x), ("y", y)):
@@ -67,13 +110,27 @@ def operands(x, y, noise_floor):
                 f"{field} = {value[outside].flat[0]}: must be an integer in {SAMPLE_MIN}..{SAMPLE_MAX}"
             )
         checked.append(value.astype(np.int32))
-    return np.broadcast_arrays(*checked)
+    return tuple(np.broadcast_arrays(*checked))
 
 
-def fold(x, y):
-    """(octant, larger, smaller): the octant of (x, y), and |x|, |y| in order of size; int32.
+def fold(
+    x: npt.NDArray[np.int32], y: npt.NDArray[np.int32]
+) -> tuple[npt.NDArray[np.integer], npt.NDArray[np.int32], npt.NDArray[np.int32]]:
+    """Fold vectors into one octant.
 
     A quadrant holds the axis it starts at. Turned back by its quadrant, a vector other than zero has u > 0, v >= 0.
+
+    Parameters
+    ----------
+    x, y : int32
+        Vectors, of one shape.
+
+    Returns
+    -------
+    octant : array of int
+        0..7.
+    larger, smaller : int32
+        |x| and |y| in order of size.
     """
     lower = (y < 0) | ((y == 0) & (x < 0))
     odd = (y != 0) & np.where(lower, x >= 0, x <= 0)
@@ -83,10 +140,32 @@ def fold(x, y):
     return octant, np.maximum(u, v), np.minimum(u, v)
 
 
-def unfold(octant, larger, ratio, index, noise_floor):
-    """QuadResult from what `fold` gave, the ratio, and the index: the angle from the octant's own axis, in LSB.
+def unfold(
+    octant: npt.NDArray[np.integer],
+    larger: npt.NDArray[np.integer],
+    ratio: npt.NDArray[np.integer],
+    index: npt.NDArray[np.integer],
+    noise_floor: int,
+) -> QuadResult:
+    """Turn a result in the folded octant back.
 
     Odd octants run from their diagonal to the axis where the next one starts.
+
+    Parameters
+    ----------
+    octant, larger : array of int
+        Results of `fold`.
+    ratio : array of int
+        Fixed-point ratio.
+    index : array of int
+        Angle from the octant's own axis, in LSB of the phase.
+    noise_floor : int
+        0..255.
+
+    Returns
+    -------
+    QuadResult
+        Of the shape of ``octant``.
     """
     zero = larger == 0
     odd = octant & 1
@@ -101,8 +180,21 @@ def unfold(octant, larger, ratio, index, noise_floor):
     )
 
 
-def phase_error(phase, x, y):
-    """``phase`` minus atan2(y, x), in LSB, -128..128: float64 of the common shape. 0 where x = y = 0."""
+def phase_error(phase: npt.ArrayLike, x: npt.ArrayLike, y: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Error of a binary angle against atan2(y, x).
+
+    Parameters
+    ----------
+    phase : array
+        Binary angle, 0..255.
+    x, y : array
+        Vectors, broadcastable.
+
+    Returns
+    -------
+    float64
+        -128..128 LSB, of the common shape; 0 where x = y = 0.
+    """
     exact = np.arctan2(y, x) * (TURN / (2 * np.pi))
-    error = (phase - exact + TURN / 2) % TURN - TURN / 2
+    error = (np.asarray(phase) - exact + TURN / 2) % TURN - TURN / 2
     return np.where((np.asarray(x) == 0) & (np.asarray(y) == 0), 0.0, error)

@@ -1,18 +1,33 @@
-"""What a host sends and gets over SPI: command bytes, a frame's configuration, the status."""
+"""The host's side of the SPI port: command bytes, a frame's configuration, the status."""
 
-from models.parameters.checks import ParameterError, check_int
-from models.parameters.frame import MODES
+from collections.abc import Iterable, Sequence
+
+from models.parameters import MODES, FrameParameters, ParameterError, check_int
 from models.parameters.registers import register_map, trim_range
 
 WRITE = 0x80  # bit 7 of the command byte; the rest is the address
 TRANSFER_MAX = 255  # bytes of one transfer
 
 
-def frame_writes(frame, trims=None):
-    """Configuration writes of one frame: list of (address, byte), ascending, every configuration byte once.
+def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> list[tuple[int, int]]:
+    """Configuration writes of one frame.
 
-    frame: FrameParameters. trims: 24 integers by pixel type (fewer leave the rest 0), or None for zeros.
-    Raises ParameterError.
+    Parameters
+    ----------
+    frame : FrameParameters
+        Configuration.
+    trims : iterable of int, optional
+        Up to 24 register values by pixel type; 0 for the rest.
+
+    Returns
+    -------
+    list of (int, int)
+        (address, byte), ascending, every configuration byte once.
+
+    Raises
+    ------
+    ParameterError
+        For too many trims or a trim out of range.
     """
     trims = [] if trims is None else [int(t) for t in trims]
     chip = register_map()
@@ -47,12 +62,26 @@ def frame_writes(frame, trims=None):
     return sorted(chip.image(chip.configuration, values).items())
 
 
-def write_transfers(writes):
-    """SPI transfers for (address, byte) pairs: list of bytes, each a command and data at ascending addresses.
+def write_transfers(writes: Iterable[tuple[int, int]]) -> list[bytes]:
+    """SPI transfers of some writes.
 
-    Raises ParameterError for an address beyond 127 or a byte beyond 255.
+    Parameters
+    ----------
+    writes : iterable of (int, int)
+        (address, byte), 0..127 and 0..255.
+
+    Returns
+    -------
+    list of bytes
+        Each a command byte and data at ascending addresses.
+
+    Raises
+    ------
+    ParameterError
+        For an address or a byte out of range.
     """
-    out, last = [], None
+    out: list[bytearray] = []
+    last = None
     for address, byte in writes:
         check_int("address", address, 0, 127)
         check_int(f"byte for address {address}", byte, 0, 255)
@@ -64,35 +93,77 @@ def write_transfers(writes):
     return [bytes(t) for t in out]
 
 
-def command(name):
-    """SPI transfer that writes 1 to one single-bit field, such as 'start' or a sticky status bit."""
+def command(name: str) -> bytes:
+    """SPI transfer that writes 1 to a single-bit field.
+
+    Parameters
+    ----------
+    name : str
+        Key of the field: 'start' or a sticky status bit.
+
+    Returns
+    -------
+    bytes
+        Command byte and data.
+    """
     field = register_map()[name]
     return bytes((WRITE | field.byte, 1 << field.shift))
 
 
-def read_transfer(address, count):
-    """SPI transfer that reads ``count`` bytes, 1..254, from ``address`` on; they come back from the second byte on."""
+def read_transfer(address: int, count: int) -> bytes:
+    """SPI transfer that reads consecutive bytes; the reply holds them from its second byte on.
+
+    Parameters
+    ----------
+    address : int
+        First address, 0..127.
+    count : int
+        Bytes, 1..254.
+
+    Returns
+    -------
+    bytes
+        Command byte and zeros.
+
+    Raises
+    ------
+    ParameterError
+        For an argument out of range.
+    """
     check_int("address", address, 0, 127)
     check_int("count", count, 1, TRANSFER_MAX - 1)
     return bytes((address, *(0 for _ in range(count))))
 
 
-def status_transfers():
-    """Transfers that read the status and the counters; their replies go to `decode_status`."""
+def status_transfers() -> list[bytes]:
+    """SPI transfers that read the status and the counters; `decode_status` decodes their replies."""
     chip = register_map()
     first, last = chip.counters[0], chip.counters[-1]
     return [read_transfer(chip["busy"].address, 1), read_transfer(first.byte, last.byte + last.bytes - first.byte)]
 
 
-def decode_status(replies):
-    """The replies of `status_transfers`, command bytes' echoes included: dict of name -> int or bool.
+def decode_status(replies: Sequence[bytes]) -> dict[str, int | bool]:
+    """Decode the status and the counters.
 
-    Raises ParameterError when a reply has the wrong length.
+    Parameters
+    ----------
+    replies : sequence of bytes
+        Replies to `status_transfers`, with the byte during the command.
+
+    Returns
+    -------
+    dict of str to int or bool
+        Field to value.
+
+    Raises
+    ------
+    ParameterError
+        For a reply of the wrong length.
     """
     chip, transfers = register_map(), status_transfers()
-    lengths, wanted = [len(r) for r in replies], [len(t) for t in transfers]
-    if lengths != wanted:
-        raise ParameterError(f"status replies = {lengths} bytes: must be {wanted}")
+    lengths, expected = [len(r) for r in replies], [len(t) for t in transfers]
+    if lengths != expected:
+        raise ParameterError(f"status replies = {lengths} bytes: must be {expected}")
     status, counters = (bytes(r[1:]) for r in replies)
     base = chip.counters[0].byte
     return {

@@ -1,45 +1,87 @@
-"""The chip's test pattern: a digital image in place of the analog front end, for bring-up.
+"""Test pattern of the chip: a digital image in place of the analog front end, for bring-up.
 
-A ramp over rows, tiles, types and sub-samples makes every code; in a checkerboard of quiet areas only its two
-lowest bits are left around mid-scale, so that a window comparison has something to leave out.
+A ramp over rows, tiles, types and sub-samples contains every code. In a checkerboard of quiet areas only its two
+lowest bits remain, around mid-scale, so that the window comparison leaves out some conversions.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from models.digital.sar import BIPOLAR, convert
+from models.digital.sar import BIPOLAR, Conversion, convert
 from models.parameters import SAMPLES_PER_PIXEL, TileParameters
 
 
-def pattern_value(row, tile, k, sub):
-    """Value at the comparators, 0..255 (offset binary in edge mode): int array of the broadcast shape.
+def pattern_value(
+    row: npt.ArrayLike, tile: npt.ArrayLike, k: npt.ArrayLike, sub: npt.ArrayLike
+) -> npt.NDArray[np.int64]:
+    """Value of the pattern at the comparators.
 
-    row: pixel row. tile: tile column. k: column in the tile. sub: sub-sample. Integers >= 0.
+    Parameters
+    ----------
+    row, tile, k, sub : array of int
+        Pixel row, tile column, column in the tile and sub-sample; 0 or more, broadcastable.
+
+    Returns
+    -------
+    int64
+        0..255 (offset binary in edge mode), of the broadcast shape.
     """
-    row, tile, k, sub = (np.asarray(x, np.int64) for x in (row, tile, k, sub))
-    ramp = (3 * row + 5 * tile + 40 * k + 37 * sub) & 0xFF
-    quiet = (row >> 2 ^ tile >> 1) & 1
+    y, t, x, s = (np.asarray(place, np.int64) for place in (row, tile, k, sub))
+    ramp = (3 * y + 5 * t + 40 * x + 37 * s) & 0xFF
+    quiet = (y >> 2 ^ t >> 1) & 1
     return np.where(quiet, 0x80 | ramp & 3, ramp)
 
 
 @dataclass(frozen=True)
 class PatternEnd:
-    """Stands where models.afe.FrontEnd does when the chip's test pattern is on: ideal, and blind to the scene.
+    """Replacement of models.afe.FrontEnd when the test pattern is on: ideal, and independent of the scene.
 
-    rows, cols: size of the array in pixels.
+    Attributes
+    ----------
+    rows, cols : int
+        Size of the array in pixels.
+    tile : TileParameters
+        The tile.
     """
 
     rows: int
     cols: int
     tile: TileParameters = TileParameters()
 
-    def values(self, mode):
-        """What the comparators see, in LSB: float64 (subs, rows, cols)."""
+    def values(self, mode: str) -> npt.NDArray[np.float64]:
+        """Values at the comparators.
+
+        Parameters
+        ----------
+        mode : str
+            One of MODES.
+
+        Returns
+        -------
+        float64 (subs, rows, cols)
+            In LSB.
+        """
         sub, row, col = np.ogrid[: SAMPLES_PER_PIXEL[mode], : self.rows, : self.cols]
         value = pattern_value(row, col // self.tile.cols, col % self.tile.cols, sub).astype(np.float64)
         return value - BIPOLAR if mode == "edge" else value
 
-    def convert(self, samples, mode, threshold=0):
-        """The codes of a whole frame: Conversion of arrays (subs, rows, cols). samples: not looked at."""
+    def convert(self, samples: npt.ArrayLike, mode: str, threshold: int = 0) -> Conversion:
+        """Convert a whole frame.
+
+        Parameters
+        ----------
+        samples : array
+            Ignored.
+        mode : str
+            One of MODES.
+        threshold : int
+            0..127 codes.
+
+        Returns
+        -------
+        Conversion
+            Of arrays (subs, rows, cols).
+        """
         return convert(self.values(mode), mode != "edge", threshold)

@@ -1,24 +1,70 @@
-"""The phase path: four time-of-flight taps -> (phase, amplitude), through the quadrature divider, bit true."""
+"""The phase path, bit true: four time-of-flight taps to (phase, amplitude) through the quadrature divider."""
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.cordic import cordic
-from models.digital.divider import quad_divide
+from models.digital.divider import QuadResult, quad_divide
+from models.parameters import ChipParameters
 
 
-def divide(variant, n_frac, iterations, x, y, noise_floor=0):
-    """QuadResult that ``variant`` must give; arguments as in `quad_divide` and `cordic`."""
+def divide(
+    variant: str, n_frac: int, iterations: int, x: npt.ArrayLike, y: npt.ArrayLike, noise_floor: int = 0
+) -> QuadResult:
+    """Result of a divider variant, bit true.
+
+    Parameters
+    ----------
+    variant : str
+        One of DIVIDERS.
+    n_frac : int
+        Fraction bits of the ratio, 4..16; unused by CORDIC.
+    iterations : int
+        Steps of CORDIC, 4..16.
+    x, y : array of int
+        -256..255, broadcastable.
+    noise_floor : int
+        Amplitude below which a phase is not valid, 0..255.
+
+    Returns
+    -------
+    QuadResult
+        Of the broadcast shape.
+
+    Raises
+    ------
+    ParameterError
+        For an argument out of range.
+    """
     if variant == "cordic":
         return cordic(x, y, iterations, noise_floor)
     return quad_divide(x, y, n_frac, noise_floor)
 
 
-def phase_samples(taps, chip, noise_floor=0):
-    """Phase and amplitude of every pixel; returns two int16 arrays (...).
+def phase_samples(
+    taps: npt.ArrayLike, chip: ChipParameters, noise_floor: int = 0
+) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.int16]]:
+    """Phase and amplitude of every pixel.
 
-    taps: integers 0..255, (..., 4), at 0, 90, 180 and 270 degrees. chip: ChipParameters.
-    phase: 8-bit binary angle of atan2(i270 - i90, i0 - i180) [Jayasuriya2017, Eq. 5.3 with both signs].
-    amplitude: max(|x|, |y|), 1..255, or 0 where it is under ``noise_floor`` or there is no phase at all.
+    Parameters
+    ----------
+    taps : array of int (..., 4)
+        0..255, at 0, 90, 180 and 270 degrees.
+    chip : ChipParameters
+        Variant and widths of the divider.
+    noise_floor : int
+        0..255.
+
+    Returns
+    -------
+    phase : int16 (...)
+        8-bit binary angle of atan2(i270 - i90, i0 - i180).
+    amplitude : int16 (...)
+        max(|x|, |y|), 1..255, or 0 where it is below ``noise_floor`` or both differences are 0.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 5.3 with both signs.
     """
     taps = np.asarray(taps, np.int32)
     x, y = taps[..., 0] - taps[..., 2], taps[..., 3] - taps[..., 1]

@@ -1,46 +1,81 @@
-"""The register file behind its SPI port: what a byte written or read does (models/parameters/registers)."""
+"""The register file at its SPI port: effects of every byte written or read (models/parameters/registers)."""
+
+from collections.abc import Mapping, Sequence
 
 from models.parameters.registers import register_map
 
-ADDRESS_MAX = 127  # reached, the address no longer counts up
+ADDRESS_MAX = 127  # the address stops counting up here
 
 
 class RegisterBank:
     """State of the register file, byte by byte.
 
-    resets: reset values that differ from the map's, by field (row1 and col1 follow the array).
-    What a write makes happen is left in ``start`` and ``loop`` (a byte) until `take` collects it.
+    A write to `start` or `loop_back` is kept in ``start`` and ``loop`` (a byte) until `take` collects it.
+
+    Parameters
+    ----------
+    resets : mapping of str to int, optional
+        Reset values that differ from the map's, by field (row1 and col1 follow the array).
     """
 
-    def __init__(self, resets=()):
+    def __init__(self, resets: Mapping[str, int] | None = None) -> None:
         chip = register_map()
         self.chip = chip
-        self.bytes = chip.image(chip.fields, dict(resets))
+        self.bytes = chip.image(chip.fields, resets)
         self.writable = chip.writable()
         self.sticky = {f.name: f.shift for f in chip.fields if f.access == "w1c"}
-        self.held = 0  # sticky bits at their places in the status byte
-        self.snapshot = 0  # bytes of the counter whose first byte was read last
+        self.held = 0  # sticky bits at their positions in the status byte
+        self.snapshot = 0  # value of the counter whose first byte was read last
         self.start = False
-        self.loop = None
+        self.loop: int | None = None
 
-    def value(self, key):
-        """Present value of a configuration field, unsigned."""
+    def value(self, key: str) -> int:
+        """Current value of a configuration field.
+
+        Parameters
+        ----------
+        key : str
+            Key of the field in the map.
+
+        Returns
+        -------
+        int
+            Unsigned.
+        """
         f = self.chip[key]
         raw = sum(self.bytes.get(f.byte + i, 0) << 8 * i for i in range(f.bytes))
         return raw >> f.shift & (1 << f.width) - 1
 
-    def set(self, name):
-        """Set a sticky status bit."""
+    def set(self, name: str) -> None:
+        """Set a sticky status bit.
+
+        Parameters
+        ----------
+        name : str
+            Name of the bit.
+        """
         self.held |= 1 << self.sticky[name]
 
-    def take(self):
-        """(start, loop byte or None) since the last call."""
+    def take(self) -> tuple[bool, int | None]:
+        """Start strobe, and loop-back byte or None, since the last call."""
         out = self.start, self.loop
         self.start, self.loop = False, None
         return out
 
-    def write(self, address, byte, busy, loop_full):
-        """One byte from the host. busy: a frame runs. loop_full: the last loop-back byte still waits."""
+    def write(self, address: int, byte: int, busy: bool, loop_full: bool) -> None:
+        """Write one byte from the host.
+
+        Parameters
+        ----------
+        address : int
+            0..127.
+        byte : int
+            0..255.
+        busy : bool
+            A frame runs.
+        loop_full : bool
+            The last loop-back byte still waits.
+        """
         chip = self.chip
         if address == chip["start"].byte:
             if byte >> chip["start"].shift & 1:
@@ -62,8 +97,23 @@ class RegisterBank:
             else:
                 self.bytes[address] = byte & self.writable[address]
 
-    def read(self, address, busy, counters):
-        """One byte for the host. counters: the present values in the order of the map."""
+    def read(self, address: int, busy: bool, counters: Sequence[int]) -> int:
+        """Read one byte for the host.
+
+        Parameters
+        ----------
+        address : int
+            0..127.
+        busy : bool
+            A frame runs.
+        counters : sequence of int
+            Current values in the order of the map.
+
+        Returns
+        -------
+        int
+            0..255; 0 at an unused address.
+        """
         for f, value in zip(self.chip.counters, counters, strict=True):
             if address == f.byte:
                 self.snapshot = value

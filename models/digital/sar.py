@@ -1,11 +1,13 @@
-"""Successive approximation with a zero window: what a lane makes of a held value (docs/chip.md).
+"""Successive approximation with a zero window: from held values to codes (docs/chip.md).
 
-`convert` does whole arrays at once; `decisions` is one lane's sequence, decision by decision.
+`convert` converts whole arrays; `decisions` is one lane's sequence, decision by decision.
 """
 
-from typing import NamedTuple
+from collections.abc import Generator
+from typing import NamedTuple, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ParameterError, check_int
 
@@ -14,20 +16,63 @@ BIPOLAR = 128  # offset binary: DAC code = code + 128
 
 
 class Conversion(NamedTuple):
-    """codes: int16, -128..127 or 0..255.  converted: bool, False where the window alone gave the zero.
-    decisions: uint8, comparator decisions each sample took.
+    """Result of a conversion, arrays of one shape.
+
+    Attributes
+    ----------
+    codes : int16
+        -128..127 or 0..255.
+    converted : bool
+        False where the window comparison alone gives the zero.
+    decisions : uint8
+        Comparator decisions of each sample.
     """
 
-    codes: np.ndarray
-    converted: np.ndarray
-    decisions: np.ndarray
+    codes: npt.NDArray[np.int16]
+    converted: npt.NDArray[np.bool_]
+    decisions: npt.NDArray[np.uint8]
 
 
-def decisions(unsigned, threshold):
-    """One conversion as a generator: yields DAC codes, is sent the comparator's answers, returns (code, converted).
+class _Lanes(Protocol):
+    """The part of models.afe.Converter that a conversion needs."""
 
-    Edge mode (not unsigned) with a threshold first asks v >= level(T) and v >= level(1 - T). Then 8 decisions,
-    MSB first. A code inside the window all the same is set to zero.
+    def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]: ...
+
+    def compare(
+        self,
+        held: npt.NDArray[np.float64],
+        dac: npt.ArrayLike,
+        unsigned: bool,
+        lane: npt.ArrayLike,
+        index: npt.ArrayLike,
+        decision: int,
+    ) -> npt.NDArray[np.bool_]: ...
+
+
+def decisions(unsigned: bool, threshold: int) -> Generator[int, bool, tuple[int, bool]]:
+    """One conversion as a generator: yields DAC codes, expects the comparator's decision on each.
+
+    Edge mode (not unsigned) with a threshold T first compares v >= level(T) and v >= level(1 - T). Then follow 8
+    decisions, MSB first. A code that is inside the window after these is set to zero.
+
+    Parameters
+    ----------
+    unsigned : bool
+        Codes 0..255 without a window, else -128..127 with it.
+    threshold : int
+        T, 0..127; 0 converts every sample.
+
+    Yields
+    ------
+    int
+        DAC code, 0..255.
+
+    Returns
+    -------
+    code : int
+        -128..127 or 0..255.
+    converted : bool
+        False where the window comparison alone gives the zero.
     """
     window = 0 if unsigned else threshold
     if window:
@@ -43,14 +88,40 @@ def decisions(unsigned, threshold):
     return (0 if abs(code) < window else code), True
 
 
-def convert(v, unsigned, threshold=0, converter=None, lane=0, index=0):
-    """Convert values; returns Conversion of arrays of v's shape.
+def convert(
+    v: npt.ArrayLike,
+    unsigned: bool,
+    threshold: int = 0,
+    converter: _Lanes | None = None,
+    lane: npt.ArrayLike = 0,
+    index: npt.ArrayLike = 0,
+) -> Conversion:
+    """Convert held values.
 
-    v: float64 in LSB, finite.  unsigned: 0..255 without a window, else -128..127 with it.
-    threshold: 0..127; samples under it in magnitude become exact zeros; 0 converts everything.
-    converter: models.afe.Converter, or None for ideal lanes; lane (0..lanes-1) and index (sample number) then say
-    which lane converts which sample, broadcastable to v.
-    Raises ParameterError for a threshold out of range and for values that are not finite.
+    Parameters
+    ----------
+    v : float64
+        Values in LSB, finite.
+    unsigned : bool
+        Codes 0..255 without a window, else -128..127 with it.
+    threshold : int
+        0..127; samples of a smaller magnitude become exact zeros; 0 converts every sample.
+    converter : models.afe.Converter, optional
+        Imperfect lanes; None is ideal ones.
+    lane : array of int
+        Lane of each sample, 0..lanes-1, broadcastable to ``v``.
+    index : array of int
+        Number of each sample, for its noise, broadcastable to ``v``.
+
+    Returns
+    -------
+    Conversion
+        Of arrays of the shape of ``v``.
+
+    Raises
+    ------
+    ParameterError
+        For a threshold out of range and for values that are not finite.
     """
     check_int("threshold", threshold, 0, 127)
     v = np.asarray(v, np.float64)
@@ -66,21 +137,30 @@ def convert(v, unsigned, threshold=0, converter=None, lane=0, index=0):
     codes[np.abs(codes) < window] = 0
     first = 2 if window else 0
     taken = np.where(converted, first + BITS, first).astype(np.uint8)
-    return Conversion(*(x.reshape(v.shape) for x in (codes, converted, taken)))
+    return Conversion(codes.reshape(v.shape), converted.reshape(v.shape), taken.reshape(v.shape))
 
 
-def _ideal(v, unsigned, window):
-    """What the search finds with levels at code - 0.5: floor(v + 0.5), clipped."""
+def _ideal(
+    v: npt.NDArray[np.float64], unsigned: bool, window: int
+) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]:
+    """Result of the search with levels at code - 0.5: floor(v + 0.5), clipped."""
     low = 0 if unsigned else -BIPOLAR
     limited = np.clip(v, low, low + 255)
     nearest = np.floor(limited + 0.5)
-    nearest -= limited < nearest - 0.5  # where the sum was rounded up to the next integer
+    nearest -= limited < nearest - 0.5  # where the sum is rounded up to the next integer
     codes = nearest.astype(np.int16)
     return codes, np.abs(codes) >= window
 
 
-def _search(held, unsigned, window, converter, lane, index):
-    """The decisions themselves, on flat arrays."""
+def _search(
+    held: npt.NDArray[np.float64],
+    unsigned: bool,
+    window: int,
+    converter: _Lanes,
+    lane: npt.NDArray[np.integer],
+    index: npt.NDArray[np.integer],
+) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.bool_]]:
+    """Decide on flat arrays, one decision after another."""
     converted = np.ones(held.size, bool)
     if window:
         above = converter.compare(held, BIPOLAR + window, unsigned, lane, index, 0)

@@ -1,30 +1,58 @@
-"""The scan: which pixels a frame reads and in which order (docs/chip.md, Scan order)."""
+"""The scan: the pixels that a frame reads, and their order (docs/chip.md, Scan order)."""
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import SAMPLES_PER_PIXEL, FrameParameters, ParameterError, TileParameters
 
 
 @dataclass(frozen=True)
 class Step:
-    """One conversion step: every enabled lane converts the pixel at (row, 6 * (L * group + lane) + k)."""
+    """One conversion step: every enabled lane of L converts the pixel at (row, 6 * (L * group + lane) + k).
+
+    Attributes
+    ----------
+    row : int
+        Pixel row.
+    k : int
+        Column in the tile.
+    group : int
+        Tile columns L * group .. L * group + L - 1.
+    sub : int
+        Sub-sample.
+    enable : int
+        Bit l set = lane l converts.
+    """
 
     row: int
     k: int
     group: int
     sub: int
-    enable: int  # bit l = lane l converts
+    enable: int
 
 
 @dataclass(frozen=True)
 class Scan:
-    """The order of rows, steps and samples of one frame.
+    """Order of the rows, steps and samples of one frame.
 
-    rows, cols: size of the array in pixels. lanes: converters, a power of two.
-    Raises ParameterError when the window lies outside the array or nothing is left to read.
+    Attributes
+    ----------
+    rows, cols : int
+        Size of the array in pixels.
+    lanes : int
+        Converters, a power of two.
+    frame : FrameParameters
+        Configuration of the frame.
+    tile : TileParameters
+        The tile.
+
+    Raises
+    ------
+    ParameterError
+        If the window is outside the array or selects no pixel.
     """
 
     rows: int
@@ -33,23 +61,23 @@ class Scan:
     frame: FrameParameters
     tile: TileParameters = TileParameters()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         window, tile = self.frame.window, self.tile
         for axis, size, step in (("row", self.rows, tile.rows), ("col", self.cols, tile.cols)):
             last = -(-size // step) - 1
             if getattr(window, f"{axis}1") > last:
                 raise ParameterError(f"window {axis}1 = {getattr(window, axis + '1')}: must be in 0..{last} (tiles)")
         if not self.row_list.size:
-            raise ParameterError(f"mask = {self.frame.mask:#08x}: must select a pixel type that lies in the window")
+            raise ParameterError(f"mask = {self.frame.mask:#08x}: must select a pixel type in the window")
 
     @property
-    def subs(self):
-        """Samples of one pixel: 1, 2 (raw) or 4 (tof)."""
+    def subs(self) -> int:
+        """Samples per pixel: 1, 2 (raw) or 4 (tof)."""
         return SAMPLES_PER_PIXEL[self.frame.mode]
 
     @cached_property
-    def row_list(self):
-        """Rows that are read, ascending: int array."""
+    def row_list(self) -> npt.NDArray[np.int64]:
+        """Rows that are read, ascending."""
         w, tile = self.frame.window, self.tile
         tiles = np.arange(w.row0, w.row1 + 1, 1 << self.frame.decimation)
         rows = (tile.rows * tiles[:, None] + np.arange(tile.rows)).ravel()
@@ -57,8 +85,8 @@ class Scan:
         return rows[(rows < self.rows) & wanted[rows % tile.rows]]
 
     @cached_property
-    def read(self):
-        """The pixels that are read: bool (rows, cols)."""
+    def read(self) -> npt.NDArray[np.bool_]:
+        """Pixels that are read: bool (rows, cols)."""
         out = np.zeros((self.rows, self.cols), bool)
         for row in range(self.tile.rows):
             rows = self.row_list[self.row_list % self.tile.rows == row]
@@ -66,8 +94,19 @@ class Scan:
                 out[np.ix_(rows, np.unique(self.row_samples(row)[0]))] = True
         return out
 
-    def columns_of(self, row):
-        """Unmasked in-tile columns k of a row that exist in the window's first tile: tuple."""
+    def columns_of(self, row: int) -> tuple[int, ...]:
+        """Unmasked in-tile columns of a row that exist in the window's first tile.
+
+        Parameters
+        ----------
+        row : int
+            Pixel row.
+
+        Returns
+        -------
+        tuple of int
+            k, ascending.
+        """
         base = (row % self.tile.rows) * self.tile.cols
         first = self.tile.cols * self.frame.window.col0
         return tuple(
@@ -76,10 +115,20 @@ class Scan:
             if self.frame.mask >> self.tile.order[base + k] & 1 and first + k < self.cols
         )
 
-    def steps(self, row):
-        """Steps of one row, in order: list of Step.
+    def steps(self, row: int) -> list[Step]:
+        """Steps of one row.
 
         ``enable`` is 0 where the array ends, or decimation keeps no tile of the last group: nothing is converted.
+
+        Parameters
+        ----------
+        row : int
+            Pixel row.
+
+        Returns
+        -------
+        list of Step
+            In order.
         """
         w, lanes = self.frame.window, self.lanes
         stride = 1 << self.frame.decimation
@@ -96,17 +145,28 @@ class Scan:
                 out += [Step(row, k, group, sub, enable) for sub in range(self.subs)]
         return out
 
-    def row_samples(self, row):
-        """Columns and sub-samples of one row's samples in the order of the stream: two int arrays.
+    def row_samples(self, row: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+        """Samples of one row in the order of the stream.
 
-        With ``frame.phase`` the sub-samples are 0 (phase) and 1 (amplitude).
+        Parameters
+        ----------
+        row : int
+            Pixel row.
+
+        Returns
+        -------
+        cols : int64 (n,)
+            Pixel column of each sample.
+        subs : int64 (n,)
+            Sub-sample; with ``frame.phase`` 0 is the phase and 1 the amplitude.
         """
         return _row_samples(self, row % self.tile.rows)
 
 
 @lru_cache(maxsize=64)
-def _row_samples(scan, row):
-    cols, subs = [], []
+def _row_samples(scan: Scan, row: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+    cols: list[int] = []
+    subs: list[int] = []
     for step in scan.steps(row):
         lanes = [lane for lane in range(scan.lanes) if step.enable >> lane & 1]
         columns = [scan.tile.cols * (scan.lanes * step.group + lane) + step.k for lane in lanes]

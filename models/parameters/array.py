@@ -9,13 +9,21 @@ ROWS_MAX, COLS_MAX = 1024, 1536  # 256 tiles each way: tile addresses are 8 bits
 
 @dataclass(frozen=True)
 class ArrayParameters:
-    """rows: 1..1024 pixels; cols: 1..1536 pixels (tiles at the far edges may be partial); pitch: 1e-7..1e-3 m."""
+    """Size of the pixel array. Tiles at the far edges may be partial.
+
+    Attributes
+    ----------
+    rows, cols : int
+        Pixels, 1..1024 and 1..1536.
+    pitch : float
+        Pixel pitch, 1e-7..1e-3 m.
+    """
 
     rows: int = 384
     cols: int = 384
     pitch: float = 10e-6
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_int("rows", self.rows, 1, ROWS_MAX)
         check_int("cols", self.cols, 1, COLS_MAX)
         check_real("pitch", self.pitch, 1e-7, 1e-3)

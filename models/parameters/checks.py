@@ -1,6 +1,7 @@
-"""Range checks shared by every parameter class: one message form, one exception."""
+"""Range checks of all parameter classes: one message form, one exception."""
 
 import math
+from collections.abc import Collection
 from numbers import Integral, Real
 
 
@@ -11,19 +12,70 @@ class ParameterError(ValueError):
     """
 
 
-def check_int(field, value, low, high):
-    """Raise ParameterError unless ``value`` is an integer in ``low..high``."""
-    if isinstance(value, bool) or not isinstance(value, Integral) or not low <= value <= high:
+def check_int(field: str, value: object, low: int, high: int) -> None:
+    """Check that a value is an integer in a range.
+
+    Parameters
+    ----------
+    field : str
+        Name in the message.
+    value : object
+        Checked value; bool is not accepted.
+    low, high : int
+        Allowed range, both ends included.
+
+    Raises
+    ------
+    ParameterError
+        For any other value.
+    """
+    if isinstance(value, bool) or not isinstance(value, Integral) or not low <= int(value) <= high:
         raise ParameterError(f"{field} = {value!r}: must be an integer in {low}..{high}")
 
 
-def check_real(field, value, low, high):
-    """Raise ParameterError unless ``value`` is a finite real number in ``[low, high]``."""
-    if isinstance(value, bool) or not isinstance(value, Real) or not math.isfinite(value) or not low <= value <= high:
+def check_real(field: str, value: object, low: float, high: float) -> None:
+    """Check that a value is a finite real number in a range.
+
+    Parameters
+    ----------
+    field : str
+        Name in the message.
+    value : object
+        Checked value; bool is not accepted.
+    low, high : float
+        Allowed range, both ends included.
+
+    Raises
+    ------
+    ParameterError
+        For any other value.
+    """
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, Real)
+        or not math.isfinite(value)
+        or value < low
+        or not value <= high
+    ):
         raise ParameterError(f"{field} = {value!r}: must be a number in [{low}, {high}]")
 
 
-def check_choice(field, value, allowed):
-    """Raise ParameterError unless ``value`` is one of ``allowed``."""
+def check_choice(field: str, value: object, allowed: Collection[object]) -> None:
+    """Check that a value is one of a few.
+
+    Parameters
+    ----------
+    field : str
+        Name in the message.
+    value : object
+        Checked value.
+    allowed : collection
+        All allowed values, in the order of the message.
+
+    Raises
+    ------
+    ParameterError
+        For any other value.
+    """
     if value not in allowed:
         raise ParameterError(f"{field} = {value!r}: must be one of {', '.join(map(str, allowed))}")

@@ -1,4 +1,4 @@
-"""What is fixed in the digital chip when it is built."""
+"""Parameters of the digital chip that are fixed at build time."""
 
 from dataclasses import dataclass
 
@@ -10,10 +10,20 @@ LANES = (1, 2, 4, 8, 16, 32)
 
 @dataclass(frozen=True)
 class ChipParameters:
-    """lanes: converters side by side, a power of two in 1..32.
-    divider: variant of the quadrature divider on the readout path.
-    n_frac: fraction bits of its ratio, 4..16.  cordic_iterations: 4..16.
-    f_clk: system clock, 1e3..1e9 Hz.
+    """Build-time parameters of the digital chip.
+
+    Attributes
+    ----------
+    lanes : int
+        Converters side by side, a power of two in 1..32.
+    divider : str
+        Variant of the quadrature divider on the readout path, one of DIVIDERS.
+    n_frac : int
+        Fraction bits of the divider's ratio, 4..16.
+    cordic_iterations : int
+        Steps of the CORDIC variant, 4..16.
+    f_clk : float
+        System clock, 1e3..1e9 Hz.
     """
 
     lanes: int = 8
@@ -22,7 +32,7 @@ class ChipParameters:
     cordic_iterations: int = 10
     f_clk: float = 10e6
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_choice("lanes", self.lanes, LANES)
         check_choice("divider", self.divider, DIVIDERS)
         check_int("n_frac", self.n_frac, N_FRAC_MIN, N_FRAC_MAX)

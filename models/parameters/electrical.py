@@ -9,15 +9,26 @@ ELEMENTARY_CHARGE = 1.602176634e-19  # C
 
 @dataclass(frozen=True)
 class ElectricalParameters:
-    """One photodiode pair, its amplifier and its converter.
+    """One photodiode pair and its amplifier.
 
-    white_current: photocurrent of one diode of a flat white scene, 1e-15..1e-3 A.
-    full_well: charge one diode holds between common-mode resets, 100..1e9 electrons.
-    difference_gain: programmable gain of the difference before conversion, 0.25..64.
-    read_noise: rms, 0..1e5 electrons a diode and read.
-    dark_current: 0..1e-6 A a diode.
-    gain_fpn, offset_fpn: rms of the fixed pattern: relative, 0..0.5, and in electrons, 0..1e5.
-    f_mod: time-of-flight modulation frequency, 1e5..1e9 Hz.
+    Attributes
+    ----------
+    white_current : float
+        Photocurrent of one diode in a flat white scene, 1e-15..1e-3 A.
+    full_well : float
+        Charge that one diode holds between common-mode resets, 100..1e9 electrons.
+    difference_gain : float
+        Programmable gain of the difference before conversion, 0.25..64.
+    read_noise : float
+        RMS, 0..1e5 electrons per diode and read.
+    dark_current : float
+        0..1e-6 A per diode.
+    gain_fpn : float
+        RMS of the gain fixed-pattern noise, relative, 0..0.5.
+    offset_fpn : float
+        RMS of the offset fixed-pattern noise, 0..1e5 electrons.
+    f_mod : float
+        Time-of-flight modulation frequency, 1e5..1e9 Hz.
     """
 
     white_current: float = 0.25e-9
@@ -29,7 +40,7 @@ class ElectricalParameters:
     offset_fpn: float = 20.0
     f_mod: float = 20e6
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("white_current", self.white_current, 1e-15, 1e-3)
         check_real("full_well", self.full_well, 100, 1e9)
         check_real("difference_gain", self.difference_gain, 0.25, 64)
@@ -40,20 +51,29 @@ class ElectricalParameters:
         check_real("f_mod", self.f_mod, 1e5, 1e9)
 
     @property
-    def lsb_electrons(self):
-        """Electrons a code of the sum of a pair (both wells full = code 255)."""
+    def lsb_electrons(self) -> float:
+        """Electrons per code of the sum of a pair (both wells full = code 255)."""
         return 2 * self.full_well / 255
 
 
 @dataclass(frozen=True)
 class ConverterParameters:
-    """The imperfections of one successive-approximation lane, in units of its LSB.
+    """Imperfections of one successive-approximation lane, in units of its LSB.
 
-    inl: peak of a smooth bow of the DAC, 0..4 LSB.  dnl: rms step error, 0..1 LSB.
-    offset: rms over lanes of the comparator's offset, 0..16 LSB.
-    noise: rms of the comparator at each decision, 0..16 LSB.
-    ktc: rms of the sampling capacitor's kT/C noise, 0..16 LSB.
-    seed: of every draw above, 0..2**32-1.
+    Attributes
+    ----------
+    inl : float
+        Peak of a smooth bow of the DAC, 0..4 LSB.
+    dnl : float
+        RMS step error of the DAC, 0..1 LSB.
+    offset : float
+        RMS over the lanes of the comparator's offset, 0..16 LSB.
+    noise : float
+        RMS noise of the comparator at each decision, 0..16 LSB.
+    ktc : float
+        RMS kT/C noise of the sampling capacitor, 0..16 LSB.
+    seed : int
+        Seed of every draw above, 0..2**32-1.
     """
 
     inl: float = 0.0
@@ -63,7 +83,7 @@ class ConverterParameters:
     ktc: float = 0.0
     seed: int = 1
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("inl", self.inl, 0, 4)
         check_real("dnl", self.dnl, 0, 1)
         check_real("offset", self.offset, 0, 16)

@@ -7,11 +7,24 @@ from .checks import check_int, check_real
 
 @dataclass(frozen=True)
 class EnergyParameters:
-    """Table 6.1 gives power, not the frame rate it was measured at: `frame_rate` is our assumption.
+    """Measured power of a sensor, by part, and the frame rate at which it is measured.
 
-    pixel_array, amplifiers, timing, adcs: 0..1 W at 384 x 384 pixels.
-    frame_rate: 0.1..1e5 frames a second.
-    pixels: of the measured sensor, 1..2**31. decisions: of the comparator in one full conversion, 1..64.
+    Table 6.1 gives no frame rate: `frame_rate` is our assumption.
+
+    Attributes
+    ----------
+    pixel_array, amplifiers, timing, adcs : float
+        Power of each part, 0..1 W.
+    frame_rate : float
+        0.1..1e5 frames per second.
+    pixels : int
+        Pixels of the measured sensor, 1..2**31.
+    decisions : int
+        Comparator decisions of one full conversion, 1..64.
+
+    References
+    ----------
+    [Jayasuriya2017], Table 6.1.
     """
 
     pixel_array: float = 300e-6
@@ -22,18 +35,31 @@ class EnergyParameters:
     pixels: int = 384 * 384
     decisions: int = 8
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("pixel_array", "amplifiers", "timing", "adcs"):
             check_real(name, getattr(self, name), 0, 1)
         check_real("frame_rate", self.frame_rate, 0.1, 1e5)
         check_int("pixels", self.pixels, 1, 2**31)
         check_int("decisions", self.decisions, 1, 64)
 
-    def frame(self, resets, amplified, seconds, decisions):
-        """Energy of one frame in J, by part: dict.
+    def frame(self, resets: int, amplified: int, seconds: float, decisions: int) -> dict[str, float]:
+        """Energy of one frame by part.
 
-        resets: pixels reset and integrated (whole rows, once a tap). amplified: pixels whose column amplifier ran.
-        seconds: duration of the frame. decisions: comparator decisions, window and search together.
+        Parameters
+        ----------
+        resets : int
+            Pixels reset and integrated: whole rows, once per tap.
+        amplified : int
+            Pixels whose column amplifier ran.
+        seconds : float
+            Duration of the frame.
+        decisions : int
+            Comparator decisions, window and search together.
+
+        Returns
+        -------
+        dict of str to float
+            Part to energy in J.
         """
         each = 1 / (self.frame_rate * self.pixels)
         return {

@@ -1,4 +1,4 @@
-"""What is configured for a frame: the contents of the chip's registers, by their meaning."""
+"""Configuration of a frame: the contents of the chip's registers, by their meaning."""
 
 from dataclasses import dataclass, fields
 
@@ -11,7 +11,15 @@ ALL_TYPES = (1 << 24) - 1
 
 @dataclass(frozen=True)
 class AmpTiming:
-    """Durations of the amplifier's phases in cycles, each 1..65535 (guard too), and n_cm, 0..255 common-mode resets."""
+    """Durations of the amplifier's phases, and the number of common-mode resets.
+
+    Attributes
+    ----------
+    t_reset, t_int, t_cm, t_settle, t_read, t_guard : int
+        Cycles, each 1..65535.
+    n_cm : int
+        Common-mode resets during the integration, 0..255.
+    """
 
     t_reset: int = 32
     t_int: int = 512
@@ -21,21 +29,27 @@ class AmpTiming:
     t_guard: int = 2
     n_cm: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for f in fields(self):
             check_int(f.name, getattr(self, f.name), 0 if f.name == "n_cm" else 1, 255 if f.name == "n_cm" else 65535)
 
 
 @dataclass(frozen=True)
 class Window:
-    """Tiles to read, inclusive: 0 <= row0 <= row1 <= 255 and 0 <= col0 <= col1 <= 255."""
+    """Tiles to read, both ends included.
+
+    Attributes
+    ----------
+    row0, row1, col0, col1 : int
+        0 <= row0 <= row1 <= 255 and 0 <= col0 <= col1 <= 255.
+    """
 
     row0: int
     row1: int
     col0: int
     col1: int
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for axis in ("row", "col"):
             low, high = getattr(self, f"{axis}0"), getattr(self, f"{axis}1")
             check_int(f"window {axis}0", low, 0, 255)
@@ -46,17 +60,32 @@ class Window:
 
 @dataclass(frozen=True)
 class FrameParameters:
-    """One frame's configuration.
+    """Configuration of one frame.
 
-    mode: 'edge' (difference), 'image' (sum), 'raw' (both diodes) or 'tof' (four taps).
-    window: tiles to read.  mask: bit t set = pixel type t is read, 1..2**24-1.
-    threshold: 0..127 codes; only edge mode uses it; 0 converts everything.
-    decimation: log2 of the tile step, 0..3 (every 1, 2, 4 or 8 tiles, from the window's corner).
-    phase: in tof mode, send (phase, amplitude) from the divider in place of the taps.
-    noise_floor: 0..255, amplitude under which the divider's phase is not valid.
-    overlap: integrate the next row while this one converts.
-    test_pattern: a digital pattern in place of the comparators.
-    frame_number: 0..65535.
+    Attributes
+    ----------
+    window : Window
+        Tiles to read.
+    mode : str
+        'edge' (difference), 'image' (sum), 'raw' (both diodes) or 'tof' (four taps).
+    mask : int
+        Bit t set = pixel type t is read, 1..2**24-1.
+    threshold : int
+        0..127 codes; edge mode only; 0 converts every sample.
+    decimation : int
+        Log2 of the tile step, 0..3 (every 1, 2, 4 or 8 tiles, from the window's corner).
+    phase : bool
+        In tof mode, send (phase, amplitude) from the divider in place of the taps.
+    noise_floor : int
+        Amplitude below which the divider's phase is not valid, 0..255.
+    overlap : bool
+        Integrate the next row while this one converts.
+    test_pattern : bool
+        Replace the comparators by a digital pattern.
+    frame_number : int
+        0..65535.
+    timing : AmpTiming
+        Durations of the amplifier's phases.
     """
 
     window: Window
@@ -71,7 +100,7 @@ class FrameParameters:
     frame_number: int = 0
     timing: AmpTiming = AmpTiming()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_choice("mode", self.mode, MODES)
         check_int("mask", self.mask, 1, ALL_TYPES)
         check_int("threshold", self.threshold, 0, 127)

@@ -7,15 +7,28 @@ from .checks import check_int, check_real
 
 @dataclass(frozen=True)
 class OpticsParameters:
-    """What light meets before the photodiodes.
+    """Optics between the scene and the photodiodes.
 
-    f_number: 0.5..32; the lens accepts |nu| <= 1 / (2 f_number) (Sec. 3.5.1: f/1.2).
-    m: modulation depth, 0..1.
-    aperture_sigma: sigma of the Gaussian common-mode angular response A(theta), 0.01..10 rad.
-    vignetting_power: exponent n of omega = cos(theta)**n, 0..8; 4 is the natural cos^4 law.
-    diattenuation: d of the gratings as a weak polarizer, 0..1 (extinction ratio 2, Ch. 4).
-    views: views along each axis of the light field, 1..31.
-    subsamples: Gauss-Legendre nodes along each axis of a view's angular cell, 1..64.
+    Attributes
+    ----------
+    f_number : float
+        0.5..32; the lens accepts |nu| <= 1 / (2 f_number).
+    m : float
+        Modulation depth, 0..1.
+    aperture_sigma : float
+        Sigma of the Gaussian common-mode angular response A(theta), 0.01..10 rad.
+    vignetting_power : float
+        Exponent n of omega = cos(theta)**n, 0..8; 4 is the natural cos^4 law.
+    diattenuation : float
+        Diattenuation d of the gratings as a weak polarizer, 0..1 (extinction ratio 2 is d = 1/3).
+    views : int
+        Views along each axis of the light field, 1..31.
+    subsamples : int
+        Gauss-Legendre nodes along each axis of a view's angular cell, 1..64.
+
+    References
+    ----------
+    [Jayasuriya2017], Sec. 3.5.1 (f/1.2), Eq. 3.1 and Ch. 4.
     """
 
     f_number: float = 1.2
@@ -26,7 +39,7 @@ class OpticsParameters:
     views: int = 5
     subsamples: int = 8
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("f_number", self.f_number, 0.5, 32)
         check_real("m", self.m, 0, 1)
         check_real("aperture_sigma", self.aperture_sigma, 0.01, 10)
@@ -36,6 +49,6 @@ class OpticsParameters:
         check_int("subsamples", self.subsamples, 1, 64)
 
     @property
-    def nu_max(self):
+    def nu_max(self) -> float:
         """Largest accepted relative two-plane coordinate nu = tan(theta)."""
         return 1 / (2 * self.f_number)

@@ -1,4 +1,4 @@
-"""The whole sensor: one object from which model, RTL, netlist, layout and documents are built."""
+"""The whole sensor: one object from which models, RTL, netlist, layout and documents are built."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,25 @@ from .tile import TileParameters
 
 @dataclass(frozen=True)
 class SensorParameters:
-    """The thesis's sensor by default: 384 x 384 pixels in tiles of 4 x 6, f/1.2, eight lanes."""
+    """All parameters of a sensor; by default the thesis's: 384 x 384 pixels in tiles of 4 x 6, f/1.2, eight lanes.
+
+    The array has at most 256 x 256 tiles.
+
+    Attributes
+    ----------
+    tile : TileParameters
+        Pixel types and their order.
+    array : ArrayParameters
+        Size of the pixel array.
+    optics : OpticsParameters
+        Lens and gratings.
+    electrical : ElectricalParameters
+        Photodiode pair and amplifier.
+    converter : ConverterParameters
+        Imperfections of the converters.
+    chip : ChipParameters
+        Build-time parameters of the digital chip.
+    """
 
     tile: TileParameters = TileParameters()
     array: ArrayParameters = ArrayParameters()
@@ -22,26 +40,38 @@ class SensorParameters:
     converter: ConverterParameters = ConverterParameters()
     chip: ChipParameters = ChipParameters()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if max(self.tile_rows, self.tile_cols) > 256:
             raise ParameterError(f"array = {self.array.rows} x {self.array.cols}: must be at most 256 x 256 tiles")
 
     @property
-    def tile_rows(self):
+    def tile_rows(self) -> int:
         """Tiles down the array, the last perhaps partial."""
         return -(-self.array.rows // self.tile.rows)
 
     @property
-    def tile_cols(self):
+    def tile_cols(self) -> int:
         """Tiles across the array, the last perhaps partial."""
         return -(-self.array.cols // self.tile.cols)
 
     @property
-    def full_window(self):
+    def full_window(self) -> Window:
+        """Window of the whole array."""
         return Window(0, self.tile_rows - 1, 0, self.tile_cols - 1)
 
-    def check_window(self, window):
-        """Raise ParameterError unless ``window`` lies in the array."""
+    def check_window(self, window: Window) -> None:
+        """Check that a window is inside the array.
+
+        Parameters
+        ----------
+        window : Window
+            Tiles to read.
+
+        Raises
+        ------
+        ParameterError
+            For a window that reaches past the last tile.
+        """
         for axis, count in (("row", self.tile_rows), ("col", self.tile_cols)):
             last = getattr(window, f"{axis}1")
             if last >= count:

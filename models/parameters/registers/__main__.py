@@ -2,21 +2,32 @@
 
 import sys
 
-from .map import register_map
+from .map import Field, RegisterMap, register_map
 
 
-def markdown(chip):
-    """The map as one Markdown table: an array's registers share a row."""
+def markdown(chip: RegisterMap) -> str:
+    """Register map as one Markdown table; the registers of an array share a row.
+
+    Parameters
+    ----------
+    chip : RegisterMap
+        All fields.
+
+    Returns
+    -------
+    str
+        Title, note and table.
+    """
     lines = [
         "# Register map of AspChip",
         "",
         "Generated from `models/parameters/registers/asp_chip.rdl` by `python -m models.parameters.registers`.",
-        "Byte addresses; fields of more than a byte are little-endian. How to reach them: rtl/reg_file/README.md.",
+        "Byte addresses; fields of more than a byte are little-endian. SPI protocol: rtl/reg_file/README.md.",
         "",
         "| address | register | bits | field | access | reset | meaning |",
         "|---|---|---|---|---|---|---|",
     ]
-    arrays = {}
+    arrays: dict[str, list[Field]] = {}
     for f in chip.fields:
         arrays.setdefault(f.register.partition("[")[0], []).append(f)
     for name, fields in arrays.items():

@@ -1,8 +1,13 @@
-"""asp_chip.rdl -> fields with addresses: what RTL, host and document are generated from."""
+"""Fields and addresses of asp_chip.rdl, from which RTL, host and document are generated."""
 
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+if TYPE_CHECKING:
+    from systemrdl.node import FieldNode, RegNode
 
 SOURCE = Path(__file__).parent / "asp_chip.rdl"
 
@@ -11,10 +16,24 @@ SOURCE = Path(__file__).parent / "asp_chip.rdl"
 class Field:
     """One field of a register.
 
-    register, name: as in the source; an array's register carries its index, 'trim[3]'.
-    address: byte address of the register, 0..127. size: its bytes. lsb, width: bits in the register,
-    little-endian over its bytes. reset: value out of reset. access: 'ro', 'rw', 'wo' or 'w1c' (sticky,
-    cleared by writing 1). signed: two's complement. description: one line.
+    Attributes
+    ----------
+    register, name : str
+        As in the source; a register of an array carries its index, 'trim[3]'.
+    address : int
+        Byte address of the register, 0..127.
+    size : int
+        Bytes of the register.
+    lsb, width : int
+        Bits in the register, little-endian over its bytes.
+    reset : int
+        Value after reset.
+    access : str
+        'ro', 'rw', 'wo' or 'w1c' (sticky, cleared by writing 1).
+    signed : bool
+        Two's complement.
+    description : str
+        Meaning, one line.
     """
 
     register: str
@@ -29,78 +48,103 @@ class Field:
     description: str
 
     @property
-    def key(self):
-        """The field's name, with its register where that is one of an array: 'threshold', 'trim[3].trim'."""
+    def key(self) -> str:
+        """Name of the field, with its register if that is one of an array: 'threshold', 'trim[3].trim'."""
         return f"{self.register}.{self.name}" if "[" in self.register else self.name
 
     @property
-    def byte(self):
+    def byte(self) -> int:
         """Address of the byte that holds the field's lowest bit."""
         return self.address + self.lsb // 8
 
     @property
-    def shift(self):
+    def shift(self) -> int:
         """Position of the lowest bit in that byte."""
         return self.lsb % 8
 
     @property
-    def bytes(self):
-        """How many bytes the field touches."""
+    def bytes(self) -> int:
+        """Number of bytes that hold a bit of the field."""
         return (self.shift + self.width + 7) // 8
 
 
 @dataclass(frozen=True)
 class RegisterMap:
-    """All fields in ascending order of their bits; no two registers share a byte."""
+    """All fields; no two registers share a byte.
 
-    fields: tuple
+    Attributes
+    ----------
+    fields : tuple of Field
+        In ascending order of their bits.
+    """
+
+    fields: tuple[Field, ...]
 
     @cached_property
-    def _by_name(self):
+    def _by_name(self) -> dict[str, Field]:
         return {f.key: f for f in self.fields}
 
-    def __getitem__(self, name):
-        """The field of a key: 'threshold', 'trim[3].trim'. KeyError if there is none."""
+    def __getitem__(self, name: str) -> Field:
+        """Field of a key: 'threshold', 'trim[3].trim'. Raises KeyError for an unknown key."""
         return self._by_name[name]
 
     @cached_property
-    def configuration(self):
-        """The fields that a frame reads and that are locked while it runs: tuple, ascending, contiguous bytes."""
+    def configuration(self) -> tuple[Field, ...]:
+        """Fields that a frame reads and that are locked while it runs: ascending, contiguous bytes."""
         return tuple(f for f in self.fields if f.access == "rw")
 
     @cached_property
-    def trims(self):
-        """The trim fields by pixel type: tuple."""
+    def trims(self) -> tuple[Field, ...]:
+        """Trim fields by pixel type."""
         return tuple(f for f in self.fields if f.name == "trim")
 
     @cached_property
-    def counters(self):
-        """The eight-byte fields that are taken as a whole at the read of their first byte: tuple, ascending."""
+    def counters(self) -> tuple[Field, ...]:
+        """Eight-byte fields, ascending; a read of the first byte takes a snapshot of all eight."""
         return tuple(f for f in self.fields if f.access == "ro" and f.width == 64)
 
-    def image(self, fields, values=None):
-        """Bytes of ``fields``: dict address -> byte, from ``values`` (key -> int, cut to the width) or the resets."""
+    def image(self, fields: Iterable[Field], values: Mapping[str, int] | None = None) -> dict[int, int]:
+        """Contents of the bytes that hold some fields.
+
+        Parameters
+        ----------
+        fields : iterable of Field
+            Fields to store.
+        values : mapping of str to int, optional
+            Key to value, cut to the field's width; the reset value where a key is missing.
+
+        Returns
+        -------
+        dict of int to int
+            Address to byte.
+        """
         values = values or {}
-        out = {}
+        out: dict[int, int] = {}
         for f in fields:
             bits = (values.get(f.key, f.reset) & ((1 << f.width) - 1)) << f.shift
             for i in range(f.bytes):
                 out[f.byte + i] = out.get(f.byte + i, 0) | bits >> 8 * i & 0xFF
         return out
 
-    def writable(self):
-        """The bits that a host can set in the configuration: dict address -> byte."""
+    def writable(self) -> dict[int, int]:
+        """Bits that a host can set in the configuration.
+
+        Returns
+        -------
+        dict of int to int
+            Address to mask of the byte.
+        """
         return self.image(self.configuration, {f.key: -1 for f in self.configuration})
 
 
-def _access(node):
+def _access(node: "FieldNode") -> str:
     if node.get_property("onwrite") is not None:
         return "w1c"
     sw = node.get_property("sw").name
     return {"r": "ro", "w": "wo"}.get(sw, sw)
 
 
-def _fields(register):
+def _fields(register: "RegNode") -> Iterator[Field]:
     name = register.get_path_segment()
     for node in register.fields():
         yield Field(
@@ -110,17 +154,17 @@ def _fields(register):
             size=register.size,
             lsb=node.lsb,
             width=node.width,
-            reset=node.get_property("reset", default=0),
+            reset=cast(int, node.get_property("reset", default=0)),
             access=_access(node),
             signed=bool(node.get_property("signed_value", default=False)),
-            description=" ".join(node.get_property("desc").split()),
+            description=" ".join(str(node.get_property("desc")).split()),
         )
 
 
 @cache
-def register_map():
-    """The chip's RegisterMap (0.1 s at the first call, most of it the compiler's import)."""
-    from systemrdl import RDLCompiler  # only what needs the map pays for its compiler
+def register_map() -> RegisterMap:
+    """Register map of the chip; the first call takes 0.1 s, most of it the import of the compiler."""
+    from systemrdl.compiler import RDLCompiler  # imported where it is needed: it is slow
 
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE))
@@ -128,7 +172,7 @@ def register_map():
     return RegisterMap(tuple(f for register in top.registers(unroll=True) for f in _fields(register)))
 
 
-def trim_range():
+def trim_range() -> tuple[int, int]:
     """Lowest and highest value of a trim register."""
     width = register_map().trims[0].width
     return -(1 << width - 1), (1 << width - 1) - 1
