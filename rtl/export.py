@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from base.paths import ROOT
@@ -19,13 +20,13 @@ from rtl.lint import LintError, lint
 from rtl.tops import PACKERS, TOPS, build_top
 
 
-def translate(name, sensor):
-    """The Verilog of top ``name`` for ``sensor``, as text. Raises ParameterError."""
+def translate(name: str, sensor: SensorParameters) -> str:
+    """The Verilog of top or packer ``name`` for ``sensor``, as text. Raises ParameterError."""
     return translate_component(build_top(name, sensor), name)
 
 
-def write(path, text):
-    """Write ``text`` so that ``path`` is whole or as it was."""
+def write(path: Path, text: str) -> None:
+    """Write ``text`` to ``path``, atomically."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.part-{os.getpid()}")
     try:
@@ -35,7 +36,8 @@ def write(path, text):
         part.unlink(missing_ok=True)
 
 
-def arguments():
+def arguments() -> argparse.ArgumentParser:
+    """The parser of the command line."""
     sensor = SensorParameters()
     parser = argparse.ArgumentParser(prog="python -m rtl.export", description=__doc__.splitlines()[0])
     parser.add_argument(
@@ -56,8 +58,8 @@ def arguments():
     return parser
 
 
-def sensor_of(options):
-    """SensorParameters of the command line's options. Raises ParameterError."""
+def sensor_of(options: argparse.Namespace) -> SensorParameters:
+    """The sensor of the command line's options. Raises ParameterError."""
     return SensorParameters(
         tile=TileParameters(),
         array=ArrayParameters(options.rows, options.cols),
@@ -65,7 +67,8 @@ def sensor_of(options):
     )
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> int:
+    """Write the tops' Verilog; 2 after an error."""
     options = arguments().parse_args(argv)
     try:
         sensor = sensor_of(options)

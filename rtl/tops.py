@@ -1,19 +1,28 @@
-"""Every top that can be exported: its name and how to build it for a sensor."""
+"""The tops that can be exported: their names, and how to build each for a sensor.
+
+A block is imported when it is built: the names come without PyMTL, and a block that is being changed stops only itself.
+"""
 
 from collections.abc import Callable
-
-from pymtl3 import Component
+from typing import TYPE_CHECKING
 
 from models.parameters import ParameterError, SensorParameters
 
+if TYPE_CHECKING:
+    from pymtl3 import Component
 
-def amp_ctrl(sensor: SensorParameters) -> Component:
+Build = Callable[[SensorParameters], "Component"]
+
+
+def amp_ctrl(sensor: SensorParameters) -> "Component":
+    """The timing of the amplifiers."""
     from rtl.amp_ctrl import AmpCtrl
 
     return AmpCtrl()
 
 
-def readout_seq(sensor: SensorParameters) -> Component:
+def readout_seq(sensor: SensorParameters) -> "Component":
+    """The readout sequencer."""
     from rtl.readout_seq import ReadoutSeq
 
     return ReadoutSeq(
@@ -26,22 +35,24 @@ def readout_seq(sensor: SensorParameters) -> Component:
     )
 
 
-def edge_adc(sensor: SensorParameters) -> Component:
+def edge_adc(sensor: SensorParameters) -> "Component":
+    """One converter."""
     from rtl.edge_adc import EdgeAdc
 
     return EdgeAdc()
 
 
-def adc_bank(sensor: SensorParameters) -> Component:
+def adc_bank(sensor: SensorParameters) -> "Component":
+    """The converters of all lanes."""
     from rtl.adc_bank import AdcBank
 
     return AdcBank(sensor.chip.lanes)
 
 
-def divider(variant: str) -> Callable[[SensorParameters], Component]:
-    """How to build one variant of the quadrature divider."""
+def divider(variant: str) -> Build:
+    """Builds one variant of the quadrature divider."""
 
-    def build(sensor: SensorParameters) -> Component:
+    def build(sensor: SensorParameters) -> "Component":
         from rtl.quad_divider import quad_divider
 
         return quad_divider(variant, sensor.chip.n_frac, sensor.chip.cordic_iterations)
@@ -49,25 +60,29 @@ def divider(variant: str) -> Callable[[SensorParameters], Component]:
     return build
 
 
-def phase_path(sensor: SensorParameters) -> Component:
+def phase_path(sensor: SensorParameters) -> "Component":
+    """Phase and amplitude of a tile's samples."""
     from rtl.phase_path import PhasePath
 
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
-def run_length(sensor: SensorParameters) -> Component:
+def run_length(sensor: SensorParameters) -> "Component":
+    """The stream encoder."""
     from rtl.run_length import RunLength
 
     return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
 
 
-def reg_file(sensor: SensorParameters) -> Component:
+def reg_file(sensor: SensorParameters) -> "Component":
+    """The registers behind SPI."""
     from rtl.reg_file import RegFile
 
     return RegFile(sensor.tile_rows - 1, sensor.tile_cols - 1)
 
 
-def asp_chip(sensor: SensorParameters) -> Component:
+def asp_chip(sensor: SensorParameters) -> "Component":
+    """The whole chip."""
     from rtl.asp_chip import AspChip
 
     return AspChip(
@@ -83,9 +98,7 @@ def asp_chip(sensor: SensorParameters) -> Component:
     )
 
 
-TOPS: dict[
-    str, Callable[[SensorParameters], Component]
-] = {  # each imports its block when it is built: a block that is being changed stops only itself
+TOPS: dict[str, Build] = {
     "AmpCtrl": amp_ctrl,
     "ReadoutSeq": readout_seq,
     "EdgeAdc": edge_adc,
@@ -104,7 +117,7 @@ TOPS: dict[
 PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePacker", "PayloadPacker"
 
 
-def build_top(name: str, sensor: SensorParameters) -> Component:
+def build_top(name: str, sensor: SensorParameters) -> "Component":
     """The unelaborated component of top or packer ``name`` for ``sensor``. Raises ParameterError."""
     if name in PACKERS:
         from rtl.run_length import candidates

@@ -1,19 +1,20 @@
-"""The analog front end as a PyMTL component: Afe of afe.sv for the tests of single blocks."""
+"""The analog front end as a PyMTL component, for the tests of single blocks: Afe of pixels/afe.sv."""
 
 import numpy as np
+import numpy.typing as npt
 from pymtl3 import Component, InPort, OutPort, mk_bits, update, update_ff
 
-from models.afe import Converter
+from models.afe import Converter, FrontEnd
 from models.parameters import MODES
 
 
 class AfeFL(Component):
-    """front_end: models.afe.FrontEnd. samples: float64 (taps, rows, cols, 2). The trim of the FrontEnd is taken.
+    """The front end over ``samples``, float64 (taps, rows, cols, 2), with the trim of ``front_end``.
 
-    Ports as Afe's, without ``balance``.
+    It has the ports of Afe, without ``balance``.
     """
 
-    def construct(s, front_end, samples):
+    def construct(s, front_end: FrontEnd, samples: npt.NDArray[np.float64]) -> None:
         lanes = front_end.lanes
         s.mode, s.row, s.group, s.k, s.sub = (InPort(mk_bits(n)) for n in (2, 10, 8, 3, 2))
         s.en, s.dac = InPort(lanes), InPort(8 * lanes)
@@ -25,7 +26,7 @@ class AfeFL(Component):
             n: front_end.values(samples, mode) for n, mode in enumerate(MODES) if mode != "tof" or len(samples) == 4
         }
         s.held, s.index = np.zeros(lanes), np.zeros(lanes, np.int64)
-        s.decision = OutPort(8)  # cycles since the hold: what makes `compare` run again
+        s.decision = OutPort(8)  # cycles since the hold; a change runs `compare` again
 
         @update_ff
         def sample():
@@ -49,5 +50,5 @@ class AfeFL(Component):
                     bits |= 1 << lane
             s.comparator @= bits
 
-    def line_trace(s):
+    def line_trace(s) -> str:
         return f"{'hold' if s.hold else '    '} {s.dac} > {s.comparator}"

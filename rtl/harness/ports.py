@@ -1,13 +1,14 @@
 """The ports of an elaborated component as its Verilog names them, and their values packed into one number."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from pymtl3 import Bits, InPort, OutPort
+from pymtl3 import Bits, Component, InPort, OutPort
 
 
 @dataclass(frozen=True)
 class Port:
-    """path: in the component, 'recv.msg'. width: bits. output: else an input. struct: a bit struct, not Bits."""
+    """A port of a component at ``path``, 'recv.msg', ``width`` bits wide; struct: a bit struct, not Bits."""
 
     path: str
     width: int
@@ -15,13 +16,13 @@ class Port:
     struct: bool = False
 
     @property
-    def name(self):
-        """In the Verilog."""
+    def name(self) -> str:
+        """Its name in the Verilog, 'recv__msg'."""
         return self.path.replace(".", "__")
 
 
-def port_signals(component):
-    """Every port of an elaborated component, those of its interfaces too: list of InPort and OutPort."""
+def port_signals(component: Component) -> list[InPort | OutPort]:
+    """Every port of an elaborated component, those of its interfaces too."""
     return [
         signal
         for signal in component.get_all_object_filter(lambda x: isinstance(x, (InPort, OutPort)))
@@ -29,8 +30,8 @@ def port_signals(component):
     ]
 
 
-def ports_of(component):
-    """Every port of an elaborated component but clk, inputs first, each group by name: tuple of Port."""
+def ports_of(component: Component) -> tuple[Port, ...]:
+    """Every port of an elaborated component but clk: inputs first, each group by name."""
     start, ports = len(repr(component)) + 1, []
     for signal in port_signals(component):
         kind = signal._dsl.Type
@@ -38,13 +39,13 @@ def ports_of(component):
     return tuple(sorted((p for p in ports if p.path != "clk"), key=lambda p: (p.output, p.path)))
 
 
-def split(ports):
-    """(inputs, outputs)."""
+def split(ports: Sequence[Port]) -> tuple[tuple[Port, ...], tuple[Port, ...]]:
+    """The inputs and the outputs."""
     return tuple(p for p in ports if not p.output), tuple(p for p in ports if p.output)
 
 
-def places(ports):
-    """Lowest bit of each port in the packed value, the first port lowest: dict Port -> int."""
+def places(ports: Iterable[Port]) -> dict[Port, int]:
+    """Lowest bit of each port in the packed value, the first port lowest."""
     out, low = {}, 0
     for port in ports:
         out[port] = low
@@ -52,19 +53,19 @@ def places(ports):
     return out
 
 
-def total_width(ports):
+def total_width(ports: Iterable[Port]) -> int:
     """Bits of the packed value, at least 1."""
     return max(1, sum(port.width for port in ports))
 
 
-def validity(ports):
-    """The `val` of each output message: dict of Port, a stream's msg -> its val."""
+def validity(ports: Iterable[Port]) -> dict[Port, Port]:
+    """The `val` of each output stream's `msg`."""
     named = {port.path: port for port in ports if port.output}
     pairs = ((port, named.get(path[:-3] + "val")) for path, port in named.items() if path.endswith(".msg"))
     return {msg: val for msg, val in pairs if val}
 
 
-def packed(ports, component="s"):
+def packed(ports: Iterable[Port], component: str = "s") -> str:
     """Source of an expression that packs the values of the ``ports`` of the variable named ``component``."""
     parts = []
     for port, low in places(ports).items():

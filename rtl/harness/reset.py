@@ -1,25 +1,27 @@
-"""What a block shows behind a reset, whatever was before it: the same at every level."""
+"""The outputs of a block after a reset do not depend on what came before it, and are the same at every level."""
 
 import random
+from collections.abc import Callable
+from typing import Any
 
 from pymtl3 import mk_bits
 
 from rtl.harness.ports import ports_of, split, validity
 
-CYCLES = 4  # that are looked at behind a reset
-BEFORE = 60  # with any inputs, ahead of it
+CYCLES = 4  # compared after the reset
+BEFORE = 60  # with random inputs, ahead of it
 
 
-def shown_after_reset(sim, before=BEFORE):
-    """Outputs in the cycles behind a reset, inputs 0: list of dict path -> value; a message counts while it is valid.
+def shown_after_reset(sim: Any, before: int = BEFORE) -> list[dict[str, int]]:
+    """Outputs in each of the CYCLES after a reset with inputs 0, by path; a message counts while it is valid.
 
-    sim: as rtl.harness.testbench.build gives it. before: cycles of any inputs ahead of the reset, 0 for a level that checks
-    what it is given.
+    sim: of rtl.harness.testbench.build. before: cycles of random inputs ahead of the reset, 0 for a level that checks
+    its inputs.
     """
     inputs, outputs = split(ports_of(sim))
     valid, pick = {msg.path: val.path for msg, val in validity(outputs).items()}, random.Random(1)
 
-    def drive(value):
+    def drive(value: Callable[[int], int]) -> None:
         for port in inputs:
             if port.path != "reset":
                 signal = at(sim, port.path)
@@ -27,7 +29,7 @@ def shown_after_reset(sim, before=BEFORE):
                 signal @= type(signal).from_bits(mk_bits(port.width)(number)) if port.struct else number
         sim.sim_eval_combinational()
 
-    def tick(reset, value):
+    def tick(reset: int, value: Callable[[int], int]) -> None:
         sim.reset @= reset
         drive(value)
         sim.sim_tick()
@@ -45,8 +47,8 @@ def shown_after_reset(sim, before=BEFORE):
     return shown
 
 
-def at(component, path):
-    """The port of ``component`` at 'recv.msg'."""
+def at(component: Any, path: str) -> Any:
+    """The port of ``component`` at the path 'recv.msg'."""
     for name in path.split("."):
         component = getattr(component, name)
     return component

@@ -10,6 +10,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pymtl3 import Component, DefaultPassGroup
 from pymtl3.passes.backends.verilog import VerilogTBGenPass, VerilogTranslationImportPass, VerilogTranslationPass
@@ -25,8 +26,8 @@ from .translate import translate_component
 WORK = BUILD / "pymtl"
 
 Level = bool | str  # True: the translated Verilog in Verilator; "icarus": in Icarus; False: PyMTL
-Observe = Callable[[Component, Component, Level], Callable[[], None] | None]
-Substitute = Callable[[Component, Level, str], Driven | None]
+Observe = Callable[[Any, Any, Level], Callable[[], None] | None]  # Any: PyMTL3 has no types
+Substitute = Callable[[Any, Level, str], Driven | None]
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def _verilator(name: str) -> Iterator[None]:
         os.environ.update(env)
 
 
-def build(top: Component, verilog: Level = False, name: str | None = None) -> Component:
+def build(top: Component, verilog: Level = False, name: str | None = None) -> Any:
     """Elaborate ``top`` and prepare it for simulation; returns the simulator, reset.
 
     verilog: replace ``top.dut`` (or ``top`` itself, if it has none) by its translated Verilog in Verilator (True) or

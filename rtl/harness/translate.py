@@ -9,6 +9,7 @@ import tempfile
 import warnings
 from pathlib import Path
 
+from pymtl3 import Component
 from pymtl3.passes.backends.verilog import VerilogTranslationPass
 
 from base.paths import ROOT
@@ -16,10 +17,10 @@ from base.paths import ROOT
 COLUMNS = "200"  # PyMTL folds lines at the terminal's width
 
 
-def module_names(top, name):
-    """Module name of every component below the elaborated ``top``: dict component -> str.
+def module_names(top: Component, name: str) -> dict[Component, str]:
+    """Module name of every component in the elaborated ``top``, whose own is ``name``.
 
-    A class's name; where a design holds a class with several parameter sets, the later ones (in the order
+    It is the class's name; where a design holds a class with several parameter sets, the later ones (in the order
     of their instance names) are numbered: Queue, Queue_2.
     """
     names, sets, taken = {top: name}, {}, {name}
@@ -38,21 +39,21 @@ def module_names(top, name):
     return names
 
 
-def _without_unused_constants(module):
-    """PyMTL declares constants that only gave a slice its width."""
+def _without_unused_constants(module: str) -> str:
+    """The module without constants that PyMTL declares and does not use: widths of slices."""
     for name in re.findall(r"(?m)^  localparam .*? (\w+)\s+=", module):
         if len(re.findall(rf"\b{name}\b", module)) == 1:
             module = re.sub(rf"(?m)^  localparam .*? {name}\s+=.*\n", "", module)
     return module
 
 
-def tidy(text):
+def tidy(text: str) -> str:
     """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants."""
     text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
     text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)
-    text = text.replace("always_comb begin", "always @* begin")  # Icarus 11.0 loops in the first (its issue 508)
+    text = text.replace("always_comb begin", "always @* begin")  # Icarus 11.0 loops in always_comb (its issue 508)
     structs = sorted(set(re.findall(r"(?m)^} (\w+);", text)))
     short = [name.partition("__")[0] for name in structs]
     for name, plain in zip(structs, short, strict=True):
@@ -63,7 +64,7 @@ def tidy(text):
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 
 
-def translate_component(top, name):
+def translate_component(top: Component, name: str) -> str:
     """The Verilog of the unelaborated component ``top`` as module ``name``, as text."""
     top.elaborate()
     for component, module in module_names(top, name).items():

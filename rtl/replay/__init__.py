@@ -1,4 +1,4 @@
-"""What a block's tests did at its ports, recorded once and replayed into any Verilog of it."""
+"""The ports of a block during its tests, recorded once and replayed into any Verilog of the block."""
 
 from .record import RecordError, record, tests_of, whole_level
 from .replay import Mismatch, replay, replay_files

@@ -1,7 +1,8 @@
-"""`python -m rtl.replay`: record what a block's tests do at its ports; replay that into any Verilog of it."""
+"""`python -m rtl.replay`: record a block's ports during its tests; replay the trace into any Verilog of the block."""
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from models.parameters import ParameterError
@@ -13,13 +14,14 @@ from .replay import replay_files
 from .trace import load
 
 
-def arguments():
+def arguments() -> argparse.ArgumentParser:
+    """The parser of the command line."""
     parser = argparse.ArgumentParser(prog="python -m rtl.replay", description=__doc__)
     commands = parser.add_subparsers(dest="command", required=True)
     recording = commands.add_parser("record", help="run a block's tests and save a trace a parameter set")
     recording.add_argument("block", choices=TOPS)
     recording.add_argument("--out", type=Path, required=True, help="folder of the traces")
-    replaying = commands.add_parser("replay", help="hold Verilog against traces; status 1 where they differ")
+    replaying = commands.add_parser("replay", help="compare Verilog with traces; status 1 where they differ")
     replaying.add_argument("trace", type=Path, nargs="+", help=".json files of one parameter set")
     replaying.add_argument("--verilog", type=Path, nargs="+", required=True, help="files with the module")
     replaying.add_argument("--cells", type=Path, nargs="+", default=[], help="models of a netlist's cells")
@@ -28,7 +30,8 @@ def arguments():
     return parser
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> int:
+    """Record or replay; 1 where Verilog differs from a trace, 2 after an error."""
     options = arguments().parse_args(argv)
     try:
         if options.command == "record":
@@ -38,7 +41,7 @@ def main(argv=None):
             return 0
         for path in (*options.trace, *options.verilog, *options.cells):
             if not path.is_file():
-                raise ParameterError(f"file = {path}: must be there")
+                raise ParameterError(f"file = {path}: no such file")
         found = replay_files(options.trace, options.verilog, options.top, options.cells, options.strict)
     except (ParameterError, IcarusError, RecordError, OSError) as error:
         print(f"rtl.replay: {error}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""The tests of a block, run once with their ports recorded."""
+"""The tests of a block, run once with its ports recorded."""
 
 import sys
 from pathlib import Path
@@ -8,26 +8,26 @@ from base.tools import finish
 from models.parameters import SensorParameters
 from rtl.tops import build_top
 
-WHOLE = "AspChip"  # a frame of the chip is too long for PyMTL: its tests run whole at the Verilog level only
+VERILOG_ONLY = "AspChip"  # a frame of the chip takes too long in PyMTL: only the Verilog level runs all tests
 
 
 class RecordError(RuntimeError):
-    """The tests of a block fail; the message holds what pytest said last."""
+    """The tests of a block fail; the message holds the end of pytest's output."""
 
 
-def tests_of(block):
-    """(class, folder of the tests) of a block of rtl.tops. Raises ParameterError."""
+def tests_of(block: str) -> tuple[str, Path]:
+    """The class of a block of rtl.tops and the folder of its tests. Raises ParameterError."""
     cls = type(build_top(block, SensorParameters()))
     return cls.__name__, Path(sys.modules[cls.__module__].__file__).parent / "test"
 
 
-def whole_level(block):
+def whole_level(block: str) -> str:
     """The level that runs all tests of a block: 'RTL' or 'Verilog'."""
-    return "Verilog" if block == WHOLE else "RTL"
+    return "Verilog" if block == VERILOG_ONLY else "RTL"
 
 
-def record(block, folder, level=None):
-    """Run the block's tests and save a trace a parameter set in ``folder``: their .json paths, the longest first.
+def record(block: str, folder: Path | str, level: str | None = None) -> list[Path]:
+    """Run the block's tests and save a trace a parameter set in ``folder``; returns the .json paths, longest first.
 
     level: 'RTL' or 'Verilog', by default `whole_level`. Raises ParameterError, RecordError.
     """
@@ -39,7 +39,7 @@ def record(block, folder, level=None):
         "import sys, pytest; from rtl.replay.recorder import Plugin; "
         "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))"
     )
-    # PyMTL is a pytest plugin: that it is imported ahead of pytest is meant. A seed: the same traces every time.
+    # PyMTL is a pytest plugin, which the program imports before pytest starts. A seed: the same traces every time.
     options = ["-p", "no:cacheprovider", "-W", "ignore::pytest.PytestAssertRewriteWarning", "--hypothesis-seed=1"]
     result = finish([sys.executable, "-c", program, cls, folder, level, *options, tests], cwd=ROOT)
     if result.returncode:

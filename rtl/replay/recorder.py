@@ -1,11 +1,13 @@
 """Pytest plugins: one level's tests only, and a record of what they do at a component's ports."""
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from rtl.harness.ports import packed, ports_of, split
-from rtl.harness.testbench import hooked
+from rtl.harness.testbench import Level, hooked
 
 from .trace import Trace
 
@@ -13,16 +15,17 @@ LEVELS = ("cls", "component", "level")  # names under which a test class holds t
 
 
 class Recorder:
-    """Traces of the components of class ``cls`` that `rtl.harness.testbench.build` makes, at one level.
+    """Traces of the components of the class named ``cls`` that `rtl.harness.testbench.build` builds.
 
-    cls: name of the class. verilog: of simulators of the translated Verilog, else of those of PyMTL.
+    verilog: those in Verilator, else those in PyMTL.
     """
 
-    def __init__(self, cls, verilog=False):
+    def __init__(self, cls: str, verilog: bool = False) -> None:
         self.cls, self.verilog = cls, verilog
-        self.parts, self.test = [], ""
+        self.parts: list[Trace] = []
+        self.test = ""  # the test that runs
 
-    def observe(self, top, dut, verilog):
+    def observe(self, top: Any, dut: Any, verilog: Level) -> Callable[[], None] | None:
         """See rtl.harness.testbench.hooked."""
         if type(dut).__name__ != self.cls or verilog != self.verilog:
             return None
@@ -31,21 +34,21 @@ class Recorder:
         self.parts.append(part)
         return self._hook(part, top, "s.dut" if hasattr(top, "dut") else "s")
 
-    def _hook(self, part, top, component):
+    def _hook(self, part: Trace, top: Any, component: str) -> Callable[[], None]:
         inputs, outputs = (packed(group, component) for group in split(part.ports))
         values = eval(f"lambda s: (({inputs}), ({outputs}))")  # called every cycle: no loop over ports in it
         lines, tests = part.lines, part.tests
 
-        def hook():
+        def hook() -> None:
             if not tests or tests[-1][1] != self.test:
                 tests.append((len(lines), self.test))
             lines.append("%d %x %x" % (not lines, *values(top)))
 
         return hook
 
-    def traces(self):
-        """One Trace a parameter set: what its simulators did, one after the other. The longest first."""
-        out = {}
+    def traces(self) -> list[Trace]:
+        """One Trace a parameter set, with its simulators one after the other; the longest first."""
+        out: dict[tuple[Any, ...], Trace] = {}
         for part in self.parts:
             whole = out.setdefault(part.arguments, Trace(part.cls, part.module, part.arguments, part.ports))
             whole.tests += [(len(whole.lines) + first, test) for first, test in part.tests]
@@ -54,21 +57,19 @@ class Recorder:
 
 
 class OneLevel:
-    """A pytest plugin that runs the tests of one level only.
+    """A pytest plugin that runs the tests of one level only: Verilog in Verilator if ``verilog``, else RTL in PyMTL."""
 
-    verilog: of the translated Verilog in Verilator, else of the RTL in PyMTL.
-    """
-
-    def __init__(self, verilog=False):
+    def __init__(self, verilog: bool = False) -> None:
         self.verilog = verilog
 
-    def pytest_collection_modifyitems(self, config, items):
+    def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Function]) -> None:
+        """Deselect the tests of the other levels."""
         kept = [item for item in items if self._at_level(item)]
         config.hook.pytest_deselected(items=[item for item in items if item not in kept])
         items[:] = kept
 
-    def _at_level(self, item):
-        """Is a test of the level, or without one."""
+    def _at_level(self, item: pytest.Function) -> bool:
+        """True for a test of the level, or of none."""
         if item.cls is None:
             return True
         parts = [getattr(item.cls, name) for name in LEVELS if hasattr(item.cls, name)]
@@ -78,20 +79,23 @@ class OneLevel:
 
 
 class Plugin(OneLevel):
-    """Saves the traces of what runs. folder: of the files. level: 'RTL' or 'Verilog'."""
+    """Saves the traces of the class named ``cls`` to ``folder``; level: 'RTL' or 'Verilog'."""
 
-    def __init__(self, cls, folder, level="RTL"):
+    def __init__(self, cls: str, folder: Path | str, level: str = "RTL") -> None:
         super().__init__(level == "Verilog")
         self.recorder, self.folder = Recorder(cls, self.verilog), Path(folder)
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtestloop(self):
+    def pytest_runtestloop(self) -> Iterator[None]:
+        """Record while tests run."""
         with hooked(observe=self.recorder.observe):
             return (yield)
 
-    def pytest_runtest_setup(self, item):
+    def pytest_runtest_setup(self, item: pytest.Item) -> None:
+        """Note the test that runs."""
         self.recorder.test = item.nodeid
 
-    def pytest_sessionfinish(self):
+    def pytest_sessionfinish(self) -> None:
+        """Save the traces."""
         for trace in self.recorder.traces():
             trace.save(self.folder)

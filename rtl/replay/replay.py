@@ -1,21 +1,23 @@
-"""Recorded traces driven into Verilog, in Icarus: every output in every cycle as the tests saw it, and never X."""
+"""Recorded traces driven into Verilog in Icarus: every output equals the trace in every cycle, and is never X."""
 
-import subprocess
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from base.tools import ToolTimeout, finish
 from rtl.harness.icarus import TIMESCALE, IcarusError, compile_program, instance
-from rtl.harness.ports import places, split, total_width, validity
+from rtl.harness.ports import Port, places, split, total_width, validity
 
-from .trace import load
+from .trace import Trace, load
 
-SECONDS = 300  # a simulation that takes longer hangs
+SECONDS = 300.0  # a simulation that takes longer hangs
 
 
 @dataclass(frozen=True)
 class Mismatch:
-    """test: that drove the cycle. cycle: of the trace. port: in the Verilog. got: binary, with x and z."""
+    """A ``port`` of the Verilog that differs in a ``cycle`` of the trace, which ``test`` drove; values in binary."""
 
     test: str
     cycle: int
@@ -23,11 +25,11 @@ class Mismatch:
     expected: str
     got: str
 
-    def __str__(self):
+    def __str__(self) -> str:
         return f"{self.test}: cycle {self.cycle}: {self.port}: expected {self.expected}, got {self.got}"
 
 
-def bench(top, ports, strict=False):
+def bench(top: str, ports: Sequence[Port], strict: bool = False) -> str:
     """Verilog of module ReplayBench: it drives the cycles of +trace=FILE into module ``top``, to the first mismatch.
 
     The msg of an output stream counts when its val is 1, or always if ``strict``; X and Z never match.
@@ -69,12 +71,19 @@ endmodule
 """
 
 
-def replay_files(traces, verilog, top=None, cells=(), strict=False, seconds=SECONDS):
-    """Drive recorded traces into Verilog, up to the first cycle that differs: list of its Mismatch, [] if none does.
+def replay_files(
+    traces: Sequence[Path | str],
+    verilog: Sequence[Path],
+    top: str | None = None,
+    cells: Sequence[Path] = (),
+    strict: bool = False,
+    seconds: float = SECONDS,
+) -> list[Mismatch]:
+    """Drive recorded traces into Verilog; returns the mismatches of the first cycle that differs, [] if none does.
 
     traces: .json files of Trace.save, of one parameter set or of modules with the same ports and behaviour.
     verilog, cells: files. top: their module, by default the traces' class. seconds: limit of a simulation.
-    One compilation, then a run a trace. Raises IcarusError where there is nothing to compare.
+    One compilation, then a run a trace. Raises IcarusError if the Verilog does not compile or ends early.
     """
     heads = [(Path(path), load(path, cycles=False)) for path in traces]
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
@@ -88,17 +97,17 @@ def replay_files(traces, verilog, top=None, cells=(), strict=False, seconds=SECO
     return []
 
 
-def replay(trace, verilog, top=None, cells=(), strict=False, seconds=SECONDS):
-    """As `replay_files`, of a Trace in memory."""
+def replay(trace: Trace, verilog: Sequence[Path], **options: Any) -> list[Mismatch]:
+    """Drive a Trace in memory into Verilog. Options: see `replay_files`."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        return replay_files([trace.save(folder)], verilog, top, cells, strict, seconds)
+        return replay_files([trace.save(folder)], verilog, **options)
 
 
-def _run(program, path, head, strict, seconds):
+def _run(program: Path, path: Path, head: Trace, strict: bool, seconds: float) -> list[Mismatch]:
     command = ["vvp", "-n", program, f"+trace={path.with_suffix('.trace')}"]
     try:
-        result = subprocess.run(command, capture_output=True, text=True, timeout=seconds)
-    except subprocess.TimeoutExpired:
+        result = finish(command, seconds=seconds)
+    except ToolTimeout:
         return [Mismatch(head.cls, 0, "simulation", "an end", f"none after {seconds} s")]
     verdict = result.stdout.split("\n")
     verdict = next((line.split() for line in verdict if line.startswith(("MISMATCH ", "END "))), None)
@@ -108,10 +117,11 @@ def _run(program, path, head, strict, seconds):
         if int(verdict[1]) != head.cycles:
             raise IcarusError(f"the replay of {path.stem} read {verdict[1]} of {head.cycles} cycles")
         return []
-    return _differences(head, int(verdict[1]), *verdict[2:], strict)
+    cycle, want, got = verdict[1:]
+    return _differences(head, int(cycle), want, got, strict)
 
 
-def _differences(head, cycle, want, got, strict):
+def _differences(head: Trace, cycle: int, want: str, got: str, strict: bool) -> list[Mismatch]:
     """The ports that differ in ``cycle``; want, got: packed outputs in binary, highest bit first."""
     outputs, out = split(head.ports)[1], []
     valid = {} if strict else validity(head.ports)

@@ -1,4 +1,4 @@
-"""What a test saw at a component's ports, cycle by cycle, as a file that a simulation can be held against."""
+"""The values of a component's ports in every cycle of its tests, as a file to compare a simulation with."""
 
 import hashlib
 import importlib
@@ -6,6 +6,9 @@ import json
 import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
+
+from pymtl3 import Component
 
 from rtl.harness.ports import Port, places, split
 from rtl.harness.translate import translate_component
@@ -15,54 +18,54 @@ from rtl.harness.translate import translate_component
 class Trace:
     """Every cycle of the simulators of one component with one parameter set.
 
-    cls, module, arguments: the component, `cls(*arguments)` of `module`. ports: of rtl.harness.ports.ports_of.
+    cls, module, arguments: the component is `cls(*arguments)` of `module`. ports: of rtl.harness.ports.ports_of.
     lines: a cycle each, 'fresh inputs outputs': fresh is 1 in a simulator's first cycle, where registers hold
     anything; the rest are hexadecimal numbers packed as rtl.harness.ports.places, settled ahead of the clock edge.
-    tests: (first cycle, name) of what drove them, ascending.
+    tests: first cycle and name of each test, ascending. cycles: number of lines in the file, where they are not read.
     """
 
     cls: str
     module: str
-    arguments: tuple
-    ports: tuple
-    lines: list = field(default_factory=list)
-    tests: list = field(default_factory=list)
-    cycles: int = 0  # where the lines were left in their file
+    arguments: tuple[Any, ...]
+    ports: tuple[Port, ...]
+    lines: list[str] = field(default_factory=list)
+    tests: list[tuple[int, str]] = field(default_factory=list)
+    cycles: int = 0
 
     @property
-    def name(self):
-        """Of the files: the class and, where it has parameters, a digest of them."""
+    def name(self) -> str:
+        """Name of the files: the class and, where it has parameters, a digest of them."""
         if not self.arguments:
             return self.cls
         return f"{self.cls}.{hashlib.sha256(repr(self.arguments).encode()).hexdigest()[:8]}"
 
-    def component(self):
+    def component(self) -> Component:
         """The component, not elaborated."""
         return getattr(importlib.import_module(self.module), self.cls)(*self.arguments)
 
-    def verilog(self):
-        """Its Verilog as text; the module is named `cls`."""
+    def verilog(self) -> str:
+        """The component's Verilog; the module is named `cls`."""
         return translate_component(self.component(), self.cls)
 
-    def test_at(self, cycle):
-        """Name of the test that a cycle belongs to."""
+    def test_at(self, cycle: int) -> str:
+        """Name of the test that drove a cycle."""
         return next((name for first, name in reversed(self.tests) if first <= cycle), "")
 
-    def cycles_of(self, test):
-        """Cycles that a test took, all its simulators together."""
+    def cycles_of(self, test: str) -> int:
+        """Cycles of a test, all its simulators together."""
         ends = [first for first, _ in self.tests[1:]] + [self.cycles or len(self.lines)]
         return sum(end - first for (first, name), end in zip(self.tests, ends, strict=True) if name == test)
 
-    def values(self, cycle):
-        """(inputs, outputs) of a cycle: dicts of a port's name in the Verilog -> int."""
+    def values(self, cycle: int) -> tuple[dict[str, int], ...]:
+        """Inputs and outputs of a cycle, by the port's name in the Verilog."""
         _, *packed = self.lines[cycle].split()
         return tuple(
             {port.name: int(number, 16) >> low & (1 << port.width) - 1 for port, low in places(group).items()}
             for group, number in zip(split(self.ports), packed)
         )
 
-    def save(self, folder):
-        """Write <name>.trace, the cycles, and <name>.json, the rest; returns the latter's path."""
+    def save(self, folder: Path | str) -> Path:
+        """Write <name>.trace, the cycles, and <name>.json, the rest; returns the path of the .json file."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         head = {
@@ -79,7 +82,7 @@ class Trace:
         return path
 
 
-def load(path, cycles=True):
+def load(path: Path | str, cycles: bool = True) -> Trace:
     """The Trace of a .json file that `Trace.save` wrote; without its lines unless ``cycles``."""
     head = json.loads(Path(path).read_text())
     lines = Path(path).with_suffix(".trace").read_text().splitlines() if cycles else []
@@ -94,11 +97,12 @@ def load(path, cycles=True):
     )
 
 
-def _tuples(value):
+def _tuples(value: Any) -> Any:
+    """Lists of JSON as tuples."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
 
 
-def _write(path, text):
+def _write(path: Path, text: str) -> None:
     part = path.with_name(f".{path.name}.part-{os.getpid()}")
     part.write_text(text)
     os.replace(part, path)

@@ -81,6 +81,7 @@ def test_tidy_keeps_two_types_of_one_name_apart():
 
 
 def test_tidy_drops_constants_that_nothing_uses():
-    a = "module A;\n  localparam logic [1:0] used  = 2'd1;\n  localparam logic [1:0] width  = 2'd1;\n  x = used;\nendmodule\n"
+    width = "  localparam logic [1:0] width  = 2'd1;\n"
+    a = f"module A;\n  localparam logic [1:0] used  = 2'd1;\n{width}  x = used;\nendmodule\n"
     b = a.replace("module A", "module B", 1)
-    assert tidy(a + b) == (a + b).replace("  localparam logic [1:0] width  = 2'd1;\n", "")
+    assert tidy(a + b) == (a + b).replace(width, "")

@@ -198,7 +198,7 @@ class TestFL:
         assert bench.read(CHIP["busy"].byte)[0] == 0
 
     def test_an_event_in_the_cycle_that_clears_it_stays(self):
-        """... and one a cycle earlier does not; a start clears in the cycle ahead of its strobe, a 1 at the same place."""
+        """An event one cycle earlier is cleared. A start clears in the cycle ahead of its strobe, and so does a 1."""
         strobe = self.tick_of_the_strobe()
         for name in ("start", "done"):
             for tick, stays in ((strobe - 1, 0), (strobe, 1), (strobe + 1, 1)):
@@ -207,7 +207,7 @@ class TestFL:
                 assert bench.read(CHIP["busy"].byte)[0] >> CHIP["done"].shift & 1 == stays, (name, tick - strobe)
 
     def tick_of_the_strobe(self):
-        """Clock edges from the beginning of a transfer of `start` to the one behind which the strobe is high."""
+        """Clock edges from the beginning of a transfer of `start` to the one after which the strobe is high."""
         bench, ticks = self.bench(), []
 
         def tick():
