@@ -91,26 +91,26 @@ layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-
 ifeq ($(BACKEND),openroad)
 	@$(PY) -m talbot openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
 else
-	@$(PY) -m flow.layout $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK)) \
+	@$(PY) -m talbot layout $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK)) \
 		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
 		$(if $(ANALOG),--analog $(call quoted,$(ANALOG))) $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 endif
 
 .PHONY: layout-pareto
 layout-pareto: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
-	@$(PY) -m flow.layout.sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+	@$(PY) -m talbot layout-sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
 .PHONY: layout-effort
 layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
-	@$(PY) -m flow.layout.sweep effort --design $(or $(DESIGN),quad_divider) \
+	@$(PY) -m talbot layout-sweep effort --design $(or $(DESIGN),quad_divider) \
 		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
 
 .PHONY: layout-hierarchy
 layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
 	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
-		$(PY) -m flow.layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
+		$(PY) -m talbot layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
 	done
-	@$(PY) -m flow.layout.report.compare $(DESIGNS)
+	@$(PY) -m talbot layout-compare $(DESIGNS)
 
 LIBRELANE := build/librelane
 $(LIBRELANE)/.ready: requirements/librelane.lock | $(READY)

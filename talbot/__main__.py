@@ -21,8 +21,11 @@ COMMANDS = {
     "formats": ("flow.formats.command", "stream formats and scan orders compared"),
     "sizes": ("flow.sizes.command", "cells and gate equivalents of every block"),
     "divider": ("flow.simulate.divider.exhaustive", "every input of a divider through its Verilog"),
-    "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
+    "layout": ("flow.layout.command", "a design's Verilog to a layout with all its checks"),
+    "layout-sweep": ("flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
+    "layout-compare": ("flow.layout.report.compare", "finished layouts side by side"),
     "openroad": ("flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
+    "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
     "handoff": ("flow.handoff.command", "one archive of a finished layout"),
 }
 

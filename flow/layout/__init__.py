@@ -1,1 +1,1 @@
-"""From a block's Verilog to a layout with all its checks: `python -m flow.layout quad_divider`."""
+"""From a block's Verilog to a layout with all its checks: `talbot layout quad_divider`."""

@@ -1,13 +1,12 @@
 """The steps of a layout with Coriolis, in order, for a design and a process."""
 
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from base.paths import ROOT
 from base.steps import Step
-from base.tools import ToolError, finish
 from flow.simulate.verilator import FRAME
+from rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
 from .options import LEAST_UTILIZATION, Options
@@ -60,11 +59,7 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
 
     Raises ToolError where the export fails.
     """
-    done = finish(
-        [sys.executable, "-m", "rtl.export", "--top", design.top, "--out", folder / "rtl", *design.options], cwd=ROOT
-    )
-    if done.returncode:
-        raise ToolError(done.stderr.strip().splitlines()[-1])
+    export_verilog(folder / "rtl", [design.top], design.options)
     constraints = folder / "rtl" / f"{design.top}.sdc"
     constraints.write_text(sdc(design))
     return {

@@ -1,9 +1,8 @@
-"""`python -m flow.layout.report.compare DESIGN DESIGN`: finished layouts side by side, in build/layout/hierarchy/."""
+"""Finished layouts side by side, in build/layout/hierarchy/."""
 
-import argparse
 import json
 import os
-import sys
+from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -43,12 +42,10 @@ ROWS = (
 )
 
 
-def arguments() -> argparse.ArgumentParser:
-    """The command line's parser."""
-    parser = argparse.ArgumentParser(prog="python -m flow.layout.report.compare", description=__doc__)
-    parser.add_argument("designs", nargs="*", default=PAIR, metavar="DESIGN", help=f"default: {' '.join(PAIR)}")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of layouts (%(default)s)")
-    return parser
+def add_arguments(parser: ArgumentParser) -> None:
+    """Arguments of `talbot layout-compare`."""
+    parser.add_argument("designs", nargs="*", default=PAIR, metavar="DESIGN", help="designs that are laid out")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
 
 
 def read(folder: Path, name: str) -> dict[str, Any]:
@@ -100,46 +97,27 @@ def _text(name: str, value: Any) -> str:
     return as_text(value)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Write table.json and report.html, print the table; 1 where a limit is broken, 2 on bad input."""
-    options = arguments().parse_args(argv)
-    try:
-        names = list(options.designs)
-        wanted = dict.fromkeys([*names, *(block.name for name in names for block in macro_designs(design(name)))])
-        summaries = {name: read(options.out, name) for name in wanted}
-        made = columns(names, summaries)
-        rows, folder = table(made, summaries), options.out / "hierarchy"
-        pictures = [
-            (name, os.path.relpath(path, folder))
-            for name in names
-            for path in (options.out / name / f"{name}.blocks.png", options.out / name / f"{name}.png")
-            if path.is_file()
-        ]
-        with staged(folder, ["table.json", "report.html"]) as part:
-            (part / "table.json").write_text(
-                json.dumps(
-                    {words: dict(zip((name for name, _, _ in made), values, strict=True)) for words, values in rows},
-                    indent=1,
-                )
-                + "\n"
-            )
-            (part / "report.html").write_text(
-                render(
-                    Path(__file__).with_name("compare.html"),
-                    names=[name for name, _, _ in made],
-                    rows=rows,
-                    pictures=pictures,
-                )
-            )
-    except (ParameterError, OSError) as error:
-        print(f"flow.layout.report.compare: {error}", file=sys.stderr)
-        return 2
-    width = max(len(words) for words, _ in rows)
-    for words, values in [("", [name for name, _, _ in made]), *rows]:
-        print(f"{words:{width}}  " + "  ".join(f"{value:>28.28}" for value in values))
+def run(options: Namespace) -> int:
+    """Write table.json and report.html, print the table; 1 where a limit is broken."""
+    wanted = dict.fromkeys(
+        [*options.designs, *(block.name for name in options.designs for block in macro_designs(design(name)))]
+    )
+    summaries = {name: read(options.out, name) for name in wanted}
+    made = columns(options.designs, summaries)
+    names, rows, folder = [column.name for column in made], table(made, summaries), options.out / "hierarchy"
+    pictures = [
+        (name, os.path.relpath(path, folder))
+        for name in options.designs
+        for path in (options.out / name / f"{name}.blocks.png", options.out / name / f"{name}.png")
+        if path.is_file()
+    ]
+    found = {label: dict(zip(names, values, strict=True)) for label, values in rows}
+    with staged(folder, ["table.json", "report.html"]) as part:
+        (part / "table.json").write_text(json.dumps(found, indent=1) + "\n")
+        page = render(Path(__file__).with_name("compare.html"), names=names, rows=rows, pictures=pictures)
+        (part / "report.html").write_text(page)
+    width = max(len(label) for label in found)
+    for label, values in [("", names), *rows]:
+        print(f"{label:{width}}  " + "  ".join(f"{value:>28.28}" for value in values))
     print(folder / "report.html")
-    return 1 if any(broken(summaries[name]) for name in names) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    return 1 if any(broken(summaries[name]) for name in options.designs) else 0

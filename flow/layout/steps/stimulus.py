@@ -12,6 +12,7 @@ from base.steps import Step, StepError
 from base.tools import ToolError, finish, run
 from flow.simulate import icarus
 from flow.simulate.icarus import icarus_program
+from rtl.verilog import export_verilog
 
 from ..netlist import verilog
 from ..netlist.verilog import modules
@@ -71,9 +72,7 @@ class Stimulus(Step):
         top = self.parameters.top
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
-            run(
-                [sys.executable, "-m", "rtl.export", "--top", CHIP, "--out", folder, *self.parameters.options], cwd=ROOT
-            )
+            export_verilog(folder, [CHIP], self.parameters.options)
             chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
             if set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])

@@ -8,9 +8,9 @@ from importlib.util import find_spec
 
 import pytest
 
+from base.command import main, one_line
 from base.steps import StepError, versions
-from flow.layout import __main__ as command
-from flow.layout import search
+from flow.layout import command, search
 from flow.layout.netlist.netlist import Instance
 from flow.layout.netlist.test import shift_register as small
 from flow.layout.options import Options
@@ -20,7 +20,7 @@ from models.parameters import ParameterError
 
 def reported(capsys, arguments):
     """The one line that `flow.layout` prints, its status being 2."""
-    assert command.main(list(map(str, arguments))) == 2
+    assert main(command, list(map(str, arguments))) == 2
     out, err = capsys.readouterr()
     (line,) = [line for line in err.splitlines() if not line.startswith("\r")] or [""]
     assert not out and line.startswith("flow.layout: ")
@@ -107,4 +107,4 @@ def test_a_full_disk(capsys, tmp_path, size):
 
 def test_an_error_of_many_lines_is_reported_in_one_line():
     error = RuntimeError("yosys failed with status 1:\nreading\nERROR: no module Top\nbye")
-    assert command.one_line(error) == "yosys failed with status 1: ERROR: no module Top"
+    assert one_line(error) == "yosys failed with status 1: ERROR: no module Top"

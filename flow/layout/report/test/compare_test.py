@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from base.command import main
 from flow.layout.report import compare
 from flow.layout.report.metrics import table_6_1
 
@@ -35,7 +36,7 @@ def folder(tmp_path):
 
 
 def test_rows_and_the_run_time_of_a_design_with_its_macros(folder, capsys):
-    assert compare.main(["phase_path", "phase_path_macros", "--out", str(folder)]) == 1  # limits not measured
+    assert main(compare, ["phase_path", "phase_path_macros", "--out", str(folder)]) == 1  # limits not measured
     table = json.loads((folder / "hierarchy" / "table.json").read_text())
     assert table["run time, s"] == {"phase_path": "20.0", "phase_path_macros": "21.0", "quad_divider, a block": "1.0"}
     assert table["cells, clock buffers included"] == {
@@ -49,7 +50,7 @@ def test_rows_and_the_run_time_of_a_design_with_its_macros(folder, capsys):
 
 
 def test_a_missing_layout_is_named(tmp_path, capsys):
-    assert compare.main(["phase_path", "phase_path_macros", "--out", str(tmp_path)]) == 2
+    assert main(compare, ["phase_path", "phase_path_macros", "--out", str(tmp_path)]) == 2
     assert "make layout DESIGN=phase_path\n" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 

@@ -5,8 +5,9 @@ import shutil
 
 import pytest
 
+from base.command import main
 from base.steps import StepError
-from flow.layout import __main__ as command
+from flow.layout import command
 from flow.layout.sensor.analog import check, files
 from flow.layout.sensor.plan import BLOCKS
 from models.parameters import ParameterError
@@ -69,7 +70,7 @@ def test_other_pins(frames, tmp_path, change, words):
 
 def test_files_that_lack(capsys, frames, tmp_path):
     def told(*arguments):
-        assert command.main([*map(str, arguments), "--out", str(tmp_path / "out")]) == 2
+        assert main(command, [*map(str, arguments), "--out", str(tmp_path / "out")]) == 2
         (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("flow.layout: ")]
         return line
 

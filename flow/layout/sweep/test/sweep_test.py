@@ -1,7 +1,8 @@
 """The front of a set of points, plots of points that did not close, names that are not there."""
 
 from base.charts import save
-from flow.layout.sweep import __main__ as command
+from base.command import main
+from flow.layout.sweep import command
 from flow.layout.sweep.plots import effort_plot, front, pareto_plot
 from flow.layout.sweep.points import candidates
 
@@ -29,6 +30,6 @@ def test_every_variant_is_a_candidate():
 def test_bad_arguments(tmp_path, capsys):
     (tmp_path / "a.lib").write_text("library (a) {}")
     ask = ["pareto", "--out", str(tmp_path / "out"), "--liberty"]
-    assert command.main([*ask, str(tmp_path / "a.lib"), "--only", "radix8_8"]) == 2
-    assert command.main([*ask, str(tmp_path / "b.lib")]) == 2
+    assert main(command, [*ask, str(tmp_path / "a.lib"), "--only", "radix8_8"]) == 2
+    assert main(command, [*ask, str(tmp_path / "b.lib")]) == 2
     assert capsys.readouterr().err.count("\n") == 2 and not (tmp_path / "out").exists()

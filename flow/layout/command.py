@@ -1,0 +1,80 @@
+"""Verilog to a layout with all its checks, in build/layout/<design>/."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from base.command import failures
+from base.paths import ROOT
+from base.progress import Steps
+from models.parameters import ParameterError, check_choice
+from platforms.foundry import installed
+from platforms.load import PROCESSES
+
+from .block import lay_out
+from .chain import all_steps
+from .design import DESIGNS, Design, design, folder_name, macro_designs
+from .options import Options
+from .report.metrics import broken
+from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Arguments of `talbot layout`."""
+    add = parser.add_argument
+    add("design", help=f"one of {', '.join((*DESIGNS, SENSOR))}")
+    add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
+    add("--backend", default="coriolis", help="what places and routes: coriolis (openroad: see talbot openroad)")
+    add(
+        "--utilization",
+        type=float,
+        help="cells' area by core area where the search for the smallest area begins (default: the design's)",
+    )
+    add(
+        "--liberty",
+        type=Path,
+        action="append",
+        default=[],
+        help="characterized cells at a corner (again for further corners; default: measured now)",
+    )
+    add("--untimed", action="store_true", help="no timing: cells by area alone")
+    add(
+        "--analog",
+        type=Path,
+        help=f"folder with <block>.lef and .gds of analog blocks in place of {SENSOR}'s black boxes",
+    )
+    add("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+
+
+def run(arguments: Namespace) -> int:
+    """Lay out a design and print the path of its summary; 1 where a limit is broken."""
+    check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
+    check_choice("backend", arguments.backend, ("coriolis",))
+    chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
+    options = Options(
+        arguments.pdk,
+        chosen.utilization if arguments.utilization is None else arguments.utilization,
+        tuple(arguments.liberty),
+        arguments.untimed,
+        decks=tuple(installed(arguments.pdk).items()),
+    )
+    if arguments.design == SENSOR:
+        steps = [
+            *(f"{CHIP}: {step.name}" for step in all_steps(chosen, options)),
+            *(step.name for step in die_steps(chosen, options)),
+        ]
+        with Steps(steps) as bar:
+            summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
+    else:
+        summary, lines = block(chosen, options, arguments)
+    print(summary)
+    return failures(f"{arguments.design}: {line}" for line in lines)
+
+
+def block(chosen: Design, options: Options, arguments: Namespace) -> tuple[Path, list[str]]:
+    """Lay out a design: (path of summary.json, limits broken). Raises as `lay_out`."""
+    if arguments.analog:
+        raise ParameterError(f"analog = {arguments.analog}: must be with DESIGN={SENSOR} alone")
+    steps = [f"{macro.name}: {step.name}" for macro in macro_designs(chosen) for step in all_steps(macro, options)]
+    with Steps([*steps, *(step.name for step in all_steps(chosen, options))]) as bar:
+        _, summary = lay_out(chosen, options, arguments.out, bar.note)
+    return arguments.out / folder_name(chosen, options.pdk) / "summary.json", broken(summary)

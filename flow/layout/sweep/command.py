@@ -1,0 +1,82 @@
+"""Layouts of the divider's variants, or of a design at several efforts: build/layout/sweep/. A killed run goes on."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from dataclasses import asdict
+from pathlib import Path
+
+from base.charts import save
+from base.files import check_folder, staged
+from base.jobs import Job
+from base.jobs import run as run_jobs
+from base.paths import ROOT
+from flow.layout.design import flat_design
+from models.parameters import ParameterError
+
+from .plots import effort_plot, pareto_plot
+from .points import candidates, effort_point, variant_point
+
+EFFORTS, VARIATIONS, UTILIZATIONS = (1, 2, 3), (0.05, 0.15, 0.3), (0.76, 0.84, 0.92)
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Arguments of `talbot layout-sweep`."""
+    add = parser.add_argument
+    add("what", choices=("pareto", "effort"), help="variants of the divider; effort of the placer")
+    add(
+        "--liberty",
+        type=Path,
+        action="append",
+        required=True,
+        help="characterized cells at a corner (again for further corners)",
+    )
+    add("--only", action="append", help="of pareto: names of points, radix4_8 (again for more)")
+    add("--design", default="quad_divider", help="of effort")
+    utilizations = ", ".join(map(str, UTILIZATIONS))
+    add("--utilization", type=float, action="append", help=f"of effort (again for more; default: {utilizations})")
+    add("--workers", type=int, default=1, help="layouts at a time, -1 for all cores")
+    add("--out", type=Path, default=ROOT / "build" / "layout" / "sweep", help="folder of the tables and plots")
+
+
+def jobs(options: Namespace) -> list[Job]:
+    """The Jobs of ``options``. Raises ParameterError."""
+    liberty = tuple(str(path.resolve()) for path in options.liberty)
+    code = sorted((ROOT / "flow" / "layout").rglob("*.py"))
+    inputs = (*options.liberty, *(path for path in code if "test" not in path.parts))
+    if options.what == "effort":
+        chosen = flat_design(options.design)
+        return [
+            Job(
+                f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}",
+                effort_point,
+                (chosen, liberty, str(options.out), effort, variation, utilization),
+                inputs,
+            )
+            for utilization in options.utilization or UTILIZATIONS
+            for effort in EFFORTS
+            for variation in VARIATIONS
+        ]
+    found = {made.name: made for made in candidates()}
+    for name in options.only or ():
+        if name not in found:
+            raise ParameterError(f"only = {name!r}: must be one of {', '.join(found)}")
+    return [
+        Job(name, variant_point, (made, liberty, str(options.out)), (*inputs, json.dumps(asdict(made))))
+        for name, made in found.items()
+        if not options.only or name in options.only
+    ]
+
+
+def run(options: Namespace) -> int:
+    """Lay out the points, write their table and plot, and print the plot's path."""
+    check_folder("out", options.out)
+    for path in options.liberty:
+        if not path.is_file():
+            raise ParameterError(f"liberty = {path}: no such file")
+    points = run_jobs(jobs(options), options.out / "jobs", options.what, options.workers)
+    figure = (pareto_plot if options.what == "pareto" else effort_plot)(points)
+    with staged(options.out) as part:
+        (part / f"{options.what}.json").write_text(json.dumps(points, indent=1) + "\n")
+        save(figure, part / f"{options.what}.png")
+    print(options.out / f"{options.what}.png")
+    return 0
