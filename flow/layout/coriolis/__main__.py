@@ -1,6 +1,6 @@
 """Place and route one netlist: reads request.json, writes result.json and <cell>.gds into the working directory.
 
-The exit status is 0 also where segments stayed open: result.json tells. Coriolis's own words go to the terminal.
+The exit status is 0 also with open segments, which are in result.json. Coriolis prints to the terminal.
 """
 
 import json
@@ -11,23 +11,24 @@ from pathlib import Path
 from .session import configure, load
 
 
-def main(request):
-    request = json.loads(Path(request).read_text())
+def main(path: str) -> int:
+    """Run the request in the file ``path``."""
+    request = json.loads(Path(path).read_text())
     begin = time.perf_counter()
-    database = configure(request)
+    configure(request)
     from .block import make_block
-    from .dump import instances, shapes, wires
+    from .dump import instances, segments, shapes
     from .macros import make_macros
     from .short import draw_short
 
     make_macros(request)
     cell = load(request["cell"])
-    block = make_block(cell, request, database)
+    block = make_block(cell, request)
     times = {"load": time.perf_counter() - begin}
     routed = block.doPnR()
     times.update(block.times)
     begin = time.perf_counter()
-    print(f"short wires drawn: {draw_short(cell)}")
+    print(f"short segments drawn: {draw_short(cell)}")
     block.save()
     Path("shapes.json").write_text(json.dumps(shapes(cell)))
     Path("result.json").write_text(
@@ -37,7 +38,7 @@ def main(request):
                 "straps": block.straps,
                 "pins": block.pins,
                 "instances": instances(cell),
-                "wires": wires(cell),
+                "segments": segments(cell),
                 "times": times | {"save": time.perf_counter() - begin},
             }
         )

@@ -1,7 +1,9 @@
-"""A block of Coriolis with power straps: pins, then the clock's trunk, then straps beside both, then the cells."""
+"""A block of Coriolis with power straps: pins, then the clock trunk, then straps beside both, then the cells."""
 
 import time
+from collections.abc import Callable, Sequence
 from math import ceil
+from typing import Any
 
 from coriolis.helpers import u
 from coriolis.Hurricane import Box
@@ -12,18 +14,18 @@ from flow.layout.netlist.names import CLOCK
 
 from .leaves import balance
 from .macros import fix_macros
-from .straps import PIN_CLEARANCE_UM, Straps
+from .straps import PIN_CLEARANCE_UM, Strap, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
-# Tracks (horizontal, vertical) of a cell of the global router that it leaves to what ends there: most, least; around
-# blocks, where wires from far away gather, twice as many
+# Tracks (horizontal, vertical) of a cell of the global router, reserved for the nets that end there: most, least;
+# around macros, where nets from far away gather, twice as many
 RESERVED = {False: ((6, 3), (3, 1)), True: ((11, 9), (6, 4))}
-SPARE_ROWS = 8  # side of a clock tree's leaf, in rows; Coriolis takes no less than 7
+SPARE_ROWS = 8  # side of a leaf of the clock tree, in rows; Coriolis takes no less than 7
 
 
-def make_block(cell, request, framework):
-    """The TalbotBlock of ``cell``, configured by ``request``."""
-    conf = BlockConf(cell, ioPins=[])
+def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
+    """Configure the TalbotBlock of ``cell`` by ``request``."""
+    conf: Any = BlockConf(cell, ioPins=[])
     conf.coreSize = u(request["width_um"]), u(request["height_um"])
     cfg = conf.cfg
     cfg.etesian.bloat = "disabled"
@@ -33,12 +35,12 @@ def make_block(cell, request, framework):
     # One of the diodes that Coriolis adds against antennas stays open; the antenna step checks the result
     cfg.etesian.antennaGateMaxWL = u(40000.0)
     cfg.etesian.antennaDiodeMaxWL = u(80000.0)
-    # of the global router around a net's pins, in heights of a row: there must be a way around a block
+    # of the global router around a net's pins, in heights of a row: there must be a path around a macro
     cfg.katana.searchHalo = 1 + ceil(
         max((max(macro["width_um"], macro["height_um"]) for macro in request["macros"]), default=0) / request["row_um"]
     )
     cfg.anabatic.globalIterations = 20
-    cfg.anabatic.topRoutingLayer = request["wires"][-1]["name"]
+    cfg.anabatic.topRoutingLayer = request["metals"][-1]["name"]
     local, least = RESERVED[bool(request["macros"])]
     cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = local
     cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = least
@@ -54,48 +56,57 @@ def make_block(cell, request, framework):
 
 
 class TalbotBlock(Block):
-    """times: seconds of the phases. straps, pins: where they came to lie."""
+    """times: seconds of the phases. straps, pins: where they are."""
 
-    def __init__(self, conf, request):
+    def __init__(self, conf: Any, request: dict[str, Any]) -> None:
         super().__init__(conf)
-        self.request, self.times, self.straps, self.pins = request, {}, [], []
+        self.request = request
+        self.times: dict[str, float] = {}
+        self.straps: list[Strap] = []
+        self.pins: list[list[Any]] = []
         self.power = Straps(conf.cell, request)
-        self.setUnexpandPins(IoPin.WEST | IoPin.EAST | IoPin.SOUTH | IoPin.NORTH)  # else some come off their wires
+        self.setUnexpandPins(IoPin.WEST | IoPin.EAST | IoPin.SOUTH | IoPin.NORTH)  # else some come off their segments
 
-    def _timed(self, phase, call):
+    def _timed(self, phase: str, call: Callable[[], Any]) -> Any:
         begin = time.perf_counter()
         result = call()
         self.times[phase] = time.perf_counter() - begin
         return result
 
-    def placeIoPins(self):
+    def placeIoPins(self) -> None:
+        """Spread the pins over the tracks of their sides."""
         for side, nets in self.request["pins"].items():
             self.pins += spread(side, nets, self.request, [x for _, x, _ in self.power.even()])
         self.conf.ioPins = [IoPin(SIDES[side], net, u(at), 0, 1) for side, net, at in self.pins]
         super().placeIoPins()
-        self.conf.placeArea = Box(*map(u, self.request["tree"]))  # of the clock's tree, which is built next
+        self.conf.placeArea = Box(*map(u, self.request["tree"]))  # of the clock tree, which is built next
 
-    def addHTrees(self):
-        """Sinks beyond the tree's area hang from its leaves too, but not blocks laid out before: these have a tree of
-        their own and hang from the root."""
+    def addHTrees(self) -> None:
+        """Build the clock tree, then place the straps beside its trunk.
+
+        Sinks beyond the tree's area hang from its leaves too, except macros: these have a tree of their own and hang
+        from the root.
+        """
         self.conf.placeArea = None
-        blocks = {macro["name"] for macro in self.request["macros"]}
-        tree = self.spares.quadTree
+        macros = {macro["name"] for macro in self.request["macros"]}
+        tree: Any = self.spares.quadTree
         if tree:
-            tree.isUnderArea = lambda plug: plug.getEntity().getInstance().getMasterCell().getName() not in blocks
+            tree.isUnderArea = lambda plug: plug.getEntity().getInstance().getMasterCell().getName() not in macros
             balance(tree)
         self._timed("clock_tree", super().addHTrees)
         self.straps = self.power.positions([at for side, _, at in self.pins if side in ("north", "south")])
 
-    def place(self):
+    def place(self) -> None:
+        """Place the cells."""
         self._timed("placement", super().place)
 
-    def route(self):
+    def route(self) -> Any:
+        """Draw the straps and route; whether every net is routed."""
         self._timed("power", self.power.create)
         return self._timed("routing", super().route)
 
 
-def spread(side, nets, request, straps):
+def spread(side: str, nets: Sequence[str], request: dict[str, Any], straps: Sequence[float]) -> list[list[Any]]:
     """[side, net, offset_um] of the pins on one side, evenly on tracks and clear of the straps at x in ``straps``."""
     across = side in ("west", "east")
     length = request["height_um" if across else "width_um"]

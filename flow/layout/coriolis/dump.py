@@ -1,13 +1,15 @@
-"""What is in Hurricane's database after routing, as plain lists."""
+"""Hurricane's database after routing as plain lists."""
+
+from typing import Any
 
 from coriolis.Hurricane import Contact, DbU, Horizontal, Pin, Vertical
 
 
-def _um(value):
+def _um(value: int) -> float:
     return round(DbU.toPhysical(value, DbU.UnitPowerMicro), 4)
 
 
-def instances(cell):
+def instances(cell: Any) -> list[list[Any]]:
     """[name, master, x_um, y_um, orientation, {pin: net}] of every instance."""
     made = []
     for instance in cell.getInstances():
@@ -30,19 +32,21 @@ def instances(cell):
     return made
 
 
-def wires(cell):
-    """What each signal net is made of: dict net -> [[layer, length_um, width_um], ...]; of a contact, whose layer is
-    named after the wires that it joins, both are 0."""
+def segments(cell: Any) -> dict[str, list[list[Any]]]:
+    """[layer, length_um, width_um] of the segments and vias of each signal net.
+
+    The layer of a via is named after the layers that it joins, its length and width are 0.
+    """
     nets = {}
     for net in cell.getNets():
         if not net.isSupply():
-            nets[net.getName()] = [made for made in map(_wire, net.getComponents()) if made]
+            nets[net.getName()] = [made for made in map(_segment, net.getComponents()) if made]
     return nets
 
 
-def _wire(component):
+def _segment(component: Any) -> list[Any] | None:
     layer = component.getLayer().getName() if component.getLayer() is not None else ".block"
-    if layer.endswith(".block"):  # the router's own
+    if layer.endswith(".block"):  # the router's blockages
         return None
     if isinstance(component, (Horizontal, Vertical)):
         length = abs(component.getTargetX() - component.getSourceX()) + abs(
@@ -52,22 +56,24 @@ def _wire(component):
     return [layer, 0, 0] if isinstance(component, Contact) and "_" in layer else None
 
 
-def shapes(cell):
-    """Where each signal net is, for who routes one anew: dict net -> lists of 'wires' [layer, left, bottom, right, top],
-    'cuts' [layer, x, y], 'pins' (of every cell and port on the net the boxes, as wires, of which any one is to be met).
+def shapes(cell: Any) -> dict[str, dict[str, list[Any]]]:
+    """Where each signal net is, for rerouting.
+
+    Lists of 'segments' [layer, left, bottom, right, top], 'vias' [layer, x, y] and 'pins': of every cell and port on
+    the net the boxes, as segments, of which any one is to be met.
     """
     nets = {}
     for net in cell.getNets():
         if net.isSupply():
             continue
-        made = nets[net.getName()] = {"wires": [], "cuts": [], "pins": []}
+        made = nets[net.getName()] = {"segments": [], "vias": [], "pins": []}
         for component in net.getComponents():
             if isinstance(component, Pin):
                 made["pins"].append([_box(component.getLayer(), component.getBoundingBox())])
-            elif isinstance(component, (Horizontal, Vertical)) and _wire(component):
-                made["wires"].append(_box(component.getLayer(), component.getBoundingBox()))
-            elif isinstance(component, Contact) and _wire(component):
-                made["cuts"].append([component.getLayer().getName(), _um(component.getX()), _um(component.getY())])
+            elif isinstance(component, (Horizontal, Vertical)) and _segment(component):
+                made["segments"].append(_box(component.getLayer(), component.getBoundingBox()))
+            elif isinstance(component, Contact) and _segment(component):
+                made["vias"].append([component.getLayer().getName(), _um(component.getX()), _um(component.getY())])
         for plug in net.getPlugs():
             place = plug.getInstance().getTransformation()
             made["pins"].append(
@@ -79,5 +85,5 @@ def shapes(cell):
     return nets
 
 
-def _box(layer, box):
+def _box(layer: Any, box: Any) -> list[Any]:
     return [layer.getName(), *map(_um, (box.getXMin(), box.getYMin(), box.getXMax(), box.getYMax()))]

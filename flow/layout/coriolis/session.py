@@ -2,16 +2,17 @@
 
 import re
 import sys
+from typing import Any
 
 from flow.layout.netlist.names import CLOCK
 
 
-def configure(request):
-    """Load technology and cells as the library step exported them; returns CRL's framework."""
+def configure(request: dict[str, Any]) -> None:
+    """Load technology and cells as the library step exported them."""
     sys.path.insert(0, request["library"])
-    from coriolis import CRL, Cfg
+    from coriolis import CRL, Cfg  # pyright: ignore[reportAttributeAccessIssue]  # compiled, without stubs
     from coriolis.helpers import overlay
-    from exported import StdCellLib, techno
+    from exported import StdCellLib, techno  # pyright: ignore[reportMissingImports]  # written by the library step
 
     techno.setup()
     StdCellLib.setup()
@@ -21,18 +22,16 @@ def configure(request):
         cfg.misc.logMode = cfg.misc.verboseLevel1 = True
         cfg.misc.verboseLevel2 = False
         cfg.etesian.effort = request["effort"]
-        cfg.anabatic.topRoutingLayer = request["wires"][-1]["name"]
-    framework = CRL.AllianceFramework.get()
-    environment = framework.getEnvironment()
+        cfg.anabatic.topRoutingLayer = request["metals"][-1]["name"]
+    environment = CRL.AllianceFramework.get().getEnvironment()
     environment.setCLOCK(f"^{re.escape(CLOCK)}$")
     environment.setPOWER("vdd")
     environment.setGROUND("vss")
-    return framework
 
 
-def load(name):
-    """The netlist <name>.blif of the working directory as a Hurricane cell."""
-    from coriolis import CRL
+def load(name: str) -> Any:
+    """Load the netlist <name>.blif of the working directory as a Hurricane cell."""
+    from coriolis import CRL  # pyright: ignore[reportAttributeAccessIssue]  # compiled, without stubs
 
     cell = CRL.Blif.load(name)
     if cell is None:

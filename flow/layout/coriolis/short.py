@@ -1,38 +1,40 @@
-"""Wires of one track that Coriolis draws with no length, its caps having taken it all: joined from contact to contact."""
+"""Segments of one track that Coriolis draws with no length, all of it in the caps: joined from contact to contact."""
+
+from typing import Any
 
 from coriolis.helpers import u
 from coriolis.Hurricane import Box, Contact, Horizontal, Pad, UpdateSession, Vertical
 
-REACH_UM = 0.6  # from such a wire to a contact at its end: more than half a track
+REACH_UM = 0.6  # from such a segment to a contact at its end: more than half a track
 
 
-def draw_short(cell):
-    """Draw them as pads of their nets, where there is a contact at either end; returns how many."""
+def draw_short(cell: Any) -> int:
+    """Draw them as pads of their nets, where there is a contact at either end; return how many."""
     found = []
     for net in cell.getNets():
         if not net.isSupply():
             parts = list(net.getComponents())
             contacts = [part for part in parts if isinstance(part, Contact) and part.getLayer() is not None]
             found += [
-                (net, wire, box)
-                for wire in parts
-                if isinstance(wire, (Horizontal, Vertical))
-                for box in [_joined(wire, contacts)]
+                (net, segment, box)
+                for segment in parts
+                if isinstance(segment, (Horizontal, Vertical))
+                for box in [_joined(segment, contacts)]
                 if box
             ]
     UpdateSession.open()
-    for net, wire, box in found:
-        Pad.create(net, wire.getLayer(), Box(*box))
+    for net, segment, box in found:
+        Pad.create(net, segment.getLayer(), Box(*box))
     UpdateSession.close()
     return len(found)
 
 
-def _joined(wire, contacts):
-    """Corners of what a wire without a length lacks, or None."""
-    box, flat, layer = wire.getBoundingBox(), isinstance(wire, Horizontal), wire.getLayer()
+def _joined(segment: Any, contacts: list[Any]) -> tuple[int, int, int, int] | None:
+    """Corners of what a segment without a length lacks, or None."""
+    box, flat, layer = segment.getBoundingBox(), isinstance(segment, Horizontal), segment.getLayer()
     if layer is None or (box.getWidth() if flat else box.getHeight()) > 0 or layer.getName().endswith(".block"):
         return None
-    x, y, half = box.getXCenter(), box.getYCenter(), wire.getWidth() // 2
+    x, y, half = box.getXCenter(), box.getYCenter(), segment.getWidth() // 2
     own = [(part.getX() - x, part.getY() - y) for part in contacts if layer.getName() in part.getLayer().getName()]
     along = [dx if flat else dy for dx, dy in own if (dy if flat else dx) == 0 and abs(dx + dy) <= u(REACH_UM)]
     low, high = min(along, default=0), max(along, default=0)

@@ -1,4 +1,7 @@
-"""Power straps on the highest wire, joined to the cells' rails by stacks of cuts."""
+"""Power straps on the top layer, joined to the cells' rails by via stacks."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 from coriolis.helpers import u
 from coriolis.Hurricane import Box, DataBase, DbU, Horizontal, Pad, UpdateSession, Vertical
@@ -6,24 +9,29 @@ from coriolis.Hurricane import Box, DataBase, DbU, Horizontal, Pad, UpdateSessio
 CLEARANCE_UM = 0.8
 PIN_CLEARANCE_UM = 1.6  # of a strap's axis from a pin beneath it
 SUPPLIES = "vss", "vdd"
+Strap = tuple[str, float, list[tuple[float, float]]]  # supply, x (um), gaps
+Box_um = tuple[float, float, float, float]
 
 
 class Straps:
-    """Of ``cell``, in pairs (ground, supply) every ``strap_pitch_um``; the rails of even rows are ground. The straps of
-    a block laid out before go on through the whole core, and between its outer box's sides there are no others."""
+    """Straps of ``cell`` in pairs (ground, supply) every ``strap_pitch_um``; the rails of even rows are ground.
 
-    def __init__(self, cell, request):
-        self.cell, self.request, self.x = cell, request, []
+    The straps of a macro continue through the whole core, and between the sides of its outer box there are no others.
+    """
+
+    def __init__(self, cell: Any, request: dict[str, Any]) -> None:
+        self.cell, self.request = cell, request
+        self.x: list[Strap] = []
         self.layer = DataBase.getDB().getTechnology().getLayer
-        self.names = [wire["name"] for wire in request["wires"]]
+        self.names = [metal["name"] for metal in request["metals"]]
         self.outer = sorted(macro["outer"] for macro in request["macros"])
         self.inner = [
             (m["x_um"], m["y_um"], m["x_um"] + m["width_um"], m["y_um"] + m["height_um"]) for m in request["macros"]
         ]
         self.through = [(net, macro["x_um"] + x) for macro in request["macros"] for net, x in macro["straps"]]
 
-    def even(self):
-        """(supply, x, pitch) of every strap (um) in an even pitch, between the blocks: list."""
+    def even(self) -> list[tuple[str, float, float]]:
+        """(supply, x, pitch) of every strap (um) in an even pitch, between the macros."""
         edges = [0.0, *(x for box in self.outer for x in (box[0], box[2])), self.request["width_um"]]
         found = []
         for left, right in zip(edges[::2], edges[1::2], strict=True):
@@ -34,9 +42,10 @@ class Straps:
             ]
         return found
 
-    def positions(self, pins):
-        """(supply, x, gaps) of every strap (um), as near to `even` as what runs there and the pins at x in ``pins``
-        allow: list. gaps: (bottom, top) where one of a block, which stays at its x, leaves room for the clock's trunk.
+    def positions(self, pins: Sequence[float]) -> list[Strap]:
+        """Place every strap as near to `even` as other nets and the pins at x in ``pins`` allow.
+
+        gaps: (bottom, top) where one of a macro, which stays at its x, has room for the clock trunk.
         """
         half = self.request["strap_um"] / 2
         taken = [(a - CLEARANCE_UM - half, b + CLEARANCE_UM + half) for a, _, b, _ in self._signals(self.names[-1])]
@@ -62,13 +71,12 @@ class Straps:
         self.x.sort(key=lambda strap: strap[1])
         return self.x
 
-    def create(self):
-        """Draw the straps and stacks; a stack that would meet a wire already there is left out, and so are those of a
-        block, which has its own."""
+    def create(self) -> None:
+        """Draw the straps and via stacks, except stacks that would short to a net or are in macros."""
         UpdateSession.open()
         height, width = self.request["height_um"], self.request["strap_um"]
         rows = round(height / self.request["row_um"])
-        there = {name: self._signals(name) for name in self.names[1:]}
+        signals = {name: self._signals(name) for name in self.names[1:]}
         for supply, x, gaps in self.x:
             net, odd = self.cell.getNet(supply), SUPPLIES.index(supply)
             ends = [0.0, *(y for gap in gaps for y in gap), height]
@@ -85,32 +93,32 @@ class Straps:
                     overlap *= 2 / 3
                     y += overlap / 2 if row == 0 else -overlap / 2
                 box = (x - width / 2, y - overlap / 2, x + width / 2, y + overlap / 2)
-                if not any(_meet(box, other) for boxes in there.values() for other in boxes):
+                if not any(_meet(box, other) for boxes in signals.values() for other in boxes):
                     self._stack(net, x, y, width, overlap)
         UpdateSession.close()
 
-    def _stack(self, net, x, y, width, height):
+    def _stack(self, net: Any, x: float, y: float, width: float, height: float) -> None:
         for level, name in enumerate(self.names[1:-1]):
             if level % 2 == 0:
                 Horizontal.create(net, self.layer(name), u(y), u(height), u(x - width / 2), u(x + width / 2))
             else:
                 Vertical.create(net, self.layer(name), u(x), u(width), u(y - height / 2), u(y + height / 2))
-        for cut in self.request["cuts"]:
-            size, pitch = cut["size_um"], cut["size_um"] + cut["space_um"]
+        for via in self.request["vias"]:
+            size, pitch = via["size_um"], via["size_um"] + via["space_um"]
             across, along = (
-                int((side - 2 * cut["enclosure_um"] + cut["space_um"]) / pitch + 1e-9) for side in (width, height)
+                int((side - 2 * via["enclosure_um"] + via["space_um"]) / pitch + 1e-9) for side in (width, height)
             )
             for i in range(across):
                 for j in range(along):
                     left = u(self._on_grid(x + (i - (across - 1) / 2) * pitch - size / 2))
                     low = u(self._on_grid(y + (j - (along - 1) / 2) * pitch - size / 2))
-                    Pad.create(net, self.layer(cut["name"]), Box(left, low, left + u(size), low + u(size)))
+                    Pad.create(net, self.layer(via["name"]), Box(left, low, left + u(size), low + u(size)))
 
-    def _on_grid(self, value):
+    def _on_grid(self, value: float) -> float:
         return round(value / self.request["grid_um"]) * self.request["grid_um"]
 
-    def _signals(self, name):
-        """Boxes (um) of what signals have in the wire ``name`` so far: the trunk of the clock tree."""
+    def _signals(self, name: str) -> list[Box_um]:
+        """Boxes (um) of the signals on the layer ``name`` so far: the trunk of the clock tree."""
         wanted, boxes = self.layer(name).getMask(), []
         for net in self.cell.getNets():
             if net.isSupply():
@@ -128,7 +136,7 @@ class Straps:
         return boxes
 
 
-def _meet(a, b):
+def _meet(a: Box_um, b: Box_um) -> bool:
     return (
         a[0] - CLEARANCE_UM < b[2]
         and b[0] < a[2] + CLEARANCE_UM
@@ -137,8 +145,8 @@ def _meet(a, b):
     )
 
 
-def _merged(intervals):
-    """Sorted list of (low, high), none meeting another."""
+def _merged(intervals: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Sorted list of (low, high), none touching another."""
     made = []
     for low, high in sorted(intervals):
         if made and low <= made[-1][1]:

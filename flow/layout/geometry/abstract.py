@@ -2,8 +2,8 @@
 
 import re
 
+from flow.layout.geometry.antenna import connected
 from flow.layout.netlist.netlist import SUPPLIES
-from flow.layout.steps.antenna import connected
 from models.parameters import ParameterError
 
 EDGE_UM = 0.3  # how far from the edge a pin is taken for one
@@ -82,21 +82,21 @@ def antennas(layout, top, known, found, signals):
     """What the nets of the pins ``found`` gather and bear: dict net -> (um2 of gates, um2 of diffusions, list of
     (Wire, um2 of side walls)), all wires joined. signals: nets that are asked for."""
 
-    l2n, gate, diffusion, wires = next(connected(layout, top, known, [len(known.metals) - 1]))
+    nets = next(connected(layout, top, known, [len(known.metals) - 1]))
 
     def area(net, region):
-        return l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu**2
+        return nets.l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu**2
 
     made = {}
     for name in sorted(signals & set(found)):
         wire, pin = found[name][0]
-        net = l2n.probe_net(wires[known.metals.index(wire)], pin.center())
+        net = nets.l2n.probe_net(nets.metals[known.metals.index(wire)], pin.center())
         if net is not None:
             sides = [
-                (of, l2n.shapes_of_net(net, metal, True).merged().perimeter() * layout.dbu * of.thickness_um)
-                for of, metal in zip(known.metals, wires, strict=True)
+                (of, nets.l2n.shapes_of_net(net, metal, True).merged().perimeter() * layout.dbu * of.thickness_um)
+                for of, metal in zip(known.metals, nets.metals, strict=True)
             ]
-            made[name] = area(net, gate), area(net, diffusion), [(of, side) for of, side in sides if side]
+            made[name] = area(net, nets.gate), area(net, nets.diffusion), [(of, side) for of, side in sides if side]
     return made
 
 

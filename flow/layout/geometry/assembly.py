@@ -36,14 +36,14 @@ def together(netlist, placement, blocks, places):
         for instance, where in zip(netlist.instances, placement["instances"], strict=True)
         if instance.name not in blocks
     ]
-    wires, pins = dict(placement["wires"]), {i.name: i.pins for i in netlist.instances if i.name in blocks}
+    wires, pins = dict(placement["segments"]), {i.name: i.pins for i in netlist.instances if i.name in blocks}
     for name, (_, inside) in blocks.items():
         dx, dy = places[name]
         kept += [
             [number, cell, round(x + dx, 4), round(y + dy, 4), orientation]
             for number, cell, x, y, orientation in inside["instances"]
         ]
-        for net, made in inside["wires"].items():
+        for net, made in inside["segments"].items():
             outer = pins[name].get(net, f"{name}.{net}")
             wires[outer] = wires.get(outer, []) + made
-    return placement | {"instances": kept, "wires": wires}
+    return placement | {"instances": kept, "segments": wires}

@@ -1,10 +1,19 @@
 """Shapes as arrays of boxes."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
+import numpy.typing as npt
+
+if TYPE_CHECKING:
+    import klayout.db as db
+
+Box = tuple[int, int, int, int]  # left, bottom, right, top in database units
+Boxes = npt.NDArray[np.int64]  # (n, 4) of the same, further columns possible
 
 
-def boxes(region):
-    """Array (n, 4) of int, left, bottom, right, top in database units: the merged ``region`` (KLayout's) in boxes."""
+def boxes(region: "db.Region") -> Boxes:
+    """The merged ``region`` in boxes: array (n, 4)."""
     found = [
         part.bbox()
         for polygon in region.merged().each()

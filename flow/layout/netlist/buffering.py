@@ -1,35 +1,38 @@
-"""Trees of buffers where a signal goes to many cells; cells that will lie near each other share one.
+"""Buffer trees for nets with a large fan-out; cells that will be near each other share a buffer.
 
-The mapper limits what is behind its own gates only: for it a port or a register drives anything. Where cells will lie is
-guessed as a placer begins: at the least sum of the squares of all wires' lengths, the ports held on the die's edges.
+The mapper limits the fan-out of its own gates only: for it a port or a register drives anything. Positions are
+estimated by quadratic placement: the least sum of the squared lengths of all nets, ports fixed on the die's edges.
 """
 
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
-from .netlist import OUTPUT_PINS, Instance
+from .netlist import OUTPUT_PINS, Buffer, Instance, Netlist
 
-PULL = 1e-4  # of every cell to the middle, a wire's being 1: what hangs on no port needs a place, too
+PULL = 1e-4  # of every cell to the middle, a net's being 1: a cell without a path to a port needs a position, too
 TOLERANCE = 1e-8  # of the equations' right side
+Points = npt.NDArray[np.float64]  # (n, 2)
 
 
-def buffered(netlist, sides, buffer, most):
-    """The Netlist with at most ``most`` cells' pins behind a net; clocks are left alone.
+def buffer_fan_out(netlist: Netlist, sides: Mapping[str, Sequence[str]], buffer: Buffer, most: int) -> Netlist:
+    """Limit the fan-out of every net except clocks to ``most`` pins.
 
-    sides: dict side -> nets of the ports there in their order, the west first. buffer: (cell, input, output).
+    sides: nets of the ports by side, in their order, the west first.
     """
     instances = [replace(i, pins=dict(i.pins)) for i in netlist.instances]
     clocks = {i.pins["clk"] for i in instances if "clk" in i.pins}
-    sinks = {}
+    sinks: dict[str, list[tuple[int, str]]] = {}
     for number, instance in enumerate(instances):
         for pin, net in instance.pins.items():
             if pin not in OUTPUT_PINS and net not in clocks:
                 sinks.setdefault(net, []).append((number, pin))
     large = {net: ends for net, ends in sinks.items() if len(ends) > most}
-    places = guessed(instances, sides, {*large, *clocks}) if large else None
+    places = estimated(instances, sides, {*large, *clocks}) if large else np.empty((0, 2))
     for net, ends in large.items():
         instances += _tree(
             net,
@@ -41,10 +44,9 @@ def buffered(netlist, sides, buffer, most):
     return replace(netlist, instances=tuple(instances))
 
 
-def driven(netlist, buffer):
-    """The Netlist with a buffer of its own behind every output: what it leads to outside slows nothing within."""
+def buffer_outputs(netlist: Netlist, buffer: Buffer) -> Netlist:
+    """Insert a buffer in front of every output: its load outside slows no path inside."""
     outputs = {net: f"{net}_within" for port in netlist.ports if port.direction == "output" for net in port.bits()}
-    cell, taken, given = buffer
     instances = [
         replace(i, pins={pin: outputs.get(net, net) for pin, net in i.pins.items()}) for i in netlist.instances
     ]
@@ -52,34 +54,41 @@ def driven(netlist, buffer):
         netlist,
         instances=(
             *instances,
-            *(Instance(f"{net}_driver", cell, {taken: within, given: net}) for net, within in outputs.items()),
+            *(
+                Instance(f"{net}_driver", buffer.cell, {buffer.input: within, buffer.output: net})
+                for net, within in outputs.items()
+            ),
         ),
     )
 
 
-def _tree(net, ends, places, buffer, most):
-    """Buffers between ``net`` and its ``ends``, (dict of an instance's pins, pin), which lie at ``places``; they are
-    joined to them."""
-    cell, taken, given = buffer
-    made = []
+def _tree(
+    net: str, ends: list[tuple[dict[str, str], str]], places: Points, buffer: Buffer, most: int
+) -> list[Instance]:
+    """Buffers between ``net`` and its ``ends``, (pins of an instance, pin) at ``places``, whose nets are changed."""
+    made: list[Instance] = []
     while len(ends) > most:
-        groups, above = parted(places, most), []
+        groups, above = clusters(places, most), []
         for group in groups:
             name = f"{net}_fan{len(made)}"
-            made.append(Instance(f"{name}_buffer", cell, {taken: net, given: name}))  # OpenSTA mixes up equal names
-            above.append((made[-1].pins, taken))
+            made.append(
+                Instance(f"{name}_buffer", buffer.cell, {buffer.input: net, buffer.output: name})
+            )  # OpenSTA mixes up equal names
+            above.append((made[-1].pins, buffer.input))
             for pins, pin in (ends[k] for k in group):
                 pins[pin] = name
         ends, places = above, np.array([places[group].mean(axis=0) for group in groups])
     return made
 
 
-def parted(places, most):
-    """Indices of ``places`` (n, 2) in groups of near ones, at most ``most`` in each and nearly as many in all: list of
-    arrays. The longer side is cut first."""
+def clusters(places: Points, most: int) -> list[npt.NDArray[np.int64]]:
+    """Indices of ``places`` in groups of near ones, at most ``most`` in each and nearly as many in all.
+
+    The longer side is cut first.
+    """
     count = -(-len(places) // most)
 
-    def cut(indices, count):
+    def cut(indices: npt.NDArray[np.int64], count: int) -> list[npt.NDArray[np.int64]]:
         if count == 1:
             return [indices]
         axis = np.argmax(np.ptp(places[indices], axis=0))
@@ -91,16 +100,18 @@ def parted(places, most):
     return cut(np.arange(len(places)), count)
 
 
-def guessed(instances, sides, left_out=()):
-    """Places of ``instances`` in a square of side 1: array (n, 2). left_out: nets that pull at nothing.
+def estimated(
+    instances: Sequence[Instance], sides: Mapping[str, Sequence[str]], left_out: Collection[str] = ()
+) -> Points:
+    """Positions of ``instances`` in a square of side 1: array (n, 2). left_out: nets without a pull.
 
     A net is a star around a node of its own. Solves Laplacian x = pull of the ports by conjugate gradients.
     """
     ports = {
         net: (side, (k + 0.5) / len(nets)) for side, nets in enumerate(sides.values()) for k, net in enumerate(nets)
     }
-    nets = {}
-    wires = [
+    nets: dict[str, int] = {}
+    branches = [
         (number, len(instances) + nets.setdefault(net, len(nets)))
         for number, instance in enumerate(instances)
         for net in instance.pins.values()
@@ -108,8 +119,8 @@ def guessed(instances, sides, left_out=()):
     ]
     size = len(instances) + len(nets)
     held = {len(instances) + number: ports[net] for net, number in nets.items() if net in ports}
-    one, other = np.array(wires).T
-    pulls = coo_array((np.ones(len(wires)), (one, other)), (size, size)).tocsr()
+    one, other = np.array(branches).T
+    pulls = coo_array((np.ones(len(branches)), (one, other)), (size, size)).tocsr()
     pulls = pulls + pulls.T
     anchor = np.full(size, PULL)
     anchor[list(held)] += 1

@@ -2,78 +2,97 @@
 
 import json
 import re
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from base.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
 OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")  # of the library's cells
-REGISTER = "_reg"  # behind a register's name: its flip-flop
+REGISTER = "_reg"  # after a register's name: its flip-flop
 
 
-def register_names(path, top):
-    """Every name of every register of the module ``top`` of Yosys's JSON, one of simple flip-flops: set."""
-    module = json.loads(Path(path).read_text())["modules"][top]
+class Buffer(NamedTuple):
+    """A buffer of the library: the cell, its input and its output."""
+
+    cell: str
+    input: str
+    output: str
+
+
+def register_names(path: Path, top: str) -> set[str]:
+    """Return every name of every register of the module ``top`` of Yosys's JSON, one of simple flip-flops."""
+    module = json.loads(path.read_text())["modules"][top]
     bits = {cell["connections"]["Q"][0] for cell in module["cells"].values() if "DFF" in cell["type"]}
-    return {full for name, wire in module["netnames"].items() for bit, full in named_bits(name, wire) if bit in bits}
+    return {full for name, net in module["netnames"].items() for bit, full in named_bits(name, net) if bit in bits}
 
 
-def named_bits(name, wire):
-    """(bit, its full name) of a wire of Yosys's JSON."""
-    for index, bit in enumerate(wire["bits"]):
-        yield bit, name if len(wire["bits"]) == 1 else f"{name}[{index + wire.get('offset', 0)}]"
+def named_bits(name: str, net: Mapping[str, Any]) -> Iterator[tuple[int | str, str]]:
+    """Yield (bit, its full name) of a net of Yosys's JSON."""
+    for index, bit in enumerate(net["bits"]):
+        yield bit, name if len(net["bits"]) == 1 else f"{name}[{index + net.get('offset', 0)}]"
 
 
 @dataclass(frozen=True)
 class Port:
-    """direction: 'input' or 'output'. width: bits; one of a bus of one bit is named as the port itself."""
+    """A port of ``width`` bits, 'input' or 'output'; a bus of one bit is named as the port itself."""
 
     name: str
     direction: str
     width: int
 
-    def bits(self):
+    def bits(self) -> list[str]:
         """Nets of its bits, lowest first."""
         return [self.name] if self.width == 1 else [f"{self.name}[{i}]" for i in range(self.width)]
 
 
 @dataclass(frozen=True)
 class Instance:
-    """pins: dict pin -> net, supplies left out; of a block's buses bit by bit, name[bit]."""
+    """A cell and its nets by pin, without supplies; of a macro's buses bit by bit, name[bit]."""
 
     name: str
     cell: str
-    pins: dict
+    pins: dict[str, str]
 
 
 @dataclass(frozen=True)
 class Netlist:
-    """name: module. ports: tuple of Port. instances: tuple of Instance. A net is what has its name."""
+    """The module ``name``. A net is its name."""
 
     name: str
-    ports: tuple
-    instances: tuple
+    ports: tuple[Port, ...]
+    instances: tuple[Instance, ...]
 
     @classmethod
-    def read(cls, path):
-        data = json.loads(Path(path).read_text())
+    def read(cls, path: Path) -> "Netlist":
+        """Read a file that `write` wrote."""
+        data = json.loads(path.read_text())
         return cls(
             data["name"], tuple(Port(**p) for p in data["ports"]), tuple(Instance(**i) for i in data["instances"])
         )
 
-    def write(self, path):
-        Path(path).write_text(json.dumps(asdict(self), indent=0) + "\n")
+    def write(self, path: Path) -> None:
+        """Write as JSON."""
+        path.write_text(json.dumps(asdict(self), indent=0) + "\n")
 
     @classmethod
-    def from_yosys(cls, path, top, buffer, macros=(), known=frozenset()):
-        """The module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
+    def from_yosys(
+        cls,
+        path: Path,
+        top: str,
+        buffer: Buffer,
+        macros: Collection[str] = (),
+        registers: Collection[str] = frozenset(),
+    ) -> "Netlist":
+        """Read the module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
 
-        buffer: (cell, input, output) put in where two ports are one signal. A flip-flop is named after its register,
-        a block, whose cell is one of ``macros``, as in the Verilog, any other cell u<number>. known: names of
-        registers, which count before others that a flip-flop's output has, too.
+        buffer: inserted where two ports are one signal. A flip-flop is named after its register, a macro, whose cell is
+        one of ``macros``, as in the Verilog, any other cell u<number>. registers: names that come before others of a
+        flip-flop's output. Raises StepError for a constant pin.
         """
-        modules = json.loads(Path(path).read_text())["modules"]
+        modules = json.loads(path.read_text())["modules"]
         module = modules[top]
         names, ports, extra = {}, [], []
         for name, port in module["ports"].items():
@@ -81,15 +100,17 @@ class Netlist:
             ports.append(made)
             for net, bit in zip(made.bits(), port["bits"], strict=True):
                 if bit in names:
-                    extra.append(Instance(f"port{len(extra)}", buffer[0], {buffer[1]: names[bit], buffer[2]: net}))
+                    extra.append(
+                        Instance(f"port{len(extra)}", buffer.cell, {buffer.input: names[bit], buffer.output: net})
+                    )
                 else:
                     names[bit] = net
-        registers = {}
-        for name, wire in sorted(module["netnames"].items(), key=lambda item: (item[1]["hide_name"], item[0])):
-            for bit, full in named_bits(name, wire):
-                if full in known and registers.get(bit) not in known:
-                    registers[bit] = full
-                registers.setdefault(bit, full)
+        register_of = {}
+        for name, net in sorted(module["netnames"].items(), key=lambda item: (item[1]["hide_name"], item[0])):
+            for bit, full in named_bits(name, net):
+                if full in registers and register_of.get(bit) not in registers:
+                    register_of[bit] = full
+                register_of.setdefault(bit, full)
         instances = []
         for number, (called, cell) in enumerate(module["cells"].items()):
             pins = {}
@@ -100,9 +121,9 @@ class Netlist:
                     pins[net] = names.setdefault(bit, f"n{bit}")
             for pin, port in modules[cell["type"]]["ports"].items() if cell["type"] in macros else ():
                 for net in Port(pin, "", len(port["bits"])).bits():
-                    pins.setdefault(net, f"{called}.{net}")  # an output that nothing takes
+                    pins.setdefault(net, f"{called}.{net}")  # an output without a load
             name = (
-                registers[cell["connections"]["q"][0]] + REGISTER
+                register_of[cell["connections"]["q"][0]] + REGISTER
                 if is_register(cell["type"])
                 else called
                 if cell["type"] in macros
@@ -111,10 +132,11 @@ class Netlist:
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 
-    def apart(self, macros, buffer):
-        """The Netlist with a buffer (cell, input, output) between its inputs and blocks, whose cells are ``macros``:
-        else a wire from outside would end in a block alone, with nothing here that keeps it from being an antenna.
-        Clocks stay."""
+    def with_input_buffers(self, macros: Collection[str], buffer: Buffer) -> "Netlist":
+        """Insert a buffer between inputs and ``macros`` (cells), except at clocks.
+
+        Else a net from outside would end in a macro alone, with nothing here that keeps it from being an antenna.
+        """
         inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
         inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
         shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
@@ -126,11 +148,12 @@ class Netlist:
             for i in self.instances
         ]
         instances += [
-            Instance(f"inside{k}", buffer[0], {buffer[1]: net, buffer[2]: behind[net]}) for k, net in enumerate(shared)
+            Instance(f"inside{k}", buffer.cell, {buffer.input: net, buffer.output: behind[net]})
+            for k, net in enumerate(shared)
         ]
         return Netlist(self.name, self.ports, tuple(instances))
 
-    def verilog(self):
+    def verilog(self) -> str:
         """Structural Verilog with the ports of the RTL."""
         declared = {net for port in self.ports for net in port.bits()}
         nets = sorted({net for i in self.instances for net in i.pins.values()} - declared)
@@ -145,7 +168,7 @@ class Netlist:
             lines.append(f"  {i.cell} {_escaped(i.name)} ({joined});")
         return "\n".join([*lines, "endmodule", ""])
 
-    def spice(self, cells):
+    def spice(self, cells: str) -> str:
         """The subcircuit, its supplies ports too, followed by ``cells``, the text of the cells' subcircuits."""
         orders = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", cells)}
         ports = [net for port in self.ports for net in port.bits()] + list(SUPPLIES)
@@ -155,46 +178,51 @@ class Netlist:
             lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
         return "\n".join([*lines, ".ends", cells])
 
-    def blif(self, model, net_names, blocks=None):
-        """For Coriolis: model ``model``, nets by ``net_names`` (dict net -> name), instances in their order.
+    def blif(
+        self,
+        model: str,
+        net_names: Mapping[str, str],
+        macros: Mapping[str, tuple[str, Mapping[str, str]]] | None = None,
+    ) -> str:
+        """For Coriolis: model ``model``, nets by ``net_names``, instances in their order.
 
-        blocks: dict instance -> (cell, dict pin -> name), where both have other names than here.
+        macros: by instance (cell, names of its pins), where both have other names than here.
         """
         lines = [f".model {model}"]
         for word, direction in ((".inputs", "input"), (".outputs", "output")):
             nets = [net_names[net] for port in self.ports if port.direction == direction for net in port.bits()]
             lines.append(f"{word} {' '.join(nets)}")
         for i in self.instances:
-            cell, pins = (blocks or {}).get(i.name, (i.cell, {}))
+            cell, pins = (macros or {}).get(i.name, (i.cell, {}))
             lines.append(
                 f".gate {cell} " + " ".join(f"{pins.get(pin, pin)}={net_names[net]}" for pin, net in i.pins.items())
             )
         return "\n".join([*lines, ".end", ""])
 
 
-def _buses(pins):
-    """dict port -> Verilog of what is on it, from that of its bits, which are named port[bit]."""
+def _buses(pins: Mapping[str, str]) -> dict[str, str]:
+    """Verilog of the nets by port, from those of its bits, which are named port[bit]."""
     made, buses = {}, {}
     for pin, net in pins.items():
-        name, bit = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", pin).groups()
-        if bit is None:
-            made[name] = net
-        else:
+        name, bracket, bit = pin.rstrip("]").rpartition("[")
+        if bracket:
             buses.setdefault(name, {})[int(bit)] = net
+        else:
+            made[pin] = net
     return made | {
         name: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}" for name, bits in buses.items()
     }
 
 
-def is_register(cell):
-    """Whether the library's cell of that name holds a bit."""
+def is_register(cell: str) -> bool:
+    """Whether the library's cell of that name is a flip-flop."""
     return cell.startswith("dff")
 
 
-def _escaped(name):
+def _escaped(name: str) -> str:
     return name if re.fullmatch(r"[A-Za-z_]\w*", name) else f"\\{name} "
 
 
-def _plain(name):
-    """For SPICE, where a name holds no blank."""
+def _plain(name: str) -> str:
+    """For SPICE, where a name has no blank."""
     return re.sub(r"\s", "_", name)

@@ -1,20 +1,24 @@
 """A flat design of simple gates with its registers cut: its outputs and next states as functions of inputs and states.
 
-Two designs whose cut forms are equal, and that agree in what their registers hold at one time, agree for ever.
+Two designs whose cut forms are equal, and whose registers are equal at one time, are equal from then on.
 """
 
 import json
 import random
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
+from typing import Any
 
 from base.steps import StepError
 
 from .netlist import named_bits
 
+Bit = int | str  # of Yosys's JSON: a net, or a constant '0', '1', 'x'
+
 # Yosys's simple gates: their pins, rows of BLIF's .names, and what they compute with all lanes of a number at once
-GATES = {
+GATES: dict[str, tuple[str, list[str], Callable[..., int]]] = {
     "$_BUF_": ("A", ["1 1"], lambda a: a),
     "$_NOT_": ("A", ["0 1"], lambda a: ~a),
     "$_AND_": ("AB", ["11 1"], lambda a, b: a & b),
@@ -28,39 +32,39 @@ GATES = {
     "$_MUX_": ("ABS", ["1-0 1", "-11 1"], lambda a, b, s: (a & ~s) | (b & s)),
 }
 REGISTER = "$_DFF_P_"
-LANES, RESET_CYCLES = 1 << 16, 4  # of the simulation that looks for constant registers, and for doubles
+LANES, RESET_CYCLES = 1 << 16, 4  # of the simulation that finds constant registers and duplicates
 TURNS, SURE = 60, 5  # at most; without a change, the last
 ALL = (1 << LANES) - 1
 
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """module: of Yosys's JSON. clock: name of the clock port."""
+    """A module of Yosys's JSON; clock: name of the clock port."""
 
-    module: dict
+    module: dict[str, Any]
     clock: str
 
     @classmethod
-    def read(cls, path, top, clock):
-        """Raises StepError on anything but simple gates and flip-flops at the rising edge of the clock."""
-        made = cls(json.loads(Path(path).read_text())["modules"][top], clock)
+    def read(cls, path: Path, top: str, clock: str) -> "Cut":
+        """Read the module ``top``. Raises StepError on other cells than simple gates and flip-flops."""
+        made = cls(json.loads(path.read_text())["modules"][top], clock)
         wrong = {cell["type"] for cell in made.module["cells"].values()} - {REGISTER, *GATES}
         if wrong:
             raise StepError(f"equivalence: {top} has cells of {', '.join(sorted(wrong))}")
         return made
 
     @cached_property
-    def names(self):
-        """All names of a bit: dict bit -> list."""
+    def names(self) -> dict[Bit, list[str]]:
+        """All names of a bit."""
         names = {}
-        for name, wire in self.module["netnames"].items():
-            for bit, full in named_bits(name, wire):
+        for name, net in self.module["netnames"].items():
+            for bit, full in named_bits(name, net):
                 names.setdefault(bit, []).append(full)
         return names
 
     @cached_property
-    def gates(self):
-        """dict output bit -> (type, input bits)."""
+    def gates(self) -> dict[Bit, tuple[str, list[Bit]]]:
+        """(type, input bits) by output bit."""
         return {
             cell["connections"]["Y"][0]: (cell["type"], [cell["connections"][pin][0] for pin in GATES[cell["type"]][0]])
             for cell in self.module["cells"].values()
@@ -68,18 +72,18 @@ class Cut:
         }
 
     @cached_property
-    def registers(self):
-        """dict Q bit -> D bit of every flip-flop. Raises StepError for one that is not on the clock."""
+    def registers(self) -> dict[Bit, Bit]:
+        """D bit by Q bit of every flip-flop. Raises StepError for one that is not on the clock."""
         clock, made = self.module["ports"][self.clock]["bits"][0], {}
         for name, cell in self.module["cells"].items():
             if cell["type"] == REGISTER:
                 pins = {pin: bits[0] for pin, bits in cell["connections"].items()}
-                if self._behind(pins["C"]) != (clock, False):
+                if self._source(pins["C"]) != (clock, False):
                     raise StepError(f"equivalence: flip-flop {name} is not on the rising edge of {self.clock}")
                 made[pins["Q"]] = pins["D"]
         return made
 
-    def _behind(self, bit, inverted=False):
+    def _source(self, bit: Bit, inverted: bool = False) -> tuple[Bit, bool]:
         """(bit, whether inverted) that ``bit`` is a copy of, through buffers and inverters."""
         while bit in self.gates and self.gates[bit][0] in ("$_BUF_", "$_NOT_"):
             kind, (bit,) = self.gates[bit]
@@ -87,8 +91,8 @@ class Cut:
         return bit, inverted
 
     @cached_property
-    def inputs(self):
-        """dict bit -> name of every input but the clock."""
+    def inputs(self) -> dict[Bit, str]:
+        """Name by bit of every input except the clock."""
         return {
             bit: _bit(name, index, port)
             for name, port in self.module["ports"].items()
@@ -97,8 +101,8 @@ class Cut:
         }
 
     @cached_property
-    def outputs(self):
-        """dict name -> bit of every output."""
+    def outputs(self) -> dict[str, Bit]:
+        """Bit by name of every output."""
         return {
             _bit(name, index, port): bit
             for name, port in self.module["ports"].items()
@@ -107,9 +111,10 @@ class Cut:
         }
 
     @cached_property
-    def order(self):
-        """Output bits of the gates, every one behind its inputs. Raises StepError on a loop."""
-        order, state = [], {}
+    def order(self) -> list[Bit]:
+        """Output bits of the gates, every one after its inputs. Raises StepError on a loop."""
+        order: list[Bit] = []
+        state: dict[Bit, int] = {}
         for root in self.gates:
             stack = [root]
             while stack:
@@ -128,9 +133,10 @@ class Cut:
                     stack += below
         return order
 
-    def live(self):
-        """Q bits of the registers that can reach an output: set."""
-        seen, stack = set(), list(self.outputs.values())
+    def live(self) -> set[Bit]:
+        """Q bits of the registers that can reach an output."""
+        seen: set[Bit] = set()
+        stack = list(self.outputs.values())
         while stack:
             bit = stack.pop()
             if bit not in seen:
@@ -140,26 +146,28 @@ class Cut:
                 )
         return seen & set(self.registers)
 
-    def substitutes(self, missing, present, reset):
-        """What the registers ``missing`` (Q bits) seem to hold whenever reset was once given: dict bit -> '0', '1' or
-        one of the registers ``present``, of those for which there is such a thing.
+    def substitutes(self, missing: Sequence[Bit], present: Collection[Bit], reset: str) -> dict[Bit, Bit]:
+        """Find what the registers ``missing`` (Q bits) seem to hold after a reset: '0', '1' or one of ``present``.
 
-        A guess from random states: a constant is a register whose next state is what it holds, a double has the same
+        A guess from random states: a constant is a register whose next state is what it holds, a duplicate has the same
         next state as the other wherever both hold the same; of several the one whose next state comes from most of the
-        same gates. What one is held to be, others see: in turns, therefore.
+        same gates. One substitute changes what others seem to hold: therefore in turns. Registers without one are left
+        out.
         """
-        rng, levels = random.Random(1), {"0": 0, "1": ALL}
+        rng = random.Random(1)
+        levels: dict[Bit, int] = {"0": 0, "1": ALL}
         behind = {bit: rng.getrandbits(LANES) for bit in (*self.registers, *self.inputs)}
         behind |= {bit: ALL for bit, name in self.inputs.items() if name == reset}
         for _ in range(RESET_CYCLES):
             behind |= self._next(behind)
-        guess = {bit: "1" if behind[bit] else "0" for bit in missing if behind[bit] in (0, ALL)}
-        wrong, kept = {bit: set() for bit in guess}, 0
+        guess: dict[Bit, Bit | None] = {bit: "1" if behind[bit] else "0" for bit in missing if behind[bit] in (0, ALL)}
+        wrong: dict[Bit, set[Bit]] = {bit: set() for bit in guess}
+        kept = 0
         for _ in range(TURNS):
             now = {bit: rng.getrandbits(LANES) for bit in behind}
             now |= {bit: levels[held] if held in levels else now[held] for bit, held in guess.items() if held}
             then = self._next(now)
-            better = {}
+            better: dict[Bit, Bit | None] = {}
             for bit, held in guess.items():
                 if held and then[bit] != levels.get(held, then.get(held)):
                     wrong[bit].add(held)
@@ -182,13 +190,14 @@ class Cut:
         return {bit: held for bit, held in guess.items() if held}
 
     @cache
-    def _cone(self, bit):
+    def _cone(self, bit: Bit) -> frozenset[Bit]:
         """Bits that the next state of a register (Q bit) comes from."""
-        return self._behind_all(self.registers[bit])
+        return self._fan_in(self.registers[bit])
 
-    def _behind_all(self, bit):
+    def _fan_in(self, bit: Bit) -> frozenset[Bit]:
         """Bits that ``bit`` comes from through gates, itself among them."""
-        seen, stack = set(), [bit]
+        seen: set[Bit] = set()
+        stack = [bit]
         while stack:
             here = stack.pop()
             if here not in seen:
@@ -196,19 +205,19 @@ class Cut:
                 stack += self.gates[here][1] if here in self.gates else []
         return frozenset(seen)
 
-    def _next(self, values):
-        """dict Q bit -> next state, ALL lanes of numbers, from the dict bit -> value of inputs and states."""
+    def _next(self, values: dict[Bit, int]) -> dict[Bit, int]:
+        """Next state by Q bit, ALL lanes of numbers, from the values of inputs and states by bit."""
         values = values | {"0": 0, "1": ALL}
         for bit in self.order:
             kind, pins = self.gates[bit]
             values[bit] = GATES[kind][2](*(values.get(pin, 0) for pin in pins)) & ALL
         return {q: values.get(d, 0) for q, d in self.registers.items()}
 
-    def open_outputs(self):
-        """Names of the outputs that an x may reach: set."""
+    def open_outputs(self) -> set[str]:
+        """Names of the outputs that an x may reach."""
         found = set()
         for name, bit in self.outputs.items():
-            cone = self._behind_all(bit)
+            cone = self._fan_in(bit)
             if any(
                 not isinstance(pin, int) and pin not in ("0", "1")
                 for here in cone & set(self.gates)
@@ -217,35 +226,50 @@ class Cut:
                 found.add(name)
         return found
 
-    def network(self, states, given, fixed=None, prefix="", x=None):
-        """(lines of BLIF, function bit -> net, number of x) of the cut design; parameters as of `blif`.
+    def network(
+        self,
+        states: Mapping[Bit, str],
+        given: Mapping[Bit, Bit],
+        fixed: Mapping[str, str] | None = None,
+        prefix: str = "",
+        x: str | None = None,
+    ) -> tuple[list[str], Callable[[Bit], str], int]:
+        """Return (lines of BLIF, function bit -> net, number of x) of the cut design; other arguments: see `blif`.
 
-        prefix: of the nets within. x: '0' or '1', what an x is; without, a new input each time, 'any<number>': what is
-        equal for all of their values does not depend on them.
+        prefix: of the nets within. x: '0' or '1', the value of every x; without, a new input each time, 'any<number>':
+        what is equal for all of their values does not depend on them.
         """
-        wire, anything = self.inputs | states, []
-        wire |= {bit: f"const{(fixed or {})[name]}" for bit, name in self.inputs.items() if name in (fixed or {})}
+        names, anything = {**self.inputs, **states}, []
+        names |= {bit: f"const{(fixed or {})[name]}" for bit, name in self.inputs.items() if name in (fixed or {})}
 
-        def net(bit):
+        def net(bit: Bit) -> str:
             bit = given.get(bit, bit)
             if not isinstance(bit, int) and bit not in ("0", "1") and x is None:
                 anything.append(f"any{len(anything)}")
                 return anything[-1]
             if not isinstance(bit, int):
                 return f"const{bit if bit in ('0', '1') else x}"
-            return wire.get(bit, f"{prefix}b{bit}")
+            return names.get(bit, f"{prefix}b{bit}")
 
         lines = []
         for bit, (kind, pins) in self.gates.items():
             lines += [f".names {' '.join(map(net, pins))} {net(bit)}", *GATES[kind][1]]
         return lines, net, len(anything)
 
-    def blif(self, states, given, checked, fixed=None, unknown=0, more=()):
-        """(number of its x, the cut design as BLIF): its inputs are those of the design, ``states`` and ``unknown`` x.
+    def blif(
+        self,
+        states: Mapping[Bit, str],
+        given: Mapping[Bit, Bit],
+        checked: Mapping[str, Bit],
+        fixed: Mapping[str, str] | None = None,
+        unknown: int = 0,
+        more: Sequence[tuple[str, Sequence[str]]] = (),
+    ) -> tuple[int, str]:
+        """Return (number of x, the cut design as BLIF). Its inputs: those of the design, ``states``, ``unknown`` x.
 
-        states: dict Q bit -> name. given: dict Q bit -> '0', '1' or a Q bit, what a register is taken to hold. checked:
-        dict name -> bit or constant, the outputs. fixed: dict input name -> '0' or '1'. more: pairs (name of a further
-        output, lines that make it).
+        states: names by Q bit. given: by Q bit '0', '1' or a Q bit, what a register is assumed to hold. checked: bits
+        or constants by the name of the output. fixed: '0' or '1' by the name of the input. more: (name, lines) of further
+        outputs.
         """
         lines, net, used = self.network(states, given, fixed)
         for name, bit in checked.items():
@@ -268,5 +292,5 @@ class Cut:
         )
 
 
-def _bit(name, index, port):
+def _bit(name: str, index: int, port: Mapping[str, Any]) -> str:
     return name if len(port["bits"]) == 1 else f"{name}[{index}]"

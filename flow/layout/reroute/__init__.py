@@ -1,10 +1,11 @@
-"""Nets of a routed layout taken out and routed anew, others that are in their way too.
+"""Rip-up and reroute with negotiated congestion (PathFinder) of a layout that is nearly routed.
 
-wiring   the process's rules for wires and cuts
-board    the layout, net by net
-window   a part of it as a grid, as one net sees it: what a wire or a cut costs at a place
-search   the cheapest way between two sets of places
-nets     a net from pin to pin, and its shapes
-marks    where rules of spaces and antennas are broken
-bargain  nets that contend for the same places
+rules       rules of the metal layers and vias, in nm
+board       the layout, net by net
+window      a part of it as a grid, as one net sees it: the cost of a segment or a via at a place
+search      the cheapest path between two sets of places
+route       the shapes of a net
+nets        a net from pin to pin
+violations  where rules of space and antennas are broken
+negotiate   nets that contend for the same places
 """

@@ -1,81 +1,99 @@
-"""A routed layout whose wires can be taken out and drawn anew, net by net."""
+"""A routed layout whose nets can be ripped up and rerouted, net by net."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
-from ..geometry.boxes import boxes
+from ..geometry.boxes import Box, Boxes, boxes
+from .route import Point, Route
+from .rules import RoutingRules
+
+if TYPE_CHECKING:
+    import klayout.db as db
 
 BOX_AND_NET = 5  # columns
+Layers = dict[int, Boxes]  # boxes by level of RoutingRules.layers
+
+
+class NetShapes(TypedDict):
+    """A net's segments, vias and, of every pin, the boxes of which any may be met, as coriolis.dump writes them (um)."""
+
+    segments: list[list[Any]]
+    vias: list[list[Any]]
+    pins: list[list[list[Any]]]
 
 
 class Board:
-    """layout: KLayout's; lifted from it, into ``boxes``, is what belongs to the nets ``shapes``, and what is left
-    stands for good: cells, straps, ports.
+    """A KLayout layout with the shapes of the nets ``shapes`` lifted out into ``boxes``.
 
-    shapes: dict net -> as coriolis.dump has them; the shapes of a short are the former net's. boxes: dict net ->
-    [(name of a layer of ``wiring``, (left, bottom, right, top) in nm), ...]. there[level]: array (n, 5) of the same on a wire's
-    level, the last column the net's place in ``nets``. fixed[level]: array (n, 4) of what stands.
-    scars[level]: array (n, 4) of the places that nets have fought over, as often as they did.
+    What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
+    [(name of a layer of ``rules``, Box in nm), ...]. routed[level]: array (n, 5) of the same on a metal layer, the last
+    column the net's place in ``nets``. fixed[level]: array (n, 4). history[level]: array (n, 4) of the places that nets
+    contended for, as often as they did.
     """
 
-    def __init__(self, layout, wiring, shapes):
-        self.layout, self.wiring, self.top = layout, wiring, layout.top_cell()
-        self.nets, self.boxes = list(shapes), {net: [] for net in shapes}
+    def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:
+        self.layout, self.rules, self.top = layout, rules, layout.top_cell()
+        self.nets = list(shapes)
+        self.boxes: dict[str, list[tuple[str, Box]]] = {net: [] for net in shapes}
         self.numbers = {net: number for number, net in enumerate(self.nets)}
-        self.levels = {layer.name: level for level, layer in enumerate(wiring.layers)}
-        self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*wiring.layers, *wiring.cuts)}
+        self.levels = {layer.name: level for level, layer in enumerate(rules.layers)}
+        self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*rules.layers, *rules.vias)}
         self._lift(shapes)
-        self.there = {level: self._owned(name) for name, level in self.levels.items()}
-        self.fixed = {level: self._standing(name) for name, level in self.levels.items() if level}
-        self.scars = {level: np.empty((0, 4), int) for level in self.fixed}
+        self.routed: Layers = {level: self._owned(name) for name, level in self.levels.items()}
+        self.fixed: Layers = {level: self._fixed(name) for name, level in self.levels.items() if level}
+        self.history: Layers = {level: np.empty((0, 4), int) for level in self.fixed}
 
-    def _lift(self, shapes):
+    def _lift(self, shapes: Mapping[str, NetShapes]) -> None:
         exact, middles, ports = _claims(shapes)
         for name, layer in self.layers.items():
             for shape in list(self.top.shapes(layer).each()):
-                box = shape.bbox()
-                ends = box.left, box.bottom, box.right, box.top
-                net = exact.get((name, ends)) or middles.get((name, middle(ends)))
-                if net and not shape.is_text() and (name, ends) not in ports:
-                    self.boxes[net].append((name, ends))
+                drawn = shape.bbox()
+                box = drawn.left, drawn.bottom, drawn.right, drawn.top
+                net = exact.get((name, box)) or middles.get((name, middle(box)))
+                if net and not shape.is_text() and (name, box) not in ports:
+                    self.boxes[net].append((name, box))
                     shape.delete()
 
-    def _owned(self, name):
+    def _owned(self, name: str) -> Boxes:
         """Boxes of all nets on a layer, each with the net's number: (n, 5)."""
         found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
         return np.array(found, int).reshape(-1, BOX_AND_NET)
 
-    def fought(self, places):
-        """Remember that nets fought over ``places``, [(level, box), ...]."""
-        for level, box in places:
-            self.scars[level] = np.vstack([self.scars[level], box])
-
-    def _standing(self, name):
+    def _fixed(self, name: str) -> Boxes:
         """Boxes (n, 4) of what is left on a layer, in the cells, too."""
         import klayout.db as db
 
         return boxes(db.Region(self.top.begin_shapes_rec(self.layers[name])))
 
-    def take(self, net):
-        """Take the wires of ``net`` out of what is there."""
+    def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
+        """Raise the history cost of ``places``, pairs (level, Box)."""
+        for level, box in places:
+            self.history[level] = np.vstack([self.history[level], box])
+
+    def rip_up(self, net: str) -> None:
+        """Take the shapes of ``net`` off the board."""
         self.boxes[net] = []
-        for level, there in self.there.items():
-            self.there[level] = there[there[:, 4] != self.numbers[net]]
+        for level, routed in self.routed.items():
+            self.routed[level] = routed[routed[:, 4] != self.numbers[net]]
 
-    def put(self, net, shapes):
-        """Let the wires of ``net`` be the Shapes ``shapes``."""
-        self.take(net)
-        for level, made in shapes.wires.items():
-            self.boxes[net] += [(self.wiring.layers[level].name, box) for box in made]
+    def put(self, net: str, route: Route) -> None:
+        """Let the shapes of ``net`` be those of ``route``."""
+        self.rip_up(net)
+        for level, made in route.segments.items():
+            self.boxes[net] += [(self.rules.layers[level].name, box) for box in made]
             owned = np.array([(*box, self.numbers[net]) for box in made], int)
-            self.there[level] = np.vstack([self.there[level], owned])
-        for level, points in shapes.cuts.items():
-            cut = self.wiring.cuts[level]
-            half = cut.size // 2
-            self.boxes[net] += [(cut.name, (x - half, y - half, x + half, y + half)) for x, y in sorted(set(points))]
+            self.routed[level] = np.vstack([self.routed[level], owned])
+        for level, points in route.vias.items():
+            via = self.rules.vias[level]
+            half = via.size // 2
+            self.boxes[net] += [(via.name, (x - half, y - half, x + half, y + half)) for x, y in sorted(set(points))]
 
-    def drawn(self):
-        """A layout of its own with the wires of all nets in it."""
+    def drawn(self) -> "db.Layout":
+        """A new layout with the shapes of all nets in it."""
         import klayout.db as db
 
         layout = self.layout.dup()
@@ -85,12 +103,12 @@ class Board:
                 shapes[name].insert(db.Box(*box))
         return layout
 
-    def part(self, nets):
-        """The same with the wires of ``nets``, what of others comes near to these, and the cells below alone."""
+    def part(self, nets: Iterable[str]) -> "db.Layout":
+        """A new layout with the shapes of ``nets``, what of others is near to these, and the cells below alone."""
         import klayout.db as db
 
         layout, found = self.layout.dup(), {}
-        top, reach = layout.top_cell(), max(layer.space for layer in self.wiring.layers)
+        top, reach = layout.top_cell(), max(layer.space for layer in self.rules.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
         outlines = [inst.bbox() for inst in top.each_inst()]
         places = np.array(
@@ -99,9 +117,9 @@ class Board:
         kept = set()
         for name, box in (made for net in nets for made in self.boxes[net]):
             around = box[0] - reach, box[1] - reach, box[2] + reach, box[3] + reach
-            kept.update(near(places, around)[:, 4].tolist())
+            kept.update(overlapping(places, around)[:, 4].tolist())
             if name in self.levels:
-                for row in near(self.there[self.levels[name]], around).tolist():
+                for row in overlapping(self.routed[self.levels[name]], around).tolist():
                     found[name, tuple(row[:4])] = True
             found[name, box] = True
         top.clear_insts()
@@ -114,77 +132,82 @@ class Board:
                 cell.prune_cell()
         return layout
 
-    def beside(self, nets):
-        """Names of all nets with a wire that meets one of ``nets``, these too."""
+    def touching(self, nets: Iterable[str]) -> set[str]:
+        """Names of all nets with a segment that touches one of ``nets``, these too."""
         return {
             self.nets[number]
             for net in nets
             for name, box in self.boxes[net]
             if name in self.levels
-            for number in self.owners(self.there, self.levels[name], box)
+            for number in self.owners(self.routed, self.levels[name], box)
         }
 
-    def owners(self, there, level, box):
-        """Numbers of the nets with a wire that meets ``box``; there: this board's, of now or of before."""
-        return near(there[level], box)[:, 4].tolist()
+    def owners(self, routed: Layers, level: int, box: Box) -> list[int]:
+        """Numbers of the nets with a segment that touches ``box``; routed: this board's, now or earlier."""
+        return overlapping(routed[level], box)[:, 4].tolist()
 
-    def at(self, there, level, polygon):
-        """Names of the nets with a box whose middle lies in the ``polygon``, as KLayout writes one; there: as above."""
+    def within(self, routed: Layers, level: int, polygon: str) -> set[str]:
+        """Names of the nets with a box whose middle is in ``polygon``, KLayout's text; routed: see `owners`."""
         import klayout.db as db
 
-        polygon = db.Polygon.from_s(polygon)
-        box = polygon.bbox()
+        outline = db.Polygon.from_s(polygon)
+        box = outline.bbox()
         return {
             self.nets[number]
-            for *ends, number in near(there[level], (box.left, box.bottom, box.right, box.top))
-            if polygon.inside(db.Point(*map(int, middle(ends))))
+            for *ends, number in overlapping(routed[level], (box.left, box.bottom, box.right, box.top)).tolist()
+            if outline.inside(db.Point(*middle(ends)))
         }
 
 
-def near(there, reach):
-    """Rows of the array ``there``, (left, bottom, right, top, ...), that meet the box ``reach``."""
-    return there[_meets(there, *map(int, reach))]
+def overlapping(boxes: Boxes, box: Box) -> Boxes:
+    """Rows of ``boxes``, (left, bottom, right, top, ...), that touch ``box``."""
+    return boxes[_touching(boxes, *map(int, box))]
 
 
 @njit(cache=True)
-def _meets(there, left, bottom, right, top):
+def _touching(boxes: Boxes, left: int, bottom: int, right: int, top: int) -> npt.NDArray[np.int64]:
     """Numbers of these rows."""
-    found = np.empty(len(there), np.int64)
+    found = np.empty(len(boxes), np.int64)
     count = 0
-    for k in range(len(there)):
-        if there[k, 0] <= right and there[k, 2] >= left and there[k, 1] <= top and there[k, 3] >= bottom:
+    for k in range(len(boxes)):
+        if boxes[k, 0] <= right and boxes[k, 2] >= left and boxes[k, 1] <= top and boxes[k, 3] >= bottom:
             found[count] = k
             count += 1
     return found[:count]
 
 
-def _claims(shapes):
-    """dict (layer, box) -> net of the wires, dict (layer, middle) -> net of the pads and cuts (in the middles of cuts
-    and at wires' ends), set of (layer, box) of the pins."""
+def _claims(
+    shapes: Mapping[str, NetShapes],
+) -> tuple[dict[tuple[str, Box], str], dict[tuple[str, Point], str], set[tuple[str, Box]]]:
+    """Return who owns a shape: nets by (layer, box) of a segment and by (layer, middle) of a pad or via; the pins.
+
+    Pads are in the middles of vias and at the ends of segments.
+    """
     exact, middles, ports = {}, {}, set()
     for net, made in shapes.items():
-        for name, *box in made["wires"]:
-            box = nanometres(box)
-            for key in ((name, box), (name, middle(box))):
-                (exact if key[1] is box else middles).setdefault(key, net)
-            for end in _ends(box):
-                middles.setdefault((name, end), net)
-        for name, x, y in made["cuts"]:
+        for name, *um in made["segments"]:
+            box = nanometres(um)
+            exact.setdefault((name, box), net)
+            for point in (middle(box), *_ends(box)):
+                middles.setdefault((name, point), net)
+        for name, x, y in made["vias"]:
             for part in name.split("_"):
                 middles.setdefault((part, nanometres((x, y))), net)
         ports |= {(name, nanometres(box)) for pin in made["pins"] for name, *box in pin}
     return exact, middles, ports
 
 
-def middle(box):
+def middle(box: Sequence[int]) -> Point:
+    """Return the middle of a box, rounded down."""
     return (box[0] + box[2]) // 2, (box[1] + box[3]) // 2
 
 
-def _ends(box):
-    """Middles of the two ends of a wire."""
+def _ends(box: Box) -> tuple[Point, Point]:
+    """Middles of the two ends of a segment."""
     (left, bottom, right, top), (x, y) = box, middle(box)
     return ((left, y), (right, y)) if right - left > top - bottom else ((x, bottom), (x, top))
 
 
-def nanometres(values):
+def nanometres(values: Sequence[float]) -> Any:
+    """Round um to nm: a tuple as long as ``values``."""
     return tuple(round(1000 * value) for value in values)

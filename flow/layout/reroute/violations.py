@@ -1,66 +1,83 @@
-"""Where a layout breaks rules that `mend` keeps: wires too near to others, wires too large for their gates."""
+"""Where a layout breaks rules that `reroute` keeps: least space, and antennas."""
 
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-from ..steps.antenna import violations
+from platforms.coriolis import CoriolisPlatform
+
+from ..geometry.antenna import violations as antennas
+from ..geometry.boxes import Box
+from .board import Board, Layers
+from .rules import RoutingRules
+
+if TYPE_CHECKING:
+    import klayout.db as db
 
 
 @dataclass(frozen=True)
-class Marks:
-    """close: [(level, box, box), ...], two edges (nm) nearer than wires must be. charged: [(level, polygon), ...], wires too
-    large for their gates; a polygon as KLayout writes it. Levels are those of ``Wiring.layers``."""
+class Violations:
+    """spacing: (level, box, box) of two edges (nm) that are too near. antennas: (level, polygon as KLayout writes it).
 
-    close: tuple
-    charged: tuple
+    Levels are those of RoutingRules.layers.
+    """
 
-    def __add__(self, other):
-        return Marks(self.close + other.close, self.charged + other.charged)
+    spacing: tuple[tuple[int, Box, Box], ...] = ()
+    antennas: tuple[tuple[int, str], ...] = ()
 
-    def nets(self, board, there, among=None):
-        """(names of nets that are too near to others or to themselves, of two the first in the list; names of nets with
-        an antenna), both sorted, of the names ``among`` alone if given. there: of the ``board`` as it was then."""
-        numbers = range(len(board.nets)) if among is None else [board.numbers[net] for net in among]
-        close = set()
-        for level, *edges in self.close:
-            owners = {number for box in edges for number in board.owners(there, level, box)}.intersection(numbers)
-            close |= {board.nets[min(owners)]} if owners else set()
-        charged = {net for level, polygon in self.charged for net in board.at(there, level, polygon)}
-        return sorted(close), sorted(charged if among is None else charged.intersection(among))
+    def __add__(self, other: "Violations") -> "Violations":
+        return Violations(self.spacing + other.spacing, self.antennas + other.antennas)
+
+    def nets(self, board: Board, routed: Layers, among: Iterable[str] | None = None) -> tuple[list[str], list[str]]:
+        """Return the nets that are too near to others or to themselves, of two the first, and those with an antenna.
+
+        Both sorted, of the names ``among`` alone if given. routed: of the ``board`` as it was then.
+        """
+        numbers = set(range(len(board.nets)) if among is None else (board.numbers[net] for net in among))
+        spacing = set()
+        for level, *edges in self.spacing:
+            owners = {number for box in edges for number in board.owners(routed, level, box)} & numbers
+            spacing |= {board.nets[min(owners)]} if owners else set()
+        charged = {net for level, polygon in self.antennas for net in board.within(routed, level, polygon)}
+        return sorted(spacing), sorted(net for net in charged if board.numbers[net] in numbers)
 
 
-def marks(layout, wiring, known, levels=None):
-    """Marks of KLayout's ``layout`` on ``levels``, all without; known: CoriolisPlatform."""
+def find(
+    layout: "db.Layout", rules: RoutingRules, tech: CoriolisPlatform, levels: Collection[int] | None = None
+) -> Violations:
+    """Violations of a KLayout layout on ``levels``, default all."""
     import klayout.db as db
 
-    top, close = layout.top_cell(), []
-    levels = range(len(wiring.layers)) if levels is None else levels
+    top, spacing = layout.top_cell(), []
+    levels = range(len(rules.layers)) if levels is None else levels
     for level in filter(None, levels):  # the lowest is that of the cells' pins
-        wire = wiring.layers[level]
-        metal = db.Region(top.begin_shapes_rec(layout.layer(wire.layer, wire.datatype)))
-        close += [(level, _ends(pair.first), _ends(pair.second)) for pair in metal.space_check(wire.space).each()]
+        layer = rules.layers[level]
+        metal = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype)))
+        spacing += [(level, _ends(pair.first), _ends(pair.second)) for pair in metal.space_check(layer.space).each()]
     charged = [
-        (level, str(polygon)) for level, bad in violations(layout, top, known, levels).items() for polygon in bad.each()
+        (level, str(polygon)) for level, bad in antennas(layout, top, tech, levels).items() for polygon in bad.each()
     ]
-    return Marks(tuple(close), tuple(charged))
+    return Violations(tuple(spacing), tuple(charged))
 
 
-def marks_of(path, wiring, known, levels):
-    """The same of the GDS file ``path``."""
+def find_in_file(path: Path, rules: RoutingRules, tech: CoriolisPlatform, levels: Collection[int]) -> Violations:
+    """Violations of a GDS file: see `find`."""
     import klayout.db as db
 
     layout = db.Layout()
     layout.read(str(path))
-    return marks(layout, wiring, known, levels)
+    return find(layout, rules, tech, levels)
 
 
-def shared_out(wiring, jobs):
-    """``jobs`` lists of levels that take about as long to look at: what lies higher joins all that is below."""
-    levels, found = sorted(range(len(wiring.layers)), reverse=True), [[] for _ in range(jobs)]
+def split_levels(rules: RoutingRules, jobs: int) -> list[list[int]]:
+    """``jobs`` lists of levels that take about equally long to check: a higher one joins all that is below."""
+    levels, found = sorted(range(len(rules.layers)), reverse=True), [[] for _ in range(jobs)]
     for level in levels:
         min(found, key=sum).append(level)
     return found
 
 
-def _ends(edge):
+def _ends(edge: "db.Edge") -> Box:
     box = edge.bbox()
     return box.left, box.bottom, box.right, box.top

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from flow.layout.steps import antenna
 from flow.layout.steps.antenna import Antenna
+from platforms.coriolis import CoriolisPlatform
 
 from .routing import VERTICAL
 
@@ -16,6 +17,6 @@ class DieAntenna(Antenna):
     inputs = {"gds": "die_gds.gds", "platform": "platform"}
     uses = (antenna,)
 
-    def known(self):
-        known = super().known()
-        return replace(known, metals=known.metals[:VERTICAL], vias=known.vias[: VERTICAL - 1])
+    def tech(self) -> CoriolisPlatform:
+        tech = super().tech()
+        return replace(tech, metals=tech.metals[:VERTICAL], vias=tech.vias[: VERTICAL - 1])

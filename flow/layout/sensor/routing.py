@@ -7,7 +7,7 @@ from base.steps import StepError
 from .channel import check_apart, free, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, check_way, nm, touching
 
-# Of Wiring.layers. Verticals are the highest: what a net joins it joins there, with its driver, so that no gate has the
+# Of RoutingRules.layers. Verticals are the highest: what a net joins it joins there, with its driver, so that no gate has the
 # trunk or a vertical as an antenna before
 STUB, TRUNK, VERTICAL = 1, 3, 4
 
@@ -34,14 +34,13 @@ class Tracks:
     trunk: int
 
     @classmethod
-    def of(cls, wiring):
+    def of(cls, rules):
         """As wide as the cuts' pads, with as much room between them."""
-        cut = wiring.cuts[TRUNK]
-        vertical = 2 * max(cut.above[0], -(-wiring.layers[VERTICAL].width // 2))
-        trunk = 2 * max(cut.below[1], -(-wiring.layers[TRUNK].width // 2))
+        cut = rules.vias[TRUNK]
+        vertical = 2 * max(cut.above[0], -(-rules.layers[VERTICAL].width // 2))
+        trunk = 2 * max(cut.below[1], -(-rules.layers[TRUNK].width // 2))
         pitches = [
-            max(2 * width, width + wiring.layers[level].space)
-            for width, level in ((vertical, VERTICAL), (trunk, TRUNK))
+            max(2 * width, width + rules.layers[level].space) for width, level in ((vertical, VERTICAL), (trunk, TRUNK))
         ]
         return cls(*(-(-pitch // 10) * 10 for pitch in pitches), vertical, trunk)
 

@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass, field
 
 from base.gds import write_gds
 from base.steps import Step, StepError
-from flow.layout.reroute import wiring as wiring_module
-from flow.layout.reroute.wiring import Wiring
+from flow.layout.reroute import rules as rules_module
+from flow.layout.reroute.rules import RoutingRules
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
 
@@ -48,16 +48,16 @@ class DiePlan(Step):
         "tracks": "",
         "wire_um": "um",
     }
-    uses = (arrange, channel, plan, routing, shapes, supplies, verilog, wiring_module)
+    uses = (arrange, channel, plan, routing, shapes, supplies, verilog, rules_module)
 
     def run(self, inputs, outputs):
         p, known = self.parameters, coriolis_platform(self.parameters.pdk)
-        wiring = Wiring.of(known, json.loads(inputs["rules"].read_text()))
+        rules = RoutingRules.of(known, json.loads(inputs["rules"].read_text()))
         layers = [known.metals[level].lef for level in (routing.STUB, routing.VERTICAL)]
         blocks = {name: Block.read(name, inputs[f"{name}.lef"].read_text()) for name in (*BLOCKS, CORE)}
-        tracks = routing.Tracks.of(wiring)
+        tracks = routing.Tracks.of(rules)
         made = arrange.arranged(blocks, p.die, tracks, layers, p.extra)
-        metal, pins = supplies.metal(made, p.die, tracks, wiring, top_metal(p.pdk))
+        metal, pins = supplies.metal(made, p.die, tracks, rules, top_metal(p.pdk))
         outputs["plan"].write_text(json.dumps(described(made, metal, pins, p.die, tracks)) + "\n")
         outputs["verilog"].write_text(verilog.top(TOP, made.blocks, made.nets))
         area = p.die.width_um * p.die.height_um

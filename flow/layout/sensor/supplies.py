@@ -6,20 +6,20 @@ from . import shapes
 from .plan import ANALOG, CORE, DIGITAL, SUPPLIES, check_way, nm
 
 
-def metal(made, die, tracks, wiring, thick):
+def metal(made, die, tracks, rules, thick):
     """(list of all Shapes of an Arranged, dict net -> those at the die's edge that are its pins).
 
     thick: TopMetal.
     """
-    found, ends = supplies(made.blocks, die, wiring, thick)
+    found, ends = supplies(made.blocks, die, rules, thick)
     pins = {net: [shapes.drawn(thick.metal, net, *box) for box in boxes] for net, boxes in ends.items()}
     for net, reaches in made.routes.items():
-        found += shapes.signal(net, reaches, made.y[net], tracks, wiring)
-        pins |= {net: [shapes.pad(reach, die, tracks, wiring)] for reach in reaches if reach.block == "die"}
+        found += shapes.signal(net, reaches, made.y[net], tracks, rules)
+        pins |= {net: [shapes.pad(reach, die, tracks, rules)] for reach in reaches if reach.block == "die"}
     return found, pins
 
 
-def supplies(blocks, die, wiring, thick):
+def supplies(blocks, die, rules, thick):
     """(list of Shapes of the supplies, dict net -> boxes of the die's pins on the thick wire).
 
     Thick wires lead from the straps over the chip and from the analog blocks' pins to the die's west and east edge,
@@ -33,7 +33,7 @@ def supplies(blocks, die, wiring, thick):
         for side, left, right in (("west", 0, edge), ("east", width - edge, width)):
             boxes = [box for of, way, box in lines if (of, way) == (net, side)]
             if boxes:
-                found += _bar(net, side, boxes, die, wiring.layers[-1], thick)
+                found += _bar(net, side, boxes, die, rules.layers[-1], thick)
                 pins.setdefault(net, []).extend((left, box[1], right, box[3]) for box in boxes)
     half = nm(thick.via.size_um + 2 * thick.via.enclosure_below_um) // 2
     for net, at in straps:

@@ -77,7 +77,7 @@ class Assemble(Step):
             "cells": len(logic),
             "flip_flops": sum(map(is_register, logic)),
             "cell_area_um2": round(sum(areas[cell] for cell in logic), 2),
-            "wire_um": round(sum(wire[1] for net in whole["wires"].values() for wire in net), 1),
+            "wire_um": round(sum(wire[1] for net in whole["segments"].values() for wire in net), 1),
         }
 
 

@@ -41,9 +41,9 @@ class Extraction(Step):
     def run(self, inputs, outputs):
         known = coriolis_platform(self.parameters.pdk)
         netlist = Netlist.read(inputs["netlist"])
-        wires = json.loads(inputs["placement"].read_text())["wires"]
+        segments = json.loads(inputs["placement"].read_text())["segments"]
         there = {net for instance in netlist.instances for net in instance.pins.values()}
-        nets = {net: parasitics(parts, known) for net, parts in wires.items() if net in there}
+        nets = {net: parasitics(parts, known) for net, parts in segments.items() if net in there}
         outputs["spef"].write_text(spef(netlist, nets))
         return {
             "wire_pf": round(sum(c for c, _ in nets.values()) / 1000, 3),

@@ -111,11 +111,11 @@ def wiring_rules(known, primitives):
     cuts = {cut.name: (primitives[cut.name], level) for level, cut in enumerate(known.vias)}
     return {
         "space_um": {name: float(wire.min_space) for name, wire in wires.items()},
-        "wires": {
+        "metals": {
             name: {"width": float(wire.min_width), "space": float(wire.min_space), "area": float(wire.min_area or 0)}
             for name, wire in wires.items()
         },
-        "cuts": {
+        "vias": {
             name: {
                 "below": enclosure(_of(cut.bottom, cut.min_bottom_enclosure, known.metals[level])),
                 "above": enclosure(_of(cut.top, cut.min_top_enclosure, known.metals[level + 1])),

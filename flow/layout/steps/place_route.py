@@ -101,7 +101,7 @@ class PlaceRoute(Step):
         final = routed_netlist(netlist, names, result["instances"], blocks)
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
-        wires = [wire for net in result["wires"].values() for wire in net]
+        wires = [wire for net in result["segments"].values() for wire in net]
         cells = sum(bool(instance.pins) for instance in final.instances)
         return {
             "routed": result["routed"],
@@ -141,8 +141,8 @@ class PlaceRoute(Step):
                 self.macro(inputs, block, netlist, *blocks[block["instance"]], known) for block in plan["macros"]
             ],
             "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
-            "wires": [asdict(wire) for wire in known.metals],
-            "cuts": [asdict(cut) for cut in known.vias],
+            "metals": [asdict(metal) for metal in known.metals],
+            "vias": [asdict(via) for via in known.vias],
             **{
                 name: getattr(known, name)
                 for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
@@ -232,7 +232,7 @@ def placement(names, result):
         "straps": result["straps"],
         "pins": [[side, nets[net], at] for side, net, at in result["pins"]],
         "instances": [[number, *rest[:4]] for number, rest in ((_number(i[0]), i[1:]) for i in result["instances"])],
-        "wires": {nets.get(net, f"cts_{net}"): wires for net, wires in result["wires"].items()},
+        "segments": {nets.get(net, f"cts_{net}"): wires for net, wires in result["segments"].items()},
     }
 
 

@@ -49,12 +49,12 @@ class StaBlocks(Step):
     def run(self, inputs, outputs):
         p, folder = self.parameters, outputs["report"].parent
         known, netlist = coriolis_platform(p.pdk), Netlist.read(inputs["netlist"])
-        wires = json.loads(inputs["placement"].read_text())["wires"]
+        segments = json.loads(inputs["placement"].read_text())["segments"]
         there = {net for instance in netlist.instances for net in instance.pins.values()}
         files = {name: folder / f"{name}.log" for name in ("verilog", "spef", "sdf")}
         files["verilog"].write_text(netlist.verilog())
         files["spef"].write_text(
-            spef(netlist, {net: parasitics(parts, known) for net, parts in wires.items() if net in there})
+            spef(netlist, {net: parasitics(parts, known) for net, parts in segments.items() if net in there})
         )
         libraries = "\nread_liberty ".join(str(inputs[name]) for name in ("liberty", *p.macros))
         said = opensta(folder / "sta.log", SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files))

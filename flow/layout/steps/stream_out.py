@@ -116,7 +116,7 @@ def relabel(source, target, top_name, names, ports, known, rules):
     changed = {
         "notches": notch.fill(layout, top, known.metals, rules["space_um"]),
         "trimmed": trim.trim(layout, top, known.metals, rules["space_um"]),
-        "grown": area.grow(layout, top, known.metals, rules["wires"]),
+        "grown": area.grow(layout, top, known.metals, rules["metals"]),
     }
     write_gds(layout, target)
     return top.dbbox(), changed

@@ -9,12 +9,12 @@ from models.parameters import check_int, check_real
 
 from ..netlist import buffering as buffering_module
 from ..netlist import netlist as netlist_module
-from ..netlist.buffering import buffered, driven
-from ..netlist.netlist import Netlist, is_register, register_names
+from ..netlist.buffering import buffer_fan_out, buffer_outputs
+from ..netlist.netlist import Buffer, Netlist, is_register, register_names
 from . import floorplan
 from .floorplan import pins
 
-BUFFER, DRIVER = ("buf_x1", "i", "q"), ("buf_x4", "i", "q")
+BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
 BARE_PF = 0.1  # load of an output above which it has a buffer of its own
 AIM = 0.25  # share of the period that the mapper is asked for: it knows one corner and no wires
 SCRIPT = """
@@ -97,11 +97,11 @@ class Synthesis(Step):
         run(["yosys", "-q", "-s", files["script"]])
         netlist = Netlist.from_yosys(
             files["json"], p.top, BUFFER, p.macros, register_names(files["registers"], p.top)
-        ).apart(p.macros, BUFFER)
+        ).with_input_buffers(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
-            netlist = driven(netlist, DRIVER)
+            netlist = buffer_outputs(netlist, DRIVER)
         if p.fan_out:
-            netlist = buffered(netlist, pins(netlist.ports), BUFFER, p.fan_out)
+            netlist = buffer_fan_out(netlist, pins(netlist.ports), BUFFER, p.fan_out)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
         areas = dict(re.findall(r"cell\((\w+)\) \{ area : ([\d.]+)", inputs["liberty"].read_text()))

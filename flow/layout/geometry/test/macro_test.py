@@ -4,7 +4,7 @@ import pytest
 
 from flow.layout.geometry.assembly import flat, together
 from flow.layout.geometry.macro import Macro
-from flow.layout.netlist.netlist import Instance, Netlist, Port
+from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
 from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.floorplan import FloorplanParameters, free, placed
 from flow.layout.steps.ir_drop import breaks
@@ -139,15 +139,15 @@ def test_wires_that_reach_into_a_block_are_one():
     outside = {
         "straps": [],
         "pins": [],
-        "wires": {"n0": wire("m1", 5.0), "n2": []},
+        "segments": {"n0": wire("m1", 5.0), "n2": []},
         "instances": [[0, "inv_x1", 1.0, 0.0, "0"], [1, "macro0", 40.0, 0.0, "0"], [2, "inv_x1", 9.0, 0.0, "0"]],
     }
     inside = {
-        "wires": {"a": wire("m2", 7.0), "w0": wire("m3", 2.0)},
+        "segments": {"a": wire("m2", 7.0), "w0": wire("m3", 2.0)},
         "instances": [[k, i.cell, 1.6 * k, 5.6, "0"] for k, i in enumerate(small.shift().instances)],
     }
     whole = together(top(), outside, {"part.shift": (small.shift(), inside)}, {"part.shift": (50.0, 11.2)})
-    assert whole["wires"] == {"n0": wire("m1", 5.0) + wire("m2", 7.0), "n2": [], "part.shift.w0": wire("m3", 2.0)}
+    assert whole["segments"] == {"n0": wire("m1", 5.0) + wire("m2", 7.0), "n2": [], "part.shift.w0": wire("m3", 2.0)}
     names = [i.name for i in flat(top(), {"part.shift": small.shift()}).instances]
     assert len(whole["instances"]) == len(names)
     assert whole["instances"][names.index("part.shift.first.d_reg")][1:4] == ["dff_x1", 50.0, 16.8]
@@ -162,10 +162,10 @@ def test_inputs_reach_blocks_through_buffers_but_clocks_do_not():
             Instance("d_reg", "dff_x1", {"i": "n1", "clk": "clk", "q": "out"}),
         ),
     )
-    made = bare.apart(("Shift",), ("buf_x1", "i", "q"))
+    made = bare.with_input_buffers(("Shift",), Buffer("buf_x1", "i", "q"))
     assert made.instances[0].pins == {"clk": "clk", "a": "in_inside", "y": "n1", "n": "n2"}
     assert made.instances[2:] == (Instance("inside0", "buf_x1", {"i": "in", "q": "in_inside"}),)
-    assert bare.apart((), ("buf_x1", "i", "q")) == bare
+    assert bare.with_input_buffers((), Buffer("buf_x1", "i", "q")) == bare
 
 
 def test_a_block_has_plain_names_in_the_router_and_its_own_behind_it():

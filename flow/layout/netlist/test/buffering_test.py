@@ -1,4 +1,4 @@
-"""Buffers behind what goes to many cells: no net has more, none lost, near cells together."""
+"""Buffer trees: no net exceeds the fan-out, no pin is lost, near cells share a buffer."""
 
 from collections import Counter
 
@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flow.layout.netlist.buffering import buffered, driven, guessed, parted
-from flow.layout.netlist.netlist import Instance, Netlist, Port
+from flow.layout.netlist.buffering import buffer_fan_out, buffer_outputs, clusters, estimated
+from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
 
-BUFFER = "buf_x1", "i", "q"
+BUFFER = Buffer("buf_x1", "i", "q")
 
 
 def chain(length, wide):
-    """A row of inverters from port a to port z; `enable` goes to ``wide`` of them, evenly apart."""
+    """A row of inverters from port a to port z; `enable` goes to ``wide`` of them, evenly spaced."""
     nets = ["a", *(f"n{k}" for k in range(length - 1)), "z"]
     taps = set(np.linspace(0, length - 1, wide).astype(int))
     cells = [
@@ -43,7 +43,7 @@ def source(netlist, net):
 @pytest.mark.parametrize("wide", (3, 4, 5, 17, 64, 65, 150))
 def test_no_net_has_more_and_every_pin_has_its_signal(wide):
     plain = chain(200, wide)
-    made = buffered(plain, {"west": ["a", "enable"], "east": ["z"]}, BUFFER, 4)
+    made = buffer_fan_out(plain, {"west": ["a", "enable"], "east": ["z"]}, BUFFER, 4)
     assert max(sinks(made).values()) <= 4
     for before, after in zip(plain.instances, made.instances, strict=False):
         assert {pin: source(made, net) for pin, net in after.pins.items()} == before.pins
@@ -54,7 +54,7 @@ def test_no_net_has_more_and_every_pin_has_its_signal(wide):
 
 def test_a_clock_is_left_alone():
     cells = tuple(Instance(f"r{k}", "dff_x1", {"clk": "clk", "i": "d", "q": f"q{k}"}) for k in range(20))
-    made = buffered(
+    made = buffer_fan_out(
         Netlist("Flat", (Port("clk", "input", 1), Port("d", "input", 1)), cells),
         {"west": ["clk"], "east": ["d"]},
         BUFFER,
@@ -64,15 +64,15 @@ def test_a_clock_is_left_alone():
     assert sinks(made)["d"] == 4
 
 
-def test_places_follow_the_wires_from_port_to_port():
+def test_positions_follow_the_nets_from_port_to_port():
     plain = chain(50, 10)
-    x = guessed(plain.instances, {"west": ["a"], "east": ["z"]}, {"enable"})[:, 0]
+    x = estimated(plain.instances, {"west": ["a"], "east": ["z"]}, {"enable"})[:, 0]
     assert np.all(np.diff(x) > 0)
 
 
 def test_a_buffer_s_cells_are_neighbours():
     plain = chain(120, 40)
-    made = buffered(plain, {"west": ["a", "enable"], "east": ["z"]}, BUFFER, 8)
+    made = buffer_fan_out(plain, {"west": ["a", "enable"], "east": ["z"]}, BUFFER, 8)
     for i in made.instances:
         if i.cell == "buf_x1":
             number = [k for k, other in enumerate(made.instances[:120]) if i.pins["q"] in other.pins.values()]
@@ -82,7 +82,7 @@ def test_a_buffer_s_cells_are_neighbours():
 @given(st.integers(1, 60), st.integers(2, 9), st.integers(0, 2**32 - 1))
 def test_groups_hold_every_place_once(count, most, seed):
     places = np.random.default_rng(seed).integers(0, 5, (count, 2)) / 5
-    groups = parted(places, most)
+    groups = clusters(places, most)
     assert sorted(np.concatenate(groups)) == list(range(count))
     assert len(groups) == -(-count // most)
     assert max(map(len, groups)) <= most and min(map(len, groups)) >= 1
@@ -91,7 +91,7 @@ def test_groups_hold_every_place_once(count, most, seed):
 def test_an_output_has_a_buffer_of_its_own():
     """Whatever reads the net within reads it in front of the buffer, which alone leads out."""
     read = Instance("reader", "inv_x0", {"i": "z", "nq": "n"})
-    made = driven(
+    made = buffer_outputs(
         Netlist(
             "Two",
             (Port("a", "input", 1), Port("z", "output", 1)),

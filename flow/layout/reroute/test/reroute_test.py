@@ -1,4 +1,4 @@
-"""A net taken out and routed anew: joined from pin to pin around what lies there, and every rule kept."""
+"""A net that is ripped up and rerouted is joined from pin to pin around others, and every rule is kept."""
 
 import random
 
@@ -6,32 +6,31 @@ import pytest
 
 from flow.layout.geometry.test.gate import gate
 from flow.layout.reroute.board import Board
-from flow.layout.reroute.negotiate import bargain
-from flow.layout.reroute.nets import routed
-from flow.layout.reroute.violations import Marks, marks, shared_out
-from flow.layout.reroute.wiring import Wiring
-from flow.layout.steps.reroute import open_nets
+from flow.layout.reroute.negotiate import negotiate, open_nets
+from flow.layout.reroute.nets import route_net
+from flow.layout.reroute.rules import RoutingRules
+from flow.layout.reroute.violations import Violations, find, split_levels
 from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
-KNOWN = coriolis_platform("sky130")
-RULES = {
-    "wires": {
+TECH = coriolis_platform("sky130")
+LIBRARY_RULES = {
+    "metals": {
         "li": {"width": 0.17, "space": 0.17, "area": 0},
         "m1": {"width": 0.14, "space": 0.14, "area": 0.083},
         "m2": {"width": 0.14, "space": 0.14, "area": 0.0676},
         "m3": {"width": 0.3, "space": 0.3, "area": 0.24},
         "m4": {"width": 0.3, "space": 0.3, "area": 0.24},
     },
-    "cuts": {
+    "vias": {
         "mcon": {"below": [0, 0], "above": [0.03, 0.06]},
         "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
         "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},
         "via3": {"below": [0.06, 0.09], "above": [0.065, 0.065]},
     },
 }
-WIRING = Wiring.of(KNOWN, RULES)
+RULES = RoutingRules.of(TECH, LIBRARY_RULES)
 SIDE = 40_000
 
 
@@ -43,7 +42,7 @@ def empty():
 
 
 def draw(layout, top, level, *box):
-    layer = WIRING.layers[level]
+    layer = RULES.layers[level]
     top.shapes(layout.layer(layer.layer, layer.datatype)).insert(db.Box(*box))
 
 
@@ -55,13 +54,13 @@ def pin(layout, top, x, y):
 
 
 def nets(layout, top, points):
-    """Numbers of the nets at (level, x, y), and how many there are with a wire."""
+    """Numbers of the nets at (level, x, y), of the layers."""
     l2n, layers = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, [])), []
-    for level, layer in enumerate(WIRING.layers):
+    for level, layer in enumerate(RULES.layers):
         layers.append(l2n.make_layer(layout.layer(layer.layer, layer.datatype), layer.name))
         l2n.connect(layers[-1])
         if level:
-            cut = WIRING.cuts[level - 1]
+            cut = RULES.vias[level - 1]
             cuts = l2n.make_layer(layout.layer(cut.layer, cut.datatype), cut.name)
             for other in (cuts, layers[-1], layers[-2]):
                 l2n.connect(cuts, other)
@@ -70,9 +69,9 @@ def nets(layout, top, points):
 
 
 def broken(layout, top):
-    """Rules of width, space and area that are broken: dict."""
+    """Violations of width, space and area by rule."""
     found = {}
-    for layer in WIRING.layers[1:]:
+    for layer in RULES.layers[1:]:
         region = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).merged()
         found |= {
             f"{layer.name} space": region.space_check(layer.space).count(),
@@ -84,17 +83,17 @@ def broken(layout, top):
 
 def um(boxes):
     """A pin's boxes as coriolis.dump has them."""
-    return [[WIRING.layers[level].name, *(value / 1000 for value in box)] for level, *box in boxes]
+    return [[RULES.layers[level].name, *(value / 1000 for value in box)] for level, *box in boxes]
 
 
-def alone(pins, hops=False, layout=None):
-    """The layout with one net routed between ``pins``; None without a way."""
-    board = Board(layout, WIRING, {"w1": {"wires": [], "cuts": [], "pins": list(map(um, pins))}})
-    found = routed(board, pins, hops)
+def alone(pins, jumpers=False, layout=None):
+    """The layout with one net routed between ``pins``; None without a path."""
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": list(map(um, pins))}})
+    found = route_net(board, pins, jumpers)
     if found is None:
         return None, None
-    board.put("w1", found[0])
-    return board.drawn(), found[0]
+    board.put("w1", found.route)
+    return board.drawn(), found.route
 
 
 def test_two_pins_with_nothing_between():
@@ -108,8 +107,8 @@ def test_two_pins_with_nothing_between():
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("hops", [False, True])
-def test_through_a_crowd_of_other_wires(seed, hops):
+@pytest.mark.parametrize("jumpers", [False, True])
+def test_through_congestion(seed, jumpers):
     rng = random.Random(seed)
     layout, top = empty()
     pins = [pin(layout, top, 85 * rng.randrange(40, 430), 5 * rng.randrange(800, 7000)) for _ in range(4)]
@@ -119,21 +118,21 @@ def test_through_a_crowd_of_other_wires(seed, hops):
             ends = start, start + rng.randrange(1_000, 12_000)
             if rng.random() < 0.6:
                 box = (ends[0], track - half, ends[1], track + half)
-                draw(layout, top, level, *(box if WIRING.layers[level].across else (box[1], box[0], box[3], box[2])))
+                draw(layout, top, level, *(box if RULES.layers[level].horizontal else (box[1], box[0], box[3], box[2])))
     before = broken(layout, top)
-    layout, shapes = alone(pins, hops, layout)
-    if shapes is None:
-        assert hops  # room for a piece of the highest wire may lack
+    layout, route = alone(pins, jumpers, layout)
+    if route is None:
+        assert jumpers  # there may be no room for a jumper
         return
     points = [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]
     assert len(set(nets(layout, layout.top_cell(), points))) == 1
     assert broken(layout, layout.top_cell()) == before
-    if hops:
-        assert shapes.lengths[4] >= 1_500
+    if jumpers:
+        assert route.lengths[4] >= 1_500
 
 
 def walls(layout, top, *xs):
-    """Walls through all layers, of nobody."""
+    """Walls through all layers, of no net."""
     for level in (1, 2, 3, 4):
         for x in xs:
             draw(layout, top, level, x, 0, x + 400, SIDE)
@@ -146,20 +145,20 @@ def test_a_pin_behind_a_wall_is_given_up():
     assert alone(pins, layout=layout) == (None, None)
 
 
-def test_a_net_that_has_no_way_is_taken_out():
+def test_a_net_without_a_path_is_ripped_up():
     layout, top = empty()
     boxes = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
     walls(layout, top, 20_000)
     draw(layout, top, 1, 4_930, 4_930, 6_000, 5_070)
-    shapes = {"w1": {"wires": [["m1", 4.93, 4.93, 6.0, 5.07]], "cuts": [], "pins": list(map(um, boxes))}}
-    board = Board(layout, WIRING, shapes)
+    shapes = {"w1": {"segments": [["m1", 4.93, 4.93, 6.0, 5.07]], "vias": [], "pins": list(map(um, boxes))}}
+    board = Board(layout, RULES, shapes)
     assert board.boxes["w1"] == [("m1", (4_930, 4_930, 6_000, 5_070))]
-    found = bargain(board, {"w1": shapes["w1"]["pins"]}, ["w1"])
-    assert (found.open, found.made, board.boxes["w1"]) == (["w1"], {}, [])
+    found = negotiate(board, {"w1": shapes["w1"]["pins"]}, ["w1"])
+    assert (found.open, found.routes, board.boxes["w1"]) == (["w1"], {}, [])
 
 
-def test_who_is_in_the_way_moves():
-    """A hall of two walls with a gap, which another net has filled with wires on all layers; it has room elsewhere."""
+def test_a_net_in_the_way_is_evicted():
+    """A hall of two walls with a gap, which another net fills with segments on all layers; it has room elsewhere."""
     layout, top = empty()
     pins = {
         "w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)],
@@ -170,20 +169,20 @@ def test_who_is_in_the_way_moves():
         draw(layout, top, level, 20_000, 21_500, 20_400, SIDE)
     rows = range(17_000, 23_000, 680)
     wires = [
-        [WIRING.layers[level].name, 19.0, (y - 150) / 1000, 21.0, (y + 150) / 1000]
+        [RULES.layers[level].name, 19.0, (y - 150) / 1000, 21.0, (y + 150) / 1000]
         for level in (1, 2, 3, 4)
         for y in rows
         if 18_300 < y < 21_200
     ]
     for name, *box in wires:
-        draw(layout, top, [layer.name for layer in WIRING.layers].index(name), *(round(1000 * v) for v in box))
+        draw(layout, top, [layer.name for layer in RULES.layers].index(name), *(round(1000 * v) for v in box))
     shapes = {
-        net: {"wires": wires if net == "w2" else [], "cuts": [], "pins": list(map(um, made))}
+        net: {"segments": wires if net == "w2" else [], "vias": [], "pins": list(map(um, made))}
         for net, made in pins.items()
     }
-    board = Board(layout, WIRING, shapes)
-    found = bargain(board, {net: made["pins"] for net, made in shapes.items()}, ["w1"])
-    assert found.open == [] and set(found.made) == {"w1", "w2"}
+    board = Board(layout, RULES, shapes)
+    found = negotiate(board, {net: made["pins"] for net, made in shapes.items()}, ["w1"])
+    assert found.open == [] and set(found.routes) == {"w1", "w2"}
     drawn = board.drawn()
     assert broken(drawn, drawn.top_cell()) == {}
     first, second, third, fourth = nets(
@@ -195,38 +194,34 @@ def test_who_is_in_the_way_moves():
 def test_a_board_draws_what_it_lifted():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
-    layout, shapes = alone(pins, layout=layout)
-    wires = [
-        [WIRING.layers[level].name, *(v / 1000 for v in box)] for level, made in shapes.wires.items() for box in made
+    layout, route = alone(pins, layout=layout)
+    segments = [
+        [RULES.layers[level].name, *(v / 1000 for v in box)] for level, made in route.segments.items() for box in made
     ]
-    cuts = [
-        [
-            "_".join((WIRING.layers[level].name, WIRING.cuts[level].name, WIRING.layers[level + 1].name)),
-            x / 1000,
-            y / 1000,
-        ]
-        for level, made in shapes.cuts.items()
+    vias = [
+        ["_".join((RULES.layers[level].name, RULES.vias[level].name, RULES.layers[level + 1].name)), x / 1000, y / 1000]
+        for level, made in route.vias.items()
         for x, y in made
     ]
     area = {
         layer.name: db.Region(layout.top_cell().begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).area()
-        for layer in WIRING.layers
+        for layer in RULES.layers
     }
     assert area["m1"] > 0 and area["m2"] > 0
-    board = Board(layout, WIRING, {"w1": {"wires": wires, "cuts": cuts, "pins": list(map(um, pins))}})
+    board = Board(layout, RULES, {"w1": {"segments": segments, "vias": vias, "pins": list(map(um, pins))}})
     assert board.top.shapes(board.layers["m2"]).size() == 0
     drawn = board.drawn()
     assert area == {
         layer.name: db.Region(drawn.top_cell().begin_shapes_rec(drawn.layer(layer.layer, layer.datatype))).area()
-        for layer in WIRING.layers
+        for layer in RULES.layers
     }
-    assert marks(drawn, WIRING, KNOWN) == Marks((), ())
+    assert find(drawn, RULES, TECH) == Violations()
 
 
-def test_who_is_too_near_or_too_large_for_its_gate():
-    """w0 and w2 lead to gates, w0 too far; w2 is too near to w1. A part of the layout tells the same as the whole."""
+def test_nets_that_are_too_near_or_have_an_antenna():
+    """w0 and w2 lead to gates, w0 too far; w2 is too near to w1. A part of the layout has the same as the whole."""
     layout, top = empty()
-    cell = gate(layout, KNOWN)
+    cell = gate(layout, TECH)
     for y in (5_000, 30_000):
         top.insert(db.CellInstArray(cell.cell_index(), db.Trans(db.Vector(1_000, y))))
     wires = {
@@ -238,19 +233,19 @@ def test_who_is_too_near_or_too_large_for_its_gate():
         draw(layout, top, 1, *box)
     board = Board(
         layout,
-        WIRING,
-        {net: {"wires": [["m1", *(v / 1000 for v in box)]], "cuts": [], "pins": []} for net, box in wires.items()},
+        RULES,
+        {net: {"segments": [["m1", *(v / 1000 for v in box)]], "vias": [], "pins": []} for net, box in wires.items()},
     )
-    whole = marks(board.drawn(), WIRING, KNOWN)
-    assert whole.nets(board, board.there) == (["w1"], ["w0"])
-    assert whole.nets(board, board.there, ["w2"]) == (["w2"], [])
+    whole = find(board.drawn(), RULES, TECH)
+    assert whole.nets(board, board.routed) == (["w1"], ["w0"])
+    assert whole.nets(board, board.routed, ["w2"]) == (["w2"], [])
     for net in wires:
-        assert marks(board.part([net]), WIRING, KNOWN).nets(board, board.there, [net]) == whole.nets(
-            board, board.there, [net]
+        assert find(board.part([net]), RULES, TECH).nets(board, board.routed, [net]) == whole.nets(
+            board, board.routed, [net]
         )
-    assert board.beside(["w1"]) == {"w1"}
-    parts = [marks(board.drawn(), WIRING, KNOWN, levels) for levels in shared_out(WIRING, 2)]
-    assert sum(parts, Marks((), ())).nets(board, board.there) == (["w1"], ["w0"])
+    assert board.touching(["w1"]) == {"w1"}
+    parts = [find(board.drawn(), RULES, TECH, levels) for levels in split_levels(RULES, 2)]
+    assert sum(parts, Violations()).nets(board, board.routed) == (["w1"], ["w0"])
 
 
 def test_open_nets_are_read_from_the_routers_list():

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base.steps import StepError
-from flow.layout.reroute.wiring import Wiring
+from flow.layout.reroute.rules import RoutingRules
 from flow.layout.sensor.channel import check_apart, free, left_edge
 from flow.layout.sensor.routing import Reach, Tracks, trunks
 from flow.layout.sensor.shapes import signal
@@ -14,8 +14,8 @@ from platforms.coriolis import coriolis_platform
 from . import small
 
 KNOWN = coriolis_platform("sky130")
-WIRING = Wiring.of(KNOWN, small.RULES)
-TRACKS = Tracks.of(WIRING)
+ROUTING_RULES = RoutingRules.of(KNOWN, small.RULES)
+TRACKS = Tracks.of(ROUTING_RULES)
 SPANS = st.dictionaries(
     st.integers(0, 99),
     st.tuples(st.integers(0, 500), st.integers(0, 80)).map(lambda span: (span[0], span[0] + span[1])),
@@ -77,7 +77,7 @@ def test_metal_joins_each_net_and_keeps_others_apart(made):
     shapes = [
         shape
         for net, found in made.items()
-        for shape in signal(net, found, 20_000 + tracks[net] * TRACKS.trunk_pitch, TRACKS, WIRING)
+        for shape in signal(net, found, 20_000 + tracks[net] * TRACKS.trunk_pitch, TRACKS, ROUTING_RULES)
     ]
     groups = components(shapes)
     assert len(groups) == len(made)
@@ -86,8 +86,8 @@ def test_metal_joins_each_net_and_keeps_others_apart(made):
 
 def components(shapes):
     """Lists of indices that hang together, metal nearer than its least space counted as joined; cuts to both wires."""
-    numbers = {(wire.layer, wire.datatype): (level, wire.space) for level, wire in enumerate(WIRING.layers)}
-    cuts = {(cut.layer, cut.datatype): level for level, cut in enumerate(WIRING.cuts)}
+    numbers = {(wire.layer, wire.datatype): (level, wire.space) for level, wire in enumerate(ROUTING_RULES.layers)}
+    cuts = {(cut.layer, cut.datatype): level for level, cut in enumerate(ROUTING_RULES.vias)}
     root = list(range(len(shapes)))
 
     def find(k):

@@ -12,7 +12,7 @@ from pixels.footprints import write
 PLATFORM = {"platform": ROOT / "platforms/sky130/coriolis.py", "thick": ROOT / "platforms/sky130/die.py"}
 DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
 RULES = {
-    "wires": {
+    "metals": {
         name: {"width": least, "space": least, "area": area}
         for name, least, area in (
             ("li", 0.17, 0.0),
@@ -22,7 +22,7 @@ RULES = {
             ("m4", 0.3, 0.24),
         )
     },
-    "cuts": {
+    "vias": {
         "mcon": {"below": [0.0, 0.0], "above": [0.03, 0.06]},
         "via": {"below": [0.055, 0.085], "above": [0.055, 0.085]},
         "via2": {"below": [0.04, 0.085], "above": [0.065, 0.065]},

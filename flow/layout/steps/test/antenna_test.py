@@ -2,8 +2,8 @@
 
 import pytest
 
+from flow.layout.geometry.antenna import violations
 from flow.layout.geometry.test.gate import gate
-from flow.layout.steps.antenna import violations
 from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")

@@ -53,7 +53,7 @@ def test_the_liberty_of_a_block_stands_for_its_cells(tmp_path):
         areas=json.dumps({"width_um": 4.0, "height_um": 5.0}),
         whole=whole.verilog(),
         wires=spef(whole, {"part.w0": (0.001, 1.0)}),
-        placement=json.dumps({"wires": {"n1": [], "not there": [["m1", 1.0, 0.3]]}}),
+        placement=json.dumps({"segments": {"n1": [], "not there": [["m1", 1.0, 0.3]]}}),
     )
     run(BlockLiberty(BlockLibertyParameters("tt")), files | {"netlist": tmp_path / "block.json"}, tmp_path / "own")
     by_cells = run(

@@ -9,7 +9,7 @@ from platforms.coriolis import coriolis_platform
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 RULES = {
     "space_um": {wire: 0.14 for wire in ("li", "m1", "m2", "m3", "m4")},
-    "wires": {wire: {"area": 0.0, "space": 0.14} for wire in ("li", "m1", "m2", "m3", "m4")},
+    "metals": {wire: {"area": 0.0, "space": 0.14} for wire in ("li", "m1", "m2", "m3", "m4")},
 }
 
 

@@ -1,0 +1,72 @@
+"""The least area and width of a route's pieces of metal."""
+
+from typing import TYPE_CHECKING, Any
+
+from ..geometry.boxes import Box
+from .route import Route
+from .window import NetView
+
+if TYPE_CHECKING:
+    import klayout.db as db
+
+
+def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
+    """Whether every piece of metal has the least area, or was given it; gaps within the net are closed.
+
+    alone: no other net is to make room for that.
+    """
+    for level, boxes in route.segments.items():
+        layer = view.rules.layers[level]
+        region = _merged(boxes)
+        gap = layer.space // 2
+        for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():
+            boxes.append(_corners(polygon.bbox()))
+        for pair in _merged(boxes).width_check(layer.width).each():
+            wider = _at_least(pair.bbox(), layer.width)  # where two pieces overlap by less than the least width
+            if not view.clear(level, wider):
+                return False
+            boxes.append(wider)
+        for polygon in _merged(boxes).each():
+            lack = layer.area - polygon.area()
+            if lack > 0:
+                more = _longer(view, level, polygon.bbox(), lack, alone)
+                if more is None:
+                    return False
+                boxes.append(more)
+    return True
+
+
+def _merged(boxes: list[Box]) -> "db.Region":
+    import klayout.db as db
+
+    shapes: Any = [db.Box(*box) for box in boxes]  # KLayout's stub lacks this overload
+    return db.Region(shapes).merged()
+
+
+def _corners(box: "db.Box", left: int = 0, bottom: int = 0, right: int = 0, top: int = 0) -> Box:
+    """``box`` made larger by so much on its sides."""
+    return box.left - left, box.bottom - bottom, box.right + right, box.top + top
+
+
+def _at_least(box: "db.Box", width: int) -> Box:
+    """``box`` with sides of at least ``width``, on a grid of 5 nm."""
+    x, y = (max(0, -(-(width - side) // 10) * 5) for side in (box.width(), box.height()))
+    return _corners(box, x, y, x, y)
+
+
+def _longer(view: NetView, level: int, box: "db.Box", lack: int, alone: bool) -> Box | None:
+    """A box that makes the piece of metal ``box`` larger by ``lack`` nm2, clear of all nets if it can be or, with
+    ``alone``, must; else of what is fixed. None without one."""
+    wide = -(-lack // box.height()) // 10 * 10 + 10
+    high = -(-lack // box.width()) // 10 * 10 + 10
+    made = [
+        _corners(box, left=wide),
+        _corners(box, right=wide),
+        _corners(box, left=wide // 2, right=wide // 2),
+        _corners(box, bottom=high),
+        _corners(box, top=high),
+        _corners(box, bottom=high // 2, top=high // 2),
+    ]
+    return next(
+        (one for others in ([True] if alone else [True, False]) for one in made if view.clear(level, one, others)), None
+    )
