@@ -1,95 +1,117 @@
-"""Voltage drop of one supply over its rails and straps: a mesh of resistors, its currents drawn where the cells are."""
+"""IR drop of one supply over its rails and straps: a mesh of resistors, its currents drawn at the cells."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
+
+from platforms.coriolis import CoriolisPlatform
+
+Box = tuple[float, float, float, float]  # left, bottom, right, top, um
 
 
 @dataclass(frozen=True)
 class Metal:
-    """Ohm per um of a rail and of a strap; Ohm of the stack of cuts between them."""
+    """Ohm per um of a rail and of a strap; ohm of the via stack between them."""
 
     rail: float
     strap: float
     stack: float
 
 
-def metal(known):
-    """Metal of an CoriolisPlatform: rails on its lowest wire, straps on its highest, stacks as straps.py draws them."""
-    low, high = known.metals[0], known.metals[-1]
+class Tap(NamedTuple):
+    """A cell's current. rail: index."""
+
+    rail: int
+    x_um: float
+    ampere: float
+
+
+class Gap(NamedTuple):
+    """A cut in the strap at x_um."""
+
+    x_um: float
+    bottom_um: float
+    top_um: float
+
+
+def metal(tech: CoriolisPlatform) -> Metal:
+    """Resistances of a process: rails on its lowest metal, straps on its highest, via stacks as straps.py draws them."""
+    low, high = tech.metals[0], tech.metals[-1]
     stack = 0.0
-    for cut in known.vias:
+    for via in tech.vias:
         across, along = (
-            int((side - 2 * cut.enclosure_um + cut.space_um) / (cut.size_um + cut.space_um) + 1e-9)
-            for side in (known.strap_um, known.rail_overlap_um)
+            int((side - 2 * via.enclosure_um + via.space_um) / (via.size_um + via.space_um) + 1e-9)
+            for side in (tech.strap_um, tech.rail_overlap_um)
         )
-        stack += cut.ohm / (across * along)
-    return Metal(low.sheet_ohm / known.rail_um, high.sheet_ohm / known.strap_um, stack)
+        stack += via.ohm / (across * along)
+    return Metal(low.sheet_ohm / tech.rail_um, high.sheet_ohm / tech.strap_um, stack)
 
 
-def drops(rails, straps, height, taps, metal, breaks=(), gaps=()):
-    """Volts by which each tap lies from the pads: array (taps,), and the largest share of current lost in the solution.
+def drops(
+    rails: Sequence[float],
+    straps: Sequence[float],
+    height: float,
+    taps: Sequence[Tap],
+    metal: Metal,
+    breaks: Sequence[Box] = (),
+    gaps: Sequence[Gap] = (),
+) -> tuple[npt.NDArray[np.float64], float]:
+    """Voltage between each tap and the pads (V), array (taps,), and the share of current that the solution loses.
 
-    rails: y of each, um. straps: x of each; their ends at 0 and ``height`` are the pads. taps: (rail's index, x, A)
-    each. A tap on a rail that no strap reaches would have no voltage: there must be a strap. breaks: boxes (left,
-    bottom, right, top) in which there are no rails. gaps: (x, bottom, top) in which a strap is cut.
+    rails: y of each, um. straps: x of each, um, at least one; their ends at 0 and ``height`` are the pads. breaks: boxes
+    without rails.
     """
-    rails, straps = np.asarray(rails, float), np.asarray(straps, float)
     crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))  # nodes of the straps
-    nodes, edges, currents, where = crossing.size, [], [], []
-    for k in range(len(straps)):  # up a strap; half a um of it, at least, to a pad at its end
-        for r, (a, b) in enumerate(zip(crossing[k], crossing[k][1:])):
-            if not any(x == straps[k] and rails[r] < top and bottom < rails[r + 1] for x, bottom, top in gaps):
-                edges.append((a, b, metal.strap * float(rails[r + 1] - rails[r])))
-    pads = [
-        (crossing[k][end], metal.strap * max(0.5, gap))
-        for k in range(len(straps))
-        for end, gap in ((0, rails[0]), (-1, height - rails[-1]))
-    ]
-    for r in range(len(rails)):  # along a rail: its taps, and where straps meet it
-        own = sorted(
-            [(x, "tap", k) for k, (rail, x, _) in enumerate(taps) if rail == r]
+    edges: list[tuple[int, int, float]] = []
+    pads: list[tuple[int, float]] = []
+    where = np.zeros(len(taps), int)  # nodes of the taps
+    for x, own in zip(
+        straps, crossing.tolist(), strict=True
+    ):  # up a strap; at least half a um of it to a pad at its end
+        for low, high, a, b in zip(rails, rails[1:], own, own[1:]):
+            if not any(x == gap.x_um and low < gap.top_um and gap.bottom_um < high for gap in gaps):
+                edges.append((a, b, metal.strap * (high - low)))
+        pads += [(own[0], metal.strap * max(0.5, rails[0])), (own[-1], metal.strap * max(0.5, height - rails[-1]))]
+    nodes = crossing.size
+    for r, y in enumerate(rails):  # along a rail: its taps, and where straps cross it
+        found = sorted(
+            [(tap.x_um, "tap", k) for k, tap in enumerate(taps) if tap.rail == r]
             + [(x, "strap", k) for k, x in enumerate(straps)]
         )
-        before, edge = None, 2 if rails[r] in (0, height) else 1  # half a rail at the edge of the block
-        for x, kind, k in own:
+        ohm = metal.rail * (2 if y in (0, height) else 1)  # half a rail at the edge of the block
+        before = None
+        for x, kind, k in found:
             if kind == "strap":
                 edges.append((nodes, int(crossing[k][r]), metal.stack))
             else:
-                where.append((k, nodes))
-                currents.append((nodes, taps[k][2]))
+                where[k] = nodes
             if before is not None and not any(
-                bottom <= rails[r] <= top and before <= left and right <= x for left, bottom, right, top in breaks
+                bottom <= y <= top and before <= left and right <= x for left, bottom, right, top in breaks
             ):
-                edges.append((nodes - 1, nodes, edge * metal.rail * max(x - before, 1e-3)))
+                edges.append((nodes - 1, nodes, ohm * max(x - before, 1e-3)))
             before, nodes = x, nodes + 1
-    matrix = _laplacian(nodes, edges, pads)
     drawn = np.zeros(nodes)
-    for node, current in currents:
-        drawn[node] += current
+    drawn[where] = [tap.ampere for tap in taps]
     scale = max(float(np.abs(drawn).max(initial=0.0)), np.finfo(float).tiny)
-    volts = spsolve(matrix.tocsc(), drawn / scale) * scale
-    given = sum(volts[node] / ohm for node, ohm in pads)
-    lost = abs(given - drawn.sum()) / max(abs(drawn.sum()), np.finfo(float).tiny)
-    found = np.zeros(len(taps))
-    for k, node in where:
-        found[k] = volts[node]
-    return found, float(lost)
+    volts = np.asarray(spsolve(_laplacian(nodes, edges, pads), drawn / scale)) * scale
+    supplied = sum(volts[node] / ohm for node, ohm in pads)
+    lost = abs(supplied - drawn.sum()) / max(abs(drawn.sum()), np.finfo(float).tiny)
+    return volts[where], float(lost)
 
 
-def _laplacian(nodes, edges, pads):
+def _laplacian(
+    nodes: int, edges: Sequence[tuple[int, int, float]], pads: Sequence[tuple[int, float]]
+) -> sparse.csc_matrix:
+    """Conductances between ``nodes``. edges: (node, node, ohm). pads: (node, ohm to the pad)."""
     a, b, ohm = (np.array(column) for column in zip(*edges))
-    g = 1.0 / ohm.astype(float)
-    matrix = sparse.coo_matrix(
-        (
-            np.concatenate((g, g, -g, -g)),
-            (np.concatenate((a, b, a, b)).astype(int), np.concatenate((a, b, b, a)).astype(int)),
-        ),
-        shape=(nodes, nodes),
-    )
-    ends = sparse.coo_matrix(
-        ([1 / ohm for _, ohm in pads], ([p for p, _ in pads], [p for p, _ in pads])), shape=(nodes, nodes)
-    )
-    return matrix + ends
+    g, shape = 1.0 / ohm.astype(float), (nodes, nodes)
+    values = np.concatenate((g, g, -g, -g))
+    places = np.concatenate((a, b, a, b)).astype(int), np.concatenate((a, b, b, a)).astype(int)
+    ends, to_pad = zip(*pads)
+    matrix = sparse.coo_matrix((values, places), shape=shape)
+    return sparse.csc_matrix(matrix + sparse.coo_matrix(([1 / ohm for ohm in to_pad], (ends, ends)), shape=shape))

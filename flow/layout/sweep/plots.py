@@ -1,17 +1,21 @@
 """The sweeps as figures."""
 
+from collections.abc import Iterable, Sequence
+from typing import Any
+
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatter
 
 from base.charts import COLOURS
 
-QUALITY = ("area_um2", "area, um2"), ("wire_um", "wires, um"), ("wns_ns", "worst setup slack, ns")
+QUALITY = ("area_um2", "area, um2"), ("wire_um", "wire length, um"), ("wns_ns", "worst setup slack, ns")
 MARKS = {1: "o", 2: "s", 3: "^"}  # of an effort
+Point = dict[str, Any]  # of points.py, for JSON
 
 
-def front(points, small, large):
-    """Points that no other beats in both: ``small`` not smaller and ``large`` not larger. Sorted by ``small``."""
+def front(points: Iterable[Point], small: str, large: str) -> list[Point]:
+    """The Pareto front, sorted by ``small``: no other point has a smaller ``small`` and a larger ``large``."""
     best = [
         p
         for p in points
@@ -26,8 +30,8 @@ def front(points, small, large):
     return sorted(best, key=lambda p: p[small])
 
 
-def pareto_plot(points):
-    """Area against highest clock, and area against energy a result; the front of each as a line."""
+def pareto_plot(points: Sequence[Point]) -> Figure:
+    """Plot area against highest clock, and area against energy a result; the Pareto front of each as a line."""
     points = [point for point in points if point["closed"]]
     figure = Figure(figsize=(11, 4.8), layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -52,9 +56,11 @@ def pareto_plot(points):
     return figure
 
 
-def effort_plot(points):
-    """Seconds of routing against area, wire length and worst slack: a mark an effort, a colour a utilization, beside it
-    the variations of density that came to this; crosses below did not close."""
+def effort_plot(points: Sequence[Point]) -> Figure:
+    """Plot seconds of place and route against area, wire length and worst slack.
+
+    A mark an effort, a colour a utilization, the variations of density as labels; crosses at the bottom did not close.
+    """
     figure = Figure(figsize=(13, 4.6), layout="constrained")
     shares = sorted({point["utilization"] for point in points})
     colour = {share: COLOURS[k % len(COLOURS)] for k, share in enumerate(shares)}
@@ -98,9 +104,9 @@ def effort_plot(points):
     return figure
 
 
-def alike(points, key):
-    """dict (value of ``key``, effort, utilization) -> the points that closed with it, the slowest last."""
-    found = {}
+def alike(points: Iterable[Point], key: str) -> dict[tuple[float, int, float], list[Point]]:
+    """Group the points that closed by (value of ``key``, effort, utilization), the slowest last."""
+    found: dict[tuple[float, int, float], list[Point]] = {}
     for point in sorted(points, key=lambda point: point["seconds"]):
         if point["closed"]:
             found.setdefault((point[key], point["effort"], point["utilization"]), []).append(point)

@@ -1,11 +1,13 @@
-"""One layout as a point: a dict of figures for JSON."""
+"""One layout as a point of a sweep: a dict of figures for JSON."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
-from base.steps import Runner
+from base.steps import Runner, Step
 from flow.layout.chain import attempts, input_files, routing_steps, synthesis_steps, timing_steps
-from flow.layout.design import divider
+from flow.layout.design import Design, divider
 from flow.layout.options import Options
 from flow.layout.search import lay_out_smallest
 from flow.layout.steps.extraction import Extraction, ExtractionParameters
@@ -14,8 +16,8 @@ VARIANTS = ("radix2", "radix4", "pipelined", "cordic")
 WIDTHS = 4, 8, 12  # fraction bits; CORDIC has none
 
 
-def candidates():
-    """Designs of the divider: every variant, and the dividing ones at every width."""
+def candidates() -> list[Design]:
+    """Designs of the divider: every variant, and all but CORDIC at every width."""
     return [
         divider(f"{variant}_{bits}", variant, bits)
         for variant in VARIANTS
@@ -23,11 +25,11 @@ def candidates():
     ]
 
 
-def variant_point(design, liberty, out, pdk="sky130"):
-    """Lay the Design out, in its smallest area that closes, time it and watch it in a frame.
+def variant_point(design: Design, liberty: Sequence[str], out: str, pdk: str = "sky130") -> dict[str, Any]:
+    """Lay out a design in the smallest area that closes, with timing and power in a frame.
 
-    Returns area, f_max (the slowest corner's), energy a result (the first corner's) and where they come from. Without
-    layout against netlist and equivalence: `make layout` of a design has these.
+    The point has area, highest clock (of the slowest corner), energy a result (at the first corner) and what they rest
+    on. LVS and equivalence are left out: `make layout` runs them.
     """
     options = Options(pdk, design.utilization, tuple(map(Path, liberty)))
     runner = _runner(design, options, out)
@@ -57,13 +59,23 @@ def variant_point(design, liberty, out, pdk="sky130"):
     }
 
 
-def _signoff(design, options):
+def _signoff(design: Design, options: Options) -> list[Step]:
     return [Extraction(ExtractionParameters(options.pdk)), *timing_steps(design, options)]
 
 
-def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky130"):
-    """Place and route a design once with an effort of the placer, a variation of density and a utilization: quality,
-    where every net is routed and no rule broken ("closed"), and seconds of what does so."""
+def effort_point(
+    design: Design,
+    liberty: Sequence[str],
+    out: str,
+    effort: int,
+    variation: float,
+    utilization: float,
+    pdk: str = "sky130",
+) -> dict[str, Any]:
+    """Place and route a design once; quality where it closes, and the seconds of place and route.
+
+    effort: of the placer. variation: of density. closed: every net is routed and no rule broken.
+    """
     options = Options(pdk, utilization, tuple(map(Path, liberty)), effort=effort)
     design = replace(design, density_variation=variation)
     runner = _runner(design, options, out)
@@ -99,6 +111,6 @@ def effort_point(design, liberty, out, effort, variation, utilization, pdk="sky1
     }
 
 
-def _runner(design, options, out):
+def _runner(design: Design, options: Options, out: str) -> Runner:
     folder = Path(out) / design.name
     return Runner(folder / "steps", input_files(design, options, folder), shared=Path(out).parent / "shared")

@@ -5,27 +5,48 @@ coupling between segments, and a net is one T: half of its whole resistance on e
 more than any single path of a branched net has.
 """
 
-from flow.layout.netlist.netlist import OUTPUT_PINS
+import json
+from collections.abc import Container, Iterable, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
+from platforms.coriolis import CoriolisPlatform
 
 
-def parasitics(parts, known):
-    """(fF, Ohm) of a net. parts: [[layer, length_um, width_um], ...], a contact with length 0."""
-    wires = {wire.name: wire for wire in known.metals}
-    cuts = {f"{known.metals[k].name}_{cut.name}_{known.metals[k + 1].name}": cut for k, cut in enumerate(known.vias)}
+class Parasitics(NamedTuple):
+    """Capacitance to the substrate and resistance of a net."""
+
+    femtofarad: float
+    ohm: float
+
+
+def parasitics(segments: Iterable[tuple[str, float, float]], tech: CoriolisPlatform) -> Parasitics:
+    """Parasitics of a net's ``segments``: (layer, length_um, width_um), a via with length 0."""
+    metals = {metal.name: metal for metal in tech.metals}
+    names = [metal.name for metal in tech.metals]
+    vias = {f"{low}_{via.name}_{high}": via for low, via, high in zip(names, tech.vias, names[1:])}
     attofarad = ohm = 0.0
-    for layer, length, width in parts:
-        if layer in cuts:
-            ohm += cuts[layer].ohm
-        elif layer in wires and length:
-            wire = wires[layer]
-            attofarad += length * (width * wire.area_af_um2 + 2 * wire.fringe_af_um)
-            ohm += length / width * wire.sheet_ohm
-    return attofarad / 1000, ohm
+    for layer, length, width in segments:
+        if layer in vias:
+            ohm += vias[layer].ohm
+        elif layer in metals and length:
+            metal = metals[layer]
+            attofarad += length * (width * metal.area_af_um2 + 2 * metal.fringe_af_um)
+            ohm += length / width * metal.sheet_ohm
+    return Parasitics(attofarad / 1000, ohm)
 
 
-def spef(netlist, nets):
-    """The SPEF file as text. nets: dict net -> (fF, Ohm)."""
-    pins = {}
+def extract(netlist: Netlist, placement: Path, tech: CoriolisPlatform) -> dict[str, Parasitics]:
+    """Parasitics of the nets of ``netlist`` from the segments in the file ``placement``, by net."""
+    nets = {net for instance in netlist.instances for net in instance.pins.values()}
+    segments = json.loads(placement.read_text())["wires"]
+    return {net: parasitics(parts, tech) for net, parts in segments.items() if net in nets}
+
+
+def spef(netlist: Netlist, nets: Mapping[str, tuple[float, float]]) -> str:
+    """Text of the SPEF. nets: net -> (fF, ohm)."""
+    pins: dict[str, list[tuple[str, str]]] = {}
     for instance in netlist.instances:
         for pin, net in instance.pins.items():
             pins.setdefault(net, []).append((f"{_name(instance.name, ())}:{pin}", pin))
@@ -66,8 +87,10 @@ def spef(netlist, nets):
     return "\n".join(lines) + "\n"
 
 
-def _name(name, ports):
-    """As SPEF writes it: everything but letters, digits and _ behind a backslash, but for the brackets of a bus's bit
-    (what is in ``ports``): a bracket in the name of a register is a letter of it."""
+def _name(name: str, ports: Container[str]) -> str:
+    """Escape a name as SPEF does: a backslash before everything but letters, digits and _.
+
+    Brackets of a port's bit (a name in ``ports``) stay: a bracket in the name of a register is a letter of it.
+    """
     letters = "_[]" if name in ports else "_"
     return "".join(c if c.isalnum() or c in letters else f"\\{c}" for c in name)
