@@ -1,56 +1,48 @@
-"""Folders that are expensive to make, kept by name: whole, or not there."""
+"""What a kept result's key is made of, and folders that are expensive to make, kept under that key.
+
+Every cache of the project (simulators, cells, layout steps, proofs, mutants, coverage, jobs) names its results with
+`digest`: of the code that decides them (`base.sources.code`), of their parameters, of the tools' versions and of the
+contents of their input files.
+"""
 
 import hashlib
-import os
-import platform
-import shutil
-import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
-PART = f".part-{platform.node()}-"  # then its process, so that it is known whose it is, should it stay
+from .files import part_folder
 
 
-def digest(*parts):
-    """A name for what is made from ``parts`` (bytes, or anything with a text): 16 hexadecimal digits."""
+def digest(*parts: object) -> str:
+    """Sixteen hexadecimal digits that name what is made from ``parts``.
+
+    A Path is its content: of a file, or of all files below a folder with their names. Anything else is its text.
+    """
     h = hashlib.sha256()
     for part in parts:
-        h.update(part if isinstance(part, bytes) else str(part).encode())
-        h.update(b"\0")
+        for data in _content(part):
+            h.update(len(data).to_bytes(8, "big") + data)
     return h.hexdigest()[:16]
 
 
-def cached(folder, make):
-    """``folder`` as ``make(temporary folder)`` filled it, now or earlier; on any exception nothing is left of it, and
-    what a process that was killed left beside it goes, too."""
+def _content(part: object) -> list[bytes]:
+    if not isinstance(part, Path):
+        return [part if isinstance(part, bytes) else str(part).encode()]
+    if not part.is_dir():
+        return [part.read_bytes()]
+    files = sorted(path for path in part.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    return [data for path in files for data in (str(path.relative_to(part)).encode(), path.read_bytes())]
+
+
+def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
+    """Return ``folder`` as ``make(temporary folder)`` filled it, now or earlier; after an exception nothing is left."""
     folder = Path(folder)
     if folder.exists():
         return folder
-    folder.parent.mkdir(parents=True, exist_ok=True)
-    _sweep(folder.parent)
-    part = Path(tempfile.mkdtemp(prefix=f"{PART}{os.getpid()}-", dir=folder.parent))
-    try:
+    with part_folder(folder.parent) as part:
         make(part)
         try:
             part.rename(folder)
         except OSError:  # another process was faster
             if not folder.exists():
                 raise
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
     return folder
-
-
-def _sweep(folder):
-    for part in folder.glob(f"{PART}*"):
-        if not _lives(int(part.name.rsplit("-", 2)[1])):
-            shutil.rmtree(part, ignore_errors=True)
-
-
-def _lives(process):
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        pass
-    return True

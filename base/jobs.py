@@ -4,46 +4,48 @@ joblib schedules: all cores by default, a Dask cluster where SCHEDULER=tcp://hos
 """
 
 import contextlib
-import hashlib
 import json
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import joblib
 from tqdm import tqdm
 
 from models.parameters import ParameterError
 
+from .cache import digest
+from .files import write
+from .sources import code
+
 
 @dataclass(frozen=True)
 class Job:
-    """One call: ``call(*arguments)`` returns what JSON can hold. name: unique in its step, a file name.
+    """One call: ``call(*arguments)`` returns what JSON can hold.
 
-    inputs: files, texts and numbers that decide the result; another digest of them is another job.
+    name: unique among the jobs of a run, a file name. inputs: paths (their content counts), texts and numbers that
+    decide the result beside the code of ``call``, which is found by itself.
     """
 
     name: str
-    call: Callable
-    arguments: tuple = ()
-    inputs: tuple = ()
+    call: Callable[..., Any]
+    arguments: tuple[Any, ...] = ()
+    inputs: tuple[object, ...] = ()
 
     @property
-    def digest(self):
-        h = hashlib.sha256(self.name.encode())
-        for part in self.inputs:
-            h.update(part.read_bytes() if isinstance(part, Path) else str(part).encode())
-            h.update(b"\0")
-        return h.hexdigest()[:16]
+    def digest(self) -> str:
+        """The key of the result: of the name, of all code that ``call`` may run (`base.sources`) and of the inputs."""
+        return digest(self.name, code(self.call.__module__), *self.inputs)
 
 
-def run(jobs, store, title, workers=-1):
-    """Results of ``jobs`` (a sequence of Job) in their order: list.
+def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -> list[Any]:
+    """Return the results of ``jobs`` in their order.
 
     store: folder of the kept results, <name>.<digest>.json. title: of the progress bar. workers: processes, -1 for
-    all cores. An exception in a job ends the run; what was done before stays done.
+    all cores. An exception in a job ends the run; results of earlier jobs are kept. Raises ParameterError.
     """
     store = Path(store)
     store.mkdir(parents=True, exist_ok=True)
@@ -55,7 +57,7 @@ def run(jobs, store, title, workers=-1):
     todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not file.exists()]
     with tqdm(total=len(jobs), initial=len(jobs) - len(todo), desc=title, disable=None) as bar, _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
-        with warnings.catch_warnings():  # joblib renews a process that has grown, and says so
+        with warnings.catch_warnings():  # joblib restarts a process that has grown, and warns
             warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
             for _ in joblib.Parallel(return_as="generator_unordered", batch_size=1)(calls):
                 bar.update()
@@ -63,7 +65,7 @@ def run(jobs, store, title, workers=-1):
 
 
 @contextlib.contextmanager
-def _backend(workers):
+def _backend(workers: int) -> Iterator[None]:
     scheduler = os.environ.get("SCHEDULER")
     if not scheduler:
         with joblib.parallel_config(backend="loky", n_jobs=workers):
@@ -79,8 +81,5 @@ def _backend(workers):
         yield
 
 
-def _keep(job, file):
-    result = json.dumps(job.call(*job.arguments), indent=1, allow_nan=False)
-    part = file.with_name(f".{file.name}.part-{os.getpid()}")
-    part.write_text(result + "\n")
-    os.replace(part, file)
+def _keep(job: Job, file: Path) -> None:
+    write(file, json.dumps(job.call(*job.arguments), indent=1, allow_nan=False) + "\n")

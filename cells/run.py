@@ -1,10 +1,8 @@
 """A library at a corner: jobs, files, summary."""
 
-import importlib
 import json
 import shutil
 import time
-from dataclasses import asdict
 from pathlib import Path
 
 from tqdm import tqdm
@@ -12,18 +10,12 @@ from tqdm import tqdm
 from base import jobs
 from base.files import staged
 from base.liberty import write
-from base.tools import finish
 from cells import sources
-from cells.characterize.cell import characterize
+from cells.characterize.job import cell_of, job
 from cells.liberty import accept, build, compare, reference
 from cells.liberty import check as check_library
-from cells.netlist.check import check
-from cells.netlist.function import understand
-from cells.netlist.spice import parse
 from cells.spice.circuit import circuit
 from models.parameters import ParameterError
-
-CODE = Path(__file__).resolve().parent
 
 
 def run(library, conditions, wanted, netlist, out, against, workers, started):
@@ -88,42 +80,12 @@ def _keep_failed(folder, measured):
             )
 
 
-def cell_of(source, process):
-    """Cell of a Source, checked. Raises ParameterError."""
-    netlist = parse(source.netlist, origin=source.name)
-    check(netlist, process.POLARITY, process.SUPPLIES)
-    return understand(netlist, process.POLARITY, process.SUPPLIES)
-
-
 def _has_models(cell, process, conditions):
     """Raise ParameterError, before anything runs, when a transistor of ``cell`` has a size that no model is for."""
     try:
         circuit(cell.machine.netlist, process, conditions.models, conditions.corner)
     except ParameterError as error:
         raise ParameterError(f"netlist = {cell.name}: {error}") from None
-
-
-def job(source, conditions, process):
-    """The job that characterizes ``source``; another netlist, corner, setting, model, ngspice or code is another."""
-    code = sorted(p for part in ("netlist", "spice", "characterize") for p in (CODE / part).glob("*.py"))
-    name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
-    return jobs.Job(
-        name,
-        _measure,
-        (source, conditions, process.__name__),
-        (
-            source.netlist,
-            json.dumps(asdict(conditions)),
-            Path(process.__file__),
-            finish(["ngspice", "--version"]).stdout,
-            *code,
-        ),
-    )
-
-
-def _measure(source, conditions, process):
-    module = importlib.import_module(process)
-    return characterize(cell_of(source, module), module, conditions)
 
 
 def _corners(folder):

@@ -2,9 +2,9 @@
 
 import json
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
+from cells.characterize.job import Source
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.library import schematic_spice, written
@@ -22,15 +22,6 @@ COMPACT = Path("build/cells/compact")
 # cells without an input that hold a constant: cell -> pin: level
 CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}}, "compact": {"zero_x1": {"zero": 0}, "one_x1": {"one": 1}}}
 _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
-
-
-@dataclass(frozen=True)
-class Source:
-    """name: short ('nand2_1'). netlist: SPICE text; area: um2, or None where no layout says it."""
-
-    name: str
-    netlist: str
-    area: float | None
 
 
 def names(library):

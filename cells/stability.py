@@ -8,11 +8,12 @@ import numpy as np
 from tqdm import tqdm
 
 from base.tools import ToolError
-from cells import run, sources
+from cells import sources
 from cells.characterize import delay, tristate
 from cells.characterize.bench import Bench
 from cells.characterize.conditions import Conditions
 from cells.characterize.constraint import PATIENCE, bisect, outcome
+from cells.characterize.job import cell_of
 from cells.characterize.scenario import Scenarios
 from cells.corner import PROCESSES, Corner
 from models.parameters import ParameterError
@@ -39,7 +40,7 @@ def cases():
 
 def cell(name):
     """Cell of sky130_hd as laid out."""
-    return run.cell_of(sources.source("sky130_hd", name), sources.process("sky130_hd"))
+    return cell_of(sources.source("sky130_hd", name), sources.process("sky130_hd"))
 
 
 def loads_and_slews():

@@ -1,11 +1,11 @@
 """`python -m rtl.export`: one Verilog file for each top, linted on demand."""
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from base.files import write
 from base.paths import ROOT
 from models.parameters import (
     DIVIDERS,
@@ -23,17 +23,6 @@ from rtl.tops import PACKERS, TOPS, build_top
 def translate(name: str, sensor: SensorParameters) -> str:
     """The Verilog of top or packer ``name`` for ``sensor``, as text. Raises ParameterError."""
     return translate_component(build_top(name, sensor), name)
-
-
-def write(path: Path, text: str) -> None:
-    """Write ``text`` to ``path``, atomically."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.part-{os.getpid()}")
-    try:
-        part.write_text(text)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def arguments() -> argparse.ArgumentParser:

@@ -1,51 +1,64 @@
-"""Steps run in order, each result in a folder named after all that went into it: whole, or not there."""
+"""Steps run in order, each result in a folder named after all that decides it: complete, or absent."""
 
-import hashlib
+import inspect
 import json
 import multiprocessing
+import sys
 import time
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import asdict
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from threading import Event, Semaphore
+from typing import Any
 
 import joblib
 
 from base.cache import cached, digest
+from base.paths import ROOT
+from base.sources import code, modules
 
 from .alone import alone
-from .step import StepError
+from .step import Step, StepError
 from .versions import version
 
 RECORD = "record.json"
+Record = dict[str, Any]  # of a step's run, as record.json holds it
 
 
 class Runner:
-    """Runs steps into ``folder``/<step>.<digest>/ and knows where their outputs lie.
+    """Runs steps into ``folder``/<step>.<digest>/ and knows the paths of their outputs.
 
-    files: dict name -> Path, what is given from outside. note: called with a line about what is going on. shared:
-    folder of the steps that other runs share.
+    files: name -> path, what is given from outside. note: called with a line about progress. shared: folder of the steps
+    that other runs share. root: of the repository whose files decide what a step does.
     """
 
-    def __init__(self, folder, files, note=lambda text: None, shared=None):
-        self.folder, self.shared, self.note = Path(folder), Path(shared or folder), note
+    def __init__(
+        self,
+        folder: Path | str,
+        files: Mapping[str, Path | str],
+        note: Callable[[str], object] = lambda text: None,
+        shared: Path | str | None = None,
+        root: Path = ROOT,
+    ) -> None:
+        self.folder, self.shared, self.note, self.root = Path(folder), Path(shared or folder), note, root
         self.paths = {name: Path(path) for name, path in files.items()}
-        self.records = {}
+        self.records: dict[str, Record] = {}
 
-    def run(self, step):
-        """The record (dict) of ``step``, run now or earlier with the same inputs. Raises StepError."""
+    def run(self, step: Step[Any]) -> Record:
+        """Return the record of ``step``, run now or earlier with the same inputs. Raises StepError."""
         missing = sorted(set(step.inputs.values()) - set(self.paths))
         if missing:
             raise StepError(f"{step.name}: nothing gives its input {', '.join(missing)}")
         inputs = {name: self.paths[source] for name, source in step.inputs.items()}
-        hashes = {name: _hash(path) for name, path in inputs.items()}
+        hashes = {name: digest(path) for name, path in inputs.items()}
         tools = {tool: version(tool) for tool in step.tools}
         parameters = asdict(step.parameters)
-        key = digest(step.source(), json.dumps([parameters, hashes, tools], sort_keys=True, default=str))
+        key = digest(source_of(step, self.root), json.dumps([parameters, hashes, tools], sort_keys=True, default=str))
         self.note(step.name)
 
-        def make(part):
+        def make(part: Path) -> None:
             begin = time.perf_counter()
             outputs = {name: part / file for name, file in step.outputs.items()}
             metrics, peak = alone(step.run, inputs, outputs)
@@ -69,7 +82,7 @@ class Runner:
         self.records[step.name] = json.loads((made / RECORD).read_text())
         return self.records[step.name]
 
-    def run_all(self, steps):
+    def run_all(self, steps: Sequence[Step[Any]]) -> list[Record]:
         """The records of ``steps``, in their order. Each begins when what it needs is there: at once if others wait for
         it, else when a core is free. Raises StepError, also for steps that need each other in a circle."""
         made_by = {f"{step.name}.{name}": step.name for step in steps for name in step.outputs}
@@ -81,7 +94,7 @@ class Runner:
         awaited, failed, cores = set().union(*needs.values()), Event(), Semaphore(joblib.cpu_count())
         ended = {step.name: Event() for step in steps}
 
-        def begin(step):
+        def begin(step: Step[Any]) -> None:
             try:
                 for name in needs[step.name]:
                     ended[name].wait()
@@ -105,16 +118,20 @@ class Runner:
         return [self.records[step.name] for step in steps]
 
 
-def _hash(path):
-    """Of a file, or of all files of a folder with their names."""
-    h = hashlib.sha256()
-    for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
-        if file.is_file() and "__pycache__" not in file.parts:
-            h.update(f"{file.relative_to(path)}\0".encode() + file.read_bytes())
-    return h.hexdigest()[:16]
+def source_of(step: Step[Any], root: Path = ROOT) -> str:
+    """Digest of every file of the repository that decides what ``step`` does: see `base.sources`.
+
+    Of the platforms only the one that the parameter ``pdk`` names counts, where there is one.
+    """
+    names = dict.fromkeys(cls.__module__ for cls in type(step).__mro__ if cls.__module__ not in ("builtins", "typing"))
+    inside = [name for name in names if name in modules(root)]
+    outside = [inspect.getsource(sys.modules[name]) for name in names if name not in inside]
+    pdk = getattr(step.parameters, "pdk", None)
+    chosen = {"platforms": pdk.replace("-", "_")} if isinstance(pdk, str) else {}
+    return digest(code(*inside, *step.starts(), chosen=chosen, root=root), *outside)
 
 
-def _check(step, part, metrics):
+def _check(step: Step[Any], part: Path, metrics: Mapping[str, object]) -> None:
     """Raise StepError unless the step wrote what it declares and no more (logs aside)."""
     made, declared = {path.name for path in part.iterdir()}, set(step.outputs.values())
     lacking, more = declared - made, {name for name in made - declared if not name.endswith(".log")}

@@ -1,8 +1,9 @@
 """What a step declares: its inputs, outputs, parameters, metrics and tools."""
 
-import inspect
-import sys
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, ClassVar, Generic, TypeVar, get_args
 
 from base.tools import ToolError
 from models.parameters import ParameterError
@@ -14,41 +15,51 @@ class StepError(ToolError):
 
 @dataclass(frozen=True)
 class NoParameters:
-    """Of a step that has none."""
+    """The parameters of a step that has none."""
 
 
-class Step:
-    """One step: a subclass declares what it takes and gives and has `run`.
+P = TypeVar("P", bound=Any)
 
-    name: of its folder and record. inputs: dict name -> 'step.output' or the name of a file given to the Runner.
-    outputs: dict name -> file name. Parameters: a frozen dataclass whose fields have a unit in their metadata.
-    metrics: dict name -> unit, of what `run` returns. tools: programs whose versions belong to the result. uses:
-    modules whose text does, beside that of the subclass. shared: whether its folder is that of all runs.
+
+class Step(Generic[P]):
+    """One step: a subclass of ``Step[P]`` declares what it reads and writes and implements `run`.
+
+    P is a frozen dataclass whose fields have a unit in their metadata (NoParameters for none). name: of the step's
+    folder and record. inputs: name -> 'step.output' or the name of a file given to the Runner. outputs: name -> file
+    name. metrics: name -> unit, of what `run` returns. tools: programs whose versions belong to the result. shared:
+    whether all runs share its folder.
     """
 
-    name = ""
-    inputs = {}
-    outputs = {}
-    Parameters = NoParameters
-    metrics = {}
-    tools = ()
-    uses = ()
-    shared = False
+    name: str = ""
+    inputs: Mapping[str, str] = {}
+    outputs: Mapping[str, str] = {}
+    metrics: Mapping[str, str] = {}
+    tools: tuple[str, ...] = ()
+    shared: bool = False
+    Parameters: ClassVar[type] = NoParameters
 
-    def __init__(self, parameters=None):
-        self.parameters = parameters or self.Parameters()
+    def __init_subclass__(cls, **options: Any) -> None:
+        super().__init_subclass__(**options)
+        for base in cls.__dict__.get("__orig_bases__", ()):
+            if arguments := [found for found in get_args(base) if isinstance(found, type)]:
+                cls.Parameters = arguments[0]
+
+    def __init__(self, parameters: P | None = None) -> None:
+        self.parameters: P = self.Parameters() if parameters is None else parameters
         if not isinstance(self.parameters, self.Parameters):
             raise ParameterError(f"{self.name} parameters = {parameters!r}: must be a {self.Parameters.__name__}")
 
-    def run(self, inputs, outputs):
-        """Make the files ``outputs`` (dict name -> Path) from ``inputs`` (the same); returns dict metric -> value."""
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+        """Write the files ``outputs`` from the files ``inputs`` (name -> path); returns metric -> value."""
         raise NotImplementedError
 
-    @classmethod
-    def source(cls):
-        """The text of the modules that define the step: another text is another step."""
-        return "".join(map(inspect.getsource, (sys.modules[cls.__module__], *cls.uses)))
+    def starts(self) -> Iterable[str]:
+        """Modules and files of the repository that a process started by `run` reads and that no text of it names.
 
-    def units(self):
-        """Units of the parameters: dict name -> str, '' without one."""
+        Modules and paths that stand in the code are found without this (`base.sources`).
+        """
+        return ()
+
+    def units(self) -> dict[str, str]:
+        """Unit of each parameter by name, '' without one."""
         return {field.name: field.metadata.get("unit", "") for field in fields(self.parameters)}

@@ -6,7 +6,8 @@ import sys
 
 import pytest
 
-from base.cache import PART, cached
+from base.cache import cached
+from base.files import PART
 
 
 def test_it_is_made_once(tmp_path):

@@ -6,6 +6,7 @@ from pathlib import Path
 from base.cache import digest
 from base.files import staged
 from base.jobs import Job, run
+from base.sources import code
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.make import make, recipe
@@ -14,10 +15,6 @@ from cells.compact.ties import diode, ties
 NAME = "StdCellLib"
 FOLDER = Path("build/cells/compact")
 SITE = "compact"
-SOURCES = [
-    Path(__file__).with_name(f"{part}.py")
-    for part in ("transistors", "place", "grid", "route", "assemble", "draw", "rules", "make")
-]
 
 
 def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
@@ -29,8 +26,7 @@ def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
     wanted = {name: s for name, s in schematics().items() if names is None or name in names}
     order = sorted(wanted, key=lambda name: -len(wanted[name].n))  # the widest take longest
     jobs = [
-        Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known, *SOURCES))
-        for name in order
+        Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known)) for name in order
     ]
     made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
     return {name: (wanted[name], made[name]) for name in wanted} | {
@@ -65,7 +61,7 @@ def written(folder=FOLDER, canvas=None):
 
     canvas = canvas or Canvas()
     folder = Path(folder)
-    stamp = digest(canvas, *(path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))))
+    stamp = digest(code(__name__), canvas)
     mark = folder / "content"
     if not (mark.exists() and mark.read_text() == stamp):
         made = library(canvas, folder / "drawn")

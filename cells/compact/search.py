@@ -47,13 +47,12 @@ def _run(options):
     if unknown := sorted(set(names) - schematics().keys()):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     span = int(seeds[1]), int(seeds[2])
-    sources = sorted(RECIPES.parent.glob("*.py"))
     jobs = [
         Job(
             f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}",
             best,
             (name, *span, not options.anew),
-            (recipe(name), Canvas(), *sources),
+            (recipe(name), Canvas()),
         )
         for name in names
     ]

@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from base import jobs
-from cells import run, sources
+from cells import sources
 from cells.characterize import delay
 from cells.characterize.bench import Bench
 from cells.characterize.cell import axes_of, cpu_seconds
+from cells.characterize.job import cell_of, job
 from cells.spice.settings import Settings
 
 CELLS = ("inv_1", "nand2_1", "buf_2")
@@ -48,7 +49,7 @@ def measure(library, conditions, store, workers):
             f"{name}.truth",
             truth,
             (library, name, conditions),
-            (OFF_GRID, *run.job(found[name], replace(conditions, settings=DENSE), process).inputs),
+            (OFF_GRID, *job(found[name], replace(conditions, settings=DENSE), process).inputs),
         )
         for name in cells
     ]
@@ -61,7 +62,7 @@ def measure(library, conditions, store, workers):
                 f"{name}.{label.replace(' ', '_')}",
                 one,
                 (library, name, label, at, truths[name]),
-                (*run.job(found[name], at, process).inputs, json.dumps(truths[name])),
+                (*job(found[name], at, process).inputs, json.dumps(truths[name])),
             )
             for label, at in tried.items()
         ]
@@ -70,7 +71,7 @@ def measure(library, conditions, store, workers):
 
 def one(library, name, label, conditions, truth):
     """One cell with one setting, against its ``truth``: dict."""
-    cell = run.cell_of(sources.source(library, name), sources.process(library))
+    cell = cell_of(sources.source(library, name), sources.process(library))
     found = {"name": label, "cell": name, "error": []}
     started = cpu_seconds()
     with Bench(cell, sources.process(library), conditions) as bench:
@@ -90,7 +91,7 @@ def truth(library, name, base):
     """For every arc of a cell [(slew, load, {delay, slew})]: dense transients at random points."""
     rng, found = np.random.default_rng(1), []
     process = sources.process(library)
-    cell = run.cell_of(sources.source(library, name), process)
+    cell = cell_of(sources.source(library, name), process)
     with Bench(cell, process, replace(base, settings=DENSE)) as bench:
         largest = {
             output: delay.largest_load(bench, [a.changes[0] for a in cell.arcs if a.output == output], output)

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from base import jobs
-from cells import run, sources
+from cells import sources
 from cells.characterize.bench import Bench
+from cells.characterize.job import cell_of, job
 from cells.liberty import reference
 
 POINTS = slice(0, None, 2)  # of the reference's axes: every other
@@ -29,7 +30,7 @@ def separate(library, names, conditions, folder, store, workers):
         for models, netlist in variants(process):
             source = sources.source(library, name, netlist)
             at = replace(conditions, models=models)
-            inputs = run.job(source, at, process).inputs
+            inputs = job(source, at, process).inputs
             todo.append(
                 jobs.Job(
                     f"{name}.{models}.{netlist}.{conditions.corner.name}",
@@ -44,7 +45,7 @@ def separate(library, names, conditions, folder, store, workers):
 def errors(library, name, conditions, netlist, file):
     """Errors of delay and slew of one cell in one variant: dict."""
     process = sources.process(library)
-    cell, theirs = run.cell_of(sources.source(library, name, netlist), process), reference.cell(file)
+    cell, theirs = cell_of(sources.source(library, name, netlist), process), reference.cell(file)
     found = {"cell": name, "models": conditions.models, "netlist": netlist, "delay": [], "slew": []}
     with Bench(cell, process, conditions) as bench:
         for arc in cell.arcs:

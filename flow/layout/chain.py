@@ -3,9 +3,7 @@
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from base.paths import ROOT
 from base.steps import Step
-from flow.simulate.verilator import FRAME
 from rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
@@ -34,7 +32,7 @@ from .steps.sta_blocks import StaBlocks, StaBlocksParameters
 from .steps.stimulus import Stimulus, StimulusParameters
 from .steps.stream_out import StreamOut, StreamOutParameters
 from .steps.synthesis import Synthesis, SynthesisParameters, TimedSynthesis
-from .steps.timing import MEASURES, Timing, TimingParameters
+from .steps.timing import Timing, TimingParameters
 from .timing.constraints import sdc
 
 Signoff = Callable[[Design, Options], list[Step]]
@@ -64,12 +62,7 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
     constraints.write_text(sdc(design))
     return {
         "rtl": folder / "rtl" / f"{design.top}.v",
-        "tests": ROOT / "rtl" / design.folder / "test",
-        "platform": ROOT / "platforms" / options.pdk.replace("-", "_") / "coriolis.py",
-        "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis",
         "sdc": constraints,
-        "frame_bench": FRAME,
-        **{f"cells.{part}": ROOT / "cells" / part for part in MEASURES},
         **{f"timing.{path.stem}": path for path in options.liberty},
         **{f"foundry.{name}": path for name, path in options.decks},
     }
@@ -156,7 +149,7 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
     """
     clock, io = design.clock, design.io
     size = {} if design.netlist_names else CHIP_FRAME
-    parameters = StimulusParameters(design.top, divider=design.divider, n_frac=design.n_frac, **size)
+    parameters = StimulusParameters(design.top, design.folder, divider=design.divider, n_frac=design.n_frac, **size)
     steps: list[Step] = [Stimulus(parameters)] if options.corners else []
     for corner in options.corners:
         steps += [

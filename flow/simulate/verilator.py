@@ -7,6 +7,7 @@ from pathlib import Path
 
 from base.cache import cached, digest
 from base.paths import BUILD, ROOT
+from base.sources import code
 from base.tools import run
 from base.verilator import verilator_folder
 
@@ -81,17 +82,6 @@ def export_verilog(build, folder):
     return Path(folder) / "AspChip.v"
 
 
-def _sources_digest():
-    """Digest of every file from which the Verilog is made: an unchanged one needs no export."""
-    files = sorted(
-        p
-        for folder in ("rtl", "models/parameters", "pixels", "flow/simulate")
-        for p in (ROOT / folder).rglob("*")
-        if p.suffix in (".py", ".rdl", ".sv", ".cpp") and not {"test", "formal"} & set(p.parts)
-    )
-    return digest(*(part for p in files for part in (p.relative_to(ROOT), p.read_bytes())))
-
-
 def bench_program(build, note=lambda text: None):
     """Path of the compiled bench for ``build``: from the cache, or exported, verilated and compiled now.
 
@@ -124,9 +114,7 @@ def bare_program(build, note=lambda text: None, main=FRAME / "bare.cpp"):
 
 
 def _cached(build, top, options, sources, main, note):
-    key = digest(
-        _sources_digest(), main.read_bytes(), build, top, options, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS
-    )
+    key = digest(code(__name__), *sources, main, build, top, options, verilator_version(), CXX_FLAGS, VERILATOR_FLAGS)
 
     def make(work):
         note("exporting the chip's Verilog")

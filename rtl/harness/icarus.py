@@ -3,10 +3,7 @@
 Icarus is event-driven and 4-state: a register is X before its reset, and an X at a port after reset is an error.
 """
 
-import hashlib
-import os
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -78,21 +75,15 @@ def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Seq
         for file, text in zip(files, texts):
             Path(file).write_text(text)
         files += map(str, sources)  # after the bench: cells without a time scale take the bench's
-        part = program.with_name(f".{program.name}.part-{os.getpid()}")
-        result = subprocess.run(
-            ["iverilog", "-g2012", "-s", top, "-o", part, *files], capture_output=True, text=True, timeout=300
-        )
-        if result.returncode:
-            raise IcarusError(f"iverilog refused {top}:\n{(result.stdout + result.stderr).strip()[-2000:]}")
-        os.replace(part, program)
+        with atomic(program) as part:
+            result = finish(["iverilog", "-g2012", "-s", top, "-o", part, *files], seconds=300)
+            if result.returncode:
+                raise IcarusError(f"iverilog refused {top}:\n{(result.stdout + result.stderr).strip()[-2000:]}")
 
 
 def kept_program(name: str, sources: Sequence[Path], top: str, texts: Sequence[str] = ()) -> Path:
     """The program of `compile_program` in a file that is kept for the same sources and texts. Raises IcarusError."""
-    digest = hashlib.sha256(top.encode())
-    for part in (*(Path(source).read_bytes() for source in sources), *(text.encode() for text in texts)):
-        digest.update(len(part).to_bytes(8, "big") + part)
-    program = PROGRAMS / f"{name}.{digest.hexdigest()[:16]}.vvp"
+    program = PROGRAMS / f"{name}.{digest(top, *map(Path, sources), *texts)}.vvp"
     if not program.exists():
         compile_program(program, sources, top, texts)
     return program

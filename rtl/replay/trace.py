@@ -1,15 +1,15 @@
 """The values of a component's ports in every cycle of its tests, as a file to compare a simulation with."""
 
-import hashlib
 import importlib
 import json
-import os
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pymtl3 import Component
 
+from base.cache import digest
+from base.files import write
 from rtl.harness.ports import Port, places, split
 from rtl.harness.translate import translate_component
 
@@ -37,7 +37,7 @@ class Trace:
         """Name of the files: the class and, where it has parameters, a digest of them."""
         if not self.arguments:
             return self.cls
-        return f"{self.cls}.{hashlib.sha256(repr(self.arguments).encode()).hexdigest()[:8]}"
+        return f"{self.cls}.{digest(repr(self.arguments))[:8]}"
 
     def component(self) -> Component:
         """The component, not elaborated."""
@@ -76,9 +76,9 @@ class Trace:
             "ports": [asdict(port) for port in self.ports],
             "tests": self.tests,
         }
-        _write(folder / f"{self.name}.trace", "\n".join(self.lines) + "\n")
+        write(folder / f"{self.name}.trace", "\n".join(self.lines) + "\n")
         path = folder / f"{self.name}.json"
-        _write(path, json.dumps(head, indent=1) + "\n")
+        write(path, json.dumps(head, indent=1) + "\n")
         return path
 
 
@@ -100,9 +100,3 @@ def load(path: Path | str, cycles: bool = True) -> Trace:
 def _tuples(value: Any) -> Any:
     """Lists of JSON as tuples."""
     return tuple(map(_tuples, value)) if isinstance(value, list) else value
-
-
-def _write(path: Path, text: str) -> None:
-    part = path.with_name(f".{path.name}.part-{os.getpid()}")
-    part.write_text(text)
-    os.replace(part, path)

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from base.cache import PART
+from base.files import PART
 from base.paths import ROOT
 from flow.frame.outputs import NAMES
 from talbot.__main__ import main

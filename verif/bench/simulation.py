@@ -1,7 +1,6 @@
 """The cocotb benches in Icarus and in Verilator: built, run and counted, in processes that cannot hang."""
 
 import contextlib
-import hashlib
 import os
 import signal
 import subprocess
@@ -9,6 +8,7 @@ import sys
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
+from base.cache import digest
 from base.paths import ROOT
 from base.verilator import verilator_folder
 from models.parameters import ArrayParameters, ChipParameters, SensorParameters
@@ -111,10 +111,8 @@ def simulate(design, simulator, seed=1, environment=None, tests=()):
     """
     if simulator == "icarus" and not installed():
         raise BenchError(MISSING)
-    texts, h = sources(design), hashlib.sha256(repr(BUILD_ARGS[simulator]).encode())
-    for text in texts.values():
-        h.update(text.encode())
-    folder = BUILD / f"{design.block}.{simulator}.{h.hexdigest()[:12]}"
+    texts = sources(design)
+    folder = BUILD / f"{design.block}.{simulator}.{digest(BUILD_ARGS[simulator], *texts.values())}"
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         (folder / name).write_text(text)

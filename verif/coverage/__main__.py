@@ -12,7 +12,7 @@ from base.tools import ToolError
 from models.parameters import ParameterError
 from rtl.replay import RecordError, load
 from rtl.tops import TOPS
-from verif.results import OUT, digest_of, write_step
+from verif.results import OUT, write_step
 
 from .measure import measure
 from .testplan import folder_of, load_plan, plan_file
@@ -22,7 +22,7 @@ from .verdict import judge
 
 def measure_jobs(plans, traces):
     """A Job a trace, and the block of each: two lists."""
-    jobs, blocks, code = [], [], digest_of("verif/coverage")
+    jobs, blocks = [], []
     for block, paths in traces.items():
         plan = plans[block]
         registers = [machine.registers for machine in plan.machines_of(block)]
@@ -33,7 +33,7 @@ def measure_jobs(plans, traces):
                     f"{block}-{name}",
                     measure,
                     (str(path), plan.folder, registers, plan.cover),
-                    (str(path), registers, plan.cover, code),
+                    (path, path.with_suffix(".trace"), registers, plan.cover),
                 )
             )
             blocks.append(block)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base.cache import cached, digest
+from base.sources import code
 from base.tools import run
 from base.verilator import verilator_folder
 from rtl.harness.ports import places, split, total_width, validity
@@ -154,7 +155,7 @@ def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=Fa
         shutil.rmtree(model)
         unit.unlink()
 
-    content = digest(version, CXX, flags, "words", MAIN.read_text(), lines, top, verilog)
+    content = digest(code(__name__), version, flags, lines, top, verilog)
     return Program(cached(CACHE / f"{top}-{content}", make))
 
 
@@ -185,4 +186,4 @@ def _runtime(version):
                 ]
             )
 
-    return cached(CACHE / f"runtime-{digest(version, CXX, 'words')}", make)
+    return cached(CACHE / f"runtime-{digest(code(__name__), version)}", make)

@@ -1,26 +1,17 @@
 """The recorded traces of blocks, kept while nothing changes that decides them."""
 
-import hashlib
 from pathlib import Path
 
+from base.cache import digest
 from base.jobs import Job, run
+from base.paths import ROOT
+from base.sources import code
 from models.parameters import SensorParameters
-from rtl.replay import load, record
+from rtl.replay import load, record, tests_of
 from rtl.tops import build_top
-from verif.results import OUT, ROOT, sources
+from verif.results import OUT
 
 STORE = OUT / "traces"
-DECIDES = "rtl", "models", "pixels", "rtl/replay"
-
-
-def digest():
-    """Of all that decides a trace: text. Proofs beside the blocks do not."""
-    h = hashlib.sha256()
-    for path in sources(*DECIDES):
-        if path.suffix in (".py", ".rdl") and "formal" not in path.parts:
-            h.update(str(path.relative_to(ROOT)).encode())
-            h.update(path.read_bytes())
-    return h.hexdigest()[:16]
 
 
 def recorded(blocks, store=STORE):
@@ -28,8 +19,12 @@ def recorded(blocks, store=STORE):
 
     The first is that of the default sensor's parameters if the tests have them, else the one of most cycles.
     """
-    now, store = digest(), Path(store)
-    jobs = [Job(block, _record, (block, str(store / f"{block}-{now}")), (now,)) for block in blocks]
+    store = Path(store)
+    jobs = []
+    for block in blocks:
+        tests = code(tests_of(block)[1].relative_to(ROOT))
+        folder = store / f"{block}-{digest(tests, code(__name__))}"
+        jobs.append(Job(block, _record, (block, str(folder)), (tests,)))
     for job in jobs:
         if not Path(job.arguments[1]).exists():  # its files were removed: the kept result is none
             (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)

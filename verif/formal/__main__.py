@@ -16,7 +16,7 @@ from rtl.tops import TOPS
 
 from . import manifest
 from .engine import PROVEN, UNKNOWN, FormalError, tool_or_none, version
-from .prove import jobs
+from .plan import jobs
 
 OUT = Path("build/verify")
 

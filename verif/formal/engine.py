@@ -10,6 +10,10 @@ import time
 from functools import cache
 from pathlib import Path
 
+from models.parameters import ParameterError
+
+LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
+
 PROVEN, FAILED, UNKNOWN = "proven", "failed", "unknown"
 
 
@@ -140,3 +144,24 @@ class Workplace:
         if (status == "passed") != (process.returncode == 0):
             status = "unknown"
         return status, output, time.monotonic() - begin
+
+
+def labels(text):
+    """(properties, invariants, covers): labels of a wrapper's statements, each a list.
+
+    An assertion named inv_... only strengthens the induction: were it weak, the proof would fail, so it has no twin.
+    Raises ParameterError for an assertion or a cover point without a label, or a label that is there twice.
+    """
+    plain = re.sub(r"//.*", "", text)
+    found = LABEL.findall(plain)
+    if len(found) != len(re.findall(r"\b(?:assert|cover)\s*\(", plain)):
+        raise ParameterError("label = none: every assert and cover must have one")
+    names = [name for name, _ in found]
+    if len(set(names)) != len(names):
+        raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
+    asserts = [name for name, kind in found if kind == "assert"]
+    return (
+        [n for n in asserts if not n.startswith("inv_")],
+        [n for n in asserts if n.startswith("inv_")],
+        [name for name, kind in found if kind == "cover"],
+    )

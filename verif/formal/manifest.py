@@ -1,6 +1,5 @@
 """rtl/<block>/formal/proofs.yaml: what is proven, how, and how the design is broken for each property's twin."""
 
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,9 +9,10 @@ from base.paths import ROOT
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
 from rtl.tops import TOPS
 
+from .engine import labels
+
 METHODS = ("induction", "bounded")
 ENGINES = ("boolector", "z3")
-LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
 
 
 @dataclass(frozen=True)
@@ -93,27 +93,6 @@ class Proof:
         if given:
             raise ParameterError(f"{self.name}.sensor = {', '.join(given)}: must be parameters of the sensor")
         return SensorParameters(array=array, chip=chip)
-
-
-def labels(text):
-    """(properties, invariants, covers): labels of a wrapper's statements, each a list.
-
-    An assertion named inv_... only strengthens the induction: were it weak, the proof would fail, so it has no twin.
-    Raises ParameterError for an assertion or a cover point without a label, or a label that is there twice.
-    """
-    plain = re.sub(r"//.*", "", text)
-    found = LABEL.findall(plain)
-    if len(found) != len(re.findall(r"\b(?:assert|cover)\s*\(", plain)):
-        raise ParameterError("label = none: every assert and cover must have one")
-    names = [name for name, _ in found]
-    if len(set(names)) != len(names):
-        raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
-    asserts = [name for name, kind in found if kind == "assert"]
-    return (
-        [n for n in asserts if not n.startswith("inv_")],
-        [n for n in asserts if n.startswith("inv_")],
-        [name for name, kind in found if kind == "cover"],
-    )
 
 
 def read(path):

@@ -1,14 +1,8 @@
 """The independent pieces of a proof, as jobs: base and step with each engine, the covers, each property's twin."""
 
 import re
-from pathlib import Path
 
-from base.jobs import Job
-
-from . import design, manifest
-from .engine import FAILED, PROVEN, UNKNOWN, Workplace, version
-
-SOURCES = tuple(Path(__file__).parent / name for name in ("engine.py", "prove.py"))
+from .engine import FAILED, PROVEN, UNKNOWN, Workplace, labels
 
 
 def prove(proof, engine, texts, wrapper):
@@ -35,7 +29,7 @@ def cover(proof, texts, wrapper):
     with Workplace(texts, wrapper, proof.top) as place:
         _, output, wall = place.check(engine, ["-c", "-t", str(proof.cover_depth)], proof.timeout)
     reached = set(re.findall(r"Reached cover statement(?: in step \d+)? at (?:\S+: )?(\w+)", output))
-    named = manifest.labels(proof.text)[2]
+    named = labels(proof.text)[2]
     return {
         "reached": [n for n in named if n in reached],
         "missing": [n for n in named if n not in reached],
@@ -56,42 +50,6 @@ def twin(proof, label, texts, wrapper):
         "status": status,
         "step": int(steps[-1]) if steps else None,
     }
-
-
-def jobs(proof, engines):
-    """Every job of a proof by ``engines``: list of (kind, label or engine, Job). Raises ParameterError, FormalError."""
-    texts, wrapper = design.exported(proof), design.wrapper(proof)
-    base = (*SOURCES, *sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout)
-    found = []
-    for engine in engines:
-        found.append(
-            (
-                "proof",
-                engine,
-                Job(
-                    f"{proof.name}.{engine}",
-                    prove,
-                    (proof, engine, texts, wrapper),
-                    (*base, proof.depth, version("yosys"), version(engine)),
-                ),
-            )
-        )
-    found.append(("cover", "", Job(f"{proof.name}.cover", cover, (proof, texts, wrapper), (*base, proof.cover_depth))))
-    for label, bug in proof.twins.items():
-        bad, around = design.broken(proof, texts, wrapper, label)
-        found.append(
-            (
-                "twin",
-                label,
-                Job(
-                    f"{proof.name}.{label}",
-                    twin,
-                    (proof, label, bad, around),
-                    (*base, *sorted(bad.values()), around, bug.depth or proof.twin_depth),
-                ),
-            )
-        )
-    return found
 
 
 def _last_lines(output, count=3):

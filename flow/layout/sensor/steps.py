@@ -32,11 +32,7 @@ class DiePlan(Step):
     """
 
     name = "die_plan"
-    inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {
-        "rules": "library.rules",
-        "platform": "platform",
-        "thick": "thick",
-    }
+    inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {"rules": "library.rules"}
     outputs = {"plan": "plan.json", "verilog": f"{TOP}.v"}
     Parameters = DiePlanParameters
     metrics = {
@@ -108,10 +104,7 @@ class DieGds(Step):
     """The blocks' GDS where the plan has them, and its metal."""
 
     name = "die_gds"
-    inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {
-        "plan": "die_plan.plan",
-        "platform": "platform",
-    }
+    inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {"plan": "die_plan.plan"}
     outputs = {"gds": f"{TOP}.gds"}
     Parameters = DieGdsParameters
     metrics = {"rectangles": ""}
@@ -170,7 +163,7 @@ class DieMatch(Step):
     """
 
     name = "die_match"
-    inputs = {"gds": "die_gds.gds", "plan": "die_plan.plan", "platform": "platform", "thick": "thick"}
+    inputs = {"gds": "die_gds.gds", "plan": "die_plan.plan"}
     outputs = {"report": "connectivity.json"}
     Parameters = DieGdsParameters
     metrics = {"open_nets": "", "shorts": "", "lvs_match": ""}

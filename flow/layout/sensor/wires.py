@@ -34,7 +34,7 @@ class DieWires(Step):
     """
 
     name = "die_wires"
-    inputs = {"plan": "die_plan.plan", "sdc": "core.sdc", "platform": "platform"}
+    inputs = {"plan": "die_plan.plan", "sdc": "core.sdc"}
     outputs = {"nets": "wires.json", "sdc": "die.sdc"}
     Parameters = DieWiresParameters
     metrics = {

@@ -20,7 +20,7 @@ class Antenna(Step):
     """Every layer in turn, on the connections that exist by then."""
 
     name = "antenna"
-    inputs = {"gds": "fill.gds", "platform": "platform"}
+    inputs = {"gds": "fill.gds"}
     outputs = {"summary": "antenna.json"}
     Parameters = AntennaParameters
     metrics = {"antenna_violations": ""}

@@ -28,7 +28,7 @@ class Drc(Step):
     """
 
     name = "drc"
-    inputs = {"gds": "fill.gds", "deck": "library.drc", "platform": "platform"}
+    inputs = {"gds": "fill.gds", "deck": "library.drc"}
     outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "spaces.drc"}
     Parameters = DrcParameters
     metrics = {"drc_violations": ""}

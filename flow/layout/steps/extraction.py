@@ -27,12 +27,7 @@ class Extraction(Step):
     """From lengths and widths in the router's database and the process's coefficients per layer."""
 
     name = "extraction"
-    inputs = {
-        "netlist": "place_route.netlist",
-        "placement": "reroute.placement",
-        "platform": "platform",
-        "liberty": "library.liberty",
-    }
+    inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement", "liberty": "library.liberty"}
     outputs = {"spef": "wires.spef"}
     Parameters = ExtractionParameters
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}

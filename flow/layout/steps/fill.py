@@ -30,7 +30,7 @@ class Fill(Step):
     """
 
     name = "fill"
-    inputs = {"gds": "stream_out.gds", "platform": "platform"}
+    inputs = {"gds": "stream_out.gds"}
     outputs = {"gds": "layout.gds", "summary": "fill.json"}
     Parameters = FillParameters
     metrics = {"squares": "", "before": "", "after": "", "density_violations": ""}

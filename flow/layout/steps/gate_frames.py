@@ -14,7 +14,7 @@ class GateFrames(Step):
     """A window of 2 x 4 tiles of the default sensor in three modes, configured and read back over SPI. Zero delay."""
 
     name = "gate_frames"
-    inputs = {"verilog": "stream_out.verilog", "cells": "library.verilog", "bench": "frame_bench"}
+    inputs = {"verilog": "stream_out.verilog", "cells": "library.verilog"}
     outputs = {"log": "frames.txt"}
     metrics = {"passed": "", "failed": "", "cycles": "", "bytes": ""}
     uses = (icarus,)

@@ -33,7 +33,7 @@ class GateTestsParameters:
 class GateTests(Step):
     """Zero delay: the cells are their functions; timing is the STA's matter."""
 
-    inputs = {"cells": "library.verilog", "tests": "tests"}
+    inputs = {"cells": "library.verilog"}
     outputs = {"report": "tests.xml"}
     Parameters = GateTestsParameters
     metrics = {"passed": "", "failed": ""}
@@ -43,6 +43,9 @@ class GateTests(Step):
         super().__init__(parameters)
         self.name = f"gate_tests_{parameters.netlist}_{parameters.simulator}"
         self.inputs = self.inputs | {"verilog": NETLISTS[parameters.netlist]}
+
+    def starts(self):
+        return (f"rtl/{self.parameters.folder}/test",)
 
     def run(self, inputs, outputs):
         p = self.parameters

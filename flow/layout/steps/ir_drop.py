@@ -35,7 +35,6 @@ class IrDrop(Step):
         "placement": "place_route.placement",
         "plan": "floorplan.floorplan",
         "areas": "library.areas",
-        "platform": "platform",
     }
     outputs = {"picture": "ir_drop.png", "cells": "ir_drop.json"}
     Parameters = IrDropParameters

@@ -21,7 +21,7 @@ class Lef(Step):
     """Made from the GDS, then read by KLayout and held against it."""
 
     name = "lef"
-    inputs = {"gds": "fill.gds", "verilog": "stream_out.verilog", "platform": "platform"}
+    inputs = {"gds": "fill.gds", "verilog": "stream_out.verilog"}
     outputs = {"lef": "block.lef"}
     Parameters = LefParameters
     metrics = {"pins": ""}

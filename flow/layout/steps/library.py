@@ -42,7 +42,7 @@ class Library(Step):
     """PDKMaster's cells -> files. platform: the process's own description, whose text belongs to the result."""
 
     name = "library"
-    inputs = {"platform": "platform"}
+    inputs = {}
     outputs = {
         "coriolis": "coriolis",
         "gds": "cells.gds",

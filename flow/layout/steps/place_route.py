@@ -59,7 +59,6 @@ class PlaceRoute(Step):
         "floorplan": "floorplan.floorplan",
         "coriolis": "library.coriolis",
         "geometry": "library.geometry",
-        "scripts": "coriolis_scripts",
     }
     uses = (macro_module, netlist_module)
     outputs = {

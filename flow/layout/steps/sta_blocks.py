@@ -29,7 +29,7 @@ class StaBlocksParameters:
 class StaBlocks(Step):
     """blocks_wns_ns, blocks_whs_ns: worst slack of setup and hold."""
 
-    inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement", "platform": "platform", "sdc": "sdc"}
+    inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement", "sdc": "sdc"}
     outputs = {"report": "sta.txt"}
     Parameters = StaBlocksParameters
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}

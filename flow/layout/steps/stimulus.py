@@ -40,9 +40,10 @@ SCENE, SIZE = "motorcycle", (12, 18)  # of `make sim`'s own scene; pixels of the
 @dataclass(frozen=True)
 class StimulusParameters:
     """top: module. rows, cols, divider, n_frac: of the chip in which the block is looked for. tiles: that are read, in
-    the middle of the array; None for all."""
+    the middle of the array; None for all. folder: of the block in rtl/."""
 
     top: str = ""
+    folder: str = ""
     rows: int = SIZE[0]
     cols: int = SIZE[1]
     divider: str = "radix4"
@@ -61,12 +62,15 @@ class Stimulus(Step):
     has the trace of its own tests."""
 
     name = "stimulus"
-    inputs = {"rtl": "rtl", "tests": "tests", "bench": "frame_bench"}
+    inputs = {"rtl": "rtl"}
     outputs = {"head": "stimulus.json", "trace": "stimulus.trace"}
     Parameters = StimulusParameters
     metrics = {"source": "", "cycles": "", "results": ""}
     uses = (icarus, verilog)
     tools = ("iverilog", "yosys")
+
+    def starts(self):
+        return (f"rtl/{self.parameters.folder}/test",)
 
     def run(self, inputs, outputs):
         top = self.parameters.top

@@ -9,7 +9,6 @@ from base.steps import Step, StepError
 from platforms.extraction import device_models, extraction_platform
 
 NS = 1e-9
-MEASURES = "characterize", "spice", "netlist", "liberty", "extract"  # of cells/: whose text decides the result
 
 
 @dataclass(frozen=True)
@@ -30,12 +29,7 @@ class Timing(Step):
     """Each cell with its stray capacitances in ngspice, as in `make cells`; a cell measured once is kept by itself."""
 
     name = "timing"
-    inputs = {
-        "gds": "library.gds",
-        "areas": "library.areas",
-        "functions": "library.liberty",
-        **{part: f"cells.{part}" for part in MEASURES},
-    }
+    inputs = {"gds": "library.gds", "areas": "library.areas", "functions": "library.liberty"}
     Parameters = TimingParameters
     metrics = {"cells": "", "simulations": "", "failed": ""}
     shared = True
@@ -48,9 +42,9 @@ class Timing(Step):
     def run(self, inputs, outputs):
         from base.liberty import write
         from cells.characterize.conditions import Conditions
+        from cells.characterize.job import cell_of, job
         from cells.corner import Corner
         from cells.liberty import build
-        from cells.run import cell_of, job
 
         p = self.parameters
         models, sources = device_models(p.pdk), found(inputs, extraction_platform(p.pdk))
@@ -107,9 +101,9 @@ class Timing(Step):
 
 
 def found(inputs, tech):
-    """cells.sources.Source of every cell with an input that the library's functions name."""
+    """cells.characterize.job.Source of every cell with an input that the library's functions name."""
+    from cells.characterize.job import Source
     from cells.extract import extract
-    from cells.sources import Source
 
     areas = json.loads(inputs["areas"].read_text())
     groups = re.split(r"(?m)^ cell\(", inputs["functions"].read_text())[1:]

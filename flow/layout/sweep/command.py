@@ -41,8 +41,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 def jobs(options: Namespace) -> list[Job]:
     """The Jobs of ``options``. Raises ParameterError."""
     liberty = tuple(str(path.resolve()) for path in options.liberty)
-    code = sorted((ROOT / "flow" / "layout").rglob("*.py"))
-    inputs = (*options.liberty, *(path for path in code if "test" not in path.parts))
+    inputs = tuple(options.liberty)
     if options.what == "effort":
         chosen = flat_design(options.design)
         return [

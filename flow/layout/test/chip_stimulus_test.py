@@ -17,7 +17,7 @@ from flow.layout.steps.stimulus import Stimulus, StimulusParameters
 def test_the_chip_is_watched_as_it_is_laid_out(tmp_path):
     """A trace of a chip of another size is none of this one: its header says another."""
     given = input_files(DESIGNS["asp_chip"], Options(), tmp_path)
-    step = Stimulus(StimulusParameters("AspChip", **CHIP_FRAME))
+    step = Stimulus(StimulusParameters("AspChip", "asp_chip", **CHIP_FRAME))
     found = step.run(
         {name: given[source] for name, source in step.inputs.items()},
         {name: tmp_path / file for name, file in step.outputs.items()},

@@ -3,7 +3,6 @@
 import importlib.util
 import shutil
 
-from base.paths import ROOT
 from flow.layout.timing.constraints import sdc
 
 LACKING = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
@@ -22,9 +21,4 @@ def files(design, verilog, folder):
     """dict name -> Path, what a Runner of the Design ``design`` is given; its Verilog and constraints in ``folder``."""
     (folder / f"{design.top}.v").write_text(verilog)
     (folder / f"{design.top}.sdc").write_text(sdc(design))
-    return {
-        "rtl": folder / f"{design.top}.v",
-        "sdc": folder / f"{design.top}.sdc",
-        "coriolis_scripts": ROOT / "flow" / "layout" / "coriolis",
-        "platform": ROOT / "platforms" / "sky130" / "coriolis.py",
-    }
+    return {"rtl": folder / f"{design.top}.v", "sdc": folder / f"{design.top}.sdc"}

@@ -9,6 +9,7 @@ import numpy as np
 
 from base.cache import cached, digest
 from base.paths import BUILD
+from base.sources import code
 from base.tools import run
 from base.verilator import verilator_folder
 
@@ -43,7 +44,7 @@ def _runtime(version):
         for name in RUNTIME:
             _tool([*CXX, "-O0", "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"])
 
-    return cached(CACHE / f"runtime-{digest(version, CXX)}", make)
+    return cached(CACHE / f"runtime-{digest(code(__name__), version)}", make)
 
 
 def program(verilog, top):
@@ -78,7 +79,7 @@ def program(verilog, top):
         shutil.rmtree(folder / "model")
         unit.unlink()
 
-    return cached(CACHE / digest(version, CXX, VERILATE, MAIN.read_text(), top, verilog), make) / "bench"
+    return cached(CACHE / digest(code(__name__), version, top, verilog), make) / "bench"
 
 
 def simulate(bench, requests, noise_floor=0, seed=0):

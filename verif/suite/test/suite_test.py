@@ -3,8 +3,8 @@
 import pytest
 
 from rtl.tops import TOPS
-from verif.results import ROOT, sources
-from verif.suite.__main__ import decides, empty, forget, jobs, main, summarize
+from verif.results import ROOT
+from verif.suite.__main__ import empty, forget, jobs, main, summarize
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
 from verif.suite.pytest_folder import folders, run_folder
 
@@ -95,14 +95,6 @@ def test_failures_are_tried_again(tmp_path):
     cases = [[{"outcome": "passed"}], [{"outcome": "passed"}, {"outcome": "failed"}]]
     forget(planned, [{"cases": c} for c in cases], tmp_path)
     assert [path.exists() for path in kept] == [True, False]
-
-
-def test_what_decides_a_folders_results():
-    assert decides("models/digital/test") == ("models", "docs/stream.md")
-    assert "verif/report" not in decides("rtl/edge_adc/test") and "verif/results.py" in decides("verif/fuzz/test")
-    assert "verif/report" in decides("verif/report/test") and "verif/report" not in decides("verif/fuzz/test")
-    one, two = sources("verif/results.py"), sources("verif")
-    assert one == [ROOT / "verif" / "results.py"] and one[0] in two and ROOT / "verif/report/limits.json" in two
 
 
 def test_an_unknown_folder(capsys):

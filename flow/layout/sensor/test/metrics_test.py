@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(
 @pytest.mark.slow
 def test_a_small_die(tmp_path):
     given = small.files(tmp_path)
-    library = Runner(tmp_path / "shared", small.PLATFORM)
+    library = Runner(tmp_path / "shared", {})
     library.run(Library())
     given |= {f"library.{name}": library.paths[f"library.{name}"] for name in ("rules", "drc")}
     for name in ("sdc", "verilog", "spef"):

@@ -2,14 +2,12 @@
 
 import json
 
-from base.paths import ROOT
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
 from flow.layout.sensor.steps import DieGds, DieGdsParameters, DieMatch, DiePlan, DiePlanParameters
 from models.parameters import ArrayParameters, ChipParameters
 from pixels.blocks import AnalogSizes, blocks
 from pixels.footprints import write
 
-PLATFORM = {"platform": ROOT / "platforms/sky130/coriolis.py", "thick": ROOT / "platforms/sky130/die.py"}
 DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
 RULES = {
     "metals": {
@@ -83,11 +81,9 @@ def files(folder):
     write(folder, analog(), "sky130", AnalogSizes().supply_um)
     core(folder)
     (folder / "rules.json").write_text(json.dumps(RULES))
-    return (
-        {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")}
-        | {"library.rules": folder / "rules.json"}
-        | PLATFORM
-    )
+    return {f"{block}.{kind}": folder / f"{block}.{kind}" for block in (*BLOCKS, CORE) for kind in ("lef", "gds")} | {
+        "library.rules": folder / "rules.json"
+    }
 
 
 def run(step, given, folder):

@@ -26,7 +26,7 @@ FUNCTIONS = """library(sky130) {
 
 
 def test_a_source_for_every_cell_with_an_input(tmp_path):
-    from cells.run import cell_of  # it reads layouts
+    from cells.characterize.job import cell_of  # it reads layouts
 
     models = device_models("sky130")
     inputs = {

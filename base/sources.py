@@ -1,0 +1,258 @@
+"""The files of the repository that decide what a piece of code does, found in its text.
+
+From a module on, the closure of: what it imports (a re-export leads to the file that defines the name), modules that
+its strings name (``[sys.executable, "-m", "rtl.export"]``, ``import_module("a.b")``, f-strings as
+``f"platforms.{pdk}.layers"``; for "pytest" conftest.py), and data files that its strings name (``"bench.sv"``, ``"*.tcl"``). No text is run.
+"""
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, cached_property
+from itertools import accumulate
+from pathlib import Path
+
+from .cache import digest
+from .paths import ROOT
+
+DATA = frozenset(
+    (".md", ".toml", ".sv", ".v", ".cpp", ".vlt", ".rdl", ".tcl", ".lib", ".html", ".css", ".js", ".json", ".yaml")
+)
+SKIPPED = frozenset(("build", "__pycache__", ".venv", ".git", "node_modules"))
+ENDINGS = "|".join(suffix[1:] for suffix in sorted(DATA))
+DATA_NAME = re.compile(rf"[\w*./-]*[\w*-]\.(?:{ENDINGS})")
+
+
+@dataclass(frozen=True)
+class Reference:
+    """What one file needs: a module, and of it a name ('' for all of it)."""
+
+    module: str
+    name: str = ""
+
+
+@dataclass(frozen=True)
+class Text:
+    """What a module's text refers to.
+
+    imports: with the name that each binds; named: modules that strings name; patterns: of f-strings, for modules' names;
+    files: data files that strings name; plain: whether it is an __init__.py of re-exports alone.
+    """
+
+    path: Path
+    imports: list[tuple[str, Reference]]
+    named: list[str]
+    patterns: list[str]
+    files: list[Path]
+    plain: bool
+
+
+class Tree:
+    """The Python modules and data files below ``root`` and what each of them refers to, by text alone."""
+
+    def __init__(self, root: Path = ROOT) -> None:
+        self.root = root
+        self._texts: dict[str, Text] = {}
+
+    @cached_property
+    def modules(self) -> dict[str, Path]:
+        """Every module by its dotted name; a package is its __init__.py."""
+        found = {}
+        for path in _files(self.root, (".py",)):
+            parts = path.relative_to(self.root).with_suffix("").parts
+            found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+        return found
+
+    @cached_property
+    def data(self) -> dict[str, list[Path]]:
+        """Data files by their name without folders."""
+        found: dict[str, list[Path]] = {}
+        for path in _files(self.root, DATA):
+            found.setdefault(path.name, []).append(path)
+        return found
+
+    def closure(self, starts: Iterable[str | Path], chosen: Mapping[str, str] | None = None) -> list[Path]:
+        """All files that decide what ``starts`` (dotted names; files and folders below the root) do, ascending.
+
+        chosen: package -> the one of its members that an f-string with that package in front means; without it all
+        that fit. Raises KeyError for a start that is none.
+        """
+        todo, seen, found = list(self._starts(starts)), set(), set()
+        while todo:
+            reference = todo.pop()
+            if reference not in seen:
+                seen.add(reference)
+                text, more = self._resolved(reference, chosen or {})
+                todo += more
+                if text:
+                    found |= {text.path, *text.files}
+        return sorted(found)
+
+    def _starts(self, starts: Iterable[str | Path]) -> Iterator[Reference]:
+        names = {path: name for name, path in self.modules.items()}
+        for start in starts:
+            if isinstance(start, str) and start in self.modules:
+                yield Reference(start)
+                continue
+            path = self.root / start
+            if not path.exists():
+                raise KeyError(f"{start}: neither a module nor a file of {self.root}")
+            for file in [path] if path.is_file() else _files(path, (".py",)):
+                yield Reference(names[file])
+
+    def _resolved(self, reference: Reference, chosen: Mapping[str, str]) -> tuple[Text | None, list[Reference]]:
+        """The text that ``reference`` adds (None: a re-export) and what that refers to."""
+        text = self._text(reference.module)
+        if text.plain and reference.name in dict(text.imports):
+            return None, [dict(text.imports)[reference.name]]
+        more = [*(found for _, found in text.imports), *map(Reference, text.named)]
+        for pattern in text.patterns:
+            more += [Reference(name) for name in self.modules if re.fullmatch(pattern, name) and _meant(name, chosen)]
+        parents = accumulate(reference.module.split(".")[:-1], "{}.{}".format)
+        more += [Reference(name) for name in parents if name in self.modules and not self._text(name).plain]
+        return text, more
+
+    def _text(self, module: str) -> Text:
+        if module not in self._texts:
+            path = self.modules[module]
+            tree = ast.parse(path.read_text())
+            package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+            strings = dict.fromkeys(_strings(tree))
+            words = {
+                word for text in strings for word in (re.findall(r"[\w.]+", text) if "import " in text else [text])
+            }
+            words = {word for word in words if "." in word} | set(_started(tree))
+            named = [name for word in sorted(words) for name in (word, f"{word}.__main__")]
+            named += ["conftest"] if "pytest" in words else []
+            self._texts[module] = Text(
+                path,
+                list(self._imports(tree, package)),
+                [name for name in named if name in self.modules],
+                list(dict.fromkeys(_patterns(tree))),
+                [file for text in strings for file in self._files_named(text, path.parent)],
+                path.name == "__init__.py" and _plain(tree),
+            )
+        return self._texts[module]
+
+    def _imports(self, tree: ast.Module, package: str) -> Iterator[tuple[str, Reference]]:
+        """The references of import statements by the name that each binds."""
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                yield from ((alias.name, Reference(alias.name)) for alias in node.names if alias.name in self.modules)
+            elif isinstance(node, ast.ImportFrom):
+                base = _absolute(node, package)
+                for alias in node.names:
+                    if (module := f"{base}.{alias.name}") in self.modules:
+                        yield alias.asname or alias.name, Reference(module)
+                    elif base in self.modules:
+                        yield alias.asname or alias.name, Reference(base, "" if alias.name == "*" else alias.name)
+
+    def _files_named(self, text: str, folder: Path) -> Iterator[Path]:
+        for name in DATA_NAME.findall(text) if len(text) < 200 else ():
+            if "*" in name:
+                yield from (file for file in folder.rglob(Path(name).name) if not SKIPPED & set(file.parts))
+                continue
+            same = self.data.get(Path(name).name, [])
+            beside = [file for file in same if file.parent == folder]
+            below = [file for file in same if file.is_relative_to(folder)]
+            yield from beside or below or same
+
+
+def _files(folder: Path, suffixes: Iterable[str]) -> list[Path]:
+    found = []
+    for path in sorted(folder.iterdir()):
+        if path.is_dir():
+            if path.name not in SKIPPED and not path.name.startswith("."):
+                found += _files(path, suffixes)
+        elif path.suffix in suffixes:
+            found.append(path)
+    return found
+
+
+def _absolute(node: ast.ImportFrom, package: str) -> str:
+    if not node.level:
+        return node.module or ""
+    parts = package.split(".")
+    return ".".join(parts[: len(parts) - node.level + 1] + ([node.module] if node.module else []))
+
+
+def _strings(tree: ast.Module) -> Iterator[str]:
+    documents = {
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and node.body
+        if isinstance(node.body[0], ast.Expr)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documents:
+            yield node.value
+
+
+def _started(tree: ast.Module) -> Iterator[str]:
+    """What follows "-m" in a list: modules that a process runs."""
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.List, ast.Tuple)):
+            texts = [element.value if isinstance(element, ast.Constant) else None for element in node.elts]
+            yield from (str(module) for option, module in zip(texts, texts[1:], strict=False) if option == "-m")
+
+
+def _patterns(tree: ast.Module) -> Iterator[str]:
+    """Of f-strings that begin as a dotted name does: regular expressions for the names of modules."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.JoinedStr) and isinstance(node.values[0], ast.Constant):
+            text = "".join(
+                re.escape(str(part.value)) if isinstance(part, ast.Constant) else r"\w+" for part in node.values
+            )
+            if re.match(r"\w+\\\.", text) and re.fullmatch(r"(\w|\\\.|\\w\+)+", text):
+                yield text
+
+
+def _meant(name: str, chosen: Mapping[str, str]) -> bool:
+    package, _, rest = name.partition(".")
+    return package not in chosen or rest.partition(".")[0] == chosen[package]
+
+
+def _plain(tree: ast.Module) -> bool:
+    """Whether an __init__.py holds a docstring, imports and __all__ alone."""
+    return all(
+        isinstance(node, (ast.Import, ast.ImportFrom))
+        or isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Constant)
+        or isinstance(node, ast.Assign)
+        and [target.id for target in node.targets if isinstance(target, ast.Name)] == ["__all__"]
+        for node in tree.body
+    )
+
+
+@cache
+def _tree(root: Path) -> Tree:
+    return Tree(root)
+
+
+def modules(root: Path = ROOT) -> Mapping[str, Path]:
+    """Every module of the repository by its dotted name."""
+    return _tree(root).modules
+
+
+@cache
+def _code(root: Path, starts: tuple[str | Path, ...], chosen: tuple[tuple[str, str], ...]) -> str:
+    files = _tree(root).closure(starts, dict(chosen))
+    return digest(*(part for file in files for part in (str(file.relative_to(root)), file)))
+
+
+def code(*starts: str | Path, chosen: Mapping[str, str] | None = None, root: Path = ROOT) -> str:
+    """Digest of all files that decide what ``starts`` do: text for a key of `base.cache`.
+
+    starts: dotted names of modules, or files and folders relative to ``root``; a module from elsewhere decides by its
+    version, which is not looked at here. chosen: see `Tree.closure`. Computed once in a process for the same arguments.
+    """
+    inside = modules(root)
+    starts = tuple(start for start in starts if not isinstance(start, str) or start in inside or "/" in start)
+    return _code(root, starts, tuple(sorted((chosen or {}).items())))
+
+
+def forget() -> None:
+    """Drop what was read of all trees: the files of a tree are taken to stay as they are while a process runs."""
+    _tree.cache_clear()
+    _code.cache_clear()

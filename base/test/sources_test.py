@@ -1,0 +1,74 @@
+"""What decides a piece of code: imports, re-exports, names in strings, processes, data files; nothing else."""
+
+import pytest
+
+from base.sources import Tree, code
+
+FILES = {
+    "pkg/__init__.py": '"""Re-exports."""\nfrom .near import used\nfrom .other import unused\n__all__ = ["unused", "used"]\n',
+    "pkg/near.py": "from models.deep import value\nused = value\n",
+    "pkg/other.py": "unused = 1\n",
+    "models/deep.py": "value = 1\n",
+    "models/own.py": "class Own: ...\n",
+    "state/__init__.py": "import models.own\nready = True\n",
+    "state/part.py": "",
+    "tool/__init__.py": "",
+    "tool/__main__.py": "from tool.inner import main\n",
+    "tool/inner.py": 'PAGE = "page.html"\n',
+    "tool/page.html": "<p>",
+    "other/page.html": "<i>",
+    "plain/x.py": "from pkg import used\n",
+    "plain/process.py": 'import sys\ncommand = [sys.executable, "-m", "tool"]\n',
+    "plain/program.py": 'PROGRAM = "import sys; from tool.inner import main; main()"\n',
+    "plain/chosen.py": 'from importlib import import_module\ndef of(name):\n    return import_module(f"platforms.{name}.layers")\n',
+    "plain/lazy.py": "def f():\n    from state import part\n    return part\n",
+    "plain/tests.py": 'command = ["python", "-m", "pytest"]\n',
+    "plain/documented.py": '"""As tool.inner does; see page.html."""\n',
+    "platforms/a/layers.py": "A = 1\n",
+    "platforms/b/layers.py": "B = 1\n",
+    "conftest.py": "import models.own\n",
+}
+
+
+@pytest.fixture
+def root(tmp_path):
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    "start, chosen, files",
+    [
+        ("plain.x", {}, "plain/x.py pkg/near.py models/deep.py"),
+        ("pkg", {}, "pkg/__init__.py pkg/near.py pkg/other.py models/deep.py"),
+        ("plain.process", {}, "plain/process.py tool/__init__.py tool/__main__.py tool/inner.py tool/page.html"),
+        ("plain.program", {}, "plain/program.py tool/inner.py tool/page.html"),
+        ("plain.chosen", {}, "plain/chosen.py platforms/a/layers.py platforms/b/layers.py"),
+        ("plain.chosen", {"platforms": "a"}, "plain/chosen.py platforms/a/layers.py"),
+        ("plain.lazy", {}, "plain/lazy.py state/part.py state/__init__.py models/own.py"),
+        ("plain.tests", {}, "plain/tests.py conftest.py models/own.py"),
+        ("plain.documented", {}, "plain/documented.py"),
+        ("platforms/a", {}, "platforms/a/layers.py"),
+    ],
+)
+def test_what_decides(root, start, chosen, files):
+    start = root / start if "/" in start else start
+    assert {str(path.relative_to(root)) for path in Tree(root).closure([start], chosen)} == set(files.split())
+
+
+def test_another_text_is_another_digest(root):
+    before, other = code("plain.x", root=root), code("plain.process", root=root)
+    (root / "models/deep.py").write_text("value = 2\n")
+    code_now = Tree(root)
+    assert root / "models/deep.py" in code_now.closure(["plain.x"])
+    from base import sources
+
+    sources.forget()
+    assert code("plain.x", root=root) != before and code("plain.process", root=root) == other
+
+
+def test_a_start_that_is_none(root):
+    with pytest.raises(KeyError, match="nowhere: neither a module nor a file"):
+        Tree(root).closure(["nowhere"])

@@ -1,0 +1,92 @@
+"""A line changed in each kind of file on which the layout's steps depend: exactly these steps have another key."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from base import sources
+from base.paths import ROOT
+from base.steps.runner import source_of
+from flow.layout import chain
+from flow.layout.design import design
+
+OPTIONS = chain.Options("sky130", liberty=())
+FOLDERS = "models", "base", "rtl", "platforms", "cells", "pixels", "flow", "verif", "talbot"
+FRAMES = {"gate_frames", "stimulus"}
+
+
+@pytest.fixture(scope="module")
+def steps():
+    """Every step of the chip's and of a block's layout, by name; steps at a corner once."""
+    found = {}
+    for name in ("asp_chip", "quad_divider"):
+        chosen = design(name)
+        for step in chain.chain(chosen, OPTIONS):
+            found.setdefault(step.name.removesuffix("_" + OPTIONS.corners[0]), step)
+    return {name: step for name, step in found.items() if not name.endswith(tuple(OPTIONS.corners))}
+
+
+@pytest.fixture
+def tree(tmp_path):
+    """A copy of the repository's sources."""
+    for folder in FOLDERS:
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("conftest.py", "pyproject.toml"):
+        shutil.copy(ROOT / name, tmp_path)
+    return tmp_path
+
+
+def changed(steps, tree, file):
+    """Names of the steps whose key changes with one more line in ``file``."""
+
+    def keys():
+        sources.forget()
+        return {name: source_of(step, tree) for name, step in steps.items()}
+
+    before = keys()
+    path = tree / file
+    assert path.exists(), file
+    path.write_text(path.read_text() + ("\nCHANGED = True\n" if Path(file).suffix == ".py" else "\n"))
+    after = keys()
+    return {name for name in before if before[name] != after[name]}
+
+
+# file -> steps that must run again, and no other; ALL: every one
+EXACTLY = [
+    ("flow/layout/steps/drc.py", {"drc"}),
+    ("models/digital/chip.py", FRAMES),
+    ("models/capture/operator.py", {"stimulus"}),
+    ("flow/simulate/bench.sv", FRAMES),
+    ("pixels/afe.sv", FRAMES),
+    ("flow/layout/coriolis/straps.py", {"place_route"}),
+    ("flow/layout/power/mesh.py", {"ir_drop"}),
+    ("cells/characterize/constraint.py", {"timing"}),
+    ("cells/report/curve.py", set()),
+    ("cells/compact/route.py", set()),
+    ("verif/formal/engine.py", set()),
+    ("talbot/__main__.py", set()),
+]
+
+
+@pytest.mark.parametrize("file, expected", EXACTLY)
+def test_exactly_these_steps_run_again(steps, tree, file, expected):
+    assert changed(steps, tree, file) == expected
+
+
+@pytest.mark.parametrize(
+    "file, some, others",
+    [
+        (
+            "platforms/sky130/coriolis.py",
+            {"library", "place_route", "fill", "drc", "extraction"},
+            {"gate_frames", "sta"},
+        ),
+        ("rtl/quad_divider/test/quad_divider_test.py", {"gate_tests_final_icarus"}, {"drc", "gate_frames"}),
+        ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "place_route"}, {"drc", "timing"}),
+        ("models/parameters/checks.py", {"drc", "sta", "gate_frames", "timing"}, set()),
+    ],
+)
+def test_these_steps_run_again_and_those_do_not(steps, tree, file, some, others):
+    found = changed(steps, tree, file)
+    assert some <= found and not others & found
