@@ -8,7 +8,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from base.cache import digest
+from base.files import atomic
 from base.paths import BUILD
+from base.tools import finish
 
 from .driven import Driven, SimulationError
 from .ports import Port, places, split, total_width
