@@ -10,8 +10,9 @@ from base.paths import ROOT
 from base.steps.runner import source_of
 from flow.layout import chain
 from flow.layout.design import design
+from flow.layout.options import Options
 
-OPTIONS = chain.Options("sky130", liberty=())
+OPTIONS = Options()
 FOLDERS = "models", "base", "rtl", "platforms", "cells", "pixels", "flow", "verif", "talbot"
 FRAMES = {"gate_frames", "stimulus"}
 
@@ -22,7 +23,7 @@ def steps():
     found = {}
     for name in ("asp_chip", "quad_divider"):
         chosen = design(name)
-        for step in chain.chain(chosen, OPTIONS):
+        for step in chain.all_steps(chosen, OPTIONS):
             found.setdefault(step.name.removesuffix("_" + OPTIONS.corners[0]), step)
     return {name: step for name, step in found.items() if not name.endswith(tuple(OPTIONS.corners))}
 

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from base.paths import ROOT
 from base.steps import StepError
 from flow.layout.geometry.abstract import ports
 from flow.layout.sensor import arrange
@@ -190,7 +191,7 @@ def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
             "--cols=120",
             "--lanes=2",
         ],
-        cwd=small.ROOT,
+        cwd=ROOT,
         check=True,
         capture_output=True,
     )
