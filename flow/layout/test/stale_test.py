@@ -56,7 +56,7 @@ def changed(steps, tree, file):
 # file -> steps that must run again, and no other; ALL: every one
 EXACTLY = [
     ("flow/layout/steps/drc.py", {"drc"}),
-    ("models/digital/chip.py", FRAMES),
+    ("models/chip.py", FRAMES),
     ("models/capture/operator.py", {"stimulus"}),
     ("flow/simulate/bench.sv", FRAMES),
     ("pixels/afe.sv", FRAMES),
