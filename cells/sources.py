@@ -1,15 +1,14 @@
 """Where the cells of a library come from: netlist and area of each, abstracts and Verilog of all."""
 
 import json
-import re
 from pathlib import Path
 
+from base.lef.write import library as lef_library
 from cells.characterize.job import Source
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.library import schematic_spice, written
 from cells.extract import extract
-from cells.lef import header as lef_header
 from cells.netlist import spice
 from models.parameters import ParameterError
 from platforms.extraction import extraction_platform
@@ -75,7 +74,7 @@ def source(library, name, netlist="extracted"):
         if netlist == "schematic"
         else extract(gds, gds.stem, extraction_platform("sky130"), **parasitics)
     )
-    return Source(name, text, area(sky130_hd.file(name, "lef").read_text()))
+    return Source(name, text, sky130_hd.area(name))
 
 
 def files(library, cells):
@@ -89,9 +88,9 @@ def files(library, cells):
         return {suffix: (COMPACT / f"compact.{suffix}").read_text() for suffix in ("lef", "v")}
     names = sorted({*cells, *CONSTANTS[library]})
     macros = (sky130_hd.file(name, "lef").read_text() for name in names)
-    macros = [text[text.find("MACRO") : text.rfind("END LIBRARY")].rstrip() for text in macros]
+    macros = [text[text.find("MACRO") : text.rfind("END LIBRARY")] for text in macros]
     return {
-        "lef": lef_header(*sky130_hd.SITE) + "\n\n".join(macros) + "\n\nEND LIBRARY\n",
+        "lef": lef_library(*sky130_hd.SITE, macros),
         "v": "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names),
     }
 
@@ -102,16 +101,7 @@ def constants(library):
         return {}
     if library == "compact":
         return {name: (pins, _compact_areas()[name]) for name, pins in CONSTANTS[library].items()}
-    return {
-        f"{sky130_hd.LIBRARY}__{name}": (pins, area(sky130_hd.file(name, "lef").read_text()))
-        for name, pins in CONSTANTS[library].items()
-    }
-
-
-def area(lef):
-    """um2 of a LEF macro's SIZE."""
-    width, height = map(float, re.search(r"SIZE\s+([0-9.]+)\s+BY\s+([0-9.]+)", lef).groups())
-    return width * height
+    return {f"{sky130_hd.LIBRARY}__{name}": (pins, sky130_hd.area(name)) for name, pins in CONSTANTS[library].items()}
 
 
 def process(library):

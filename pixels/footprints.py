@@ -1,34 +1,44 @@
-"""`python -m pixels.footprints --out DIR`: the analog blocks' footprints, LEF and GDS frames, for `make layout`.
+"""`python -m pixels.footprints --out DIR`: footprints of the analog blocks, LEF and GDS, for `make layout`.
 
-A frame is an outline with pins: it holds a block's place on the die until a circuit of the same pins takes it.
+A footprint is a black-box macro, an outline with pins: it keeps a block's place on the die until a circuit with the
+same pins takes it.
 """
 
 import argparse
 import sys
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from base.files import staged
 from base.gds import write_gds
+from base.lef import write as lef_text
+from base.lef.read import Box
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
+from platforms.layers import Layer
 
-from .blocks import DEEP_UM, AnalogSizes, blocks
+from .blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
 
-# Of CoriolisPlatform.wires: of pins in the north and south, and in the west and east
+if TYPE_CHECKING:
+    import klayout.db as db
+
+# Of CoriolisPlatform.metals: of pins in the north and south, and in the west and east
 VERTICAL, ACROSS = 4, 3
 WIDE_UM = 0.4  # of a signal's pin
+USES = {"vdda": "POWER", "vssa": "GROUND"}
 
 
-def layer(pin, pdk):
-    """The Layer of a pin."""
+def layer(pin: Pin, pdk: str) -> Layer:
+    """The metal of a pin. Raises ParameterError for a process without one for supplies."""
     if pin.supply:
         return top_metal(pdk).metal
     return coriolis_platform(pdk).metals[VERTICAL if pin.side in ("north", "south") else ACROSS]
 
 
-def box(pin, block, supply_um, grid_um):
-    """(left, bottom, right, top) in um of a pin, on the grid."""
+def box(pin: Pin, block: Block, supply_um: float, grid_um: float) -> Box:
+    """The shape of a pin, on the grid."""
     vertical = pin.side in ("north", "south")
     wide = (supply_um if pin.supply else WIDE_UM) / 2
     deep = supply_um if pin.supply else DEEP_UM
@@ -38,65 +48,64 @@ def box(pin, block, supply_um, grid_um):
     return (low, begin, high, end) if vertical else (begin, low, end, high)
 
 
-def lef(block, pdk, supply_um):
-    """The LEF of a block as text: outline, pins, and what lies deeper than these an obstruction on their layers."""
-    known = coriolis_platform(pdk)
-    found = {}
+def lef(block: Block, pdk: str, supply_um: float) -> str:
+    """The LEF of a block: outline, pins, and an obstruction on their layers over all that is deeper than these."""
+    grid_um = coriolis_platform(pdk).grid_um
+    pieces: dict[str, list[tuple[Pin, str]]] = {}
     for pin in block.pins:
-        found.setdefault(pin.name, []).append((pin, layer(pin, pdk).lef, box(pin, block, supply_um, known.grid_um)))
-    lines = [
-        "VERSION 5.8 ;",
-        'BUSBITCHARS "[]" ;',
-        'DIVIDERCHAR "/" ;',
-        f"MACRO {block.name}",
-        "  CLASS BLOCK ;",
-        f"  SIZE {block.width_um:.3f} BY {block.height_um:.3f} ;",
+        pieces.setdefault(pin.name, []).append((pin, layer(pin, pdk).lef))
+    pins = [
+        lef_text.Pin(
+            name,
+            [f"DIRECTION {found[0][0].direction.upper()}", f"USE {USES.get(name, 'SIGNAL')}"],
+            [lef_text.Rectangles(of, [box(pin, block, supply_um, grid_um)]) for pin, of in found],
+        )
+        for name, found in pieces.items()
     ]
-    for name, pieces in found.items():
-        use = {"vdda": "POWER", "vssa": "GROUND"}.get(name, "SIGNAL")
-        lines += [f"  PIN {name}", f"    DIRECTION {pieces[0][0].direction.upper()} ;", f"    USE {use} ;", "    PORT"]
-        for _, of, corners in pieces:
-            lines += [f"      LAYER {of} ;", f"        RECT {' '.join(f'{value:.3f}' for value in corners)} ;"]
-        lines += ["    END", f"  END {name}"]
-    lines.append("  OBS")
     deep = DEEP_UM + supply_um
-    inside = min(block.width_um, block.height_um) > 2 * deep
-    for name in dict.fromkeys(name for pieces in found.values() for _, name, _ in pieces) if inside else ():
-        lines += [
-            f"    LAYER {name} ;",
-            f"      RECT {deep:.3f} {deep:.3f} {block.width_um - deep:.3f} {block.height_um - deep:.3f} ;",
-        ]
-    return "\n".join([*lines, "  END", f"END {block.name}", "END LIBRARY", ""])
+    inside = [(deep, deep, block.width_um - deep, block.height_um - deep)]
+    layers = dict.fromkeys(of for found in pieces.values() for _, of in found)
+    obstructions = [lef_text.Rectangles(of, inside) for of in layers]
+    macro = lef_text.macro(
+        block.name,
+        ["CLASS BLOCK", lef_text.size(block.width_um, block.height_um)],
+        pins,
+        obstructions if min(block.width_um, block.height_um) > 2 * deep else [],
+    )
+    return lef_text.HEADER + macro + lef_text.END
 
 
-def frame(block, pdk, supply_um):
-    """The klayout.db.Layout of a block's frame: its pins with their names, and its outline."""
+def black_box(block: Block, pdk: str, supply_um: float) -> "db.Layout":
+    """The layout of a footprint: pins with their names, and the outline."""
     import klayout.db as db
 
-    known, layout = coriolis_platform(pdk), db.Layout()
+    tech, layout = coriolis_platform(pdk), db.Layout()
     layout.dbu = 0.001
     cell = layout.create_cell(block.name)
     for pin in block.pins:
         metal = layer(pin, pdk)
-        corners = db.DBox(*box(pin, block, supply_um, known.grid_um))
+        corners = db.DBox(*box(pin, block, supply_um, tech.grid_um))
         text = db.DText(pin.name, corners.center().x, corners.center().y)
         cell.shapes(layout.layer(*metal.gds)).insert(corners)
-        for named in (metal.pin, metal.label):
-            cell.shapes(layout.layer(*named)).insert(text)
-    cell.shapes(layout.layer(*known.outline)).insert(db.DBox(0, 0, block.width_um, block.height_um))
+        for numbers in (metal.pin, metal.label):
+            cell.shapes(layout.layer(*numbers)).insert(text)
+    cell.shapes(layout.layer(*tech.outline)).insert(db.DBox(0, 0, block.width_um, block.height_um))
     return layout
 
 
-def write(out, made, pdk, supply_um):
-    """Write <block>.lef and <block>.gds of every Block into ``out``."""
+def write(out: str | Path, made: Iterable[Block], pdk: str, supply_um: float) -> None:
+    """Write <block>.lef and <block>.gds of every block into ``out``."""
     with staged(out) as part:
         for block in made:
             (part / f"{block.name}.lef").write_text(lef(block, pdk, supply_um))
-            write_gds(frame(block, pdk, supply_um), part / f"{block.name}.gds")
+            write_gds(black_box(block, pdk, supply_um), part / f"{block.name}.gds")
 
 
-def main(argv=None):
-    parser = argparse.ArgumentParser(prog="python -m pixels.footprints", description=__doc__.splitlines()[0])
+def main(argv: Sequence[str] | None = None) -> int:
+    """Exit status of the command; 2 after a message on wrong input."""
+    parser = argparse.ArgumentParser(
+        prog="python -m pixels.footprints", description="Footprints of the analog blocks, LEF and GDS."
+    )
     parser.add_argument("--pdk", default="sky130")
     parser.add_argument("--rows", type=int, default=ArrayParameters().rows)
     parser.add_argument("--cols", type=int, default=ArrayParameters().cols)

@@ -47,12 +47,12 @@ def library(canvas=None, store=FOLDER / "drawn", workers=-1):
 
 
 def pins(schematic):
-    """Port -> cells.lef.Pin."""
-    from cells.lef import Pin
+    """Port -> cells.lef.PinKind."""
+    from cells.lef import PinKind
 
-    found = {pin: Pin("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
-    found |= {pin: Pin("OUTPUT") for pin in schematic.outputs}
-    return found | {"vdd": Pin("INOUT", "POWER"), "vss": Pin("INOUT", "GROUND")}
+    found = {pin: PinKind("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
+    found |= {pin: PinKind("OUTPUT") for pin in schematic.outputs}
+    return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
 
 
 def written(folder=FOLDER, canvas=None):

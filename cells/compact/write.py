@@ -3,10 +3,11 @@
 import json
 
 from base.gds import write_gds
+from base.lef.write import library as lef_library
 from cells.compact.liberty import liberty
 from cells.compact.library import NAME, SITE, pins
 from cells.compact.verilog import verilog
-from cells.lef import abstract, header
+from cells.lef import abstract
 from platforms.extraction import extraction_platform
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
@@ -80,7 +81,7 @@ def _spice(cells):
 
 def _lef(cells, canvas, gds):
     macros = (abstract(gds, cell.name, extraction_platform("sky130"), pins(cell.schematic), SITE) for cell in cells)
-    return header(SITE, canvas.site, canvas.height) + "\n".join(macros) + "\nEND LIBRARY\n"
+    return lef_library(SITE, canvas.site, canvas.height, macros)
 
 
 def _decks(folder):

@@ -1,5 +1,5 @@
 """LEF abstracts of cells from their GDS."""
 
-from cells.lef.abstract import Pin, abstract, header
+from cells.lef.abstract import PinKind, abstract
 
-__all__ = ["Pin", "abstract", "header"]
+__all__ = ["PinKind", "abstract"]

@@ -1,6 +1,6 @@
 """The pages for people: pinout and datasheet, in Markdown."""
 
-from base.lef import pins, size
+from base.lef.read import read_macro
 
 WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
 
@@ -8,7 +8,8 @@ WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
 def pinout(lef):
     """Markdown table of the pins of a LEF."""
     rows = [
-        f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |" for p in pins(lef)
+        f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |"
+        for p in read_macro(lef).pins.values()
     ]
     return "\n".join(
         ["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|", *rows, ""]
@@ -17,13 +18,13 @@ def pinout(lef):
 
 def datasheet(design, summary, lef, waivers):
     """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
-    width, height = size(lef)
+    macro = read_macro(lef)
     io, clock = design.io, design.clock
     tests, density = summary.get("gate_tests"), summary.get("density") or {}
     rows = [
         ("top", design.top),
         ("process", summary.get("pdk")),
-        ("size", f"{width:g} x {height:g} um"),
+        ("size", f"{macro.width_um:g} x {macro.height_um:g} um"),
         ("cells", summary.get("cells")),
         ("flip-flops", summary.get("flip_flops")),
         ("clock", f"{clock.port}, {1000 / clock.period_ns:g} MHz"),

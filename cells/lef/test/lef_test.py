@@ -6,8 +6,8 @@ import pytest
 
 db = pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells.lef import Pin, abstract
-from cells.lef.read import read
+from base.lef.read import read_macros
+from cells.lef import PinKind, abstract
 from models.parameters import ParameterError
 from platforms.extraction import extraction_platform
 from platforms.sky130 import cells
@@ -21,20 +21,24 @@ CELLS = ("inv_1", "nand2_1", "a21oi_1", "mux2_1", "dfxtp_1", "dfrtp_1", "fa_1", 
 
 def ours(cell, pins):
     name = f"sky130_fd_sc_hd__{cell}"
-    return read(abstract(cells.file(cell, "gds"), name, TECH, pins, "unithd"))[name]
+    return read_macros(abstract(cells.file(cell, "gds"), name, TECH, pins, "unithd"))[name]
 
 
 def vendor(cell):
-    return read(cells.file(cell, "lef").read_text())[f"sky130_fd_sc_hd__{cell}"]
+    return read_macros(cells.file(cell, "lef").read_text())[f"sky130_fd_sc_hd__{cell}"]
 
 
 def pins_of(macro):
-    return {name: Pin(pin.direction, pin.use) for name, pin in macro.pins.items() if set(pin.shapes) & {"li1", "met1"}}
+    return {
+        name: PinKind(pin.direction, pin.use)
+        for name, pin in macro.pins.items()
+        if {layer for layer, _ in pin.boxes} & {"li1", "met1"}
+    }
 
 
-def region(rectangles):
+def region(shapes, layer):
     found = db.Region()
-    for box in rectangles:
+    for box in [box for of, box in shapes if of == layer]:
         found.insert(db.Box(*(round(v * 1000) for v in box)))
     return found.merged()
 
@@ -44,10 +48,10 @@ def region(rectangles):
 def test_outline_and_pins_are_the_vendors(cell):
     theirs = vendor(cell)
     mine = ours(cell, pins_of(theirs))
-    assert mine.size == theirs.size
+    assert (mine.width_um, mine.height_um) == (theirs.width_um, theirs.height_um)
     for name in pins_of(theirs):
         for layer in ("li1", "met1"):
-            a, b = (region(pin.shapes.get(layer, ())) for pin in (mine.pins[name], theirs.pins[name]))
+            a, b = (region(pin.boxes, layer) for pin in (mine.pins[name], theirs.pins[name]))
             assert (b - a).is_empty(), f"{name} {layer}: metal of the vendor's pin is missing"
             # the vendor leaves out what is under a gate's contact; never more than a tenth of the pin
             assert (a - b).area() <= 0.1 * max(a.area(), 1), f"{name} {layer}"
@@ -71,9 +75,9 @@ def test_other_nets_are_obstructions(cell):
     theirs = vendor(cell)
     mine = ours(cell, pins_of(theirs))
     for layer in ("li1", "met1"):
-        metal = region([box for box in theirs.obstructions.get(layer, ())])
-        pins = region([box for pin in mine.pins.values() for box in pin.shapes.get(layer, ())])
-        blocked = region(mine.obstructions.get(layer, ()))
+        metal = region(theirs.obstructions, layer)
+        pins = region([part for pin in mine.pins.values() for part in pin.boxes], layer)
+        blocked = region(mine.obstructions, layer)
         assert (blocked & pins).is_empty()
         assert (blocked - metal).area() <= 0.02 * max(blocked.area(), 1)
 
@@ -81,6 +85,6 @@ def test_other_nets_are_obstructions(cell):
 @needs_wheel
 def test_what_is_not_there_is_refused():
     with pytest.raises(ParameterError, match="pin = 'B': must be a labelled net"):
-        ours("inv_1", {"B": Pin("INPUT")})
+        ours("inv_1", {"B": PinKind("INPUT")})
     with pytest.raises(ParameterError, match="direction = 'IN'"):
-        Pin("IN")
+        PinKind("IN")

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from base.command import main
-from base.lef import pins, size
+from base.lef.read import read_macro
 from flow.handoff import command, contents
 from flow.handoff.power import powered
 from flow.layout.design import design
@@ -177,12 +177,15 @@ def test_every_cell_gets_its_supplies():
 
 
 def test_lef_is_read_in_the_order_of_the_bits():
-    assert size(LEF) == (120.0, 98.6)
-    assert [pin.name for pin in pins(LEF)] == ["x[9]", "x[10]"]
+    macro = read_macro(LEF)
+    assert (macro.name, macro.width_um, macro.height_um) == (TOP, 120.0, 98.6)
+    assert list(macro.pins) == ["x[9]", "x[10]"]
+    with pytest.raises(ParameterError, match="no MACRO"):
+        read_macro("VERSION 5.8 ;")
     with pytest.raises(ParameterError, match="no SIZE"):
-        size("VERSION 5.8 ;")
+        read_macro("MACRO A\nEND A\n")
     with pytest.raises(ParameterError, match="pin a: must have"):
-        pins("  PIN a\n  DIRECTION INPUT ;\n  END a\n")
+        read_macro("MACRO A\n  SIZE 1 BY 1 ;\n  PIN a\n  DIRECTION INPUT ;\n  END a\nEND A\n")
 
 
 def test_what_tells_of_a_run_stays_behind(layouts, tmp_path):

@@ -1,52 +1,63 @@
-"""A block that was laid out before, as one that holds it sees it: size, pins and straps, from its LEF."""
+"""A block that was laid out before, as one that contains it sees it: size, pins and straps, from its LEF."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from base import lef
+from base.lef.read import Box, read_macro
 from flow.layout.netlist.netlist import SUPPLIES
+from platforms.coriolis import CoriolisPlatform
 
 from .abstract import EDGE_UM
 
 
+class MacroPin(NamedTuple):
+    """direction: in lower case. metal: its name in Coriolis. box: um."""
+
+    direction: str
+    metal: str
+    box: Box
+
+
 @dataclass(frozen=True)
 class Macro:
-    """name: of module and cell. pins: dict pin -> (direction in lower case, wire, (left, bottom, right, top)), of its
-    pieces on the west or the east edge the one that is farthest from other pins. straps: pairs (supply, x), from the
-    west on. All in um."""
+    """A laid-out block; all in um.
+
+    name: of module and cell. pins: of a pin's pieces on the west or the east edge the one that is farthest from other
+    pins. straps: pairs (supply, x), from the west on.
+    """
 
     name: str
     width_um: float
     height_um: float
-    pins: dict
-    straps: tuple
+    pins: dict[str, MacroPin]
+    straps: tuple[tuple[str, float], ...]
 
     @classmethod
-    def read(cls, path, known):
+    def read(cls, path: str | Path, tech: CoriolisPlatform) -> "Macro":
         """From a LEF as the step `lef` writes it. Raises ParameterError."""
-        text = Path(path).read_text()
-        wires = {wire.lef: wire.name for wire in known.metals}
-        found = {pin.name: pin for pin in lef.pins(text)}
-        straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found[net].boxes)
-        pieces = {
-            pin: [(wires[layer], box) for layer, box in made.boxes]
-            for pin, made in found.items()
-            if pin not in SUPPLIES
+        found = read_macro(Path(path).read_text())
+        names = {metal.lef: metal.name for metal in tech.metals}
+        straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found.pins[net].boxes)
+        pins = {name: pin for name, pin in found.pins.items() if name not in SUPPLIES}
+        best = {
+            name: _best(pin.boxes, [box for other, of in pins.items() if other != name for _, box in of.boxes])
+            for name, pin in pins.items()
         }
-        pins = {
-            pin: (
-                found[pin].direction.lower(),
-                *_best(boxes, [box for other in pieces if other != pin for _, box in pieces[other]]),
-            )
-            for pin, boxes in pieces.items()
-        }
-        return cls(lef.name(text), *lef.size(text), pins, tuple((net, round(x, 4)) for x, net in straps))
+        return cls(
+            found.name,
+            found.width_um,
+            found.height_um,
+            {name: MacroPin(pins[name].direction.lower(), names[layer], box) for name, (layer, box) in best.items()},
+            tuple((net, round(x, 4)) for x, net in straps),
+        )
 
 
-def _best(boxes, others):
-    """Of pairs (wire, box) of one pin that which ends at the edge, not one along it, and is farthest from others."""
+def _best(pieces: Sequence[tuple[str, Box]], others: Sequence[Box]) -> tuple[str, Box]:
+    """Of a pin's pieces (layer, box) that which ends at the edge, not one along it, and is farthest from others."""
 
-    def rank(piece):
+    def rank(piece: tuple[str, Box]) -> tuple[bool, float, float]:
         left, bottom, right, top = piece[1]
         away = min(
             (abs(bottom + top - low - high) for west, low, east, high in others if (west <= 0) == (left <= 0)),
@@ -54,4 +65,4 @@ def _best(boxes, others):
         )
         return top - bottom < 2 * EDGE_UM, round(away, 3), right - left
 
-    return max(boxes, key=rank)
+    return max(pieces, key=rank)

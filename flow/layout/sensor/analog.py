@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from base import lef
+from base.lef.read import read_macro
 from base.paths import ROOT
 from base.tools import run
 from models.parameters import ParameterError
@@ -46,7 +46,7 @@ def check(path, frame):
     """Names of the pins that the LEF ``path`` has more than ``frame``. Raises ParameterError unless it has those of
     ``frame`` with their directions."""
     (own, asked) = (
-        {pin.name: pin.direction.upper() for pin in lef.pins(file.read_text(errors="replace"))}
+        {pin.name: pin.direction.upper() for pin in read_macro(file.read_text(errors="replace")).pins.values()}
         for file in (path, frame)
     )
     if lacking := [pin for pin in asked if pin not in own]:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, field, replace
 
-from base import lef
+from base.lef.read import read_macro
 from base.steps import StepError
 from models.parameters import ParameterError, check_real
 
@@ -80,15 +80,16 @@ class Block:
     @classmethod
     def read(cls, name, text):
         """From a LEF, at the origin."""
-        pins = lef.pins(text)
+        macro = read_macro(text)
         return cls(
             name,
-            lef.name(text),
+            macro.name,
             0,
             0,
-            *(nm(size) for size in lef.size(text)),
-            {pin.name: tuple((of, tuple(map(nm, box))) for of, box in pin.boxes) for pin in pins},
-            {pin.name: pin.direction.lower() for pin in pins},
+            nm(macro.width_um),
+            nm(macro.height_um),
+            {pin.name: tuple((of, tuple(map(nm, box))) for of, box in pin.boxes) for pin in macro.pins.values()},
+            {pin.name: pin.direction.lower() for pin in macro.pins.values()},
         )
 
     @property

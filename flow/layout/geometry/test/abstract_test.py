@@ -2,7 +2,7 @@
 
 import pytest
 
-from base.lef import pins, size
+from base.lef.read import read_macro
 from flow.layout.geometry.abstract import abstract, ports, read_back
 from models.parameters import ParameterError
 from platforms.coriolis import coriolis_platform
@@ -40,8 +40,9 @@ def gds(known, tmp_path):
 
 def test_size_and_pins(gds, known):
     text = abstract(gds, ports(NETLIST), known)
-    assert size(text) == (8.0, 11.2)
-    found = {pin.name: pin for pin in pins(text)}
+    macro = read_macro(text)
+    found = macro.pins
+    assert (macro.width_um, macro.height_um) == (8.0, 11.2)
     assert set(found) == {"a", "q[0]", "q[1]", "vdd", "vss"}
     assert (found["a"].x_um, found["a"].y_um, found["a"].layer, found["a"].direction) == (0.15, 1.15, "met1", "INPUT")
     assert (found["q[1]"].x_um, found["q[1]"].y_um, found["q[1]"].direction) == (7.85, 4.15, "OUTPUT")
@@ -55,7 +56,7 @@ def test_a_pin_that_is_an_l_has_a_box_for_each_arm(gds, known, tmp_path):
     layout.write(str(tmp_path / "bent.gds"))
     (tmp_path / "bent.lef").write_text(abstract(tmp_path / "bent.gds", ports(NETLIST), known))
     assert read_back(tmp_path / "bent.lef", tmp_path / "bent.gds", ports(NETLIST), known) == []
-    pin = next(pin for pin in pins((tmp_path / "bent.lef").read_text()) if pin.name == "a")
+    pin = read_macro((tmp_path / "bent.lef").read_text()).pins["a"]
     assert sorted(box for _, box in pin.boxes) == [(0.0, 1.0, 0.3, 1.3), (0.0, 1.3, 0.2, 2.0)]
 
 

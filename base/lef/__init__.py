@@ -1,0 +1,1 @@
+"""LEF files: macros read, and macros written."""
