@@ -1,22 +1,22 @@
-"""AdcBank at cycle level: the RTL's cycles and stalls, data by models.digital.sar.decisions."""
+"""AdcBank at cycle level: the RTL's cycles and stalls, data from models.digital.sar.decisions."""
 
 from pymtl3 import Component, update, update_ff
 
 from rtl.edge_adc.edge_adc_cl import LaneCycles
 from rtl.messages import FRAME, SAMPLE, ScanMsg
 
-from .ports import add_ports
+from .ports import declare_ports
 
 
 class AdcBankCL(Component):
-    """Same ports as AdcBank, and the same values on them in every cycle."""
+    """The ports of AdcBank, and the same values in every cycle."""
 
     def construct(s, lanes=8):
-        add_ports(s, lanes)
+        declare_ports(s, lanes)
 
         s.lanes = [LaneCycles() for _ in range(lanes)]
-        s.at_pins = None  # (kind, row, en) of what is sampled and converts, or of a mark behind what leaves
-        s.leaving = []  # what leaves, in order: marks (ScanMsg) and lanes (int)
+        s.at_pins = None  # (kind, row, en) of the step that converts, or of a mark that waits for the results
+        s.leaving = []  # to be sent, in order: marks (ScanMsg) and lanes (int)
 
         def tick_lanes(taken_lane):
             for number, lane in enumerate(s.lanes):
@@ -73,7 +73,7 @@ class AdcBankCL(Component):
             s.idle <<= not starts and not any(lane.busy for lane in s.lanes)
             s.dac <<= sum(lane.dac << 8 * number for number, lane in enumerate(s.lanes))
             head = s.leaving[0] if s.leaving else None
-            if isinstance(head, int):  # a lane, whose result may not be there yet
+            if isinstance(head, int):  # a lane, whose result may not be ready
                 result = s.lanes[head].result
                 head = result and ScanMsg(SAMPLE, (len(s.leaving) == 1) << 9 | result[0] & 0xFF)
             s.scan.val <<= head is not None

@@ -1,4 +1,4 @@
-"""AdcBank at functional level: one step at a time, every lane by models.digital.sar.decisions."""
+"""AdcBank at functional level: one step at a time, every lane converts by models.digital.sar.decisions."""
 
 from collections import deque
 
@@ -7,17 +7,17 @@ from pymtl3 import Component, update_ff
 from models.digital.sar import decisions
 from rtl.messages import FRAME, SAMPLE, ScanMsg
 
-from .ports import add_ports
+from .ports import declare_ports
 
 
 class AdcBankFL(Component):
-    """Same ports and same messages as AdcBank. Messages queue up without bound."""
+    """The ports of AdcBank, and the same messages in an unbounded queue."""
 
     def construct(s, lanes=8):
-        add_ports(s, lanes)
+        declare_ports(s, lanes)
 
-        s.runs = {}  # lane -> its decisions under way
-        s.done = {}  # lane -> (code, converted) of the step under way
+        s.runs = {}  # lane -> its decisions in progress
+        s.done = {}  # lane -> (code, converted) of the current step
         s.queue = deque()  # (ScanMsg, converted or None)
         s.codes = [0] * lanes
 

@@ -1,7 +1,7 @@
 """AdcBank at RTL: steps in, samples out, lane by lane.
 
-A step is at the pins (and is sampled), then its lanes convert, then its results leave. While the results of a
-step leave, the next one converts.
+A step is at the pins (and is sampled), then its lanes convert, then its results are sent. The results of a step are
+sent while the next step converts.
 """
 
 from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire, concat, mk_bits, update, update_ff
@@ -9,11 +9,11 @@ from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire
 from rtl.edge_adc import EdgeAdc
 from rtl.messages import FRAME, SAMPLE
 
-from .ports import add_ports
+from .ports import declare_ports
 
 
 class LaneResult(Component):
-    """A link of the chain that takes the result (val, converted, code) of the lane whose turn it is."""
+    """A link of the chain that selects the result (val, converted, code) of the lane whose turn it is."""
 
     def construct(s):
         s.turn = InPort()
@@ -31,24 +31,24 @@ class LaneResult(Component):
 
 
 class AdcBank(Component):
-    """lanes: a power of two in 1..32."""
+    """The converters of a row (README.md); lanes: a power of two in 1..32."""
 
     def construct(s, lanes=8):
         Lanes = mk_bits(lanes)
 
         # Interface
-        add_ports(s, lanes)
+        declare_ports(s, lanes)
 
         # Components
-        for i in range(lanes):  # not a list: PyMTL would join the ports in arrays, which Yosys calls memories
+        for i in range(lanes):  # not a list: PyMTL would join the ports in arrays, which Yosys reads as memories
             setattr(s, f"lane{i}", EdgeAdc())
             setattr(s, f"link{i}", LaneResult())
-        s.at_pins = Wire()  # the message whose row and lanes are at the pins is not draining yet
+        s.at_pins = Wire()  # the message at the pins is not draining yet
         s.pins_kind = Wire(Bits2)
         s.mark = Wire()  # FRAME, ROW or END is at the output
         s.mark_kind = Wire(Bits2)
         s.mark_row = Wire(Bits10)
-        s.remaining = Wire(Lanes)  # lanes of the draining step whose results have not left
+        s.remaining = Wire(Lanes)  # lanes of the draining step whose results are not sent
 
         s.go = Wire(Lanes)
         s.free = Wire(Lanes)
@@ -84,7 +84,7 @@ class AdcBank(Component):
         s.none //= Bits10(0)
         s.result //= chain
 
-        # Logic: taking a step
+        # Logic: accept a step
         @update
         def status():
             s.unsigned_ @= s.mode != 0

@@ -1,4 +1,4 @@
-"""The ports that every level of AdcBank has (README.md)."""
+"""AdcBank's ports, the same at every level (README.md)."""
 
 from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, InPort, OutPort, mk_bits
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
@@ -6,8 +6,8 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 from rtl.messages import ScanMsg, step_msg
 
 
-def add_ports(s, lanes):
-    """The interface of AdcBank."""
+def declare_ports(s, lanes):
+    """Give the component ``s`` its ports."""
     s.step = RecvIfcRTL(step_msg(lanes))
     s.mode = InPort(Bits2)
     s.threshold = InPort(Bits7)

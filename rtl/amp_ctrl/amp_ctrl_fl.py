@@ -1,4 +1,4 @@
-"""AmpCtrl at FL: the golden waveform behind the pins. It is exact in every cycle, so that it serves as CL too."""
+"""AmpCtrl at functional level: the golden waveform. It is cycle-exact, so there is no cycle level."""
 
 from pymtl3 import Component, update_ff
 
@@ -9,11 +9,11 @@ from .ports import DURATIONS, declare_ports
 
 
 class AmpCtrlFL(Component):
-    """The pixel amplifier's control (README.md)."""
+    """The ports of AmpCtrl, and the same values in every cycle."""
 
     def construct(s):
         declare_ports(s)
-        s.row = None  # the waveform under way
+        s.row = None  # the waveform of the current row
         s.pins = AmpPins()
         s.error = 0
 
@@ -29,7 +29,7 @@ class AmpCtrlFL(Component):
                 s.pins = AmpPins()
                 if s.start:
                     s.begin()
-            # one by one: PyMTL finds the registers of a block by reading it
+            # one by one: PyMTL finds the registers of a block in its source
             s.pixel_reset <<= s.pins.pixel_reset
             s.shutter <<= s.pins.shutter
             s.ref_ctl <<= s.pins.ref_ctl
@@ -43,7 +43,7 @@ class AmpCtrlFL(Component):
             s.cfg_err <<= s.error
 
     def begin(s):
-        """`start` in idle: capture the durations; a zero one is refused."""
+        """Accept `start` in idle: capture the durations; a zero duration is refused."""
         durations = {name: int(getattr(s, name)) for name in DURATIONS}
         s.error = int(0 in durations.values())
         if not s.error:

@@ -18,9 +18,9 @@ class AmpCtrl(Component):
         s.d_reset, s.d_int, s.d_cm = Wire(16), Wire(16), Wire(16)
         s.d_settle, s.d_read, s.d_guard = Wire(16), Wire(16), Wire(16)
         s.d_n_cm, s.d_four = Wire(8), Wire()
-        s.state, s.after = Wire(3), Wire(3)  # after: the phase behind the guard
-        s.count = Wire(16)  # cycles left in the present phase, this one not counted
-        s.resets = Wire(8)  # common-mode resets still to come
+        s.state, s.after = Wire(3), Wire(3)  # after: the phase after the guard
+        s.count = Wire(16)  # cycles left in the current phase after this one
+        s.resets = Wire(8)  # common-mode resets left
         s.next_state, s.next_after = Wire(3), Wire(3)
         s.next_count = Wire(16)
         s.length = Wire(16)

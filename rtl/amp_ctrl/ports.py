@@ -1,4 +1,4 @@
-"""AmpCtrl's ports, the same at every level."""
+"""AmpCtrl's ports, the same at every level (README.md)."""
 
 from pymtl3 import InPort, OutPort
 

@@ -1,4 +1,4 @@
-"""AspChip at functional level: registers and golden frames behind the chip's pins."""
+"""AspChip at functional level: registers and golden frames at the chip's pins."""
 
 from pymtl3 import Component, Wire, connect, update, update_ff
 
@@ -23,7 +23,7 @@ TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
 
 
 def frame_of(cfg):
-    """FrameParameters of a ChipConfig, without the durations. Raises ParameterError where there is no such frame."""
+    """FrameParameters of a ChipConfig, without the durations. Raises ParameterError if there is no such frame."""
     mode = MODES[int(cfg.mode)]
     return FrameParameters(
         Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))),
@@ -47,8 +47,8 @@ def trims_of(cfg):
 class AspChipFL(Component):
     """The bytes of AspChip without its timing: all steps are converted, then the frame is sent.
 
-    The converters' pins move as they do on the chip, so that any front end can answer; the amplifiers' pins rest,
-    for no row takes time here. Parameters: see AspChip.
+    The converters' pins have the chip's sequence, so any front end can be connected; the amplifiers' pins stay low,
+    since rows take no time here. Parameters: see AspChip.
     """
 
     def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6, divider="radix4", n_frac=8, iterations=10):

@@ -1,4 +1,4 @@
-"""AspChip: the whole digital chip. It only connects; what the blocks do is in their own folders."""
+"""AspChip: the whole digital chip. It connects the blocks, which have their own folders."""
 
 from pymtl3 import Component, Wire, connect, update, update_ff
 
@@ -22,7 +22,7 @@ TOF = 3
 
 
 class AspChip(Component):
-    """rows, cols: pixels of the array. lanes: converters, a power of two.
+    """The chip (README.md). rows, cols: pixels of the array. lanes: converters, a power of two.
     order: pixel type of each position in a tile of tile_rows x tile_cols, row by row.
     divider, n_frac, iterations: variant of the phase path and its width (rtl/quad_divider).
     """
@@ -44,7 +44,7 @@ class AspChip(Component):
         s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
         s.phase_on = Wire()
         s.was_sync = Wire()
-        s.cfg_told = Wire()  # cfg_err and amp_err are levels: tell each once a start
+        s.cfg_told = Wire()  # cfg_err and amp_err are levels: report each once per start
         s.amp_told = Wire()
 
         # Connections

@@ -1,10 +1,10 @@
-"""The trim that belongs to the pixels at the pins: position in the tile -> pixel type -> register."""
+"""The trim of the pixels at the pins: position in the tile -> pixel type -> register."""
 
 from pymtl3 import Bits3, Bits5, Bits10, Component, InPort, OutPort, Wire, clog2, mk_bits, trunc, update, zext
 
 
 class Balance(Component):
-    """order: pixel type of each position, row by row; tile_rows, tile_cols: 1..4, 1..6.
+    """The trim of a pixel. order: pixel type of each position, row by row; tile_rows, tile_cols: 1..4, 1..6.
     trim_bits, trim_stride: width of a trim register, and the distance from one to the next in ``trims``.
 
     trims: 24 registers, pixel type 0 in the lowest bits. balance: the one of the pixel at (row, k).

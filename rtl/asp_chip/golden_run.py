@@ -1,4 +1,4 @@
-"""A frame as the chip's pins see it, from golden functions: what AspChipFL plays."""
+"""A frame at the chip's pins, from golden functions: the behaviour of AspChipFL."""
 
 from dataclasses import dataclass, field
 
@@ -13,7 +13,7 @@ from models.parameters import FrameParameters, SensorParameters
 
 
 def resting_pins():
-    """The pins that a frame moves, before it does: dict name -> 0."""
+    """The pins that a frame drives, by name, with their value before a frame: 0."""
     return dict.fromkeys(
         (
             "dac",
@@ -35,9 +35,9 @@ def resting_pins():
 
 @dataclass
 class GoldenRun:
-    """One frame. The pins' values and the counters lie in attributes named as they are on the chip.
+    """One frame: the values of the pins by name, and the counters.
 
-    trims: register values by pixel type, unsigned. Raises ParameterError where no frame can start.
+    trims: register values by pixel type, unsigned. Raises ParameterError if no frame can start.
     """
 
     sensor: SensorParameters
@@ -52,9 +52,9 @@ class GoldenRun:
         self.scan = Scan(array.rows, array.cols, chip.lanes, self.frame, self.sensor.tile)
 
     def cycles(self, comparator, link_rdy):
-        """Generator: after each `next` the pins hold for a cycle.
+        """Generator of the frame: each `next` sets the pins for a cycle.
 
-        comparator, link_rdy: functions that give the pin's value in that cycle.
+        comparator, link_rdy: functions that return the pin's value in that cycle.
         """
         sensor, frame = self.sensor, self.frame
         codes = np.zeros((sensor.array.rows, sensor.array.cols, self.scan.subs), np.int16)
@@ -72,7 +72,7 @@ class GoldenRun:
         self.pins.update(link_val=0, frame_sync=0)
 
     def _convert(self, step, codes, comparator):
-        """The lanes of a step, a decision of all of them a cycle, into ``codes``."""
+        """Convert the lanes of a step into ``codes``, a decision of all lanes a cycle."""
         tile, frame = self.sensor.tile, self.frame
         tiles = {
             lane: self.scan.lanes * step.group + lane for lane in range(self.scan.lanes) if step.enable >> lane & 1

@@ -21,14 +21,14 @@ from pymtl3 import (
 
 
 class Pattern(Component):
-    """With `on`, `comparator` answers for the pattern's value at the pixel that `hold` last took; else for `analog`.
+    """With `on`, `comparator` compares the pattern's value at the pixel that `hold` sampled; else it is `analog`.
 
     lanes: converters, a power of two.
     """
 
     def construct(s, lanes):
         Lanes = mk_bits(lanes)
-        Codes = mk_bits(8 * max(lanes, 2))  # PyMTL cannot take a slice in a loop that is the whole signal
+        Codes = mk_bits(8 * max(lanes, 2))  # PyMTL cannot slice a whole signal in a loop
         MIDDLE = Bits6(0x20)
         GROUP_STEP = Bits8(5 * lanes)
 
@@ -44,7 +44,7 @@ class Pattern(Component):
 
         s.base = Wire(Bits8)  # the ramp at the group's first lane
         s.ramp = Wire(Codes)
-        s.lane_steps = Wire(Codes)  # what the ramp gains from lane to lane
+        s.lane_steps = Wire(Codes)  # the ramp's increase from lane to lane
         s.tile_bit = Wire(Lanes)  # bit 1 of each lane's tile column
         s.pattern = Wire(Codes)
         s.held = Wire(Codes)

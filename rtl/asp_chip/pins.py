@@ -1,4 +1,4 @@
-"""The chip's pins, the same at every level."""
+"""The chip's pins, the same at every level (README.md)."""
 
 from pymtl3 import Bits1, Bits2, Bits3, Bits8, Bits10, InPort, OutPort, mk_bits
 
@@ -8,7 +8,7 @@ INPUTS = ("sclk", "csn", "mosi", "link_rdy")
 
 
 def pins(lanes):
-    """(inputs, outputs) besides clk and reset: dict name -> type. lanes: converters."""
+    """Types of the inputs and of the outputs by name, without clk and reset. lanes: converters."""
     inputs = {**dict.fromkeys(INPUTS, Bits1), "comparator": mk_bits(lanes)}
     outputs = {
         "miso": Bits1,

@@ -1,22 +1,22 @@
-"""EdgeAdc at cycle level: the RTL's cycles and stalls, data by models.digital.sar.decisions."""
+"""EdgeAdc at cycle level: the RTL's cycles and stalls, data from models.digital.sar.decisions."""
 
 from pymtl3 import Component, update_ff
 
 from models.digital.sar import BITS, decisions
 
-from .ports import add_ports
+from .ports import declare_ports
 
 
 class LaneCycles:
-    """One lane without ports, a cycle a call; AdcBankCL is made of these too.
+    """One lane without ports, a cycle a call; AdcBankCL has one per lane.
 
     dac: code at the DAC.  result: (code, converted) at the output, or None.
     """
 
     def __init__(self):
-        self.run = None  # the conversion under way
-        self.left = 0  # decisions it takes at most from here
-        self.waiting = None  # a result that finds the one before not taken yet
+        self.run = None  # the conversion in progress
+        self.left = 0  # decisions left at most
+        self.waiting = None  # a result while the previous one is not taken yet
         self.result = None
         self.dac = 0
 
@@ -44,15 +44,15 @@ class LaneCycles:
 
     @property
     def free(self):
-        """A go may be given in the cycle after this one."""
+        """True if a go is accepted in the next cycle."""
         return not self.busy or (0 < self.left <= 2 and self.result is None)
 
 
 class EdgeAdcCL(Component):
-    """Same ports as EdgeAdc, and the same values on them in every cycle."""
+    """The ports of EdgeAdc, and the same values in every cycle."""
 
     def construct(s):
-        add_ports(s)
+        declare_ports(s)
 
         s.lane = LaneCycles()
 

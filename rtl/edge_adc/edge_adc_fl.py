@@ -1,4 +1,4 @@
-"""EdgeAdc at functional level: models.digital.sar.decisions behind the ports."""
+"""EdgeAdc at functional level: models.digital.sar.decisions at the ports."""
 
 from collections import deque
 
@@ -6,14 +6,14 @@ from pymtl3 import Component, update_ff
 
 from models.digital.sar import decisions
 
-from .ports import add_ports
+from .ports import declare_ports
 
 
 class EdgeAdcFL(Component):
-    """Same ports and same results as EdgeAdc. Results queue up without bound; one conversion at a time."""
+    """The ports of EdgeAdc, one conversion at a time, and the same results in an unbounded queue."""
 
     def construct(s):
-        add_ports(s)
+        declare_ports(s)
 
         s.run, s.results = None, deque()
 

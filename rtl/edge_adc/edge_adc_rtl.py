@@ -1,35 +1,35 @@
-"""EdgeAdc at RTL: control of one successive-approximation lane with a zero window.
+"""EdgeAdc at RTL. The lowest 1 of the trial marks the bit on trial: all bits below it are still 0.
 
-The trial itself says which bit is on trial: its lowest one, for all below it are still zero.
-Conditions are nested where one alone would do, so that a simulator skips what a lane at rest does not need.
-"""
+Nested conditions let a simulator skip the logic of an idle lane."""
 
 from pymtl3 import Bits3, Bits8, Component, Wire, update, update_ff, zext
 
-from .ports import add_ports
+from .ports import declare_ports
 
-# ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, when the first has said "above".
-# WAIT, WAIT_ZERO: a result whose predecessor was not taken yet; the code of WAIT is in `trial`.
+# ABOVE and BELOW: first and second decision of the window; OUTSIDE: the second, after the first found "above".
+# WAIT, WAIT_ZERO: a result waits until the previous one is taken; the code of WAIT is in `trial`.
 IDLE, ABOVE, BELOW, OUTSIDE, SEARCH, WAIT, WAIT_ZERO = range(7)
 MIDDLE = 0x80  # code 0 in offset binary, and the first trial of the search
 
 
 class EdgeAdc(Component):
+    """Control of one successive-approximation lane with a zero window (README.md)."""
+
     def construct(s):
         # Interface
-        add_ports(s)
+        declare_ports(s)
 
         # Components
         s.state = Wire(Bits3)
         s.trial = Wire(Bits8)  # at the DAC
         s.full = Wire()  # `code` waits to be taken
         s.code = Wire(Bits8)
-        s.search_made = Wire()  # it took a search
+        s.search_made = Wire()  # by a search
 
-        s.kept = Wire(Bits8)  # the trial after the comparator's answer
+        s.kept = Wire(Bits8)  # the trial after the comparator's decision
         s.result = Wire(Bits8)
         s.magnitude = Wire(Bits8)
-        s.found = Wire()  # `result` stands
+        s.found = Wire()  # `result` is valid
 
         # Connections
         s.dac //= s.trial
@@ -45,7 +45,7 @@ class EdgeAdc(Component):
             if s.state != IDLE:
                 s.free @= (s.state == SEARCH) & ((s.trial & 3) != 0) & ~s.full
 
-        # Logic: what a conversion ends with
+        # Logic: the result of a conversion
         @update
         def up_result():
             s.found @= 0

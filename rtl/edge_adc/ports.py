@@ -1,11 +1,11 @@
-"""The ports that every level of EdgeAdc has (README.md)."""
+"""EdgeAdc's ports, the same at every level (README.md)."""
 
 from pymtl3 import Bits7, Bits8, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 
-def add_ports(s):
-    """The interface of EdgeAdc."""
+def declare_ports(s):
+    """Give the component ``s`` its ports."""
     s.go = InPort()
     s.unsigned_ = InPort()
     s.threshold = InPort(Bits7)

@@ -1,4 +1,4 @@
-"""PhasePath: four time-of-flight taps to phase and amplitude, on the way from the converters to the encoder."""
+"""PhasePath: four time-of-flight taps to phase and amplitude, between the converters and the encoder."""
 
 from .phase_path_cl import PhasePathCL
 from .phase_path_fl import PhasePathFL

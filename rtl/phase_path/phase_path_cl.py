@@ -1,4 +1,4 @@
-"""PhasePath at cycle level: the RTL's cycles and stalls, around the divider's cycle level."""
+"""PhasePath at cycle level: the RTL's cycles and stalls, with the divider's cycle level."""
 
 from pymtl3 import Bits8, Component, InPort, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
@@ -8,7 +8,7 @@ from rtl.quad_divider import QuadDividerCL
 
 
 class PhasePathCL(Component):
-    """Same ports as PhasePath, and the same handshakes in every cycle."""
+    """The ports of PhasePath, and the same handshakes in every cycle."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
         s.recv = RecvIfcRTL(ScanMsg)
@@ -19,10 +19,10 @@ class PhasePathCL(Component):
         s.divider = QuadDividerCL(divider, n_frac, iterations)
         s.divider.noise_floor //= s.noise_floor
 
-        s.head = None  # (kind, data): the message that came last and has not gone on
-        s.taps = [[]]  # samples of the taps of a step so far, the last list of them growing
+        s.head = None  # (kind, data): the message in the input register
+        s.taps = [[]]  # samples of a step, a list per tap; the last list grows
         s.in_flight = 0  # vectors in the divider
-        s.half_sent = False  # of the divider's response the phase has left
+        s.half_sent = False  # the phase of the divider's response is sent
 
         def is_tap():
             return s.head is not None and bool(s.on) and s.head[0] == SAMPLE

@@ -1,4 +1,4 @@
-"""PhasePath at functional level: models.digital.phase.phase_samples behind the ports."""
+"""PhasePath at functional level: models.digital.phase.phase_samples at the ports."""
 
 from collections import deque
 
@@ -11,7 +11,7 @@ from rtl.messages import SAMPLE, ScanMsg
 
 
 class PhasePathFL(Component):
-    """Same ports and same messages as PhasePath. Takes a message a cycle; what leaves queues up without bound."""
+    """The ports of PhasePath, a message taken a cycle, and the same messages in an unbounded queue."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
         chip = ChipParameters(lanes, divider, n_frac, iterations)
@@ -20,7 +20,7 @@ class PhasePathFL(Component):
         s.noise_floor = InPort(Bits8)
         s.send = SendIfcRTL(ScanMsg)
 
-        s.taps = [[]]  # samples of the taps of a step so far
+        s.taps = [[]]  # samples of a step, a list per tap
         s.queue = deque()
 
         def take(kind, data):

@@ -26,7 +26,7 @@ IN_FLIGHT_MAX = 63  # more than any divider holds
 
 
 class TapEntry(Component):
-    """The registers of a sample in the store, and their link in the chain that reads those whose turn it is."""
+    """The registers of a sample in the store, and a link of the chain that reads the sample whose turn it is."""
 
     def construct(s):
         s.turn = InPort()
@@ -59,7 +59,7 @@ class TapEntry(Component):
 
 
 class TapStore(Component):
-    """What the fourth tap of a step needs of the first three, for every sample of the step.
+    """The values of the first three taps that the fourth one needs, for every sample of a step.
 
     lanes: samples of a step at most.
     """
@@ -112,7 +112,7 @@ class TapStore(Component):
 
 
 class PhasePath(Component):
-    """lanes: of the bank ahead. divider, n_frac, iterations: see rtl.quad_divider."""
+    """Four taps to phase and amplitude (README.md). divider, n_frac, iterations: see rtl.quad_divider."""
 
     def construct(s, lanes=8, divider="radix4", n_frac=8, iterations=10):
         Lanes = mk_bits(lanes)
@@ -132,12 +132,12 @@ class PhasePath(Component):
         s.data = Wire(Bits10)
         s.tap = Wire(Bits2)
         s.turn = Wire(Lanes)  # one-hot: number in its step of the sample in the register
-        s.in_flight = Wire(Bits6)  # requests whose responses have not left
-        s.second = Wire()  # the phase of a response left, its amplitude is next
+        s.in_flight = Wire(Bits6)  # requests whose responses are not sent
+        s.second = Wire()  # the phase of a response is sent, its amplitude is next
 
         s.sample = Wire()  # a tap is in the register
         s.fourth = Wire()
-        s.passes = Wire()  # what is in the register may leave as it is
+        s.passes = Wire()  # the message in the register passes unchanged
         s.asked = Wire()
         s.answered = Wire()
         s.consumed = Wire()

@@ -1,4 +1,4 @@
-"""Between a vector and its octant: what comes before the division and after it, without a register."""
+"""The combinational logic before and after the division: the vector folded into its octant, the angle unfolded."""
 
 from pymtl3 import Bits5, Bits8, Bits9, Component, InPort, OutPort, Wire, clog2, concat, mk_bits, sext, update, zext
 
@@ -9,7 +9,7 @@ from rtl.messages import DivReq, div_resp
 class Fold(Component):
     """The octant of (x, y), and |x|, |y| in order of size.
 
-    Turned back by its quadrant, a vector other than zero has u > 0 and v >= 0.
+    Rotated into the first quadrant, a vector other than zero has u > 0 and v >= 0.
     """
 
     def construct(s):
@@ -52,7 +52,7 @@ class Fold(Component):
 
 
 class PhaseIndex(Component):
-    """The table: how many of the 32 thresholds the ratio has reached, by binary search."""
+    """The phase table: the number of thresholds, of 32, that the ratio has reached, by binary search."""
 
     def construct(s, n_frac):
         s.ratio = InPort(n_frac)

@@ -27,7 +27,7 @@ class AddSubtract(Component):
 
 
 class Rotation(Component):
-    """Turn (x, y) by atan(2^-(i + 1)) towards the x axis and count ``angle`` in z. Shifts round down."""
+    """Rotate (x, y) by atan(2^-(i + 1)) towards the x axis and add ``angle`` to z. Shifts round down."""
 
     def construct(s, fraction):
         x_bits, y_bits, z_bits = 9 + fraction, 10 + fraction, 7 + fraction
@@ -65,7 +65,7 @@ class Rotation(Component):
 
 
 class NearestEven(Component):
-    """z as an integer: rounded to nearest, ties to even; signed."""
+    """z rounded to the nearest integer, ties to even; signed."""
 
     def construct(s, fraction):
         s.z = InPort(7 + fraction)
@@ -81,7 +81,7 @@ class NearestEven(Component):
 
 
 class CordicDatapath(Component):
-    """The folded vector and its angle, turned in place."""
+    """The registers of the folded vector and its angle, and one rotation."""
 
     def construct(s, iterations):
         x_bits, y_bits, z_bits = 9 + iterations, 10 + iterations, 7 + iterations
@@ -163,7 +163,7 @@ class CordicDatapath(Component):
 
 
 class Cordic(IterativeDivider):
-    """The phase without a ratio. iterations: 4..16, and as many fraction bits."""
+    """The phase by CORDIC, without a ratio. iterations: 4..16, also the number of fraction bits."""
 
     def construct(s, iterations=10):
         check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)

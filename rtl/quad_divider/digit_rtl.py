@@ -1,4 +1,4 @@
-"""Restoring division, digit by digit. Every variant holds the same state and turns it by the same digits."""
+"""Restoring division, digit by digit. Every variant has the same state and updates it by the same digits."""
 
 from functools import cache
 
@@ -24,7 +24,7 @@ from pymtl3 import (
 
 @cache
 def div_state(quotient_bits):
-    """A division under way: larger * (what quotient stands for) + rest = smaller, and 0 <= rest <= larger.
+    """The state of a division: larger * (value of quotient) + rest = smaller, and 0 <= rest <= larger.
 
     rest = larger only for |x| = |y| (and for zero): then every digit is the highest, and the ratio saturates.
     """
@@ -35,7 +35,7 @@ def div_state(quotient_bits):
 
 
 class Radix2Digit(Component):
-    """One bit: 2 rest - larger, where that is not negative."""
+    """One bit: 2 rest - larger, if that is not negative."""
 
     digit_bits = 1
 
@@ -64,7 +64,7 @@ class Radix2Digit(Component):
 
 
 class Radix4Digit(Component):
-    """Two bits: the multiples 1, 2 and 3 of larger are taken from 4 rest side by side."""
+    """Two bits: larger, 2 larger and 3 larger are subtracted from 4 rest in parallel."""
 
     digit_bits = 2
 

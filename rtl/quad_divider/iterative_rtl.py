@@ -1,4 +1,4 @@
-"""What the iterative variants share: one state machine, and its connection to a datapath and the streams."""
+"""The parts common to the iterative variants: a state machine, and its connection to a datapath and the streams."""
 
 from pymtl3 import Component, InPort, OutPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
@@ -7,7 +7,7 @@ from rtl.messages import DivReq, div_resp
 
 
 class IterativeControl(Component):
-    """Idle, running or done: load the operands, step until the datapath says `last`, offer the result."""
+    """Idle, running or done: load the operands, step until the datapath's `last`, offer the result."""
 
     def construct(s):
         s.recv_val = InPort()

@@ -1,4 +1,4 @@
-"""QuadDivider at cycle level: the cycles of each variant, data by the golden functions."""
+"""QuadDivider at cycle level: the cycles of each variant, data from the golden functions."""
 
 from pymtl3 import Component, InPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
@@ -10,9 +10,9 @@ from .variants import ratio_bits, timing
 
 
 class QuadDividerCL(Component):
-    """Responses move through as many slots as the variant has cycles of latency; the last slot is offered.
+    """Responses move through one slot per cycle of latency; the last slot is offered.
 
-    All slots move together, unless the last waits to be taken. An iterative variant fills one slot at a time.
+    All slots move together, unless the last one waits to be taken. An iterative variant fills one slot at a time.
     """
 
     def construct(s, variant, n_frac=8, iterations=10):

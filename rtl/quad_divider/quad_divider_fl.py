@@ -1,4 +1,4 @@
-"""QuadDivider at functional level: the golden functions behind the ports."""
+"""QuadDivider at functional level: the golden functions at the ports."""
 
 from pymtl3 import Component, InPort, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
@@ -10,7 +10,7 @@ from .variants import check_variant, ratio_bits
 
 
 def response(variant, n_frac, iterations, request, noise_floor):
-    """The DivResp that ``variant`` must give to the DivReq ``request``."""
+    """The DivResp of ``variant`` to the DivReq ``request``."""
     r = divide(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
     return div_resp(ratio_bits(variant, n_frac))(
         int(r.octant), int(r.ratio), int(r.zero), int(r.phase), int(r.amp_valid), int(r.amp)
@@ -18,7 +18,7 @@ def response(variant, n_frac, iterations, request, noise_floor):
 
 
 class QuadDividerFL(Component):
-    """Same ports and same responses as any variant; takes one request, then offers its response."""
+    """The ports of any variant, and the same responses; one request at a time."""
 
     def construct(s, variant, n_frac=8, iterations=10):
         check_variant(variant, n_frac, iterations)

@@ -13,7 +13,7 @@ from .iterative_rtl import IterativeDivider
 
 
 class Operands(Component):
-    """A request as the state of a division that has no digit yet."""
+    """The initial state of the division of a request."""
 
     def construct(s, quotient_bits):
         State, Quotient = div_state(quotient_bits), mk_bits(quotient_bits)
@@ -32,7 +32,7 @@ class Operands(Component):
 
 
 class Result(Component):
-    """The response of a division that is over: its phase by the table."""
+    """The response of a finished division, with the phase from the table."""
 
     def construct(s, n_frac):
         s.octant = InPort(3)
@@ -54,7 +54,7 @@ class Result(Component):
 
 
 class DividerDatapath(Component):
-    """One state register that goes around through one digit."""
+    """One state register that one digit updates in every cycle."""
 
     def construct(s, n_frac, Digit):
         digits = -(-n_frac // Digit.digit_bits)
@@ -80,7 +80,7 @@ class DividerDatapath(Component):
         s.result.octant //= s.state.octant
         s.result.larger //= s.state.larger
         s.result.amp_valid //= s.state.amp_valid
-        s.result.ratio //= s.state.quotient[quotient_bits - n_frac : quotient_bits]  # a last digit may give a bit more
+        s.result.ratio //= s.state.quotient[quotient_bits - n_frac : quotient_bits]  # the last digit may be too long
         s.result.msg //= s.send_msg
         s.last //= lambda: s.count == Bits4(digits - 1)
 
@@ -98,7 +98,7 @@ class DividerDatapath(Component):
 
 
 class QuadDividerRadix2(IterativeDivider):
-    """One bit of the ratio a cycle: the smallest. n_frac: 4..16."""
+    """One bit of the ratio a cycle: the smallest variant. n_frac: 4..16."""
 
     def construct(s, n_frac=8):
         check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
@@ -114,7 +114,7 @@ class QuadDividerRadix4(IterativeDivider):
 
 
 class PipelineRegister(Component):
-    """A state and whether there is one. It moves when ``advance`` is high; an empty one keeps its bits still."""
+    """A pipeline register with a valid bit. It moves while ``advance`` is high; without a division its bits stay."""
 
     def construct(s, quotient_bits):
         State = div_state(quotient_bits)
@@ -136,7 +136,7 @@ class PipelineRegister(Component):
 
 
 class QuadDividerPipelined(Component):
-    """A stage a bit: one result a cycle. The whole pipeline stops while its result is not taken. n_frac: 4..16."""
+    """A stage per bit: one result a cycle. The whole pipeline stops while its result is not taken. n_frac: 4..16."""
 
     def construct(s, n_frac=8):
         check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
@@ -148,7 +148,7 @@ class QuadDividerPipelined(Component):
         s.operands = Operands(n_frac)
         stages = [PipelineRegister(n_frac) for _ in range(n_frac + 1)]
         digits = [Radix2Digit(n_frac) for _ in range(n_frac)]
-        # Not as lists: PyMTL would join their ports in arrays, which Yosys calls memories.
+        # Not as lists: PyMTL would join their ports in arrays, which Yosys reads as memories.
         for i, stage in enumerate(stages):
             setattr(s, f"stage{i}", stage)
         for i, digit in enumerate(digits):

@@ -1,4 +1,4 @@
-"""The variants by name, and what each takes: the registry behind the block's parameters."""
+"""The variants by name, their parameters and their timing."""
 
 from models.parameters import DIVIDERS, check_choice, check_int
 from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
@@ -10,7 +10,7 @@ DIVIDING = {"radix2": QuadDividerRadix2, "radix4": QuadDividerRadix4, "pipelined
 
 
 def check_variant(variant, n_frac, iterations):
-    """Raise ParameterError unless the arguments name a divider."""
+    """Raise ParameterError unless there is such a divider."""
     check_choice("divider", variant, DIVIDERS)
     check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
@@ -19,19 +19,19 @@ def check_variant(variant, n_frac, iterations):
 def quad_divider(variant, n_frac=8, iterations=10):
     """The RTL of ``variant`` ('radix2', 'radix4', 'pipelined' or 'cordic'). Raises ParameterError.
 
-    n_frac: fraction bits of the ratio, 4..16 (not for CORDIC).  iterations: of CORDIC, 4..16.
+    n_frac: fraction bits of the ratio, 4..16 (not for CORDIC). iterations: of CORDIC, 4..16.
     """
     check_variant(variant, n_frac, iterations)
     return Cordic(iterations) if variant == "cordic" else DIVIDING[variant](n_frac)
 
 
 def ratio_bits(variant, n_frac=8):
-    """Width of the response's ratio: n_frac, or CORDIC's own width for a ratio that is 0."""
+    """Width of the response's ratio: n_frac, or the fixed width of CORDIC's ratio, which is 0."""
     return RATIO_BITS if variant == "cordic" else n_frac
 
 
 def timing(variant, n_frac=8, iterations=10):
-    """(latency, interval) in cycles: from the request's to the response's first cycle, and between two results."""
+    """Latency and interval in cycles: from the request to the first cycle of the response, and between two results."""
     check_variant(variant, n_frac, iterations)
     steps = {"radix2": n_frac, "radix4": -(-n_frac // 2), "pipelined": n_frac, "cordic": iterations}[variant]
     return steps + 1, 1 if variant == "pipelined" else steps + 2

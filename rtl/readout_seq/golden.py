@@ -1,4 +1,4 @@
-"""The golden scan behind ReadoutSeq's ports: configuration from them, messages to them."""
+"""The golden scan for the levels of ReadoutSeq: configuration from the ports, messages to them."""
 
 from models.digital.scan import Scan
 from models.parameters import MODES, FrameParameters, TileParameters, Window
@@ -8,14 +8,14 @@ from .ports import WINDOW
 
 
 def configured_scan(s, rows, cols, lanes, tile):
-    """The Scan that the ports of component ``s`` ask for. Raises ParameterError where no frame can start."""
+    """The Scan that the ports of component ``s`` configure. Raises ParameterError if no frame can start."""
     window = Window(*(int(getattr(s, name)) for name in WINDOW))
     frame = FrameParameters(window, MODES[int(s.mode)], int(s.mask), decimation=int(s.decimation))
     return Scan(rows, cols, lanes, frame, tile)
 
 
 def tile_of(order, tile_rows, tile_cols):
-    """TileParameters whose positions lie in ``order``."""
+    """TileParameters with the pixel types in ``order``."""
     return TileParameters(tile_rows, tile_cols, TileParameters().types[: tile_rows * tile_cols], tuple(order))
 
 

@@ -1,4 +1,4 @@
-"""ReadoutSeq's ports, the same at every level, and what its parameters say of the array's edges."""
+"""ReadoutSeq's ports, the same at every level (README.md), and the array's edges from its parameters."""
 
 from typing import NamedTuple
 
@@ -12,8 +12,9 @@ WINDOW = ("row0", "row1", "col0", "col1")
 
 
 class Edges(NamedTuple):
-    """last_row, last_col: index of the last tile down and across, 0..255.
-    rows_there, cols_there: rows and columns of pixels that exist in them, 1..tile's.
+    """The last tile row and column of the array, which may be partial.
+
+    last_row, last_col: their index, 0..255. rows_there, cols_there: rows and columns of pixels in them, 1..the tile's.
     """
 
     last_row: int
@@ -23,7 +24,7 @@ class Edges(NamedTuple):
 
 
 def edges(rows, cols, lanes, order, tile_rows, tile_cols):
-    """Edges of an array of rows x cols pixels. Raises ParameterError for what the ports cannot address."""
+    """Edges of an array of rows x cols pixels. Raises ParameterError if the ports cannot address it."""
     check_int("rows", rows, 1, ROWS_MAX)
     check_int("cols", cols, 1, COLS_MAX)
     check_choice("lanes", lanes, LANES)

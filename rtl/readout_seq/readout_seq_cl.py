@@ -1,4 +1,4 @@
-"""ReadoutSeq at cycle level: the RTL's cycles and stalls, data by the golden scan."""
+"""ReadoutSeq at cycle level: the RTL's cycles and stalls, data from the golden scan."""
 
 from pymtl3 import Component, update, update_ff
 
@@ -10,7 +10,7 @@ from .ports import declare_ports, edges
 
 
 class ReadoutSeqCL(Component):
-    """Same ports as ReadoutSeq, and the same values on them in every cycle (README.md)."""
+    """The ports of ReadoutSeq (README.md), and the same values in every cycle."""
 
     def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6):
         edges(rows, cols, lanes, order, tile_rows, tile_cols)
@@ -40,17 +40,17 @@ class ReadoutSeqCL(Component):
             s.cycles <<= s.count
 
     def clear(s):
-        """The state behind a reset."""
-        s.frame = None  # generator: the walk through the frame, a cycle a step
-        s.todo = None  # rows that the amplifiers have not begun
-        s.amplified = 0  # the row they began last
+        """Set the state after a reset."""
+        s.frame = None  # generator of the frame, a cycle a step
+        s.todo = None  # rows that the amplifiers have not started
+        s.amplified = 0  # the row they started last
         s.integrating = s.started = s.failing = s.ended = s.error = False
         s.held = None  # row in the sample-and-holds
         s.offer = None  # message at the port
         s.count = 0
 
     def tick(s):
-        """What the edge at the end of a cycle does."""
+        """Update the state at the clock edge."""
         was_started, s.started, s.ended = s.started, False, False
         if s.frame is None:
             if s.start:
@@ -72,7 +72,7 @@ class ReadoutSeqCL(Component):
             next(s.frame, None)
 
     def begin(s):
-        """`start` in idle."""
+        """Accept or refuse `start` in idle."""
         try:
             scan = configured_scan(s, *s.size)
         except ParameterError:
@@ -84,16 +84,16 @@ class ReadoutSeqCL(Component):
         next(s.frame)
 
     def launch(s):
-        """Give the next row, if there is one, to the amplifiers."""
+        """Start the amplifiers for the next row, if there is one."""
         if s.todo:
             s.amplified = s.todo.pop(0)
             s.integrating = s.started = True
 
     def walk(s, scan):
-        """A frame; every yield is one clock cycle."""
+        """Generate a frame; every yield is one clock cycle."""
         s.launch()
         yield  # `amp_start`
-        yield  # and its answer, which may be `amp_err`
+        yield  # and the cycle of a possible `amp_err`
         yield from s.send(mark(FRAME, scan.lanes))
         while s.integrating or s.held is not None:
             yield

@@ -1,4 +1,4 @@
-"""ReadoutSeq at functional level: the golden scan behind the ports, one row after the other, nothing ahead of time."""
+"""ReadoutSeq at functional level: the golden scan at the ports, one row after the other, without overlap."""
 
 from collections import deque
 
@@ -12,7 +12,7 @@ from .ports import declare_ports, edges
 
 
 class ReadoutSeqFL(Component):
-    """Same ports and same messages as ReadoutSeq (README.md). A row's messages queue up; `overlap` changes nothing."""
+    """The ports of ReadoutSeq (README.md), and the same messages, queued by row; `overlap` has no effect."""
 
     def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6):
         edges(rows, cols, lanes, order, tile_rows, tile_cols)
@@ -48,14 +48,14 @@ class ReadoutSeqFL(Component):
             s.cycles <<= s.count
 
     def clear(s):
-        """The state behind a reset."""
-        s.job, s.queue = None, deque()  # the frame's generator, and messages on their way
+        """Set the state after a reset."""
+        s.job, s.queue = None, deque()  # the frame's generator, and messages to be sent
         s.row = s.count = 0
         s.started = s.ended = False
         s.error, s.free = False, True
 
     def begin(s):
-        """`start` in idle."""
+        """Accept or refuse `start` in idle."""
         try:
             s.job, s.error, s.count = s.frame(configured_scan(s, *s.size)), False, 0
             next(s.job)
@@ -63,8 +63,8 @@ class ReadoutSeqFL(Component):
             s.job, s.error = None, True
 
     def frame(s, scan):
-        """The walk; every yield is one clock cycle."""
-        opening = [mark(FRAME, scan.lanes)]  # not before the amplifiers' control has taken its durations
+        """Generate a frame; every yield is one clock cycle."""
+        opening = [mark(FRAME, scan.lanes)]  # not before AmpCtrl has accepted its durations
         for row in scan.row_list:
             s.row, s.started = int(row), True
             yield  # `amp_start`

@@ -1,4 +1,4 @@
-"""ReadoutSeq at RTL: the walks know which row and step come next, the control here knows when."""
+"""ReadoutSeq at RTL: RowWalk and StepWalk find the next row and step, the control here decides when."""
 
 from pymtl3 import Component, Wire, concat, update, update_ff, zext
 
@@ -31,11 +31,11 @@ class ReadoutSeq(Component):
         s.rows = RowWalk(tile_rows, last_row, rows_there)
         s.steps = StepWalk(lanes, last_col, cols_there)
         s.state = Wire(3)
-        s.integrating = Wire()  # a row is with the amplifiers
-        s.failing = Wire()  # given up as soon as the message on offer is taken
+        s.integrating = Wire()  # the amplifiers expose or read a row
+        s.failing = Wire()  # aborted as soon as the offered message is taken
         s.row = Wire(10)  # the row that converts
         s.unmasked = Wire(24)  # by position, six to a row of the tile
-        s.columns = Wire(24)  # of these, what exists in tile column col0
+        s.columns = Wire(24)  # of these, those in tile column col0 that exist
         s.window_ok = Wire()
         s.idle, s.taken, s.listening, s.failed, s.landed, s.drained = Wire(), Wire(), Wire(), Wire(), Wire(), Wire()
         s.accept, s.launch, s.abort = Wire(), Wire(), Wire()

@@ -1,10 +1,10 @@
-"""The rows of a frame, ascending: the next one is found in no time, however many in between are masked."""
+"""The rows of a frame, ascending: the next one is found in one cycle, however many are masked in between."""
 
 from pymtl3 import Bits4, Bits9, Component, InPort, OutPort, Wire, update, update_ff, zext
 
 
 class RowWalk(Component):
-    """Stands at ``row``; with ``look`` it says whether a next row is there (``found``), with ``move`` it goes there.
+    """The current ``row``. ``look``: find the next row, ``found`` if there is one; ``move``: go to it.
 
     tile_rows: rows of a tile. last_tile: index of the last tile. rows_there: rows that exist in it.
     """
@@ -14,7 +14,7 @@ class RowWalk(Component):
         BELOW = Bits4(0xE)
 
         # Interface
-        s.columns = InPort(24)  # what is read of each row of a tile, six bits a row
+        s.columns = InPort(24)  # columns read of each row of a tile, six bits a row
         s.row0 = InPort(8)
         s.row1 = InPort(8)
         s.decimation = InPort(2)
@@ -23,15 +23,15 @@ class RowWalk(Component):
         s.move = InPort()
         s.found = OutPort()
         s.row = OutPort(10)
-        s.row_columns = OutPort(6)  # what is read of `row`
+        s.row_columns = OutPort(6)  # columns read of `row`
 
         # Components
         s.tile = Wire(8)
         s.in_tile = Wire(2)  # row = tile_rows * tile + in_tile
-        s.wanted = Wire(4)  # rows of a tile with something to read
-        s.far = Wire(9)  # the tile behind this one
+        s.wanted = Wire(4)  # rows of a tile with a column to read
+        s.far = Wire(9)  # the next tile
         s.below = Wire(4)  # rows to read in this tile, below `row`
-        s.beyond = Wire(4)  # and in the tile behind
+        s.beyond = Wire(4)  # and in the next tile
         s.choice = Wire(4)
         s.next_tile = Wire(8)
         s.next_in_tile = Wire(2)

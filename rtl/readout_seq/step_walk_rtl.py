@@ -6,12 +6,12 @@ STRIDES = (1, 2, 4, 8)  # in tiles, by decimation
 
 
 class StepWalk(Component):
-    """``load`` puts it at the first step of a row that reads ``columns``; ``advance`` moves it on unless at the last.
+    """The current step of a row. ``load``: the first step that reads ``columns``; ``advance``: the next one, if any.
 
     lanes: a power of two. last_col: index of the last tile across. cols_there: columns that exist in it.
 
-    Lanes whose tiles decimation keeps are the same in every group, for stride and lanes are powers of two;
-    only the first group loses those left of col0, and the last one those right of the last tile that is kept.
+    Stride and lanes are powers of two, so decimation enables the same lanes in every group, except that the first
+    group loses those left of col0, and the last group those right of the last tile that is read.
     """
 
     def construct(s, lanes, last_col, cols_there):
@@ -33,8 +33,8 @@ class StepWalk(Component):
         s.last = OutPort()  # the row's last step
 
         # Components
-        s.last_tile = Wire(8)  # last tile that is kept in column k
-        s.left = Wire(6)  # columns still to come
+        s.last_tile = Wire(8)  # last tile that is read in column k
+        s.left = Wire(6)  # columns left
         s.sub_ends, s.group_ends = Wire(), Wire()
         s.regroup = Wire()  # the next step has another group
         s.turn = Wire()  # and another column
@@ -55,7 +55,7 @@ class StepWalk(Component):
             s.regroup @= s.load | (s.advance & s.sub_ends & ~s.last)
             s.turn @= s.load | (s.advance & s.sub_ends & s.group_ends & ~s.last)
 
-        # Logic: what comes next; the conditions only spare simulators the work
+        # Logic: the next step; the conditions only save simulation time
         @update
         def up_column():
             s.pending @= 0
@@ -122,11 +122,11 @@ class StepWalk(Component):
 
 
 def add_lanes(s, lanes, shift, Lanes):
-    """The lanes that convert, of two or more: a register in StepWalk ``s``."""
+    """Give StepWalk ``s``, of two or more lanes, the register of the enabled ones."""
     ALL = Lanes((1 << lanes) - 1)
     kept = [Lanes(sum(1 << lane for lane in range(0, lanes, n))) for n in STRIDES]
     kept_1, kept_2, kept_3 = kept[1:]
-    few = min(3, shift)  # bits of a tile's number that decimation looks at within a group
+    few = min(3, shift)  # bits of a tile's index in its group that decimation uses
 
     s.offset = Wire(few)
     s.kept = Wire(Lanes)  # by decimation, with the first lane kept

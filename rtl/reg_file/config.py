@@ -9,7 +9,7 @@ from models.parameters.registers import register_map
 
 @cache
 def chip_config():
-    """ChipConfig: every configuration field by its name, and `trims`, the trim registers as they lie.
+    """ChipConfig: every configuration field by its name, and `trims`, the trim registers.
 
     The register of pixel type 0 is lowest; its value is in the low bits of its bytes.
     """

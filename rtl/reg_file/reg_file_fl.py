@@ -1,4 +1,4 @@
-"""The register file at functional level: models.digital.registers behind the pins."""
+"""The register file at functional level: models.digital.registers at the pins."""
 
 from pymtl3 import Bits8, Component, InPort, OutPort, update_ff
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
@@ -10,7 +10,7 @@ from .config import chip_config, chip_status
 
 
 class RegFileFL(Component):
-    """Same ports and same bytes as RegFile; the pins are taken without synchronisers, some cycles earlier."""
+    """The ports of RegFile, and the same bytes some cycles earlier: the pins have no synchronizers."""
 
     def construct(s, last_row=95, last_col=63):
         Config = chip_config()

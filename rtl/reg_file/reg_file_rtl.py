@@ -32,7 +32,7 @@ def packed(image, first, last):
 
 
 class RegFile(Component):
-    """Configuration, locked while status.busy; see README.md.
+    """The register file behind SPI (README.md).
 
     last_row, last_col: last tile row and column of the array, the reset values of row1 and col1.
     """
@@ -52,7 +52,7 @@ class RegFile(Component):
         A_CYCLES, A_MADE, A_LEFT_OUT = (Bits7(f.byte) for f in chip.counters)
         LAST_COUNTER = Bits7(chip.counters[-1].byte + 7)
         START_BIT = chip["start"].shift
-        sticky = [f for f in chip.fields if f.access == "w1c"]  # neighbours (a test says so)
+        sticky = [f for f in chip.fields if f.access == "w1c"]  # adjacent bits (a test checks it)
         low, high = sticky[0].shift, sticky[-1].shift + 1
         Sticky = mk_bits(high - low)
         KEPT_AT_START = Sticky(1 << chip["refused"].shift - low)

@@ -4,10 +4,10 @@ from pymtl3 import Bits1, Bits2, Bits3, Bits8, Component, InPort, OutPort, Wire,
 
 
 class SpiSlave(Component):
-    """Bytes in as strobes, bytes out on demand; MSB first.
+    """Bits from and to the pins as bytes; MSB first.
 
-    rx, rx_val: a whole byte came in (one cycle). tx is taken at the falling edge that follows it, when
-    tx_take is high. selected: csn is low, and was high once since reset. sclk at most clk / 8.
+    rx, rx_val: a received byte (one cycle). tx is captured at the falling edge that follows it, when tx_take is high.
+    selected: csn is low, and has been high since reset. sclk is at most clk / 8.
     """
 
     def construct(s):
@@ -25,7 +25,7 @@ class SpiSlave(Component):
         s.sclk_sync = Wire(3)
         s.csn_sync = Wire(2)
         s.mosi_sync = Wire(2)
-        s.was_free = Wire()  # csn has been high: what is left of a transfer that a reset cut is no transfer
+        s.was_free = Wire()  # csn has been high: the rest of a transfer that a reset cut is ignored
         s.rise = Wire()
         s.fall = Wire()
         s.count = Wire(3)

@@ -1,4 +1,4 @@
-"""ByteQueue at RTL: two bytes between the encoder and the link, so that neither's rdy reaches the other."""
+"""ByteQueue at RTL: two bytes between the encoder and the link, without a path from rdy to rdy."""
 
 from pymtl3 import Bits2, Bits8, Component, InPort, OutPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
@@ -10,7 +10,7 @@ class ByteQueue(Component):
         s.put = InPort()  # only while `ready`
         s.octet = InPort(Bits8)
         s.ready = OutPort()
-        s.last = OutPort()  # nothing is left behind this cycle
+        s.last = OutPort()  # empty after this cycle
         s.send = SendIfcRTL(Bits8)
 
         # Components

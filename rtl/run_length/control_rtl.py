@@ -1,4 +1,4 @@
-"""RunLengthCtrl at RTL: which part of the frame is sent, and what the next message does."""
+"""RunLengthCtrl at RTL: the part of the frame that is sent, and the effect of the next message."""
 
 from pymtl3 import Bits2, Bits3, Bits5, Component, InPort, OutPort, Wire, update, update_ff
 
@@ -16,12 +16,12 @@ class RunLengthCtrl(Component):
         s.kind = InPort(Bits2)
         s.rdy = OutPort()
         s.packer_ready = InPort()
-        s.packer_val = InPort()  # a byte of the payload is due, ahead of anything else
+        s.packer_val = InPort()  # a byte of the payload is complete, and is sent first
         s.queue_ready = InPort()
         s.queue_last = InPort()
         s.start = OutPort()  # a frame starts
         s.first_row = OutPort()  # the message's row is the first
-        s.next_row = OutPort()  # the message's row comes behind the mark of the row before
+        s.next_row = OutPort()  # the message's row follows the mark of the row before
         s.push = OutPort()
         s.flush = OutPort()
         s.restart = OutPort()  # of the row's coder and its CRC
@@ -35,7 +35,7 @@ class RunLengthCtrl(Component):
 
         # Components
         s.open = Wire()  # a row has started
-        s.ending = Wire()  # END has come
+        s.ending = Wire()  # END is taken
         s.go = Wire()
         s.finish = Wire()  # the frame's END is taken
         s.step = Wire()  # a byte of header, mark or trailer goes into the queue

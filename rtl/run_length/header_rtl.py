@@ -4,19 +4,19 @@ from pymtl3 import Bits1, Bits2, Bits5, Bits8, Bits32, Component, InPort, OutPor
 
 from models.parameters.stream_format import MAGIC, VERSION
 
-from .ports import add_header_ports
+from .ports import declare_header_ports
 
 
 class HeaderBytes(Component):
-    """rows, cols, lanes, tile_rows, tile_cols: what the header says of the chip."""
+    """The byte of the header at an index. rows, cols, lanes, tile_rows, tile_cols: of the chip."""
 
     def construct(s, rows, cols, lanes, tile_rows, tile_cols):
         # Interface
         s.index = InPort(Bits5)
-        add_header_ports(s)
+        declare_header_ports(s)
         s.octet = OutPort(Bits8)
 
-        # Components: what is fixed, as wires
+        # Components: the constants, as wires
         s.magic = Wire(Bits32)
         s.size = Wire(Bits32)
         s.tile = Wire(Bits8)

@@ -5,8 +5,8 @@ from pymtl3 import Bits5, Bits7, Bits8, Bits31, Component, InPort, OutPort, Wire
 from .token_rtl import TokenCoder
 
 
-def add_packer_ports(s):
-    """The interface of a packer."""
+def declare_packer_ports(s):
+    """Give the component ``s`` the ports of a packer."""
     s.restart = InPort()  # a row starts: empty but for the coder's state
     s.push = InPort()  # the sample is taken; only while `ready`
     s.flush = InPort()  # the row ends: fill up its last byte; only while `ready`
@@ -14,22 +14,22 @@ def add_packer_ports(s):
     s.coded = InPort()  # edge mode; else a sample is a byte
     s.threshold = InPort(Bits7)
     s.code = InPort(Bits8)
-    s.val = OutPort()  # a byte is due
+    s.val = OutPort()  # a byte is complete
     s.octet = OutPort(Bits8)
-    s.rdy = InPort()  # it would be taken
+    s.rdy = InPort()  # a byte is taken
 
 
 class PayloadPacker(Component):
-    """Tokens are gathered, from the top, in a register of 31 bits (7 that are no byte yet, a token of 24);
+    """A register of 31 bits gathers tokens, from the top: up to 7 bits that wait, and a token of 24 at most.
 
-    eight or more of them are a byte that is due."""
+    Eight bits or more are a byte to send."""
 
     def new_coder(s):
         return TokenCoder()
 
     def construct(s):
         # Interface
-        add_packer_ports(s)
+        declare_packer_ports(s)
 
         # Components
         s.coder = s.new_coder()
@@ -37,7 +37,7 @@ class PayloadPacker(Component):
         s.count = Wire(Bits5)
 
         s.take = Wire()
-        s.behind = Wire(Bits5)  # bits behind the next token; at most 7 of them lie before it
+        s.behind = Wire(Bits5)  # bits after the next token; at most 7 of them are before it
 
         # Connections
         s.coder.restart //= s.restart

@@ -1,4 +1,4 @@
-"""The ports that every level of RunLength has, and what they say of a frame."""
+"""RunLength's ports, the same at every level (README.md)."""
 
 from pymtl3 import Bits2, Bits7, Bits8, Bits16, Bits24, Bits32, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
@@ -19,16 +19,16 @@ HEADER_PORTS = {
 }
 
 
-def add_header_ports(s):
-    """What the header tells of the configuration; held from FRAME to the end of the frame."""
+def declare_header_ports(s):
+    """Give the component ``s`` ports for the configuration in the header; held from FRAME to the end of the frame."""
     for name, kind in HEADER_PORTS.items():
         setattr(s, name, InPort(kind) if kind else InPort())
 
 
-def add_ports(s):
-    """The interface of RunLength."""
+def declare_ports(s):
+    """Give the component ``s`` its ports."""
     s.recv = RecvIfcRTL(ScanMsg)
-    add_header_ports(s)
+    declare_header_ports(s)
     s.made = InPort(Bits32)
     s.left_out = InPort(Bits32)
     s.send = SendIfcRTL(Bits8)

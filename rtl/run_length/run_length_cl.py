@@ -1,4 +1,4 @@
-"""RunLength at cycle level: the RTL's cycles and stalls, bits by the golden coder."""
+"""RunLength at cycle level: the RTL's cycles and stalls, bits from the golden coder."""
 
 from collections import deque
 
@@ -9,17 +9,17 @@ from models.digital.stream.trailer import row_mark, trailer
 from rtl.messages import END, FRAME, ROW, SAMPLE
 
 from .control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
-from .ports import add_ports
+from .ports import declare_ports
 from .run_length_fl import header_of
 
 QUEUE = 2  # bytes between the encoder and the link
 
 
 class RunLengthCL(Component):
-    """Ports and parameters of RunLength, and the same values on them in every cycle."""
+    """The ports and parameters of RunLength, and the same values in every cycle."""
 
     def construct(s, *chip):
-        add_ports(s)
+        declare_ports(s)
         s.clear()
 
         @update_ff
@@ -68,7 +68,7 @@ class RunLengthCL(Component):
         return byte
 
     def take(s, chip, kind, data):
-        """A message is taken."""
+        """Accept a message."""
         if s.state == IDLE:
             if kind == FRAME:
                 s.header = header_of(s, *chip)

@@ -1,4 +1,4 @@
-"""RunLength at functional level: the golden encoder behind the ports, no cycle promised."""
+"""RunLength at functional level: the golden encoder at the ports, not cycle-exact."""
 
 from collections import deque
 
@@ -9,11 +9,11 @@ from models.digital.stream.trailer import trailer
 from models.parameters import MODES, Window
 from rtl.messages import END, FRAME, ROW, SAMPLE
 
-from .ports import add_ports
+from .ports import declare_ports
 
 
 def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
-    """The StreamHeader that the ports of ``s`` ask for."""
+    """The StreamHeader that the ports of ``s`` configure."""
     window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
     return StreamHeader(
         rows,
@@ -32,10 +32,10 @@ def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
 
 
 class RunLengthFL(Component):
-    """Ports and parameters of RunLength. A row's bytes come when its last sample is known."""
+    """The ports and parameters of RunLength. A row's bytes are sent when its last sample is known."""
 
     def construct(s, *chip):
-        add_ports(s)
+        declare_ports(s)
 
         s.out = deque()
         s.header = s.row = None
@@ -57,7 +57,7 @@ class RunLengthFL(Component):
             s.frame_sync <<= bool(s.out) or s.header is not None
 
     def take(s, chip, kind, data):
-        """The bytes that a message brings about."""
+        """The bytes to send after a message."""
         if s.header is None:
             if kind != FRAME:
                 return b""

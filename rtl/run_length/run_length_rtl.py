@@ -7,17 +7,17 @@ from .control_rtl import COUNTS, HEADER, HEADER_FIELDS, MARK, TRAILER, RunLength
 from .crc_rtl import Crc16, Crc32
 from .header_rtl import HeaderBytes
 from .packer_rtl import PayloadPacker
-from .ports import HEADER_PORTS, add_ports
+from .ports import HEADER_PORTS, declare_ports
 
 MARK_PLACE = COUNTS // 2  # upper bits of the index of the trailer's mark
 
 
 class RunLength(Component):
-    """rows, cols, lanes, tile_rows, tile_cols: what the header says of the chip."""
+    """The stream encoder (README.md). rows, cols, lanes, tile_rows, tile_cols: of the chip, in the header."""
 
     def construct(s, rows, cols, lanes, tile_rows, tile_cols):
         # Interface
-        add_ports(s)
+        declare_ports(s)
 
         # Components
         s.control = RunLengthCtrl()
@@ -27,7 +27,7 @@ class RunLength(Component):
         s.crc32 = Crc32()
         s.queue = ByteQueue()
         s.row = Wire(Bits10)
-        s.following = Wire(Bits10)  # the row behind this one's mark
+        s.following = Wire(Bits10)  # the row after this one's mark
         s.mark = Wire(Bits16)
         s.word = Wire(Bits32)  # a count or the CRC-32
         s.place = Wire(Bits2)  # of the byte in it, 0 on top

@@ -1,4 +1,4 @@
-"""TokenCoder at RTL: the state of a row's coder, and the bits that the next sample sends (docs/stream.md, Payload)."""
+"""TokenCoder at RTL: the state of a row's coder, and the bits of the next sample (docs/stream.md, Payload)."""
 
 from pymtl3 import (
     Bits1,
@@ -50,7 +50,7 @@ class TokenCoder(Component):
         s.prefix = Wire(Bits3)
         s.width = Wire(Bits4)  # of the value in its token
         s.token = Wire(Bits24)
-        s.after = Wire(Bits9)  # the credit behind the token
+        s.after = Wire(Bits9)  # the credit after the token
 
         # Connections
         s.r //= s.r2[1:4]

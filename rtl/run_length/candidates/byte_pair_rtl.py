@@ -2,13 +2,13 @@
 
 from pymtl3 import Bits2, Bits8, Bits16, Component, Wire, concat, update, update_ff, zext
 
-from rtl.run_length.packer_rtl import add_packer_ports
+from rtl.run_length.packer_rtl import declare_packer_ports
 
 
 class BytePairPacker(Component):
     def construct(s):
         # Interface
-        add_packer_ports(s)
+        declare_packer_ports(s)
 
         # Components
         s.run = Wire(Bits8)

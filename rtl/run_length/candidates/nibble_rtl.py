@@ -2,13 +2,13 @@
 
 from pymtl3 import Bits3, Bits4, Bits7, Bits8, Bits9, Bits12, Bits20, Component, Wire, concat, update, update_ff, zext
 
-from rtl.run_length.packer_rtl import add_packer_ports
+from rtl.run_length.packer_rtl import declare_packer_ports
 
 
 class NibblePacker(Component):
     def construct(s):
         # Interface
-        add_packer_ports(s)
+        declare_packer_ports(s)
 
         # Components
         s.run = Wire(Bits4)
