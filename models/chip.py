@@ -1,11 +1,14 @@
-"""The whole digital chip, bit true: analog samples -> codes -> byte stream."""
+"""The whole digital chip, bit true: from analog samples to codes and the byte stream."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from models.afe import Converter, FrontEnd
+from models.digital.pattern import PatternEnd
 from models.digital.phase import phase_samples
 from models.digital.scan import Scan
 from models.digital.stream import StreamHeader, encode_frame
@@ -14,46 +17,72 @@ from models.parameters import ConverterParameters, FrameParameters, SensorParame
 
 @dataclass(frozen=True, eq=False)
 class GoldenFrame:
-    """What the chip must send for one frame. Arrays are (rows, cols, subs); unread samples are 0.
+    """Expected output of the chip for one frame; samples that are not read are 0.
 
-    codes: int16, what the converters give. converted: bool, True where the search ran.
-    sent: int16, what goes into the stream: the codes, or with ``frame.phase`` (phase, amplitude).
-    read: bool (rows, cols). decisions: of the comparators, all together.
+    Attributes
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    frame : FrameParameters
+        Configuration of the frame.
+    codes : int16 (rows, cols, subs)
+        Codes of the converters.
+    converted : bool (rows, cols, subs)
+        True where the search ran.
+    sent : int16 (rows, cols, subs)
+        Samples of the stream: the codes, or with ``frame.phase`` (phase, amplitude).
+    read : bool (rows, cols)
+        Pixels that are read.
+    decisions : int
+        Comparator decisions, all lanes together.
     """
 
     sensor: SensorParameters
     frame: FrameParameters
-    codes: np.ndarray
-    converted: np.ndarray
-    sent: np.ndarray
-    read: np.ndarray
+    codes: npt.NDArray[np.int16]
+    converted: npt.NDArray[np.bool_]
+    sent: npt.NDArray[np.int16]
+    read: npt.NDArray[np.bool_]
     decisions: int
 
     @property
-    def samples(self):
-        """Samples read from the array."""
+    def samples(self) -> int:
+        """Number of samples read from the array."""
         return int(self.read.sum()) * self.codes.shape[2]
 
     @property
-    def made(self):
-        """Conversions that ran."""
+    def made(self) -> int:
+        """Number of conversions that ran."""
         return int(self.converted.sum())
 
     @property
-    def left_out(self):
-        """Samples that the window comparison found to be zero."""
+    def left_out(self) -> int:
+        """Number of samples that the window comparison set to zero."""
         return self.samples - self.made
 
     @cached_property
-    def stream(self):
-        """The frame's bytes."""
+    def stream(self) -> bytes:
+        """Bytes of the frame."""
         array, lanes = self.sensor.array, self.sensor.chip.lanes
         header = StreamHeader.from_frame(array.rows, array.cols, lanes, self.frame, self.sensor.tile)
         return encode_frame(header, self.sent, self.made, self.left_out, self.sensor.tile)
 
 
-def front_end_of(sensor, trims):
-    """The analog front end of ``sensor``; ideal converters cost nothing. trims: register values by pixel type."""
+def front_end_of(sensor: SensorParameters, trims: Iterable[int]) -> FrontEnd:
+    """Analog front end of a sensor.
+
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    trims : iterable of int
+        Register values by pixel type, -512..511.
+
+    Returns
+    -------
+    FrontEnd
+        With drawn converters, or none where all imperfections are 0.
+    """
     drawn = sensor.converter != ConverterParameters(seed=sensor.converter.seed)
     converter = Converter.draw(sensor.converter, sensor.chip.lanes) if drawn else None
     return FrontEnd(
@@ -61,16 +90,39 @@ def front_end_of(sensor, trims):
     )
 
 
-def golden_frame(samples, sensor, frame, front_end):
-    """The golden chip on one exposure; returns GoldenFrame.
+def golden_frame(
+    samples: npt.NDArray[np.float64], sensor: SensorParameters, frame: FrameParameters, front_end: FrontEnd | PatternEnd
+) -> GoldenFrame:
+    """Run the golden chip on one exposure.
 
-    samples: float64 (taps, rows, cols, 2), diode pairs with a + b = 255 when both wells are full.
+    Parameters
+    ----------
+    samples : float64 (taps, rows, cols, 2)
+        Diode pairs, a + b = 255 when both wells are full.
+    sensor : SensorParameters
+        The sensor.
+    frame : FrameParameters
+        Configuration of the frame.
+    front_end : FrontEnd or PatternEnd
+        Converts the samples.
+
+    Returns
+    -------
+    GoldenFrame
+        Codes, samples sent and stream.
+
+    Raises
+    ------
+    ParameterError
+        For samples of a wrong shape or a window outside the array.
     """
     read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read
     done = front_end.convert(samples, frame.mode, frame.threshold)
-    codes, converted, decisions = (np.moveaxis(part, 0, 2) * read[..., None] for part in done)
+    codes = np.moveaxis(done.codes, 0, 2) * read[..., None]
+    converted = np.moveaxis(done.converted, 0, 2) & read[..., None]
+    decisions = int(done.decisions[:, read].sum(dtype=np.int64))
     sent = codes
     if frame.phase:
         sent = np.zeros((*read.shape, 2), np.int16)
         sent[read] = np.stack(phase_samples(codes[read], sensor.chip, frame.noise_floor), -1)
-    return GoldenFrame(sensor, frame, codes, converted, sent, read, int(decisions.sum(dtype=np.int64)))
+    return GoldenFrame(sensor, frame, codes, converted, sent, read, decisions)

@@ -1,6 +1,6 @@
 """The analog front end: trimmed difference amplifier, sample-and-hold, DAC and comparator of every lane.
 
-The same arithmetic stands in real-number Verilog in pixels/afe.sv; both agree sample for sample.
+The same arithmetic is in real-number Verilog in pixels/afe.sv; both agree sample for sample.
 """
 
 from .converter import Converter
@@ -9,4 +9,15 @@ from .front_end import FrontEnd
 from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
 from .trim import TRIM_BITS, trim_codes, trim_gain
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "KTC_DECISION",
+    "NOISE_SCALE",
+    "TRIM_BITS",
+    "Converter",
+    "FrontEnd",
+    "noise_counts",
+    "trim_codes",
+    "trim_gain",
+    "write_converter",
+    "write_samples",
+]

@@ -1,8 +1,10 @@
 """The analog half of the successive-approximation lanes: DAC levels, comparator and sampling capacitor."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ConverterParameters, check_int
 
@@ -13,26 +15,49 @@ CODES = 256
 
 @dataclass(frozen=True, eq=False)
 class Converter:
-    """The lanes as drawn from ConverterParameters. Everything is in LSB.
+    """Converters with imperfections drawn from ConverterParameters, in LSB.
 
-    levels: float64 (2, lanes, 256): comparator thresholds of every DAC code; [0] bipolar (code - 128), [1] unipolar.
-    offset: float64 (lanes,), the comparator's, referred to its input.
-    noise_scale, ktc_scale: LSB a count of `noise_counts`.  seed: of the noise, 0..2**32-1.
+    Attributes
+    ----------
+    levels : float64 (2, lanes, 256)
+        Comparator thresholds of every DAC code; [0] bipolar (code - 128), [1] unipolar.
+    offset : float64 (lanes,)
+        Offset of the comparator, input-referred.
+    noise_scale, ktc_scale : float
+        LSB per count of `noise_counts`.
+    seed : int
+        Seed of the noise, 0..2**32-1.
     """
 
-    levels: np.ndarray
-    offset: np.ndarray
+    levels: npt.NDArray[np.float64]
+    offset: npt.NDArray[np.float64]
     noise_scale: float
     ktc_scale: float
     seed: int
 
     @classmethod
-    def draw(cls, parameters, lanes):
-        """Draw ``lanes`` converters; the first lanes of a wider bank are those of a narrower one.
+    def draw(cls, parameters: ConverterParameters, lanes: int) -> Self:
+        """Draw converters; the first lanes of a wider bank are those of a narrower one.
 
         The DAC's error is `inl` times a parabola that is 0 at both ends and 1 at mid-scale, up or down at random,
-        plus a random walk of step `dnl` with its ends pinned to zero. It is the DAC's own: the same for
-        both ranges. Raises ParameterError for lanes outside 1..32.
+        plus a random walk of step `dnl` with its ends pinned to zero. It is the same for both ranges.
+
+        Parameters
+        ----------
+        parameters : ConverterParameters
+            Sizes of the imperfections, and the seed.
+        lanes : int
+            Converters, 1..32.
+
+        Returns
+        -------
+        Converter
+            The bank.
+
+        Raises
+        ------
+        ParameterError
+            For lanes out of range.
         """
         check_int("lanes", lanes, 1, 32)
         x = np.arange(CODES) / (CODES - 1)
@@ -53,27 +78,76 @@ class Converter:
         )
 
     @classmethod
-    def ideal(cls, lanes):
-        """Lanes without any imperfection."""
+    def ideal(cls, lanes: int) -> Self:
+        """Converters without any imperfection.
+
+        Parameters
+        ----------
+        lanes : int
+            Converters, 1..32.
+
+        Returns
+        -------
+        Converter
+            The bank.
+        """
         return cls.draw(ConverterParameters(), lanes)
 
     @property
-    def lanes(self):
+    def lanes(self) -> int:
+        """Converters of the bank."""
         return self.offset.size
 
-    def held(self, v, lane, index):
-        """What lies on the sampling capacitor after the hold: float64, of the broadcast shape.
+    def held(self, v: npt.ArrayLike, lane: npt.ArrayLike, index: npt.ArrayLike) -> npt.NDArray[np.float64]:
+        """Value on the sampling capacitor after the hold, plus the comparator's offset.
 
-        v: value in LSB.  lane: 0..lanes-1.  index: sample number, 0..2**28-1.
+        Parameters
+        ----------
+        v : float64
+            Sampled value in LSB.
+        lane : array of int
+            0..lanes-1.
+        index : array of int
+            Sample number, 0..2**28-1.
+
+        Returns
+        -------
+        float64
+            In LSB, of the broadcast shape.
         """
         kt = self.ktc_scale * noise_counts(self.seed, index, KTC_DECISION)
-        return (np.asarray(v, np.float64) + kt) + self.offset[lane]
+        return (np.asarray(v, np.float64) + kt) + self.offset[np.asarray(lane)]
 
-    def compare(self, held, dac, unsigned, lane, index, decision):
-        """The comparator: True where held + noise >= level(dac).
+    def compare(
+        self,
+        held: npt.NDArray[np.float64],
+        dac: npt.ArrayLike,
+        unsigned: bool,
+        lane: npt.ArrayLike,
+        index: npt.ArrayLike,
+        decision: int,
+    ) -> npt.NDArray[np.bool_]:
+        """Compare held values with the DAC.
 
-        dac: 0..255, offset binary when bipolar.  unsigned: take the unipolar range.
-        decision: number of this decision since the hold, 0..14.
+        Parameters
+        ----------
+        held : float64
+            Result of `held`.
+        dac : array of int
+            DAC code, 0..255, offset binary when bipolar.
+        unsigned : bool
+            The unipolar range.
+        lane : array of int
+            0..lanes-1.
+        index : array of int
+            Sample number, 0..2**28-1.
+        decision : int
+            Number of this decision since the hold, 0..14.
+
+        Returns
+        -------
+        bool
+            True where held + noise >= level(dac).
         """
         noise = self.noise_scale * noise_counts(self.seed, index, decision)
-        return held + noise >= self.levels[int(unsigned), lane, dac]
+        return held + noise >= self.levels[int(unsigned), np.asarray(lane), np.asarray(dac)]

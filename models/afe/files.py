@@ -1,21 +1,40 @@
 """Files that pixels/afe.sv loads: big-endian 64-bit words, as $fread fills them."""
 
+from pathlib import Path
+
 import numpy as np
+import numpy.typing as npt
 
 from .converter import Converter
+from .front_end import FrontEnd
 
 
-def write_samples(path, samples):
-    """Write diode values, float64 (taps, rows, cols, 2): word ((tap * rows + row) * cols + col) * 2 + diode."""
+def write_samples(path: str | Path, samples: npt.NDArray[np.float64]) -> None:
+    """Write diode values.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    samples : float64 (taps, rows, cols, 2)
+        Word ((tap * rows + row) * cols + col) * 2 + diode.
+    """
     with open(path, "wb") as file:
         file.write(np.ascontiguousarray(samples, ">f8").data)
 
 
-def write_converter(path, front_end):
-    """Write gain and imperfections of a FrontEnd.
+def write_converter(path: str | Path, front_end: FrontEnd) -> None:
+    """Write gain and imperfections of a front end.
 
     Words: gain, noise_scale, ktc_scale (float64), seed (integer), offset of every lane, then for every lane
     256 bipolar levels, and for every lane 256 unipolar levels (float64).
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    front_end : FrontEnd
+        Source of the values.
     """
     c = front_end.converter or Converter.ideal(front_end.lanes)
     with open(path, "wb") as file:

@@ -1,10 +1,11 @@
-"""Diode pairs -> held values -> codes, for a whole frame: the NumPy twin of pixels/afe.sv."""
+"""From diode pairs to held values and codes, for a whole frame: the NumPy twin of pixels/afe.sv."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
-from models.digital.sar import convert
+from models.digital.sar import Conversion, convert
 from models.parameters import MODES, ParameterError, TileParameters, check_choice, check_int, check_real
 
 from .converter import Converter
@@ -13,33 +14,61 @@ from .trim import trim_gain
 
 @dataclass(frozen=True, eq=False)
 class FrontEnd:
-    """gain: of the difference before conversion, 0.25..64.
-    trim: register value of every pixel type, -512..511 (models/afe/trim.py).
-    lanes: converters; tile column t belongs to lane t mod lanes.
-    converter: their imperfections, or None for ideal ones.
+    """Trimmed difference amplifier, sample-and-hold and converters of the whole array.
+
+    Attributes
+    ----------
+    gain : float
+        Gain of the difference before conversion, 0.25..64.
+    trim : tuple of int
+        Register value of every pixel type, -512..511 (models/afe/trim.py).
+    lanes : int
+        Converters, 1..32; lane t mod lanes converts tile column t.
+    converter : Converter or None
+        Imperfections of the lanes; None is ideal ones.
+    tile : TileParameters
+        The tile.
+
+    Raises
+    ------
+    ParameterError
+        For a value out of range, or a converter of other lanes.
     """
 
     gain: float
-    trim: tuple
+    trim: tuple[int, ...]
     lanes: int = 8
     converter: Converter | None = None
     tile: TileParameters = TileParameters()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("gain", self.gain, 0.25, 64)
         check_int("lanes", self.lanes, 1, 32)
         trim_gain(self.trim)
         if len(self.trim) != self.tile.n_types:
-            raise ParameterError(f"trim = {len(self.trim)} values: must be one a pixel type, {self.tile.n_types}")
+            raise ParameterError(f"trim = {len(self.trim)} values: must be one per pixel type, {self.tile.n_types}")
         if self.converter is not None and self.converter.lanes != self.lanes:
             raise ParameterError(f"converter = {self.converter.lanes} lanes: must be {self.lanes}")
 
-    def values(self, samples, mode):
-        """Values ahead of the sample-and-hold, in LSB: float64 (subs, rows, cols).
+    def values(self, samples: npt.ArrayLike, mode: str) -> npt.NDArray[np.float64]:
+        """Values at the input of the sample-and-hold.
 
-        samples: float64 (taps, rows, cols, 2), diode a and b of every pixel, a + b = 255 when both wells are full.
-        mode: edge, gain * (a - b * g); image, a + b; raw, 2 a and 2 b; tof, a + b of each tap.
-        Raises ParameterError for a bad shape, mode or number of taps, and for samples that are not finite.
+        Parameters
+        ----------
+        samples : float64 (taps, rows, cols, 2)
+            Diodes a and b of every pixel, a + b = 255 when both wells are full.
+        mode : str
+            edge: gain * (a - b * g); image: a + b; raw: 2 a and 2 b; tof: a + b of each tap.
+
+        Returns
+        -------
+        float64 (subs, rows, cols)
+            In LSB.
+
+        Raises
+        ------
+        ParameterError
+            For a wrong shape, mode or number of taps, and for samples that are not finite.
         """
         check_choice("mode", mode, MODES)
         samples = np.asarray(samples)
@@ -59,11 +88,30 @@ class FrontEnd:
             return np.stack([2.0 * a, 2.0 * b])
         return samples[:4, ..., 0] + samples[:4, ..., 1]
 
-    def convert(self, samples, mode, threshold=0):
-        """The codes of a whole frame: Conversion of arrays (subs, rows, cols). Arguments as in `values`, `convert`.
+    def convert(self, samples: npt.ArrayLike, mode: str, threshold: int = 0) -> Conversion:
+        """Convert a whole frame.
 
         The noise of a sample is drawn for its number (sub * rows + row) * cols + col: it does not depend on the
         window, the mask or the order in which samples are read.
+
+        Parameters
+        ----------
+        samples : float64 (taps, rows, cols, 2)
+            As in `values`.
+        mode : str
+            One of MODES.
+        threshold : int
+            0..127 codes; edge mode only.
+
+        Returns
+        -------
+        Conversion
+            Of arrays (subs, rows, cols).
+
+        Raises
+        ------
+        ParameterError
+            As in `values`, and for a threshold out of range.
         """
         v = self.values(samples, mode)
         lane = np.arange(v.shape[2]) // self.tile.cols % self.lanes

@@ -1,18 +1,31 @@
-"""The rows and the trailer of one frame, and mending its one wrong byte."""
+"""The rows and the trailer of one frame, and the correction of one wrong byte in them."""
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BYTES
 
+from .frame import DecodedFrame
 from .payload import base_of, decode_rows, one_byte_changes
-from .trailer import frame_crc, read_trailer
+from .trailer import Trailer, frame_crc, read_trailer
 
 
 class Body:
-    """Decodes what lies behind a header into the frame's samples."""
+    """Decoder of the bytes after a header into the frame's samples.
 
-    def __init__(self, view, frame, sent, start=None):
-        """view: uint8, where the frame starts at ``start`` (the frame's own, if not given). sent: the header."""
+    Parameters
+    ----------
+    view : uint8
+        Bytes of the stream.
+    frame : DecodedFrame
+        Receives samples and errors.
+    sent : bytes
+        The header as it was sent.
+    start : int, optional
+        Start of the frame in ``view``; the frame's own by default.
+    """
+
+    def __init__(self, view: npt.NDArray[np.uint8], frame: DecodedFrame, sent: bytes, start: int | None = None) -> None:
         header, layout = frame.header, frame.layout
         longest = int(layout.counts.max())
         self.view, self.frame, self.sent = view, frame, sent
@@ -22,11 +35,26 @@ class Body:
         self.total = layout.rows.size
         self.ends = np.zeros(self.total, np.int64)
 
-    def decode(self, ordinal, at, whole=True):
-        """Decode from row number ``ordinal`` at ``at`` on, up to what does not fit.
+    def decode(self, ordinal: int, at: int, whole: bool = True) -> tuple[int, int, Trailer | None]:
+        """Decode rows, and the trailer after the last, until one does not fit.
 
-        whole: nothing before is damaged. Returns (number of the row that does not fit or of rows, its position,
-        (made, left_out, notes) of the trailer or None).
+        Parameters
+        ----------
+        ordinal : int
+            Number of the first row.
+        at : int
+            Its position.
+        whole : bool
+            Nothing before it is damaged: check the frame's CRC-32 too.
+
+        Returns
+        -------
+        ordinal : int
+            Number of the row that does not fit, or the number of rows.
+        at : int
+            Position of that row or of the trailer.
+        trailer : Trailer or None
+            None if a row or the trailer does not fit.
         """
         layout, view = self.frame.layout, self.view
         ordinal, at = decode_rows(
@@ -34,14 +62,24 @@ class Body:
         )
         if ordinal < self.total:
             return ordinal, at, None
-        crc = frame_crc(self.sent, view[self.first : at]) if whole else None
+        crc = frame_crc(self.sent, view[self.first : at].data) if whole else None
         return ordinal, at, read_trailer(view[at : at + TRAILER_BYTES].tobytes(), crc)
 
-    def mend(self, stop):
-        """Decode the frame, up to ``stop``, in spite of one wrong byte: the trailer as `decode` gives it, or None.
+    def correct(self, stop: int) -> Trailer | None:
+        """Decode the whole frame in spite of one wrong byte.
 
-        The CRC-32 tells which byte and how to change it; all marks must then agree. Without success, the rows
-        before the first bad one are decoded again.
+        The CRC-32 yields the candidates for the byte and its change; all marks must then agree. Without success, the
+        rows before the first bad one are decoded again.
+
+        Parameters
+        ----------
+        stop : int
+            End of the frame.
+
+        Returns
+        -------
+        Trailer or None
+            None if no change of one byte makes everything fit.
         """
         start, last = self.first - HEADER_BYTES, stop - CRC.size
         if last < self.first:
@@ -49,22 +87,23 @@ class Body:
         sent_crc = CRC.unpack(self.view[last:stop].tobytes())[0]
         where, change = np.empty(16, np.int64), np.empty(16, np.int64)
         found = one_byte_changes(
-            frame_crc(self.sent, self.view[self.first : last]) ^ sent_crc, last - self.first, where, change
+            frame_crc(self.sent, self.view[self.first : last].data) ^ sent_crc, last - self.first, where, change
         )
         for position, bits in zip(where[:found].tolist(), change[:found].tolist(), strict=True):
             view = self.view[start:stop].copy()
             view[HEADER_BYTES + position] ^= bits
-            mended = Body(view, self.frame, self.sent, 0)
-            self.rows[:] = 0  # a row that only seemed to fit may lie there
-            _, at, tail = mended.decode(0, mended.first)
-            if tail and start + at + TRAILER_BYTES == stop:
-                self._tell(self.first + position, int(np.searchsorted(mended.ends, HEADER_BYTES + position, "right")))
-                return tail
+            corrected = Body(view, self.frame, self.sent, 0)
+            self.rows[:] = 0  # a row that only seems to fit may be there
+            _, at, trailer = corrected.decode(0, corrected.first)
+            if trailer and start + at + TRAILER_BYTES == stop:
+                row = int(np.searchsorted(corrected.ends, HEADER_BYTES + position, "right"))
+                self._report(self.first + position, row)
+                return trailer
         if found:
             self.rows[:] = 0
             self.decode(0, self.first)
         return None
 
-    def _tell(self, position, ordinal):
+    def _report(self, position: int, ordinal: int) -> None:
         place = f"row {self.frame.layout.rows[ordinal]}" if ordinal < self.total else "the trailer"
-        self.frame.errors.append(f"byte {position}: byte of {place} mended")
+        self.frame.errors.append(f"byte {position}: byte of {place} corrected")

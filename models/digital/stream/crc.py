@@ -1,4 +1,4 @@
-"""The two checks of the stream: CRC-32 of IEEE 802.3 over a frame, CRC-16 over a row, and what one bad byte does.
+"""The two checks of the stream: CRC-32 of IEEE 802.3 over a frame, CRC-16 over a row, and the syndromes of one byte.
 
 CRC-32 is zlib's (polynomial 0x04c11db7 reflected, starts and ends inverted). CRC-16 is CRC-16/IBM-3740
 (polynomial 0x1021, most significant bit first, starts at 0xffff, ends as it is).
@@ -13,8 +13,19 @@ import numpy as np
 CRC16_START = 0xFFFF
 
 
-def crc16(data):
-    """CRC-16 of a bytes-like object: int."""
+def crc16(data: bytes) -> int:
+    """CRC-16 of some bytes.
+
+    Parameters
+    ----------
+    data : bytes-like
+        Any length.
+
+    Returns
+    -------
+    int
+        0..65535.
+    """
     return binascii.crc_hqx(data, CRC16_START)
 
 
@@ -27,11 +38,19 @@ CRC16_AFTER = np.array([[binascii.crc_hqx(bytes([byte]) + bytes(n), 0) for byte 
 
 
 @cache
-def one_byte_errors(length):
-    """What every change of one byte of ``length`` bytes and the CRC-32 behind them does to the check.
+def one_byte_errors(length: int) -> dict[int, tuple[int, int]]:
+    """Syndromes of every change of one byte in a message and its CRC-32.
 
-    Returns a dict from (computed CRC) xor (CRC received) to (position, change); positions from
-    ``length`` on are the CRC's own bytes, most significant first.
+    Parameters
+    ----------
+    length : int
+        Bytes of the message.
+
+    Returns
+    -------
+    dict of int to (int, int)
+        (computed CRC) xor (received CRC) to (position, change); positions from ``length`` on are the CRC's own bytes,
+        most significant first.
     """
     quiet = zlib.crc32(bytes(length))
     errors = {}

@@ -1,4 +1,7 @@
-"""The decoder: bytes to frames, whatever the bytes are."""
+"""The decoder: from any bytes to frames."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
@@ -7,19 +10,37 @@ from models.parameters.stream_format import COUNTED_BYTES, HEADER_BYTES, MAGIC, 
 
 from .body import Body
 from .frame import DecodedFrame
-from .header import StreamError, read_header
+from .header import Layout, StreamError, StreamHeader, read_header
 from .payload import frame_ends
 from .resync import Search
+from .trailer import Trailer
 
 MEMORY_MAX = 1 << 30  # bytes of samples that decode_stream returns at most
-SEARCH_MAX = 1 << 28, 64  # samples decoded on trial to find rows again: at most so many, and more for each byte
+SEARCH_MAX = 1 << 28, 64  # samples decoded on trial to find rows again, at most: a constant, and for each byte
 
 
-def decode_stream(data, tile=TileParameters()):
-    """Every frame in ``data`` (bytes-like): list of DecodedFrame, at least one.
+def decode_stream(data: bytes, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:
+    """Decode every frame of a stream.
 
-    Damage is told in each frame's ``bad_rows`` and ``errors``. Raises StreamError when no frame starts anywhere,
-    or the frames together need more than MEMORY_MAX bytes (then use `iterate_frames`).
+    Damage is reported in each frame's ``bad_rows`` and ``errors``.
+
+    Parameters
+    ----------
+    data : bytes-like
+        The stream.
+    tile : TileParameters
+        The sensor's tile.
+
+    Returns
+    -------
+    list of DecodedFrame
+        At least one.
+
+    Raises
+    ------
+    StreamError
+        When no frame starts anywhere, or the frames together need more than MEMORY_MAX bytes (then use
+        `iterate_frames`).
     """
     frames, size = [], 0
     for frame in iterate_frames(data, tile):
@@ -30,54 +51,83 @@ def decode_stream(data, tile=TileParameters()):
     return frames
 
 
-def iterate_frames(data, tile=TileParameters()):
-    """Generate the frames of ``data`` one by one, as `decode_stream`."""
+def iterate_frames(data: bytes, tile: TileParameters = TileParameters()) -> Iterator[DecodedFrame]:
+    """Decode the frames of a stream one by one.
+
+    Parameters
+    ----------
+    data : bytes-like
+        The stream.
+    tile : TileParameters
+        The sensor's tile.
+
+    Yields
+    ------
+    DecodedFrame
+        As in `decode_stream`.
+
+    Raises
+    ------
+    StreamError
+        When no frame starts anywhere.
+    """
     data = bytes(data)
     at, last, limit = 0, None, SEARCH_MAX[0] + SEARCH_MAX[1] * len(data)
     while at < len(data):
-        start, header, layout, sent, notes = _find_header(data, at, tile)
-        if header is None:
+        start = _find_header(data, at, tile)
+        if isinstance(start, str):
             if last is None:
-                raise StreamError(f"byte {at}: {notes[0]}")
-            last.errors.append(f"byte {at}: {len(data) - at} bytes are no frame: {notes[0]}")
+                raise StreamError(f"byte {at}: {start}")
+            last.errors.append(f"byte {at}: {len(data) - at} bytes are no frame: {start}")
             break
         if last is not None:
             yield last
+        header = start.header
         samples = np.zeros((header.rows, header.cols, header.subs), np.int16)
-        last = DecodedFrame(header, samples, layout, start, errors=notes)
-        limit = _decode_frame(data, last, sent, tile, limit)
+        last = DecodedFrame(header, samples, start.layout, start.position, errors=start.notes)
+        limit = _decode_frame(data, last, start.sent, tile, limit)
         at = last.stop
     if last is None:
         raise StreamError("0 bytes: the stream is empty")
     yield last
 
 
-def _find_header(data, at, tile):
-    """The first header at or behind ``at``: (position, StreamHeader or None, Layout, header as sent, notes)."""
-    reason, position = None, at
+class _Start(NamedTuple):
+    """The start of a frame: where, the header and the header as sent, and what is wrong there."""
+
+    position: int
+    header: StreamHeader
+    layout: Layout
+    sent: bytes
+    notes: list[str]
+
+
+def _find_header(data: bytes, at: int, tile: TileParameters) -> _Start | str:
+    """The first header at or after ``at``, or the reason why the bytes at ``at`` are none."""
+    reason, position = "", at
     while position >= 0:
         try:
-            header, sent, mended = read_header(data[position : position + HEADER_BYTES])
+            header, sent, wrong = read_header(data[position : position + HEADER_BYTES])
             layout = header.layout(tile)
         except ParameterError as error:
             reason = reason or str(error)
         else:
-            # with a byte changed, only where a header must be, and not what a cut one and the next make together
-            if mended is None or position == at and _good_header(data, at + 1, at + HEADER_BYTES) < 0:
-                notes = [f"byte {position + mended}: byte of the header mended"] if mended is not None else []
+            # A corrected header counts only where one must be, and not if it is a cut one and the start of the next.
+            if wrong is None or position == at and _good_header(data, at + 1, at + HEADER_BYTES) < 0:
+                notes = [f"byte {position + wrong}: byte of the header corrected"] if wrong is not None else []
                 if position > at:
                     notes.append(f"byte {at}: {position - at} bytes skipped: {reason}")
-                return position, header, layout, sent, notes
+                return _Start(position, header, layout, sent, notes)
         position = data.find(MAGIC, position + 1)
-    return at, None, None, b"", [reason]
+    return reason
 
 
-def _good_header(data, start, stop):
-    """Where the first undamaged header starts in data[start:stop], or -1."""
+def _good_header(data: bytes, start: int, stop: int) -> int:
+    """Position of the first undamaged header in data[start:stop], or -1."""
     position = data.find(MAGIC, start, stop + len(MAGIC) - 1)
     while position >= 0:
         try:
-            if read_header(data[position : position + HEADER_BYTES])[2] is None:
+            if read_header(data[position : position + HEADER_BYTES]).corrected is None:
                 break
         except StreamError:
             pass
@@ -85,24 +135,25 @@ def _good_header(data, start, stop):
     return position
 
 
-def _decode_frame(data, frame, sent, tile, limit):
-    """Fill in a frame from its ``start`` on; returns what is left of the samples to decode on trial."""
-    body = Body(np.frombuffer(data, np.uint8), frame, sent)
+def _decode_frame(data: bytes, frame: DecodedFrame, sent: bytes, tile: TileParameters, limit: int) -> int:
+    """Fill in a frame from its ``start`` on; returns the rest of the samples that may be decoded on trial."""
+    body, stop = Body(np.frombuffer(data, np.uint8), frame, sent), len(data)
     ordinal, at, tail = body.decode(0, body.first)
     if tail is None:
-        following, header, *_ = _find_header(data, at, tile)
-        stop = following if header else len(data)
-        mended = body.mend(stop)
-        if mended:
-            ordinal, at, tail = body.total, stop - TRAILER_BYTES, mended
+        following = _find_header(data, at, tile)
+        if not isinstance(following, str):
+            stop = following.position
+        corrected = body.correct(stop)
+        if corrected:
+            ordinal, at, tail = body.total, stop - TRAILER_BYTES, corrected
         else:
             ordinal, at, tail, limit = _decode_around(body, frame, ordinal, at, stop, limit)
     trailer_end = min(at + TRAILER_BYTES, len(data))
     if tail:
         frame.made, frame.left_out, notes = tail
-        following = _good_header(data, at + COUNTED_BYTES, trailer_end) if notes else -1
-        if following >= 0:  # these are no bytes of the trailer
-            trailer_end, notes = following, [f"the trailer ends after {following - at} of {TRAILER_BYTES} bytes"]
+        cut = _good_header(data, at + COUNTED_BYTES, trailer_end) if notes else -1
+        if cut >= 0:  # these are no bytes of the trailer
+            trailer_end, notes = cut, [f"the trailer ends after {cut - at} of {TRAILER_BYTES} bytes"]
         frame.errors += [f"byte {at}: {note}" for note in notes]
     else:
         frame.errors.append(f"byte {at}: the trailer is damaged or missing")
@@ -111,8 +162,10 @@ def _decode_frame(data, frame, sent, tile, limit):
     return limit
 
 
-def _decode_around(body, frame, ordinal, at, stop, limit):
-    """Go on behind each damaged row: returns (ordinal, position, trailer or None, limit) where no more is found."""
+def _decode_around(
+    body: Body, frame: DecodedFrame, ordinal: int, at: int, stop: int, limit: int
+) -> tuple[int, int, Trailer | None, int]:
+    """Go on after each damaged row: returns (ordinal, position, trailer or None, limit) where no more is found."""
     search, bad, tail = Search(body.view, stop, limit, frame.layout, *body.coder), [], None
     while tail is None:
         found = search.next_row(ordinal, at)
@@ -126,7 +179,7 @@ def _decode_around(body, frame, ordinal, at, stop, limit):
     return ordinal, at, tail, search.limit
 
 
-def _spans(rows):
+def _spans(rows: list[int]) -> str:
     """Ascending integers as text: '3, 5..9'."""
     starts = [i for i in range(len(rows)) if i == 0 or rows[i] != rows[i - 1] + 1]
     pairs = [(rows[i], rows[j - 1]) for i, j in zip(starts, starts[1:] + [len(rows)], strict=True)]

@@ -1,19 +1,41 @@
-"""The golden encoder: one frame's samples to bytes. The RTL's stream equals it byte for byte."""
+"""The golden encoder: from one frame's samples to bytes. The RTL's stream equals it byte for byte."""
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ParameterError, TileParameters
 
+from .header import StreamHeader
 from .payload import base_of, encode_row, encode_rows, row_bytes_max
 from .trailer import row_mark, trailer
 
 
-def encode_frame(header, samples, made, left_out, tile=TileParameters()):
-    """One frame as bytes.
+def encode_frame(
+    header: StreamHeader, samples: npt.ArrayLike, made: int, left_out: int, tile: TileParameters = TileParameters()
+) -> bytes:
+    """Encode one frame.
 
-    header: StreamHeader. samples: integer array (rows, cols, header.subs); only what the frame reads is used:
-    -128..127 in edge mode, where a code under the threshold is sent as zero, else 0..255.
-    made, left_out: conversions, 0..2**32-1. Raises ParameterError for a wrong shape, type or range.
+    Parameters
+    ----------
+    header : StreamHeader
+        The frame's header.
+    samples : array of int (rows, cols, header.subs)
+        -128..127 in edge mode, where a code below the threshold is sent as zero; else 0..255. Only pixels that the
+        frame reads are used.
+    made, left_out : int
+        Conversions, 0..2**32-1.
+    tile : TileParameters
+        The sensor's tile.
+
+    Returns
+    -------
+    bytes
+        Header, rows and trailer.
+
+    Raises
+    ------
+    ParameterError
+        For a wrong shape, type or range.
     """
     samples = np.asarray(samples)
     shape = header.rows, header.cols, header.subs
@@ -33,14 +55,46 @@ def encode_frame(header, samples, made, left_out, tile=TileParameters()):
     return sent + body + trailer(sent, body, made, left_out)
 
 
-def encode_payload(codes, edge, threshold):
-    """The payload of one row, without its mark: bytes. codes: integers in the order of the stream."""
+def encode_payload(codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
+    """Payload of one row, without its mark.
+
+    Parameters
+    ----------
+    codes : array of int (n,)
+        Samples in the order of the stream.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+    threshold : int
+        0..127.
+
+    Returns
+    -------
+    bytes
+        At most row_bytes_max(n, edge).
+    """
     codes = np.asarray(codes, np.int16)
     out = np.empty(row_bytes_max(codes.size, edge) + 1, np.uint8)
     return out[: encode_row(codes, edge, base_of(threshold), out, 0)].tobytes()
 
 
-def encode_marked_row(row, codes, edge, threshold):
-    """A row as it stands in the stream: payload and mark."""
+def encode_marked_row(row: int, codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
+    """Payload and mark of one row.
+
+    Parameters
+    ----------
+    row : int
+        Row index.
+    codes : array of int (n,)
+        Samples in the order of the stream.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+    threshold : int
+        0..127.
+
+    Returns
+    -------
+    bytes
+        As in the stream.
+    """
     payload = encode_payload(codes, edge, threshold)
     return payload + row_mark(payload, row)

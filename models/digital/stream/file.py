@@ -1,18 +1,39 @@
-"""A stream in a file to arrays in files."""
+"""From a stream in a file to arrays in files."""
 
 from pathlib import Path
 
 from models.parameters import TileParameters
 
 from .decode import decode_stream
+from .frame import DecodedFrame
 from .header import StreamError
 
 
-def decode_file(path, out=None, tile=TileParameters()):
-    """Decode a file; returns a list of DecodedFrame.
+def decode_file(
+    path: str | Path, out: str | Path | None = None, tile: TileParameters = TileParameters()
+) -> list[DecodedFrame]:
+    """Decode a file.
 
-    out: npz file to write; with several frames their number goes before the suffix: x.npz, x-1.npz, x-2.npz.
-    Raises StreamError, its message naming the file, or OSError when a file cannot be read or written.
+    Parameters
+    ----------
+    path : path
+        The stream.
+    out : path, optional
+        npz file to write; with several frames their number precedes the suffix: x.npz, x-1.npz, x-2.npz.
+    tile : TileParameters
+        The sensor's tile.
+
+    Returns
+    -------
+    list of DecodedFrame
+        At least one.
+
+    Raises
+    ------
+    StreamError
+        If there is no frame; the message names the file.
+    OSError
+        If a file cannot be read or written.
     """
     with open(path, "rb") as file:
         try:

@@ -1,4 +1,4 @@
-"""One decoded frame, and the file it is kept in."""
+"""One decoded frame, and its file."""
 
 import dataclasses
 import json
@@ -8,37 +8,51 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from .header import Layout, StreamHeader
 
 
 @dataclass(eq=False)
 class DecodedFrame:
-    """What the decoder found of one frame.
+    """Result of decoding one frame.
 
-    header: StreamHeader. samples: int16 (rows, cols, header.subs), zero where nothing was read or its row is bad.
-    bad_rows: rows that were sent but are damaged or missing, ascending. made, left_out: conversions, or None when
-    the trailer is lost. errors: one line for each thing that was wrong, mended or not. start, stop: its bytes.
+    Attributes
+    ----------
+    header : StreamHeader
+        The frame's header, corrected.
+    samples : int16 (rows, cols, header.subs)
+        Zero where nothing is read or the row is bad.
+    layout : Layout
+        Rows and samples of the frame.
+    start, stop : int
+        Position of its bytes.
+    bad_rows : list of int
+        Rows that are damaged or missing, ascending.
+    made, left_out : int or None
+        Conversions; None when the trailer is lost.
+    errors : list of str
+        One line for each error, corrected or not.
     """
 
     header: StreamHeader
-    samples: np.ndarray
+    samples: npt.NDArray[np.int16]
     layout: Layout
     start: int
     stop: int = 0
-    bad_rows: list = field(default_factory=list)
+    bad_rows: list[int] = field(default_factory=list)
     made: int | None = None
     left_out: int | None = None
-    errors: list = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
 
     @property
-    def complete(self):
-        """True when every row and the trailer's counts are there."""
+    def complete(self) -> bool:
+        """True when every row and the trailer's counts are decoded."""
         return not self.bad_rows and self.made is not None
 
     @property
-    def read(self):
-        """Pixels whose samples came through: bool (rows, cols)."""
+    def read(self) -> npt.NDArray[np.bool_]:
+        """Pixels whose samples are decoded: bool (rows, cols)."""
         mask = np.zeros((self.header.rows, self.header.cols), bool)
         bad = set(self.bad_rows)
         for i, row in enumerate(self.layout.rows.tolist()):
@@ -46,15 +60,20 @@ class DecodedFrame:
                 mask[row, self.layout.places_of(i) // self.header.subs] = True
         return mask
 
-    def save(self, path):
+    def save(self, path: str | Path) -> None:
         """Write samples, read, bad_rows, made, left_out (-1 when lost) and the header as JSON to an npz file.
 
-        The file is whole or not there. Raises OSError when it cannot be written.
+        Parameters
+        ----------
+        path : path
+            The file; the write is atomic.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written.
         """
         path = Path(path)
-        counts = {
-            name: -1 if count is None else count for name, count in (("made", self.made), ("left_out", self.left_out))
-        }
         handle, part = tempfile.mkstemp(prefix=".part-", suffix=".npz", dir=path.parent)
         try:
             with os.fdopen(handle, "wb") as out:
@@ -64,7 +83,8 @@ class DecodedFrame:
                     read=self.read,
                     header=json.dumps(dataclasses.asdict(self.header)),
                     bad_rows=np.array(self.bad_rows, np.int32),
-                    **counts,
+                    made=-1 if self.made is None else self.made,
+                    left_out=-1 if self.left_out is None else self.left_out,
                 )
             os.chmod(part, 0o644)
             os.replace(part, path)

@@ -3,8 +3,10 @@
 import zlib
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple, Self
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.scan import Scan
 from models.parameters import (
@@ -26,16 +28,28 @@ from .crc import one_byte_errors
 
 
 class StreamError(ParameterError):
-    """The bytes given are no stream. The message is one line that says where and why."""
+    """The bytes are no stream. The message is one line: where and why."""
 
 
 @dataclass(frozen=True)
 class StreamHeader:
-    """What a frame's header says.
+    """Header of a frame: the chip, and the part of the configuration that the decoder needs.
 
-    rows, cols, lanes: the chip's. tile_rows, tile_cols: 1..4 and 1..6. frame: of its fields, the stream
-    carries mode, window, mask, threshold, decimation, phase and frame_number; the others are not compared.
-    Raises ParameterError when a field is out of range.
+    Attributes
+    ----------
+    rows, cols : int
+        Size of the array in pixels, 1..1024 and 1..1536.
+    lanes : int
+        Converters, a power of two in 1..32.
+    tile_rows, tile_cols : int
+        Size of the tile in pixels, 1..4 and 1..6.
+    window, mode, phase, decimation, mask, threshold, frame_number
+        As in FrameParameters.
+
+    Raises
+    ------
+    ParameterError
+        When a field is out of range.
     """
 
     rows: int
@@ -51,17 +65,36 @@ class StreamHeader:
     threshold: int
     frame_number: int
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_int("rows", self.rows, 1, ROWS_MAX)
         check_int("cols", self.cols, 1, COLS_MAX)
         check_choice("lanes", self.lanes, LANES)
         check_int("tile rows", self.tile_rows, 1, 4)
         check_int("tile cols", self.tile_cols, 1, 6)
-        self.frame  # checks the other fields
+        _ = self.frame  # checks the other fields
 
     @classmethod
-    def from_frame(cls, rows, cols, lanes, frame, tile=TileParameters()):
-        """The header that a chip of ``rows`` x ``cols`` pixels and ``lanes`` sends. frame: FrameParameters."""
+    def from_frame(
+        cls, rows: int, cols: int, lanes: int, frame: FrameParameters, tile: TileParameters = TileParameters()
+    ) -> Self:
+        """Header that a chip sends for a frame.
+
+        Parameters
+        ----------
+        rows, cols : int
+            Size of the array in pixels.
+        lanes : int
+            Converters.
+        frame : FrameParameters
+            Configuration of the frame.
+        tile : TileParameters
+            The tile.
+
+        Returns
+        -------
+        StreamHeader
+            The header.
+        """
         return cls(
             rows,
             cols,
@@ -78,8 +111,8 @@ class StreamHeader:
         )
 
     @property
-    def frame(self):
-        """The configuration as FrameParameters; what the stream does not carry has its default."""
+    def frame(self) -> FrameParameters:
+        """Configuration; the fields that the stream does not carry have their defaults."""
         return FrameParameters(
             self.window,
             self.mode,
@@ -91,17 +124,17 @@ class StreamHeader:
         )
 
     @property
-    def edge(self):
+    def edge(self) -> bool:
         """True when the rows are run-length coded signed codes; else they are plain bytes 0..255."""
         return self.mode == "edge"
 
     @property
-    def subs(self):
-        """Samples of one pixel in the stream: 1, 2 (raw; phase and amplitude) or 4 (tof)."""
+    def subs(self) -> int:
+        """Samples per pixel in the stream: 1, 2 (raw; phase and amplitude) or 4 (tof)."""
         return 2 if self.phase else SAMPLES_PER_PIXEL[self.mode]
 
-    def to_bytes(self):
-        """The header with its CRC-32: HEADER_BYTES bytes."""
+    def to_bytes(self) -> bytes:
+        """Encoded header with its CRC-32: HEADER_BYTES bytes."""
         w = self.window
         flags = self.decimation << 4 | self.phase << 2 | MODES.index(self.mode)
         fields = HEADER_FIELDS.pack(
@@ -122,10 +155,23 @@ class StreamHeader:
         )
         return fields + CRC.pack(zlib.crc32(fields))
 
-    def layout(self, tile=TileParameters()):
-        """Where the samples of each row lie: Layout.
+    def layout(self, tile: TileParameters = TileParameters()) -> "Layout":
+        """Positions of the samples of each row.
 
-        Raises ParameterError when the tile has another size, or the window lies outside the array or reads nothing.
+        Parameters
+        ----------
+        tile : TileParameters
+            The sensor's tile.
+
+        Returns
+        -------
+        Layout
+            Of the frame.
+
+        Raises
+        ------
+        ParameterError
+            When the tile has another size, or the window is outside the array or selects no pixel.
         """
         if (tile.rows, tile.cols) != (self.tile_rows, self.tile_cols):
             raise ParameterError(
@@ -137,40 +183,60 @@ class StreamHeader:
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """The rows of a frame, and their samples in the order of the stream.
+    """Rows of a frame, and their samples in the order of the stream.
 
-    rows: int32 (R,), the rows read. kind: int32 (R,), which list of places a row has. counts: int32 (R,), samples.
-    places: int32, for each kind the samples' index col * subs + sub in their row, one list after the other.
-    start: int32 (kinds + 1,), where each list starts.
+    Attributes
+    ----------
+    rows : int32 (R,)
+        Rows that are read.
+    kind : int32 (R,)
+        List of places of each row.
+    counts : int32 (R,)
+        Samples of each row.
+    places : int32 (n,)
+        For each kind the samples' index col * subs + sub in their row, one list after the other.
+    start : int32 (kinds + 1,)
+        Start of each list in ``places``.
     """
 
-    rows: np.ndarray
-    kind: np.ndarray
-    counts: np.ndarray
-    places: np.ndarray
-    start: np.ndarray
+    rows: npt.NDArray[np.int32]
+    kind: npt.NDArray[np.int32]
+    counts: npt.NDArray[np.int32]
+    places: npt.NDArray[np.int32]
+    start: npt.NDArray[np.int32]
 
-    def places_of(self, ordinal):
-        """Index col * subs + sub of each sample of row number ``ordinal``, in the order of the stream."""
+    def places_of(self, ordinal: int) -> npt.NDArray[np.int32]:
+        """Samples of one row in the order of the stream.
+
+        Parameters
+        ----------
+        ordinal : int
+            Number of the row in ``rows``.
+
+        Returns
+        -------
+        int32 (n,)
+            Index col * subs + sub of each sample in its row.
+        """
         kind = self.kind[ordinal]
         return self.places[self.start[kind] : self.start[kind + 1]]
 
 
 @lru_cache(maxsize=32)
-def _layout(rows, cols, lanes, frame, subs, tile):
+def _layout(rows: int, cols: int, lanes: int, frame: FrameParameters, subs: int, tile: TileParameters) -> Layout:
     scan = Scan(rows, cols, lanes, frame, tile)
     index = scan.row_list.astype(np.int32)
     lists = []
     for k in range(tile.rows):
-        cols, sub = scan.row_samples(k)
-        lists.append((cols * subs + sub).astype(np.int32))
+        columns, sub = scan.row_samples(k)
+        lists.append((columns * subs + sub).astype(np.int32))
     start = np.cumsum([0] + [places.size for places in lists]).astype(np.int32)
     kind = index % tile.rows
     return Layout(index, kind, np.diff(start)[kind], np.concatenate(lists), start)
 
 
-def _correct(data):
-    """Correct one changed byte of a header: (header as it was, position of the changed byte or None), or None."""
+def _correct(data: bytes) -> tuple[bytes, int | None] | None:
+    """Correct one wrong byte of a header: (header as sent, position of the byte or None), or None."""
     syndrome = zlib.crc32(data[:FIELD_BYTES]) ^ CRC.unpack_from(data, FIELD_BYTES)[0]
     if not syndrome:
         return bytes(data), None
@@ -182,10 +248,41 @@ def _correct(data):
     return bytes(right), error[0]
 
 
-def read_header(data):
-    """Read HEADER_BYTES bytes, one of which may be wrong: (StreamHeader, header as it was sent, position or None).
+class ReceivedHeader(NamedTuple):
+    """A header after the correction of one byte.
 
-    Raises StreamError when this is no header, is damaged worse, or says what cannot be.
+    Attributes
+    ----------
+    header : StreamHeader
+        Its contents.
+    sent : bytes
+        The header as it was sent.
+    corrected : int or None
+        Position of the wrong byte; None if there is none.
+    """
+
+    header: StreamHeader
+    sent: bytes
+    corrected: int | None
+
+
+def read_header(data: bytes) -> ReceivedHeader:
+    """Decode a header, one byte of which may be wrong.
+
+    Parameters
+    ----------
+    data : bytes
+        HEADER_BYTES bytes.
+
+    Returns
+    -------
+    ReceivedHeader
+        Its contents and the correction.
+
+    Raises
+    ------
+    StreamError
+        When this is no header, has more than one wrong byte, or holds values out of range.
     """
     if len(data) < HEADER_BYTES:
         raise StreamError(f"{len(data)} bytes: a header has {HEADER_BYTES}")
@@ -193,7 +290,7 @@ def read_header(data):
         raise StreamError(f"starts with {bytes(data[: len(MAGIC)])!r}: a frame starts with {MAGIC!r}")
     found = _correct(data)
     if found is None:
-        raise StreamError("header CRC-32 does not fit, and no change of one byte mends it")
+        raise StreamError("header CRC-32 does not fit, and no change of one byte corrects it")
     sent, position = found
     (magic, version, flags, threshold, lanes, tile, rows, cols, row0, row1, col0, col1, mask, frame_number) = (
         HEADER_FIELDS.unpack_from(sent)
@@ -221,4 +318,4 @@ def read_header(data):
         )
     except ParameterError as error:
         raise StreamError(f"header: {error}") from None
-    return header, sent, position
+    return ReceivedHeader(header, sent, position)

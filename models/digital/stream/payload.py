@@ -1,11 +1,14 @@
 """Rows as bytes: samples to bits and back, row after row (docs/stream.md, Payload).
 
 `code_sample` is the coder: the packing around it, the hardware's cycle model and the decoder only move its bits.
-All that Numba compiles is in this one file, since its cache on disk does not notice that a function in
-another file, inlined here, has changed.
+All that Numba compiles is in this one file, since its cache on disk does not notice a change of a function in
+another file that is inlined here.
 """
 
+from typing import cast
+
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC, TRAILER_BYTES, TRAILER_ROW
@@ -16,32 +19,75 @@ START = (3, 4, 0, 128)  # k, r2, run, credit at the start of a row
 K_MAX, R2_MAX, CREDIT_MAX = 7, 12, 255
 TOKEN_MAX = 24  # bits of the longest token
 
-# By the zeros before a value's leading one: what they do to r2. By the value's top byte: how many they are.
+# Change of r2 by the number of zeros before a value's leading one; that number by the value's top byte.
 R2_STEP = np.array([-1, 0] + [1] * 7)
 PREFIX = np.array([8 - byte.bit_length() for byte in range(256)])
 
 _COUNTS, _COUNTED, _TRAILER = COUNTS.size, COUNTED_BYTES, TRAILER_BYTES
 _MAGIC = np.frombuffer(MAGIC, np.uint8)
 
+int64 = cast(type[int], np.int64)  # in compiled code int64 is the only integer
+Bytes = npt.NDArray[np.uint8]
+Ints = npt.NDArray[np.int32]
+Codes = npt.NDArray[np.int16]
+Places = npt.NDArray[np.int64]
 
-def base_of(threshold):
-    """Smallest magnitude of a coded value: a sample below it is a zero."""
+
+def base_of(threshold: int) -> int:
+    """Smallest magnitude of a coded value: a sample below it is a zero.
+
+    Parameters
+    ----------
+    threshold : int
+        0..127.
+
+    Returns
+    -------
+    int
+        1..127.
+    """
     return max(threshold, 1)
 
 
-def row_bytes_max(count, edge):
-    """Bytes that the payload of ``count`` samples takes at most: 8.25 bits a sample and 4 bytes in edge mode."""
+def row_bytes_max(count: int, edge: bool) -> int:
+    """Largest payload of a row: 8.25 bits a sample and 4 bytes in edge mode.
+
+    Parameters
+    ----------
+    count : int
+        Samples of the row.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+
+    Returns
+    -------
+    int
+        Bytes.
+    """
     return -(-(33 * count + 128) // 32) if edge else count
 
 
 @njit(cache=True)
-def _word(data, at):
-    return np.int64(data[at]) << 8 | np.int64(data[at + 1])
+def _word(data: Bytes, at: int) -> int:
+    return int64(data[at]) << 8 | int64(data[at + 1])
 
 
 @njit(cache=True)
-def crc16_span(data, start, stop):
-    """CRC-16 of data[start:stop], data a uint8 array."""
+def crc16_span(data: Bytes, start: int, stop: int) -> int:
+    """CRC-16 of data[start:stop].
+
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    start, stop : int
+        Span.
+
+    Returns
+    -------
+    int
+        0..65535.
+    """
     crc = CRC16_START
     whole = start + (stop - start) // 4 * 4
     for i in range(start, whole, 4):
@@ -53,16 +99,31 @@ def crc16_span(data, start, stop):
             ^ CRC16_AFTER[0, data[i + 3]]
         )
     for i in range(whole, stop):
-        crc = (crc << 8 & 0xFFFF) ^ CRC16_AFTER[0, crc >> 8 ^ np.int64(data[i])]
+        crc = (crc << 8 & 0xFFFF) ^ CRC16_AFTER[0, crc >> 8 ^ int64(data[i])]
     return crc
 
 
 @njit(cache=True)
-def code_sample(code, base, k, r2, run, credit):
-    """One sample of edge mode: returns (bits, length 0..24, k, r2, run, credit).
+def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) -> tuple[int, int, int, int, int, int]:
+    """Encode one sample of edge mode.
 
-    code: -128..127. base: see `base_of`. k, r2, run, credit: the coder's state, see `START`.
     A run that is still open at the end of a row is closed by one more 0 bit.
+
+    Parameters
+    ----------
+    code : int
+        -128..127.
+    base : int
+        See `base_of`.
+    k, r2, run, credit : int
+        State of the coder, see `START`.
+
+    Returns
+    -------
+    bits, length : int
+        Token, 0..24 bits.
+    k, r2, run, credit : int
+        State after it.
     """
     magnitude = abs(code)
     if run == 0 and (credit >> 2) + (r2 >> 1) < k + 17:
@@ -87,8 +148,27 @@ def code_sample(code, base, k, r2, run, credit):
 
 
 @njit(cache=True)
-def encode_row(codes, edge, base, out, at):
-    """Append the payload of a row and return the position after it. codes: int16 (n,); out: uint8."""
+def encode_row(codes: Codes, edge: bool, base: int, out: Bytes, at: int) -> int:
+    """Append the payload of a row.
+
+    Parameters
+    ----------
+    codes : int16 (n,)
+        Samples in the order of the stream.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+    base : int
+        See `base_of`.
+    out : uint8
+        Receives the bytes.
+    at : int
+        Position of the first byte.
+
+    Returns
+    -------
+    int
+        Position after the payload.
+    """
     if not edge:
         for code in codes:
             out[at] = code & 0xFF
@@ -114,8 +194,27 @@ def encode_row(codes, edge, base, out, at):
 
 
 @njit(cache=True)
-def encode_rows(codes, rows, counts, edge, base, out):
-    """Rows with their marks into out; returns the bytes written. codes: int16, row after row; rows, counts: int32."""
+def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, out: Bytes) -> int:
+    """Encode rows with their marks.
+
+    Parameters
+    ----------
+    codes : int16 (n,)
+        Samples in the order of the stream, row after row.
+    rows, counts : int32 (R,)
+        Index and samples of each row.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+    base : int
+        See `base_of`.
+    out : uint8
+        Receives the bytes.
+
+    Returns
+    -------
+    int
+        Bytes written.
+    """
     at, first = 0, 0
     for i in range(rows.size):
         end = encode_row(codes[first : first + counts[i]], edge, base, out, at)
@@ -127,12 +226,34 @@ def encode_rows(codes, rows, counts, edge, base, out):
 
 
 @njit(cache=True)
-def decode_row(data, at, stop, count, edge, base, where, value):
-    """Decode ``count`` samples from data[at:stop]; returns (position after the payload, non-zero samples found).
+def decode_row(
+    data: Bytes, at: int, stop: int, count: int, edge: bool, base: int, where: Ints, value: Codes
+) -> tuple[int, int]:
+    """Decode the payload of a row from data[at:stop].
 
-    The position is -1 when no encoder writes these bits or they run past ``stop``. In edge mode the samples found
-    are left in where (int32, index in the row, ascending) and value (int16), each of at least ``count`` elements;
-    in the others they are the bytes themselves.
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    at, stop : int
+        Span.
+    count : int
+        Samples of the row.
+    edge : bool
+        Run-length coded signed codes; else plain bytes, which are the samples themselves.
+    base : int
+        See `base_of`.
+    where : int32 (count or more,)
+        Receives the index in the row of each non-zero sample of edge mode, ascending.
+    value : int16 (count or more,)
+        Receives these samples.
+
+    Returns
+    -------
+    end : int
+        Position after the payload; -1 when no encoder writes these bits or they run past ``stop``.
+    found : int
+        Non-zero samples of edge mode.
     """
     if not edge:
         return at + count if at + count <= stop else -1, 0
@@ -150,7 +271,7 @@ def decode_row(data, at, stop, count, edge, base, where, value):
             here += 1
         r = r2 >> 1
         if (credit >> 2) + r < k + 17:
-            code = np.int64(hold >> np.uint64(56))
+            code = int64(hold >> np.uint64(56))
             code -= (code & 0x80) << 1
             length = 8
             credit = min(credit + 1, CREDIT_MAX)
@@ -161,14 +282,14 @@ def decode_row(data, at, stop, count, edge, base, where, value):
                 value[found] = code
                 found += 1
             i += 1
-        elif np.int64(hold) >= 0:
+        elif int64(hold) >= 0:
             length = 1
             i += 1 << k
             k = min(k + 1, K_MAX)
             credit = min(credit + 29, CREDIT_MAX)
         else:
             left = TOKEN_MAX - 2 - k
-            token = np.int64(hold >> np.uint64(64 - TOKEN_MAX))
+            token = int64(hold >> np.uint64(64 - TOKEN_MAX))
             i += token >> (left + 1) & ((1 << k) - 1)
             sign = -(token >> left & 1)
             token &= (1 << left) - 1
@@ -197,11 +318,24 @@ def decode_row(data, at, stop, count, edge, base, where, value):
 
 
 @njit(cache=True)
-def check_row(data, at, stop, count, edge, base, where, value):
-    """Decode a row and its mark: returns (position after the mark, row index that the mark gives, samples found).
+def check_row(
+    data: Bytes, at: int, stop: int, count: int, edge: bool, base: int, where: Ints, value: Codes
+) -> tuple[int, int, int]:
+    """Decode a row and its mark from data[at:stop].
 
-    The position is -1 when the payload or the mark does not fit in data[at:stop]. Only the caller
-    knows whether the row index is the right one: it is a random number when the row is damaged.
+    Parameters
+    ----------
+    data, at, stop, count, edge, base, where, value
+        As in `decode_row`.
+
+    Returns
+    -------
+    end : int
+        Position after the mark; -1 when the payload or the mark does not fit.
+    row : int
+        Row index of the mark; a random number when the row is damaged.
+    found : int
+        Non-zero samples of edge mode.
     """
     end, found = decode_row(data, at, stop, count, edge, base, where, value)
     if end < 0 or end + 2 > stop:
@@ -210,14 +344,48 @@ def check_row(data, at, stop, count, edge, base, where, value):
 
 
 @njit(cache=True)
-def decode_rows(data, at, ordinal, rows, kind, places, start, edge, base, where, value, out, ends):
-    """Decode rows into out (int16 (rows, cols * subs)) until one does not fit; ends: int64 (R,), where they end.
+def decode_rows(
+    data: Bytes,
+    at: int,
+    ordinal: int,
+    rows: Ints,
+    kind: Ints,
+    places: Ints,
+    start: Ints,
+    edge: bool,
+    base: int,
+    where: Ints,
+    value: Codes,
+    out: Codes,
+    ends: Places,
+) -> tuple[int, int]:
+    """Decode rows until one does not fit.
 
-    Returns (its ordinal, or the number of rows; its position).
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    at, ordinal : int
+        Position and number of the first row.
+    rows, kind, places, start
+        As in Layout.
+    edge, base, where, value
+        As in `decode_row`.
+    out : int16 (rows, cols * subs)
+        Receives the samples.
+    ends : int64 (R,)
+        Receives the end of each row.
+
+    Returns
+    -------
+    ordinal : int
+        Number of the row that does not fit, or the number of rows.
+    at : int
+        Its position.
     """
     while ordinal < rows.size:
-        first = start[kind[ordinal]]
-        count = np.int64(start[kind[ordinal] + 1]) - first
+        first = int64(start[kind[ordinal]])
+        count = int64(start[kind[ordinal] + 1]) - first
         end, row, found = check_row(data, at, data.size, count, edge, base, where, value)
         if end < 0 or row != rows[ordinal]:
             break
@@ -232,16 +400,42 @@ def decode_rows(data, at, ordinal, rows, kind, places, start, edge, base, where,
 
 
 @njit(cache=True)
-def counts_fit(data, at, stop):
-    """True when the trailer's counts and their mark lie at ``at``."""
+def counts_fit(data: Bytes, at: int, stop: int) -> bool:
+    """Whether the trailer's counts and their mark are at a position.
+
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    at, stop : int
+        Position, and end of the bytes.
+
+    Returns
+    -------
+    bool
+        True if they fit.
+    """
     if at < 0 or at + _COUNTED > stop:
         return False
     return crc16_span(data, at, at + _COUNTS) ^ _word(data, at + _COUNTS) == TRAILER_ROW
 
 
 @njit(cache=True)
-def frame_ends(data, at, stop):
-    """True when nothing or what looks like a header, one byte of its magic perhaps wrong, lies at ``at``."""
+def frame_ends(data: Bytes, at: int, stop: int) -> bool:
+    """Whether the bytes end at a position, or a header seems to start there.
+
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    at, stop : int
+        Position, and end of the bytes.
+
+    Returns
+    -------
+    bool
+        True if so; one byte of the header's magic may be wrong.
+    """
     if at >= stop:
         return True
     same = 0
@@ -251,21 +445,87 @@ def frame_ends(data, at, stop):
 
 
 @njit(cache=True)
-def row_fits(data, at, stop, ordinal, rows, counts, edge, base, where, value):
-    """True when row number ``ordinal``, or the trailer after the last, lies at ``at``."""
+def row_fits(
+    data: Bytes,
+    at: int,
+    stop: int,
+    ordinal: int,
+    rows: Ints,
+    counts: Ints,
+    edge: bool,
+    base: int,
+    where: Ints,
+    value: Codes,
+) -> bool:
+    """Whether a row, or the trailer after the last, is at a position.
+
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    at, stop : int
+        Position, and end of the bytes.
+    ordinal : int
+        Number of the row; the number of rows is the trailer.
+    rows, counts : int32 (R,)
+        Index and samples of each row.
+    edge, base, where, value
+        As in `decode_row`.
+
+    Returns
+    -------
+    bool
+        True if payload and mark fit.
+    """
     if ordinal == rows.size:
         return counts_fit(data, at, stop)
-    end, row, _ = check_row(data, at, stop, np.int64(counts[ordinal]), edge, base, where, value)
+    end, row, _ = check_row(data, at, stop, int64(counts[ordinal]), edge, base, where, value)
     return end >= 0 and row == rows[ordinal]
 
 
 @njit(cache=True)
-def find_row(data, start, stop, limit, first, last, rows, counts, number, edge, base, where, value):
-    """Search data[start:stop] for row number ``first`` to ``last`` of the frame (rows.size: the trailer).
+def find_row(
+    data: Bytes,
+    start: int,
+    stop: int,
+    limit: int,
+    first: int,
+    last: int,
+    rows: Ints,
+    counts: Ints,
+    number: Ints,
+    edge: bool,
+    base: int,
+    where: Ints,
+    value: Codes,
+) -> tuple[int, int, int]:
+    """Search data[start:stop] for one of some rows.
 
-    rows, counts: int32 (R,), index and samples of each row read. number: int32 (ROWS_MAX,), ordinal of a row
-    index or -1. limit: samples that may be decoded on trial.
-    Returns (position or -1, ordinal, samples left of the limit).
+    Parameters
+    ----------
+    data : uint8
+        Bytes of the stream.
+    start, stop : int
+        Span.
+    limit : int
+        Samples that may be decoded on trial.
+    first, last : int
+        Numbers of the rows, both included; the number of rows is the trailer.
+    rows, counts : int32 (R,)
+        Index and samples of each row.
+    number : int32 (ROWS_MAX,)
+        Number of a row index, or -1.
+    edge, base, where, value
+        As in `decode_row`.
+
+    Returns
+    -------
+    at : int
+        Position, or -1.
+    ordinal : int
+        Number of the row there.
+    limit : int
+        Samples that may still be decoded on trial.
     """
     for at in range(start, stop):
         if last == rows.size and counts_fit(data, at, stop) and frame_ends(data, at + _TRAILER, stop):
@@ -273,7 +533,7 @@ def find_row(data, start, stop, limit, first, last, rows, counts, number, edge, 
         previous = -1
         for ordinal in range(first, min(last, rows.size - 1, first + 3) + 1):
             # rows of the same number of samples look alike until their mark; four numbers follow each other
-            count = np.int64(counts[ordinal])
+            count = int64(counts[ordinal])
             if count == previous:
                 continue
             previous = count
@@ -294,11 +554,22 @@ def find_row(data, start, stop, limit, first, last, rows, counts, number, edge, 
 
 
 @njit(cache=True)
-def one_byte_changes(syndrome, length, where, change):
-    """Which changes of one of ``length`` bytes give a CRC-32 that differs by ``syndrome`` from the right one.
+def one_byte_changes(syndrome: int, length: int, where: Places, change: Places) -> int:
+    """Changes of one byte that explain a CRC-32: the right one, if there is one, and one more for every 16 MB.
 
-    Fills where and change (int64, as many as may be found), and returns how many were: the right one, if
-    there is one, and one more for every 16 MB.
+    Parameters
+    ----------
+    syndrome : int
+        (computed CRC) xor (received CRC).
+    length : int
+        Bytes that the CRC covers.
+    where, change : int64 (n,)
+        Receive position and change of up to n candidates.
+
+    Returns
+    -------
+    int
+        Number of candidates.
     """
     found = 0
     for position in range(length - 1, -1, -1):

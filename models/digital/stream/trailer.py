@@ -1,6 +1,7 @@
 """Row marks and the trailer of a frame (docs/stream.md, Row mark, Trailer)."""
 
 import zlib
+from typing import NamedTuple
 
 from models.parameters import check_int
 from models.parameters.stream_format import COUNTED_BYTES, COUNTS, CRC, FIELD_BYTES, MARK, TRAILER_BYTES, TRAILER_ROW
@@ -8,20 +9,79 @@ from models.parameters.stream_format import COUNTED_BYTES, COUNTS, CRC, FIELD_BY
 from .crc import crc16
 
 
-def row_mark(payload, row):
-    """The two bytes behind a row's payload: its CRC-16 xor the row index."""
+class Trailer(NamedTuple):
+    """Contents of a trailer.
+
+    Attributes
+    ----------
+    made, left_out : int
+        Conversions, 0..2**32-1.
+    notes : list of str
+        What is wrong, one line each.
+    """
+
+    made: int
+    left_out: int
+    notes: list[str]
+
+
+def row_mark(payload: bytes, row: int) -> bytes:
+    """Mark of a row.
+
+    Parameters
+    ----------
+    payload : bytes
+        Payload of the row.
+    row : int
+        Row index, 0..65535.
+
+    Returns
+    -------
+    bytes
+        CRC-16 of the payload xor the row index: two bytes.
+    """
     return MARK.pack(crc16(payload) ^ row)
 
 
-def frame_crc(sent, body):
-    """CRC-32 of a frame: of its header without the header's CRC (``sent``: the header), then of ``body``."""
+def frame_crc(sent: bytes, body: bytes | memoryview) -> int:
+    """CRC-32 of a frame, without the header's own CRC.
+
+    Parameters
+    ----------
+    sent : bytes
+        The header.
+    body : bytes-like
+        Bytes after the header.
+
+    Returns
+    -------
+    int
+        0..2**32-1.
+    """
     return zlib.crc32(body, zlib.crc32(sent[:FIELD_BYTES]))
 
 
-def trailer(sent, rows, made, left_out):
-    """The trailer's TRAILER_BYTES bytes. sent: the header's bytes. rows: all bytes between it and the trailer.
+def trailer(sent: bytes, rows: bytes, made: int, left_out: int) -> bytes:
+    """Encode a trailer.
 
-    made, left_out: conversions, 0..2**32-1.
+    Parameters
+    ----------
+    sent : bytes
+        The header.
+    rows : bytes
+        All bytes between the header and the trailer.
+    made, left_out : int
+        Conversions, 0..2**32-1.
+
+    Returns
+    -------
+    bytes
+        TRAILER_BYTES bytes.
+
+    Raises
+    ------
+    ParameterError
+        For a count out of range.
     """
     check_int("conversions made", made, 0, 2**32 - 1)
     check_int("conversions left out", left_out, 0, 2**32 - 1)
@@ -30,10 +90,20 @@ def trailer(sent, rows, made, left_out):
     return counted + CRC.pack(zlib.crc32(counted, frame_crc(sent, rows)))
 
 
-def read_trailer(tail, crc):
-    """Read a trailer. tail: its bytes, perhaps fewer. crc: CRC-32 of the frame before it, None if that is damaged.
+def read_trailer(tail: bytes, crc: int | None) -> Trailer | None:
+    """Decode a trailer.
 
-    Returns (made, left_out, what was wrong), or None when the counts do not fit their mark.
+    Parameters
+    ----------
+    tail : bytes
+        Its bytes, possibly cut short.
+    crc : int or None
+        CRC-32 of the frame before it, None if that is damaged.
+
+    Returns
+    -------
+    Trailer or None
+        None when the counts do not fit their mark.
     """
     if len(tail) < COUNTED_BYTES or row_mark(tail[: COUNTS.size], TRAILER_ROW) != tail[COUNTS.size : COUNTED_BYTES]:
         return None
@@ -42,4 +112,5 @@ def read_trailer(tail, crc):
         notes = [f"the trailer ends after {len(tail)} of {TRAILER_BYTES} bytes"]
     elif crc is not None and zlib.crc32(tail[:COUNTED_BYTES], crc) != CRC.unpack_from(tail, COUNTED_BYTES)[0]:
         notes = ["the frame's CRC-32 does not fit, though every row's mark does"]
-    return *COUNTS.unpack_from(tail), notes
+    made, left_out = COUNTS.unpack_from(tail)
+    return Trailer(made, left_out, notes)

@@ -95,7 +95,7 @@ def test_thresholds_in_60_digits(n_frac):
         edge = 2 * pi * (2 * k - 1) / 512
         assert threshold >= 0
 
-        def reached(ratio):
+        def reached(ratio, edge=edge):
             """Is the centre of the cell of ``ratio`` at ``edge`` or beyond it?"""
             return exact_atan((Decimal(ratio) + Decimal(1) / 2) / 2**n_frac) >= edge
 

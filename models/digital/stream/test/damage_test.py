@@ -1,4 +1,4 @@
-"""One wrong byte is mended, a damaged row costs that row alone, and nothing makes the decoder crash, hang or lie."""
+"""One wrong byte is corrected, a damaged row costs that row alone, and nothing makes the decoder crash, hang or lie."""
 
 import zlib
 
@@ -53,7 +53,7 @@ def check_rows_lost(frame, header, samples, bad):
 
 
 @pytest.mark.parametrize("name", FRAMES)
-def test_one_wrong_byte_anywhere_is_mended(name):
+def test_one_wrong_byte_anywhere_is_corrected(name):
     header, samples, data = sent(name)
     rng = np.random.default_rng(1)
     for position in range(len(data)):
@@ -230,7 +230,7 @@ def test_bytes_around_frames_are_told():
 
 @pytest.mark.parametrize("name", FRAMES)
 def test_a_frame_cut_short_anywhere_costs_the_next_one_nothing(name):
-    """As where the chip is reset in a frame: a header that the next one runs into is not mended with its bytes."""
+    """As where the chip is reset in a frame: a header that the next one runs into is not corrected with its bytes."""
     _, samples, data = sent(name)
     for length in range(len(data)):
         last = decode_stream(data[:length] + data)[-1]
