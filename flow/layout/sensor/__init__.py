@@ -1,1 +1,1 @@
-"""The whole sensor: analog blocks and the laid-out chip as hard macros on one die, placed, joined and checked."""
+"""The sensor's die: the analog blocks and the laid-out chip as macros, placed, routed and checked."""

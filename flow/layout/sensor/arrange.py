@@ -1,36 +1,40 @@
-"""From blocks to places and routes: what lies where on the die. All in nm."""
+"""From blocks to their places and routes on the die, in nm."""
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from .plan import CORE, ORIENTATIONS, nets, nm, stack, with_core
-from .routing import joined, length, raised, reaches, side_room, trunks
+from .plan import CORE, ORIENTATIONS, Block, DieParameters, Terminal, nets, nm, stack, with_core
+from .routing import Branch, Tracks, branches, length, raised, side_room, split_nets, trunks
 
 
 @dataclass(frozen=True)
 class Arranged:
-    """blocks: dict name -> Block, where it lies. nets: dict net -> pairs (block, pin). routes: dict net -> list of
-    Reach, of those that the channel joins; y: dict net -> of its trunk. abutted: how many nets' pins touch. channel:
-    its bottom and its top. count: of the channel's tracks."""
+    """A placed and routed die.
 
-    blocks: dict
-    nets: dict
-    routes: dict
-    y: dict
+    blocks: where they are placed. routes: branches of the nets that the channel routes; y: of their trunks. abutted:
+    number of nets whose pins touch. channel: its bottom and top. count: of the channel's tracks.
+    """
+
+    blocks: dict[str, Block]
+    nets: dict[str, list[Terminal]]
+    routes: dict[str, list[Branch]]
+    y: dict[str, int]
     abutted: int
-    channel: tuple
+    channel: tuple[int, int]
     count: int
 
     @property
-    def wire(self):
-        """nm of all routes."""
+    def wire(self) -> int:
+        """Wire length of all routes."""
         return sum(length(found, self.y[net]) for net, found in self.routes.items())
 
 
-def arranged(blocks, die, tracks, layers, extra=()):
-    """The Arranged of ``blocks``, dict name -> Block at the origin, with the chip turned so that there is least wire.
+def arranged(
+    blocks: dict[str, Block], die: DieParameters, tracks: Tracks, layers: Sequence[str], extra: Iterable[str] = ()
+) -> Arranged:
+    """Place and route ``blocks``, given at the origin, with the chip in the orientation of the least wire length.
 
-    layers: names in LEF of the wires of the chip's and of the analog blocks' pins. extra: as of `plan.nets`. Raises
-    ParameterError, StepError.
+    layers: see `routing.branches`. extra: see `plan.nets`. Raises ParameterError, StepError.
     """
     return min(
         (arranged_as_is(blocks | {CORE: blocks[CORE].turned(way)}, die, tracks, layers, extra) for way in ORIENTATIONS),
@@ -38,17 +42,19 @@ def arranged(blocks, die, tracks, layers, extra=()):
     )
 
 
-def arranged_as_is(blocks, die, tracks, layers, extra=()):
-    """As `arranged`, the chip as it is given.
+def arranged_as_is(
+    blocks: dict[str, Block], die: DieParameters, tracks: Tracks, layers: Sequence[str], extra: Iterable[str] = ()
+) -> Arranged:
+    """Place and route with the chip in the orientation given. Arguments: see `arranged`.
 
-    Where verticals and trunks lie does not depend on the channel's height: they come first, then all blocks are raised.
+    Branches and trunks do not depend on the channel's height: they come first, then all blocks are raised.
     """
     analog = {name: block for name, block in blocks.items() if name != CORE}
     placed, room = stack(analog, die), side_room(blocks[CORE], tracks)
     low = with_core(placed, blocks[CORE], die, room, 0)
     found = nets(low, extra)
-    routed, abutted = joined(low, found)
-    routes = reaches(low, routed, die, tracks, layers)
+    routed, abutted = split_nets(low, found)
+    routes = branches(low, routed, die, tracks, layers)
     numbers, begin = trunks(routes, tracks), nm(die.edge_um + die.gap_um)
     count = max(numbers.values()) + 1
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)

@@ -1,18 +1,21 @@
-"""A channel's trunks on as few tracks as there can be: the left-edge algorithm [HashimotoStevens1971].
+"""A channel's trunks on the fewest tracks: the left-edge algorithm [HashimotoStevens1971].
 
-Every pin of a net reaches the channel on a vertical of its own, no two of which have the same place, so that no trunk
-forces another above or below it: any order of the tracks is a routing.
+Every pin has a vertical branch to its trunk, and no two branches have the same x, so that there are no vertical
+constraints between trunks: any order of the tracks is a routing.
 """
+
+from collections.abc import Collection, Mapping
 
 from base.steps import StepError
 
 
-def left_edge(trunks, gap):
-    """dict net -> track, from 0: trunks whose spans come nearer than ``gap`` are on different tracks.
+def left_edge(trunks: Mapping[str, tuple[int, int]], gap: int) -> dict[str, int]:
+    """Track of each net, from 0: trunks whose spans are nearer than ``gap`` are on different tracks.
 
-    trunks: dict net -> (low, high). There are as many tracks as trunks over the fullest place.
+    trunks: net -> (low, high). The number of tracks is the largest number of trunks over one x.
     """
-    tracks, ends = {}, []
+    tracks: dict[str, int] = {}
+    ends: list[int] = []
     for net, (low, high) in sorted(trunks.items(), key=lambda item: (item[1], item[0])):
         track = next((k for k, end in enumerate(ends) if low - end >= gap), len(ends))
         ends[track : track + 1] = [high]
@@ -20,7 +23,7 @@ def left_edge(trunks, gap):
     return tracks
 
 
-def free(wanted, taken, pitch):
+def free(wanted: int, taken: Collection[int], pitch: int) -> int:
     """The place nearest to ``wanted`` that is ``pitch`` or more from all in ``taken``."""
     near = [wanted, *(place + way * pitch for place in taken for way in (-1, 1))]
     return min(
@@ -29,12 +32,12 @@ def free(wanted, taken, pitch):
     )
 
 
-def check_apart(verticals, pitch):
-    """Raise StepError unless the verticals, dict what -> x, are ``pitch`` or more from one another."""
-    ranked = sorted(verticals.items(), key=lambda item: item[1])
+def check_apart(branches: Mapping[tuple[str, str], int], pitch: int) -> None:
+    """Raise StepError unless the x of all branches, by (block, pin), are ``pitch`` or more apart."""
+    ranked = sorted(branches.items(), key=lambda item: item[1])
     for (one, x), (other, x_other) in zip(ranked, ranked[1:]):
         if x_other - x < pitch:
             raise StepError(
-                f"channel: the pins {' '.join(one)} and {' '.join(other)} are {x_other - x} nm from one "
-                f"another in x; {pitch} nm are needed"
+                f"channel: the pins {' '.join(one)} and {' '.join(other)} are {x_other - x} nm apart in x; "
+                f"{pitch} nm are needed"
             )

@@ -1,12 +1,24 @@
-"""What the metal of a GDS joins, pins of its blocks and of the die, and how that differs from the nets asked for."""
+"""Connectivity of a GDS: the pins that its metal connects, and how that differs from the nets."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from platforms.coriolis import CoriolisPlatform
+from platforms.die import TopMetal
+
+from .plan import Terminal
+
+if TYPE_CHECKING:
+    import klayout.db as kdb
 
 
-def nets(gds, cells, known, thick):
-    """list of sets of (block, pin): what each net of the top cell joins.
+def nets(gds: Path, cells: Mapping[str, str], tech: CoriolisPlatform, top_metal: TopMetal) -> list[set[Terminal]]:
+    """Terminals that each net of the top cell connects.
 
-    cells: dict cell -> block. known: CoriolisPlatform; thick: TopMetal. A pin of a block is named by its text on the wire's pin
-    layer in the block's own cell, one of the die ('die') by that in the top cell; metal of a block without a name is
-    ('block', '?...'). KLayout extracts the wires and cuts of all cells, transistors aside.
+    cells: cell -> block. A pin of a block is named by its text on the pin layer in the block's own cell, one of the die
+    ('die') by that in the top cell; metal of a block without a name is ('block', '?...'). KLayout extracts the metals and
+    vias of all cells, without transistors.
     """
     import klayout.db as db
 
@@ -14,41 +26,44 @@ def nets(gds, cells, known, thick):
     layout.read(str(gds))
     (top,) = layout.top_cells()
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
-    metal = []
-    for wire in (*known.metals, thick.metal):
-        metal.append(l2n.make_polygon_layer(layout.layer(*wire.gds), wire.name))
-        names = l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.name}_pin")
-        l2n.connect(metal[-1])
-        l2n.connect(metal[-1], names)
-    for level, cut in enumerate((*known.vias, thick.via)):
-        between = l2n.make_polygon_layer(layout.layer(*cut.gds), cut.name)
+    metals = []
+    for metal in (*tech.metals, top_metal.metal):
+        metals.append(l2n.make_polygon_layer(layout.layer(metal.layer, metal.datatype), metal.name))
+        names = l2n.make_text_layer(layout.layer(metal.layer, tech.pin_datatype), f"{metal.name}_pin")
+        l2n.connect(metals[-1])
+        l2n.connect(metals[-1], names)
+    for level, via in enumerate((*tech.vias, top_metal.via)):
+        between = l2n.make_polygon_layer(layout.layer(via.layer, via.datatype), via.name)
         l2n.connect(between)
-        l2n.connect(metal[level], between)
-        l2n.connect(between, metal[level + 1])
+        l2n.connect(metals[level], between)
+        l2n.connect(between, metals[level + 1])
     l2n.extract_netlist()
     circuit = l2n.netlist().circuit_by_name(top.name)
-    return [found for net in circuit.each_net() if (found := _ends(net, cells))]
+    return [found for net in circuit.each_net() if (found := _terminals(net, cells))]
 
 
-def _ends(net, cells):
-    ends = {("die", name) for name in net.name.split(",") if name}
+def _terminals(net: "kdb.Net", cells: Mapping[str, str]) -> set[Terminal]:
+    found = {("die", name) for name in net.name.split(",") if name}
     for reference in net.each_subcircuit_pin():
         circuit = reference.subcircuit().circuit_ref()
         inner = circuit.net_for_pin(reference.pin_id())
         for pin in (inner.name or f"?{inner.expanded_name()}").split(","):
-            ends.add((cells.get(circuit.name, circuit.name), pin))
-    return ends
+            found.add((cells.get(circuit.name, circuit.name), pin))
+    return found
 
 
-def compare(found, asked):
-    """(dict net -> its pins that are not on the net's largest part, dict 'net, net' -> pins that are on one net).
+def compare(
+    found: Sequence[set[Terminal]], wanted: Mapping[str, Sequence[Sequence[str]]]
+) -> tuple[dict[str, list[Terminal]], dict[str, list[Terminal]]]:
+    """Opens (net -> its terminals that are not on its largest part) and shorts ('net, net' -> terminals connected).
 
-    found: of `nets`. asked: dict net -> pins, pairs (block, pin). A pin of no net is as a net of its own.
+    found: of `nets`. wanted: terminals of each net. A terminal of no net is a net of its own.
     """
-    of = {tuple(end): net for net, ends in asked.items() for end in ends}
-    parts, shorts = {}, {}
+    of = {(block, pin): net for net, ends in wanted.items() for block, pin in ends}
+    parts: dict[str, list[set[Terminal]]] = {}
+    shorts = {}
     for ends in found:
-        here = {}
+        here: dict[str, list[Terminal]] = {}
         for end in ends:
             here.setdefault(of.get(end, " ".join(end)), []).append(end)
         if len(here) > 1:
@@ -56,9 +71,8 @@ def compare(found, asked):
         for net, own in here.items():
             parts.setdefault(net, []).append(set(own))
     opens = {}
-    for net, ends in asked.items():
-        largest = max(parts.get(net, [set()]), key=len)
-        lacking = {tuple(end) for end in ends} - largest
+    for net, ends in wanted.items():
+        lacking = {(block, pin) for block, pin in ends} - max(parts.get(net, [set()]), key=len)
         if lacking or len(parts.get(net, ())) > 1:
             opens[net] = sorted(lacking)
     return opens, shorts

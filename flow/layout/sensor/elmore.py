@@ -1,22 +1,33 @@
-"""Capacitance of a net of the die and its Elmore delays [Elmore1948], from the lengths of its wires."""
+"""Capacitance of a net of the die and its Elmore delays [Elmore1948], from the lengths of its segments."""
+
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
 from flow.layout.timing.parasitics import parasitics
+from platforms.coriolis import CoriolisPlatform
 
-from .plan import CORE
-from .routing import STUB, TRUNK, VERTICAL
+from .plan import CORE, Terminal
+from .routing import BRANCH, STUB, TRUNK
 
 
-def delays(edges, root, loads):
-    """dict node -> ns from ``root`` in a tree of resistors.
+class Edge(NamedTuple):
+    """A resistor between two nodes; half of its capacitance is at either end."""
 
-    edges: list of (node, node, Ohm, fF); half of an edge's capacitance is at either end. loads: dict node -> fF more.
-    """
-    near, charge = {}, dict(loads)
+    a: Hashable
+    b: Hashable
+    ohm: float
+    femtofarad: float
+
+
+def delays(edges: Iterable[Edge], root: Hashable, loads: Mapping[Hashable, float]) -> dict[Hashable, float]:
+    """Delay (ns) from ``root`` to each node of a tree of resistors. loads: further capacitance of a node, fF."""
+    near: dict[Hashable, list[tuple[Hashable, float]]] = {}
+    charge = dict(loads)
     for a, b, ohm, femto in edges:
         for here, there in ((a, b), (b, a)):
             near.setdefault(here, []).append((there, ohm))
             charge[here] = charge.get(here, 0.0) + femto / 2
-    order, before = [root], {root: (None, 0.0)}
+    order, before = [root], {root: (root, 0.0)}
     for node in order:
         for there, ohm in near.get(node, ()):
             if there not in before:
@@ -31,40 +42,52 @@ def delays(edges, root, loads):
     return found
 
 
-def net(reaches, y, driver, tracks, known, pin_pf):
-    """(fF of all wires, dict (block, pin) -> ns behind the driver, its own resistance left out).
+def net(
+    branches: Sequence[Mapping[str, Any]],
+    y: int,
+    driver: Terminal,
+    tracks: Mapping[str, int],
+    tech: CoriolisPlatform,
+    pin_pf: float,
+) -> tuple[float, dict[Terminal, float]]:
+    """Capacitance of all segments (fF), and the delay (ns) to each terminal, without the driver's own resistance.
 
-    reaches: dicts of routing.Reach; y: of the trunk, nm; driver: (block, pin). tracks: dict of routing.Tracks. known:
-    CoriolisPlatform. pin_pf: of every pin but the driver's.
+    branches: dicts of routing.Branch. y: of the trunk, nm. tracks: dict of routing.Tracks. pin_pf: of every pin but the
+    driver's.
     """
-    edges, pins = tree(reaches, y, tracks, known)
+    edges, pins = tree(branches, y, tracks, tech)
     loads = {node: pin_pf * 1000 for end, node in pins.items() if end != driver}
     found = delays(edges, pins[driver], loads)
-    return sum(femto for *_, femto in edges), {end: found[node] for end, node in pins.items() if end != driver}
+    return sum(edge.femtofarad for edge in edges), {end: found[node] for end, node in pins.items() if end != driver}
 
 
-def tree(reaches, y, tracks, known):
-    """(list of edges as of `delays`, dict (block, pin) -> its node): a trunk, from it a cut and a vertical to every
-    pin, and of the chip's pins three cuts and a stub."""
+def tree(
+    branches: Sequence[Mapping[str, Any]], y: int, tracks: Mapping[str, int], tech: CoriolisPlatform
+) -> tuple[list[Edge], dict[Terminal, Hashable]]:
+    """Edges of a net, and the node of each terminal.
 
-    def wire(level, length, width, cuts=()):
-        parts = [(known.metals[level].name, length / 1000, width / 1000)]
-        parts += [
-            (f"{known.metals[cut].name}_{known.vias[cut].name}_{known.metals[cut + 1].name}", 0, 0) for cut in cuts
-        ]
-        femto, ohm = parasitics(parts, known)
-        return ohm, femto
+    From the trunk lead a via and a branch to every pin; of the chip's pins, three vias and a stub follow.
+    """
+    names = [metal.name for metal in tech.metals]
 
-    edges, pins, ranked = [], {}, sorted(reaches, key=lambda reach: reach["x"])
+    def edge(a: Hashable, b: Hashable, level: int, length: int, width: int, vias: Iterable[int] = ()) -> Edge:
+        segments = [(names[level], length / 1000, width / 1000)]
+        segments += [(f"{names[via]}_{tech.vias[via].name}_{names[via + 1]}", 0.0, 0.0) for via in vias]
+        femtofarad, ohm = parasitics(segments, tech)
+        return Edge(a, b, ohm, femtofarad)
+
+    edges: list[Edge] = []
+    pins: dict[Terminal, Hashable] = {}
+    ranked = sorted(branches, key=lambda branch: branch["x"])
     for k, (one, other) in enumerate(zip(ranked, ranked[1:])):
-        edges.append((("trunk", k), ("trunk", k + 1), *wire(TRUNK, other["x"] - one["x"], tracks["trunk"])))
-    for k, reach in enumerate(ranked):
+        edges.append(edge(("trunk", k), ("trunk", k + 1), TRUNK, other["x"] - one["x"], tracks["trunk"]))
+    for k, branch in enumerate(ranked):
         end = ("end", k)
-        edges.append((("trunk", k), end, *wire(VERTICAL, abs(reach["end"] - y), tracks["vertical"], cuts=(TRUNK,))))
-        if reach["block"] == CORE:
-            left, bottom, right, top = reach["box"]
-            length = max(left - reach["x"], reach["x"] - right, 0)
-            edges.append((end, ("pin", k), *wire(STUB, length, top - bottom, cuts=range(STUB, VERTICAL))))
+        edges.append(edge(("trunk", k), end, BRANCH, abs(branch["end"] - y), tracks["branch"], (TRUNK,)))
+        if branch["block"] == CORE:
+            left, bottom, right, top = branch["box"]
+            length = max(left - branch["x"], branch["x"] - right, 0)
+            edges.append(edge(end, ("pin", k), STUB, length, top - bottom, range(STUB, BRANCH)))
             end = ("pin", k)
-        pins[reach["block"], reach["pin"]] = end
+        pins[branch["block"], branch["pin"]] = end
     return edges, pins

@@ -1,6 +1,8 @@
-"""Where the blocks lie on the die: the analog ones edge to edge, the chip to the west of the converters. All in nm."""
+"""Placement of the blocks on the die and their nets, in nm: analog blocks abut, the chip is west of the converters."""
 
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from base.lef.read import read_macro
 from base.steps import StepError
@@ -8,11 +10,23 @@ from models.parameters import ParameterError, check_real
 
 CORE = "core"
 BLOCKS = "pixel_array", "row_driver", "column_amplifiers", "adc_lanes"
-# (block that lies, block that is put to it, its side towards the first, pin at which they meet)
-MEETINGS = (
-    ("pixel_array", "row_driver", "east", "pixel_reset_row[0]"),
-    ("pixel_array", "column_amplifiers", "north", "column_a[0]"),
-    ("column_amplifiers", "adc_lanes", "north", "lane_a[0]"),
+Box = tuple[int, int, int, int]  # left, bottom, right, top
+Terminal = tuple[str, str]  # (block, pin); block 'die' for a pin of the die
+
+
+class Abutment(NamedTuple):
+    """``block`` abuts ``placed`` with its ``side``, so that their pins of one name touch."""
+
+    placed: str
+    block: str
+    side: str
+    pin: str
+
+
+ABUTMENTS = (
+    Abutment("pixel_array", "row_driver", "east", "pixel_reset_row[0]"),
+    Abutment("pixel_array", "column_amplifiers", "north", "column_a[0]"),
+    Abutment("column_amplifiers", "adc_lanes", "north", "lane_a[0]"),
 )
 DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vssa")
 SUPPLIES = DIGITAL + ANALOG
@@ -34,9 +48,11 @@ SIGNALS = (
 
 @dataclass(frozen=True)
 class DieParameters:
-    """width, height: of the die, 5 x 5 mm [Jayasuriya2017, Sec. 3.5.1]. edge: from the die's edge to the first bar.
-    bar: width of the supplies' bars. gap: between bars, and between blocks that do not touch. bars: of each supply
-    over the chip. pad: pitch of the signals' pins at the die's edge."""
+    """Sizes of the die, 5 x 5 mm [Jayasuriya2017, Sec. 3.5.1].
+
+    edge: from the die's edge to the first bar. bar: width of the supplies' bars. gap: between bars, and between blocks
+    that do not touch. pad: pitch of the signals' pins at the die's edge. bars: of each supply over the chip.
+    """
 
     width_um: float = field(default=5000.0, metadata={"unit": "um"})
     height_um: float = field(default=5000.0, metadata={"unit": "um"})
@@ -46,7 +62,7 @@ class DieParameters:
     pad_um: float = field(default=100.0, metadata={"unit": "um"})
     bars: int = 2
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name, low, high in (
             ("width_um", 50, 3e4),
             ("height_um", 50, 3e4),
@@ -58,14 +74,25 @@ class DieParameters:
             check_real(name, getattr(self, name), low, high)
 
 
-# As LEF names them: whether west and east, and south and north, change places
+# Of LEF: whether west and east, and south and north, are swapped
 ORIENTATIONS = {"N": (False, False), "FN": (True, False), "FS": (False, True), "S": (True, True)}
+
+
+class PinShape(NamedTuple):
+    """A rectangle of a pin on a layer of LEF."""
+
+    pin: str
+    layer: str
+    box: Box
 
 
 @dataclass(frozen=True)
 class Block:
-    """x, y: of its south-west corner. orientation: one of ORIENTATIONS. pins: dict pin -> tuple of (LEF layer, (left,
-    bottom, right, top)), where they lie. directions: dict pin -> 'input', 'output' or 'inout'."""
+    """A macro on the die.
+
+    x, y: of its south-west corner. orientation: one of ORIENTATIONS. pins: pin -> its (LEF layer, box). directions: pin
+    -> 'input', 'output' or 'inout'.
+    """
 
     name: str
     cell: str
@@ -73,13 +100,13 @@ class Block:
     y: int
     width: int
     height: int
-    pins: dict
-    directions: dict
+    pins: dict[str, tuple[tuple[str, Box], ...]]
+    directions: dict[str, str]
     orientation: str = "N"
 
     @classmethod
-    def read(cls, name, text):
-        """From a LEF, at the origin."""
+    def read(cls, name: str, text: str) -> "Block":
+        """Read a LEF; the block is at the origin."""
         macro = read_macro(text)
         return cls(
             name,
@@ -88,30 +115,35 @@ class Block:
             0,
             nm(macro.width_um),
             nm(macro.height_um),
-            {pin.name: tuple((of, tuple(map(nm, box))) for of, box in pin.boxes) for pin in macro.pins.values()},
+            {
+                pin.name: tuple((layer, (nm(a), nm(b), nm(c), nm(d))) for layer, (a, b, c, d) in pin.boxes)
+                for pin in macro.pins.values()
+            },
             {pin.name: pin.direction.lower() for pin in macro.pins.values()},
         )
 
     @property
-    def box(self):
+    def box(self) -> Box:
+        """Outline."""
         return self.x, self.y, self.x + self.width, self.y + self.height
 
-    def moved(self, dx, dy):
+    def moved(self, dx: int, dy: int) -> "Block":
+        """The block, moved."""
         return replace(
             self,
             x=self.x + dx,
             y=self.y + dy,
             pins={
-                pin: tuple((of, (box[0] + dx, box[1] + dy, box[2] + dx, box[3] + dy)) for of, box in boxes)
+                pin: tuple((layer, (a + dx, b + dy, c + dx, d + dy)) for layer, (a, b, c, d) in boxes)
                 for pin, boxes in self.pins.items()
             },
         )
 
-    def turned(self, orientation):
-        """The block, at the origin and not yet turned, in one of ORIENTATIONS."""
+    def turned(self, orientation: str) -> "Block":
+        """The block, at the origin and in orientation N, in another one."""
         sideways, upright = ORIENTATIONS[orientation]
 
-        def turn(box):
+        def turn(box: Box) -> Box:
             left, bottom, right, top = box
             if sideways:
                 left, right = self.width - right, self.width - left
@@ -122,51 +154,57 @@ class Block:
         return replace(
             self,
             orientation=orientation,
-            pins={pin: tuple((of, turn(box)) for of, box in boxes) for pin, boxes in self.pins.items()},
+            pins={pin: tuple((layer, turn(box)) for layer, box in boxes) for pin, boxes in self.pins.items()},
         )
 
-    def at(self, side):
-        """Boxes of pins that reach ``side``: list of (pin, layer, box)."""
+    def at(self, side: str) -> list[PinShape]:
+        """Shapes of pins that reach ``side``."""
         place = {"west": 0, "south": 1, "east": 2, "north": 3}[side]
         return [
-            (pin, of, box)
+            PinShape(pin, layer, box)
             for pin, boxes in self.pins.items()
-            for of, box in boxes
+            for layer, box in boxes
             if (box[place] <= self.box[place] if place < 2 else box[place] >= self.box[place])
         ]
 
 
-def nm(um):
-    """um as whole nm."""
+def nm(um: float) -> int:
+    """Length in um as whole nm."""
     return round(um * 1000)
 
 
-def stack(blocks, die):
-    """dict name -> Block, the analog ones put to the array, which is in the middle of the die with its row driver;
-    the column amplifiers' bottom is at y = 0. Raises ParameterError."""
+def stack(blocks: Mapping[str, Block], die: DieParameters) -> dict[str, Block]:
+    """Place the analog blocks; the array with its row driver is in the middle of the die.
+
+    The column amplifiers' bottom is at y = 0.
+    """
     array, driver = blocks["pixel_array"], blocks["row_driver"]
     placed = {
         "pixel_array": array.moved(
             (nm(die.width_um) - array.width + driver.width) // 2 // 5 * 5, blocks["column_amplifiers"].height
         )
     }
-    for there, name, side, pin in MEETINGS:
-        placed[name] = meet(placed[there], blocks[name], side, pin)
+    for there, name, side, pin in ABUTMENTS:
+        placed[name] = abut(placed[there], blocks[name], side, pin)
     return placed
 
 
-def meet(there, block, side, pin):
-    """``block`` with its ``side`` at ``there``'s opposite one, so that ``pin`` of both meets."""
-    ((_, own),) = [piece for piece in block.pins[pin]]
-    ((_, other),) = [piece for piece in there.pins[pin]]
+def abut(there: Block, block: Block, side: str, pin: str) -> Block:
+    """Place ``block`` with its ``side`` at the opposite one of ``there``, so that ``pin`` of both touches."""
+    ((_, own),) = block.pins[pin]
+    ((_, other),) = there.pins[pin]
     if side == "east":
         return block.moved(there.x - block.width, other[1] - own[1])
     return block.moved(other[0] - own[0], there.y - block.height)
 
 
-def with_core(placed, core, die, side_nm, channel_nm):
-    """The stack and the chip beside the converters, all above a channel of ``channel_nm``; ``side_nm``: room for
-    verticals on either side of the chip. Raises ParameterError where they do not lie within the die."""
+def with_core(
+    placed: Mapping[str, Block], core: Block, die: DieParameters, side_nm: int, channel_nm: int
+) -> dict[str, Block]:
+    """Place the chip beside the converters, and all blocks above a channel of ``channel_nm``.
+
+    side_nm: width of the branches on either side of the chip. Raises ParameterError where the die is too small.
+    """
     lanes, columns, gap = placed["adc_lanes"], placed["column_amplifiers"], nm(die.gap_um)
     bottom = max(core.height + gap, lanes.height) + channel_nm
     shifted = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
@@ -188,13 +226,13 @@ def with_core(placed, core, die, side_nm, channel_nm):
     return made
 
 
-def nets(blocks, extra=()):
-    """dict net -> list of (block, pin): pins of one name are one net, and the die's pins, block 'die', are on theirs.
+def nets(blocks: Mapping[str, Block], extra: Iterable[str] = ()) -> dict[str, list[Terminal]]:
+    """Terminals of every net: pins of one name, of blocks and of the die, are one net.
 
-    extra: pins of analog blocks that lead to pins of the die. Raises ParameterError for a pin that no other meets, and
-    for a net that nothing or more than one block drives.
+    extra: pins of analog blocks that lead to pins of the die. Raises ParameterError for a net with one pin, and for one
+    that nothing or more than one block drives.
     """
-    found = {net: [("die", net)] for net in (*SIGNALS, *SUPPLIES, *extra)}
+    found: dict[str, list[Terminal]] = {net: [("die", net)] for net in (*SIGNALS, *SUPPLIES, *extra)}
     for name, block in blocks.items():
         for pin in block.pins:
             found.setdefault(pin, []).append((name, pin))
@@ -207,13 +245,13 @@ def nets(blocks, extra=()):
     return dict(sorted(found.items()))
 
 
-def driver(blocks, ends):
-    """Of a net's ``ends`` the one that drives it: a block's output, else the die's pin."""
+def driver(blocks: Mapping[str, Block], ends: Sequence[Terminal]) -> Terminal:
+    """The terminal of a net that drives it: a block's output, else the die's pin."""
     return next((end for end in ends if end[0] != "die" and blocks[end[0]].directions[end[1]] == "output"), ends[0])
 
 
-def touching(blocks, ends):
-    """Whether the pins ``ends`` of two blocks meet edge to edge."""
+def touching(blocks: Mapping[str, Block], ends: Sequence[Terminal]) -> bool:
+    """Whether the net has two terminals, of abutting blocks, that touch."""
     if len(ends) != 2 or any(name not in blocks for name, _ in ends):
         return False
     (one, first), (other, second) = [(name, blocks[name].pins[pin]) for name, pin in ends]
@@ -224,8 +262,8 @@ def touching(blocks, ends):
     )
 
 
-def check_way(blocks, name, pin, box, side):
-    """Raise StepError where a block lies between ``box`` of a pin and the die's ``side``."""
+def check_way(blocks: Mapping[str, Block], name: str, pin: str, box: Box, side: str) -> None:
+    """Raise StepError where a block is between ``box`` of a pin and the die's ``side``."""
     for other, block in blocks.items():
         left, bottom, right, top = block.box
         if other == name:

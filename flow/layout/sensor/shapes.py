@@ -1,65 +1,69 @@
-"""Metal of the routes, as rectangles. All in nm."""
+"""Metal of the routes as rectangles, in nm."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from .plan import CORE, nm
-from .routing import STUB, TRUNK, VERTICAL
+from flow.layout.reroute.rules import Layer, RoutingRules, Via
+from platforms import layers
+
+from .plan import CORE, Box, DieParameters, nm
+from .routing import BRANCH, STUB, TRUNK, Branch, Tracks
 
 
 @dataclass(frozen=True)
 class Shape:
-    """layer, datatype: of GDS. box: left, bottom, right, top."""
+    """A rectangle of a net. layer, datatype: of GDS."""
 
     net: str
     layer: int
     datatype: int
-    box: tuple
+    box: Box
 
 
-def drawn(wire, net, *box):
-    """The Shape of a net on a wire or a cut."""
-    return Shape(net, wire.layer, wire.datatype, box)
+def drawn(on: Layer | Via | layers.Layer | layers.Via, net: str, box: Box) -> Shape:
+    """A Shape of a net on a metal layer or via."""
+    return Shape(net, on.layer, on.datatype, box)
 
 
-def signal(net, reaches, y, tracks, rules):
-    """Shapes of a net whose trunk lies at ``y``."""
-    half, thick = tracks.vertical // 2, tracks.trunk // 2
-    stub, vertical, trunk = (rules.layers[level] for level in (STUB, VERTICAL, TRUNK))
-    xs = [reach.x for reach in reaches]
-    yield drawn(trunk, net, min(xs) - thick, y - thick, max(xs) + thick, y + thick)
-    for reach in reaches:
-        yield from via(net, reach.x, y, TRUNK, rules)
-        low, high = sorted((y, reach.end))
-        if reach.block == CORE:
-            left, bottom, right, top = reach.box
-            pad = rules.vias[STUB].below
-            yield drawn(stub, net, min(left, reach.x - pad[0]), bottom, max(right, reach.x + pad[0]), top)
-            yield from stack(net, reach.x, reach.end, rules)
-        yield drawn(vertical, net, reach.x - half, low, reach.x + half, high)
+def signal(net: str, branches: Sequence[Branch], y: int, tracks: Tracks, rules: RoutingRules) -> Iterator[Shape]:
+    """Shapes of a net whose trunk is at ``y``."""
+    half, half_trunk = tracks.branch // 2, tracks.trunk // 2
+    xs = [branch.x for branch in branches]
+    trunk = min(xs) - half_trunk, y - half_trunk, max(xs) + half_trunk, y + half_trunk
+    yield drawn(rules.layers[TRUNK], net, trunk)
+    for branch in branches:
+        yield from via(net, branch.x, y, TRUNK, rules)
+        low, high = sorted((y, branch.end))
+        if branch.block == CORE and branch.box:
+            left, bottom, right, top = branch.box
+            pad, _ = rules.vias[STUB].below
+            yield drawn(rules.layers[STUB], net, (min(left, branch.x - pad), bottom, max(right, branch.x + pad), top))
+            yield from stack(net, branch.x, branch.end, rules)
+        yield drawn(rules.layers[BRANCH], net, (branch.x - half, low, branch.x + half, high))
 
 
-def stack(net, x, y, rules):
-    """Cuts from the stub up to the vertical; the wires between have no more than their least areas."""
-    for level in range(STUB, VERTICAL):
+def stack(net: str, x: int, y: int, rules: RoutingRules) -> Iterator[Shape]:
+    """Vias from the stub up to the branch; the metals between have their minimum areas."""
+    for level in range(STUB, BRANCH):
         yield from via(net, x, y, level, rules)
-    for level in range(STUB + 1, VERTICAL):
-        wire, height = rules.layers[level], 2 * rules.vias[level - 1].above[1]
-        half = -(-wire.area // (2 * height) // 5) * 5
-        yield drawn(wire, net, x - half, y - height // 2, x + half, y + height // 2)
+    for level in range(STUB + 1, BRANCH):
+        layer, height = rules.layers[level], 2 * rules.vias[level - 1].above[1]
+        half = -(-layer.area // (2 * height) // 5) * 5
+        yield drawn(layer, net, (x - half, y - height // 2, x + half, y + height // 2))
 
 
-def pad(reach, die, tracks, rules):
+def pad(branch: Branch, die: DieParameters, tracks: Tracks, rules: RoutingRules) -> Shape:
     """The Shape of a signal's pin at the die's south edge."""
-    half = tracks.vertical // 2
-    return drawn(rules.layers[VERTICAL], reach.pin, reach.x - half, 0, reach.x + half, nm(die.edge_um) // 2)
+    half = tracks.branch // 2
+    return drawn(rules.layers[BRANCH], branch.pin, (branch.x - half, 0, branch.x + half, nm(die.edge_um) // 2))
 
 
-def via(net, x, y, level, rules):
-    """A cut between layers[level] and the next, with its pads."""
-    cut = rules.vias[level]
-    for wire, (width, height) in (
-        (rules.layers[level], cut.below),
-        (rules.layers[level + 1], cut.above),
-        (cut, (cut.size // 2, cut.size // 2)),
+def via(net: str, x: int, y: int, level: int, rules: RoutingRules) -> Iterator[Shape]:
+    """A via between layers[level] and the next, with its pads."""
+    own = rules.vias[level]
+    for on, (width, height) in (
+        (rules.layers[level], own.below),
+        (rules.layers[level + 1], own.above),
+        (own, (own.size // 2, own.size // 2)),
     ):
-        yield drawn(wire, net, x - width, y - height, x + width, y + height)
+        yield drawn(on, net, (x - width, y - height, x + width, y + height))

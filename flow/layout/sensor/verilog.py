@@ -1,24 +1,23 @@
-"""The die as Verilog: its blocks and what joins them."""
+"""The die as Verilog: its blocks and their nets."""
 
-import re
+from collections.abc import Iterable, Mapping, Sequence
 
-from .plan import CORE, SUPPLIES
+from .plan import CORE, SUPPLIES, Block, Terminal
 
 
-def buses(names):
-    """dict bus -> bits, None for a single wire, of names as 'a' and 'a[3]', in their order."""
-    found = {}
+def buses(names: Iterable[str]) -> dict[str, int | None]:
+    """Bits of every bus, None for a scalar, of names as 'a' and 'a[3]', in their order."""
+    found: dict[str, int | None] = {}
     for name in names:
-        base, bit = re.fullmatch(r"(\w+)(?:\[(\d+)\])?", name).groups()
-        found[base] = None if bit is None else max(found.get(base, 0), int(bit) + 1)
+        base, _, bit = name.removesuffix("]").partition("[")
+        found[base] = max(found.get(base) or 0, int(bit) + 1) if bit else None
     return found
 
 
-def top(name, blocks, nets):
-    """The module's text, behind those of the analog blocks as black boxes; the chip's is another file's.
+def top(name: str, blocks: Mapping[str, Block], nets: Mapping[str, Sequence[Terminal]]) -> str:
+    """Text of the die's module, after those of the analog blocks as black boxes; the chip's is in another file.
 
-    blocks: dict name -> Block. nets: dict net -> pairs (block, pin), each pin of the net's name; ('die', net) is a
-    port. Supplies are left out, as in the chip's own netlist.
+    nets: each pin has the net's name; ('die', net) is a port. Supplies are left out, as in the chip's own netlist.
     """
     nets = {net: ends for net, ends in nets.items() if net not in SUPPLIES}
     ports = buses(net for net, ends in nets.items() if any(block == "die" for block, _ in ends))
@@ -42,24 +41,24 @@ def top(name, blocks, nets):
     return "\n".join([*lines, "endmodule", ""])
 
 
-def _module(name, ports):
-    """Lines of a module's head. ports: dict bus -> (bits, direction)."""
+def _module(name: str, ports: Mapping[str, tuple[int | None, str]]) -> list[str]:
+    """Lines of a module's head. ports: bus -> (bits, direction)."""
     return [
         f"module {name} ({', '.join(ports)});",
         *(f"  {way} {_range(bits)}{bus};" for bus, (bits, way) in ports.items()),
     ]
 
 
-def _first(bus, bits):
+def _first(bus: str, bits: int | None) -> str:
     return bus if bits is None else f"{bus}[0]"
 
 
-def _range(bits):
+def _range(bits: int | None) -> str:
     return "" if bits is None else f"[{bits - 1}:0] "
 
 
-def _way(ends, blocks):
-    """'output' where a block drives the die's pin, else 'input'."""
+def _way(ends: Sequence[Terminal], blocks: Mapping[str, Block]) -> str:
+    """Direction of the die's pin: 'output' where a block drives it, else 'input'."""
     return (
         "output" if any(blocks[block].directions[pin] == "output" for block, pin in ends if block != "die") else "input"
     )
