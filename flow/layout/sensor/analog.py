@@ -1,7 +1,8 @@
-"""The analog blocks' files: frames written by `pixels.footprints`, or those of a user's circuits in their place."""
+"""Files of the analog blocks: black boxes written by `pixels.footprints`, or a user's circuits in their place."""
 
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 from base.lef.read import read_macro
 from base.paths import ROOT
@@ -13,47 +14,58 @@ from .plan import BLOCKS
 KINDS = "lef", "gds"
 
 
-def files(folder, pdk, analog=None):
-    """(dict '<block>.lef' and '<block>.gds' -> Path, names of the blocks that are frames, extra pins: tuple).
+class AnalogFiles(NamedTuple):
+    """Files '<block>.lef' and '<block>.gds' by name; blocks that are black boxes; pins that black boxes do not have."""
 
-    folder: where the frames are written. analog: of the user's blocks, each with LEF and GDS; what is not there stays
-    a frame. A pin that a frame does not have, a reference or a bias, leads to one of the die. Raises ParameterError.
+    paths: dict[str, Path]
+    black_boxes: list[str]
+    extra: tuple[str, ...]
+
+
+def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
+    """Write the black boxes into ``folder``; those of which ``analog`` has LEF and GDS are replaced by these.
+
+    A pin that a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
     """
-    theirs, extra = _theirs(Path(analog)) if analog else [], {}
+    circuits = _circuits(analog) if analog else []
     run([sys.executable, "-m", "pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
-    found = {f"{block}.{kind}": Path(folder) / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
-    for block in theirs:
-        extra |= dict.fromkeys(check(Path(analog) / f"{block}.lef", found[f"{block}.lef"]))
-        found |= {f"{block}.{kind}": Path(analog) / f"{block}.{kind}" for kind in KINDS}
-    return found, [block for block in BLOCKS if block not in theirs], tuple(extra)
+    found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
+    extra: dict[str, None] = {}
+    for block in circuits:
+        own = {f"{block}.{kind}": analog / f"{block}.{kind}" for kind in KINDS} if analog else {}
+        extra |= dict.fromkeys(check(own[f"{block}.lef"], found[f"{block}.lef"]))
+        found |= own
+    return AnalogFiles(found, [block for block in BLOCKS if block not in circuits], tuple(extra))
 
 
-def _theirs(folder):
-    """Names of the blocks that the user's folder has."""
+def _circuits(folder: Path) -> list[str]:
+    """Names of the blocks in the user's folder."""
     if not folder.is_dir():
         raise ParameterError(f"analog = {folder}: no such folder")
-    there = [block for block in BLOCKS if any((folder / f"{block}.{kind}").is_file() for kind in KINDS)]
-    lacking = [f"{block}.{kind}" for block in there for kind in KINDS if not (folder / f"{block}.{kind}").is_file()]
-    if lacking or not there:
+    present = [block for block in BLOCKS if any((folder / f"{block}.{kind}").is_file() for kind in KINDS)]
+    lacking = [f"{block}.{kind}" for block in present for kind in KINDS if not (folder / f"{block}.{kind}").is_file()]
+    if lacking or not present:
         raise ParameterError(
             f"analog = {folder}: must have "
             + (", ".join(lacking) or f"<block>.lef and <block>.gds of {', '.join(BLOCKS)}, or of some of them")
         )
-    return there
+    return present
 
 
-def check(path, frame):
-    """Names of the pins that the LEF ``path`` has more than ``frame``. Raises ParameterError unless it has those of
-    ``frame`` with their directions."""
-    (own, asked) = (
+def check(path: Path, black_box: Path) -> list[str]:
+    """Names of the pins that only the LEF ``path`` has.
+
+    Raises ParameterError unless it has the pins of ``black_box`` with their directions.
+    """
+    own, wanted = (
         {pin.name: pin.direction.upper() for pin in read_macro(file.read_text(errors="replace")).pins.values()}
-        for file in (path, frame)
+        for file in (path, black_box)
     )
-    if lacking := [pin for pin in asked if pin not in own]:
+    if lacking := [pin for pin in wanted if pin not in own]:
         raise ParameterError(
             f"analog = {path}: must have the pins {', '.join(lacking[:5])}"
             + (f" and {len(lacking) - 5} more" if len(lacking) > 5 else "")
         )
-    if other := [pin for pin in asked if own[pin] != asked[pin]]:
-        raise ParameterError(f"analog = {path}: its pin {other[0]} must be of DIRECTION {asked[other[0]]}")
-    return [pin for pin in own if pin not in asked]
+    if other := [pin for pin in wanted if own[pin] != wanted[pin]]:
+        raise ParameterError(f"analog = {path}: its pin {other[0]} must be of DIRECTION {wanted[other[0]]}")
+    return [pin for pin in own if pin not in wanted]

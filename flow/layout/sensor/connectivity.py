@@ -17,8 +17,8 @@ def nets(gds: Path, cells: Mapping[str, str], tech: CoriolisPlatform, top_metal:
     """Terminals that each net of the top cell connects.
 
     cells: cell -> block. A pin of a block is named by its text on the pin layer in the block's own cell, one of the die
-    ('die') by that in the top cell; metal of a block without a name is ('block', '?...'). KLayout extracts the metals and
-    vias of all cells, without transistors.
+    ('die') by that in the top cell; metal of a block without a name is ('block', '?...'). KLayout extracts the metals
+    and vias of all cells, without transistors.
     """
     import klayout.db as db
 

@@ -1,13 +1,16 @@
-"""The sensor's die: the chip laid out first, the analog blocks' footprints, then the die's own steps."""
+"""Lay out the sensor's die: the chip first, the analog blocks' black boxes, then the die's own steps."""
 
 import json
 import shutil
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from base.files import staged
-from base.steps import Runner, StepError
+from base.steps import Runner, Step, StepError
 from flow.layout.block import lay_out
+from flow.layout.design import Design
+from flow.layout.options import Options
 from flow.layout.report.metrics import broken
 from flow.layout.report.page import Picture, write_report
 from flow.layout.report.picture import render
@@ -17,16 +20,18 @@ from flow.layout.steps.sta import StaParameters
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
 
-from . import analog as analog_module
-from .antenna import DieAntenna
+from .analog import files
 from .metrics import RULES, summarize
 from .picture import by_block
-from .sta import DieSta
-from .steps import DieGds, DieGdsParameters, DieMatch, DiePlan, DiePlanParameters
-from .wires import DieWires, DieWiresParameters
+from .steps.die_antenna import DieAntenna
+from .steps.die_connectivity import DieConnectivity
+from .steps.die_gds import DieGds, DieGdsParameters
+from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
+from .steps.die_plan import DiePlan, DiePlanParameters
+from .steps.die_sta import DieSta
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
-# Of the chip's run, what the die is given
+# Files of the chip's run that the die is given
 PARTS = {
     "core.lef": "lef.lef",
     "core.gds": "fill.gds",
@@ -40,18 +45,18 @@ RESULTS = {
     "gds": "die_gds.gds",
     "v": "die_plan.verilog",
     "drc.lyrdb": "drc.report",
-    "connectivity.json": "die_match.report",
-    "wires.json": "die_wires.nets",
-    "sdc": "die_wires.sdc",
+    "connectivity.json": "die_connectivity.report",
+    "parasitics.json": "die_parasitics.nets",
+    "sdc": "die_parasitics.sdc",
 }
 
 
-def die_steps(chip, settings, extra=()):
-    """The die's steps in order. chip: Design; settings: Options; extra: as of DiePlanParameters."""
-    pdk, clock, io = settings.pdk, chip.clock, chip.io
+def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list[Step]:
+    """The die's steps in order. extra: see DiePlanParameters."""
+    pdk, clock, io = options.pdk, chip.clock, chip.io
     drc = Drc(DrcParameters(pdk))
-    drc.inputs = drc.inputs | {"gds": "die_gds.gds"}
-    wires = DieWiresParameters(
+    drc.inputs = {**drc.inputs, "gds": "die_gds.gds"}
+    parasitics = DieParasiticsParameters(
         pdk,
         clock.port,
         load_pf=io.load_pf,
@@ -59,52 +64,55 @@ def die_steps(chip, settings, extra=()):
         output_ns=io.output_delay * clock.period_ns,
     )
     return [
-        DiePlan(DiePlanParameters(pdk, extra=extra)),
+        DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
         DieGds(DieGdsParameters(pdk)),
-        DieMatch(DieGdsParameters(pdk)),
-        DieWires(wires),
-        *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in settings.corners),
+        DieConnectivity(DieGdsParameters(pdk)),
+        DieParasitics(parasitics),
+        *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         drc,
         DieAntenna(AntennaParameters(pdk)),
     ]
 
 
-def lay_out_sensor(chip, settings, analog, out, note):
-    """(path of summary.json, limits broken). analog: folder of a user's blocks, or None; out: folder of all designs.
-    Raises ParameterError, StepError for a chip that breaks a limit."""
-    top_metal(settings.pdk)  # a process without one is told before anything runs
-    folder = Path(out) / SENSOR
-    blocks, frames, extra = analog_module.files(folder / "frames", settings.pdk, analog)
-    core, summary = lay_out(chip, settings, out, lambda text: note(f"{CHIP}: {text}"))
+def lay_out_sensor(
+    chip: Design, options: Options, analog: Path | None, out: Path, note: Callable[[str], None]
+) -> tuple[Path, list[str]]:
+    """Lay out the chip and the die around it: (path of summary.json, limits broken).
+
+    analog: folder of a user's blocks. out: folder of all designs. Raises ParameterError, StepError for a chip that
+    breaks a limit.
+    """
+    top_metal(options.pdk)  # a process without one is refused before anything runs
+    folder = out / SENSOR
+    blocks = files(folder / "black_boxes", options.pdk, analog)
+    core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"))
     if wrong := broken(summary):
-        raise StepError(f"{SENSOR}: its block {CHIP} is not whole: {wrong[0]}")
+        raise StepError(f"{SENSOR}: its block {CHIP} breaks a limit: {wrong[0]}")
     given = {name: core.paths[source] for name, source in PARTS.items()} | {
-        f"timing.{corner}": core.paths[f"timing.{corner}"] for corner in settings.corners
+        f"timing.{corner}": core.paths[f"timing.{corner}"] for corner in options.corners
     }
-    return die(chip, settings, blocks | given, frames, extra, folder, note)
+    runner = Runner(folder / "steps", blocks.paths | given, note)
+    return lay_out_die(chip, options, runner, blocks.black_boxes, blocks.extra)
 
 
-def die(chip, settings, given, frames, extra, folder, note):
-    """As `lay_out_sensor`, of a chip that is laid out. given: dict name -> Path, PARTS and the blocks' files; frames:
-    names of the blocks that are no circuits; extra: pins of the others that lead to the die's."""
-    runner = Runner(folder / "steps", given, note)
-    runner.run_all(die_steps(chip, settings, extra))
-    summary = summarize(SENSOR, settings, runner, frames)
-    lines, known = broken(summary, RULES), coriolis_platform(settings.pdk)
-    known = replace(known, metals=(*known.metals, top_metal(settings.pdk).metal))
-    results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in settings.corners}
+def lay_out_die(
+    chip: Design, options: Options, runner: Runner, black_boxes: Sequence[str], extra: Iterable[str] = ()
+) -> tuple[Path, list[str]]:
+    """Lay out the die around a chip that is laid out: (path of summary.json, limits broken).
+
+    runner: its files are PARTS of the chip and those of the blocks; the results are beside its folder.
+    """
+    folder = runner.folder.parent
+    runner.run_all(die_steps(chip, options, extra))
+    summary = summarize(SENSOR, options, runner, black_boxes)
+    lines, tech = broken(summary, RULES), coriolis_platform(options.pdk)
+    tech = replace(tech, metals=(*tech.metals, top_metal(options.pdk).metal))
+    results = RESULTS | {f"{corner}.sta.txt": f"die_sta_{corner}.report" for corner in options.corners}
     with staged(folder, [f"{SENSOR}.{suffix}" for suffix in results]) as part:
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
-        by_block(part / f"{SENSOR}.blocks.png", json.loads(runner.paths["die_plan.plan"].read_text()), frames)
-        render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", known)
-        write_report(
-            part,
-            folder,
-            summary,
-            lines,
-            known,
-            f"{SENSOR}.png",
-            [Picture(f"{SENSOR}.blocks.png", "Blocks; hatched: black box, no circuit")],
-        )
+        blocks = Picture(f"{SENSOR}.blocks.png", "Blocks; hatched: black box, no circuit")
+        by_block(part / blocks.file, json.loads(runner.paths["die_plan.plan"].read_text()), black_boxes)
+        render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", tech)
+        write_report(part, folder, summary, lines, tech, f"{SENSOR}.png", [blocks])
     return folder / "summary.json", lines

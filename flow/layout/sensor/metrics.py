@@ -1,28 +1,32 @@
-"""What the die came to: summary.json, and the limits that it must keep."""
+"""Figures of the die: summary.json, and the limits that it must keep."""
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
+from base.steps import Runner
+from flow.layout.options import Options
 from flow.layout.report.metrics import timing_basis
 
 from .plan import BLOCKS
-from .sta import DieSta
+from .steps.die_sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 SHOWN = 12  # nets in the summary, those with the largest loads
 NOT_CHECKED = (
-    "insides of the frames: they are outlines with pins, no circuit; no rule, netlist or current of theirs exists",
+    "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current",
     "pads, ESD protection and the seal ring: there are none",
-    "density and fill over the frames and in the channel: only the chip is filled",
-    "antennas on the highest wire of the channel: whether a net's driver has the diffusion for it; in the frames",
-    "coupling between the die's wires; wires to the abutting rows, columns and lanes have no length here",
-    "voltage drop on the die's bars",
+    "density and fill over the black boxes and in the channel: only the chip is filled",
+    "antennas on the highest metal of the channel: whether a net's driver has the diffusion for it; in the black boxes",
+    "coupling between the die's nets; nets to the abutting rows, columns and lanes have no length here",
+    "IR drop on the die's bars",
     "hold at the analog blocks, and their setup: the constraints leave them a share of the period",
 )
 
 
-def summarize(name, settings, runner, frames):
-    """The contract of summary.json, as a dict; what a die does not have is None. frames: blocks without a circuit."""
+def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence[str]) -> dict[str, Any]:
+    """Content of summary.json; what a die does not have is None."""
     records = runner.records
     metrics = {
         key: value
@@ -30,24 +34,24 @@ def summarize(name, settings, runner, frames):
         for key, value in record["metrics"].items()
         if key not in DieSta.metrics
     }
-    sta = {corner: records[f"die_sta_{corner}"]["metrics"] for corner in settings.corners}
+    sta = {corner: records[f"die_sta_{corner}"]["metrics"] for corner in options.corners}
     tools = {}
     for record in records.values():
         tools |= record["tools"]
     plan = json.loads(runner.paths["die_plan.plan"].read_text())
-    nets = json.loads(runner.paths["die_wires.nets"].read_text())
+    nets = json.loads(runner.paths["die_parasitics.nets"].read_text())
     return {
         "design": name,
         "top": name,
         "backend": "channel",
-        "pdk": settings.pdk,
+        "pdk": options.pdk,
         "cells": None,
         "area_um2": metrics["area_um2"],
         "utilization": metrics["utilization"],
         "attempts": [],
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
-        "frames": frames,
-        "circuits": [block for block in BLOCKS if block not in frames],
+        "black_boxes": list(black_boxes),
+        "circuits": [block for block in BLOCKS if block not in black_boxes],
         **{
             key: metrics[key]
             for key in (
@@ -72,7 +76,7 @@ def summarize(name, settings, runner, frames):
         "equivalence": None,
         "gate_tests": None,
         "power_uw": None,
-        "timing_rests_on": f"the chip, its ports with the die's wires{extrapolated(sta)}; {timing_basis(settings)}",
+        "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
         **{
             key: {corner: found[key] for corner, found in sta.items()} or None
             for key in DieSta.metrics
@@ -89,8 +93,8 @@ def summarize(name, settings, runner, frames):
     }
 
 
-def extrapolated(sta):
-    """Words of what the slacks are where slews are longer than any that was measured. sta: dict corner -> metrics."""
+def extrapolated(sta: Mapping[str, Mapping[str, Any]]) -> str:
+    """Note on slacks with slews beyond the cells' tables. sta: metrics by corner."""
     return (
         ", delays EXTRAPOLATED where slews are beyond the cells' tables (slews_over)"
         if any(found["slews_over"] for found in sta.values())
@@ -98,7 +102,7 @@ def extrapolated(sta):
     )
 
 
-def placed(block):
-    """'cell, width x height at (x, y), orientation' of a block of the plan, um; orientations as LEF has them."""
+def placed(block: Mapping[str, Any]) -> str:
+    """'cell, width x height at (x, y), orientation' of a block of the plan, um; orientations of LEF."""
     left, bottom, right, top = (size / 1000 for size in block["box"])
     return f"{block['cell']}, {right - left:g} x {top - bottom:g} at ({left:g}, {bottom:g}), {block['orientation']}"

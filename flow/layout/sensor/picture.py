@@ -1,17 +1,21 @@
-"""The die as a picture: its blocks, wires, bars and pins."""
+"""The die as a picture: its blocks, routes and bars."""
 
-COLORS = {
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+COLORS: dict[str, str] = {
     "pixel_array": "#7fb3d5",
     "row_driver": "#f5b041",
     "column_amplifiers": "#82c99a",
     "adc_lanes": "#c39bd3",
     "core": "#e6837a",
 }
-WORDS = {"core": "digital chip"}
+LABELS: dict[str, str] = {"core": "digital chip"}
 
 
-def by_block(png, plan, frames):
-    """Write the file ``png``. plan: as of the step `die_plan`; frames: blocks without a circuit, drawn with hatches."""
+def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> None:
+    """Draw the plan of the step `die_plan`, black boxes hatched."""
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
     from matplotlib.patches import Rectangle
@@ -39,13 +43,13 @@ def by_block(png, plan, frames):
                 facecolor=COLORS[name],
                 alpha=0.85,
                 edgecolor="0.3",
-                hatch="//" if name in frames else None,
+                hatch="//" if name in black_boxes else None,
                 linewidth=0.6,
             )
         )
         upright = top - bottom > 3 * (right - left)
         axes.annotate(
-            f"{WORDS.get(name, name).replace('_', ' ')}\n{right - left:g} x {top - bottom:g} um",
+            f"{LABELS.get(name, str(name)).replace('_', ' ')}\n{right - left:g} x {top - bottom:g} um",
             ((left + right) / 2, (bottom + top) / 2),
             ha="center",
             va="center",
@@ -59,9 +63,9 @@ def by_block(png, plan, frames):
     figure.savefig(png, dpi=220, metadata={"Software": None})
 
 
-def _lines(route):
-    """Pairs of ends in um of a route's trunk and verticals."""
-    y, xs = route["y"] / 1e3, [reach["x"] / 1e3 for reach in route["reaches"]]
+def _lines(route: Mapping[str, Any]) -> Iterator[tuple[tuple[float, float], tuple[float, float]]]:
+    """Pairs of ends, um, of a route's trunk and branches."""
+    y, xs = route["y"] / 1e3, [branch["x"] / 1e3 for branch in route["branches"]]
     yield (min(xs), y), (max(xs), y)
-    for reach, x in zip(route["reaches"], xs):
-        yield (x, y), (x, reach["end"] / 1e3)
+    for branch, x in zip(route["branches"], xs, strict=True):
+        yield (x, y), (x, branch["end"] / 1e3)

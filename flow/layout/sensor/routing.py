@@ -9,8 +9,8 @@ from flow.layout.reroute.rules import RoutingRules
 from .channel import check_apart, free, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, check_way, nm, touching
 
-# Places in RoutingRules.layers. Branches are the highest: only there is a net connected, with its driver, so that before
-# no gate has a trunk or a branch as an antenna
+# Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
+# gate has a trunk or a branch as an antenna before
 STUB, TRUNK, BRANCH = 1, 3, 4
 
 
@@ -18,8 +18,8 @@ STUB, TRUNK, BRANCH = 1, 3, 4
 class Branch:
     """A pin's connection to its trunk.
 
-    x: of the vertical segment; end: y of its end at the pin. box: of the pin, None at the die's edge. A pin in the west or
-    the east has a stub from there to x.
+    x: of the vertical segment; end: y of its end at the pin. box: of the pin, None at the die's edge. A pin in the west
+    or the east has a stub from there to x.
     """
 
     block: str

@@ -30,7 +30,8 @@ def metal(
     pins = {net: [shapes.drawn(top.metal, net, box) for box in boxes] for net, boxes in ends.items()}
     for net, branches in made.routes.items():
         found += shapes.signal(net, branches, made.y[net], tracks, rules)
-        pins |= {net: [shapes.pad(branch, die, tracks, rules)] for branch in branches if branch.block == "die"}
+        if pads := [shapes.pad(branch, die, tracks, rules) for branch in branches if branch.block == "die"]:
+            pins[net] = pads
     return found, pins
 
 
@@ -39,8 +40,8 @@ def supplies(
 ) -> tuple[list[Shape], dict[str, list[Box]]]:
     """Shapes of the supplies, and boxes of the die's pins on the top metal, by net.
 
-    Lines on the top metal lead from the straps over the chip and from the analog blocks' pins to the die's west and east
-    edge, across bars of the metal below, one a net; two lines in the north connect the west with the east.
+    Lines on the top metal lead from the straps over the chip and from the analog blocks' pins to the die's west and
+    east edge, across bars of the metal below, one a net; two lines in the north connect the west with the east.
     """
     straps = [(net, (box[0] + box[2]) // 2) for net in DIGITAL for _, box in blocks[CORE].pins[net]]
     lines = [*_over_core(blocks[CORE], straps, die), *_from_blocks(blocks, die, top), *_in_north(die)]

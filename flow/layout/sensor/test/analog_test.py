@@ -1,4 +1,4 @@
-"""A user's analog blocks in place of the frames: taken when they fit, told in one line when they do not."""
+"""A user's analog blocks in place of the black boxes: used when they fit, refused in one line when they do not."""
 
 import re
 import shutil
@@ -19,23 +19,23 @@ pytest.importorskip("klayout.db", reason="klayout: not installed")
 
 
 @pytest.fixture(scope="module")
-def frames(tmp_path_factory):
-    """Folder with the frames of the whole sensor."""
-    folder = tmp_path_factory.mktemp("frames")
+def black_boxes(tmp_path_factory):
+    """Folder with the black boxes of the whole sensor."""
+    folder = tmp_path_factory.mktemp("black_boxes")
     found, names, extra = files(folder, "sky130")
     assert names == list(BLOCKS) and extra == () and all(path.parent == folder for path in found.values())
     return folder
 
 
-def theirs(frames, folder, block, change=lambda text: text):
+def theirs(black_boxes, folder, block, change=lambda text: text):
     for kind in ("lef", "gds"):
-        shutil.copyfile(frames / f"{block}.{kind}", folder / f"{block}.{kind}")
+        shutil.copyfile(black_boxes / f"{block}.{kind}", folder / f"{block}.{kind}")
     path = folder / f"{block}.lef"
     path.write_text(change(path.read_text()))
 
 
 def with_reference(text):
-    """The LEF with a pin that its frame does not have."""
+    """The LEF with a pin that its black box does not have."""
     return text.replace(
         "  PIN clk\n",
         "  PIN vref\n    DIRECTION INPUT ;\n    PORT\n      LAYER met4 ;\n"
@@ -43,8 +43,8 @@ def with_reference(text):
     )
 
 
-def test_a_block_takes_its_frames_place(frames, tmp_path):
-    theirs(frames, tmp_path, "adc_lanes", with_reference)
+def test_a_block_takes_the_place_of_its_black_box(black_boxes, tmp_path):
+    theirs(black_boxes, tmp_path, "adc_lanes", with_reference)
     found, names, extra = files(tmp_path / "out", "sky130", tmp_path)
     assert found["adc_lanes.lef"].parent == found["adc_lanes.gds"].parent == tmp_path
     assert names == [block for block in BLOCKS if block != "adc_lanes"] and extra == ("vref",)
@@ -62,13 +62,13 @@ def test_a_block_takes_its_frames_place(frames, tmp_path):
         (lambda text: re.sub(r"(?s)PIN hold\n.*?RECT [^\n]*\n", "PIN hold\n", text, count=1), "pin hold: must have a"),
     ],
 )
-def test_other_pins(frames, tmp_path, change, words):
-    theirs(frames, tmp_path, "adc_lanes", change)
+def test_other_pins(black_boxes, tmp_path, change, words):
+    theirs(black_boxes, tmp_path, "adc_lanes", change)
     with pytest.raises(ParameterError, match=re.escape(words)):
-        check(tmp_path / "adc_lanes.lef", frames / "adc_lanes.lef")
+        check(tmp_path / "adc_lanes.lef", black_boxes / "adc_lanes.lef")
 
 
-def test_files_that_lack(capsys, frames, tmp_path):
+def test_files_that_lack(capsys, black_boxes, tmp_path):
     def told(*arguments):
         assert main(command, [*map(str, arguments), "--out", str(tmp_path / "out")]) == 2
         (line,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("flow.layout: ")]
@@ -78,7 +78,7 @@ def test_files_that_lack(capsys, frames, tmp_path):
     assert "mine: no such folder" in told("asp_sensor", "--analog", folder)
     folder.mkdir()
     assert "must have <block>.lef and <block>.gds of pixel_array, row_driver" in told("asp_sensor", "--analog", folder)
-    theirs(frames, folder, "row_driver")
+    theirs(black_boxes, folder, "row_driver")
     (folder / "row_driver.gds").unlink()
     assert "mine: must have row_driver.gds" in told("asp_sensor", "--analog", folder)
     assert "must be with DESIGN=asp_sensor alone" in told("quad_divider", "--analog", folder)
@@ -96,7 +96,7 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
         small.plan(given, tmp_path)
     assert small.plan(given, tmp_path, extra=("vref",))["routed"] == len(small.core_pins()) + 1
     assert "input vref;" in given["die_plan.verilog"].read_text()
-    assert small.match(given, tmp_path)["open_nets"] == 1  # its GDS does not have the pin yet
+    assert small.connectivity(given, tmp_path)["open_nets"] == 1  # its GDS does not have the pin yet
     layout = db.Layout()
     layout.read(str(given["adc_lanes.gds"]))
     cell, wire = layout.cell("adc_lanes"), coriolis_platform("sky130").metals[4]
@@ -105,8 +105,8 @@ def test_a_pin_of_its_own_is_one_of_the_die(tmp_path):
     cell.insert(db.CellInstArray(inner.cell_index(), db.Trans()))
     cell.shapes(layout.layer(wire.layer, 16)).insert(db.DText("vref", 2, 1))
     layout.write(str(given["adc_lanes.gds"]))
-    assert small.match(given, tmp_path)["lvs_match"]
+    assert small.connectivity(given, tmp_path)["lvs_match"]
     layout.rename_cell(cell.cell_index(), "adc")
     layout.write(str(given["adc_lanes.gds"]))
     with pytest.raises(StepError, match="adc_lanes.gds has the top cells adc; its LEF is of adc_lanes"):
-        small.match(given, tmp_path)
+        small.connectivity(given, tmp_path)

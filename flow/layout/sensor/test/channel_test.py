@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from base.steps import StepError
 from flow.layout.reroute.rules import RoutingRules
 from flow.layout.sensor.channel import check_apart, free, left_edge
-from flow.layout.sensor.routing import Reach, Tracks, trunks
+from flow.layout.sensor.routing import Branch, Tracks, trunks
 from flow.layout.sensor.shapes import signal
 from platforms.coriolis import coriolis_platform
 
@@ -46,27 +46,27 @@ def test_a_free_place_is_free_and_the_nearest(wanted, taken, pitch):
     )
 
 
-def test_verticals_too_near_are_told():
+def test_branches_too_near_are_refused():
     check_apart({("a", "p"): 0, ("b", "q"): 560}, 560)
-    with pytest.raises(StepError, match="the pins a p and b q are 550 nm from one another in x; 560 nm are needed"):
+    with pytest.raises(StepError, match="the pins a p and b q are 550 nm apart in x; 560 nm are needed"):
         check_apart({("b", "q"): 550, ("a", "p"): 0}, 560)
 
 
 @st.composite
 def routes(draw):
-    """dict net -> list of Reach: pins from the north, from the die's edge and beside a chip, no two at one x."""
+    """dict net -> list of Branch: pins from the north, from the die's edge and beside a chip, no two at one x."""
     places = draw(st.lists(st.integers(0, 80), unique=True, min_size=4, max_size=24))
     made = {}
     for k, place in enumerate(places):
-        x, net = place * TRACKS.vertical_pitch, f"n{k if k < 2 else draw(st.integers(0, len(places) // 2 - 1))}"
+        x, net = place * TRACKS.branch_pitch, f"n{k if k < 2 else draw(st.integers(0, len(places) // 2 - 1))}"
         kind = draw(st.sampled_from(("north", "die", "core")))
         row = 200_000 + 2000 * k
-        reach = {
-            "north": Reach("north", f"p{k}", x, 300_000),
-            "die": Reach("die", f"p{k}", x, 0),
-            "core": Reach("core", f"p{k}", x, row, (100_000, row - 160, 100_300, row + 160)),
+        branch = {
+            "north": Branch("north", f"p{k}", x, 300_000),
+            "die": Branch("die", f"p{k}", x, 0),
+            "core": Branch("core", f"p{k}", x, row, (100_000, row - 160, 100_300, row + 160)),
         }[kind]
-        made.setdefault(net, []).append(reach)
+        made.setdefault(net, []).append(branch)
     return made
 
 
@@ -85,7 +85,7 @@ def test_metal_joins_each_net_and_keeps_others_apart(made):
 
 
 def components(shapes):
-    """Lists of indices that hang together, metal nearer than its least space counted as joined; cuts to both wires."""
+    """Lists of indices that are connected, metal nearer than its least space included; vias to both layers."""
     numbers = {(wire.layer, wire.datatype): (level, wire.space) for level, wire in enumerate(ROUTING_RULES.layers)}
     cuts = {(cut.layer, cut.datatype): level for level, cut in enumerate(ROUTING_RULES.vias)}
     root = list(range(len(shapes)))

@@ -39,7 +39,7 @@ def matched(made, tmp_path, change):
     change(plan)
     given["die_plan.plan"] = tmp_path / "plan.json"
     given["die_plan.plan"].write_text(json.dumps(plan))
-    metrics = small.match(given, tmp_path)
+    metrics = small.connectivity(given, tmp_path)
     return metrics, json.loads((tmp_path / "connectivity.json").read_text())
 
 
@@ -53,13 +53,13 @@ def test_every_net_is_found_again(made, tmp_path):
 
 @pytest.mark.parametrize("way", ORIENTATIONS)
 def test_the_chip_turned(made, tmp_path, monkeypatch, way):
-    """Whichever way it lies, all nets are joined; the way that is taken has the least wire."""
+    """In each orientation all nets are connected; the one that is chosen has the least wire length."""
     given = made[0] | {}
     monkeypatch.setattr(arrange, "ORIENTATIONS", {way: ORIENTATIONS[way]})
     metrics = small.plan(given, tmp_path)
     assert metrics["wire_um"] >= made[0]["metrics"]["wire_um"]
     assert json.loads(given["die_plan.plan"].read_text())["blocks"][CORE]["orientation"] == way
-    assert small.match(given, tmp_path)["lvs_match"]
+    assert small.connectivity(given, tmp_path)["lvs_match"]
 
 
 def index(plan, net, layer):

@@ -1,4 +1,4 @@
-"""The die's run from end to end, on the small one: results under their names, limits that gate it."""
+"""The small die from end to end: results under their names, limits that gate it."""
 
 import json
 from importlib.util import find_spec
@@ -9,7 +9,7 @@ from base.steps import Runner
 from flow.layout.design import DESIGNS
 from flow.layout.options import Options
 from flow.layout.report.metrics import broken
-from flow.layout.sensor.die import die
+from flow.layout.sensor.die import lay_out_die
 from flow.layout.sensor.metrics import RULES
 from flow.layout.sensor.plan import BLOCKS
 from flow.layout.steps.library import Library
@@ -30,23 +30,25 @@ def test_a_small_die(tmp_path):
     for name in ("sdc", "verilog", "spef"):
         given[f"core.{name}"] = tmp_path / f"core.{name}"
         given[f"core.{name}"].write_text("")
-    path, lines = die(DESIGNS["asp_chip"], Options(untimed=True), given, list(BLOCKS), (), tmp_path / "out", print)
+    path, lines = lay_out_die(
+        DESIGNS["asp_chip"], Options(untimed=True), Runner(tmp_path / "out" / "steps", given, print), BLOCKS
+    )
     summary = json.loads(path.read_text())
     assert lines == [] and summary["lvs_match"] and summary["drc_violations"] == summary["antenna_violations"] == 0
     assert summary["equivalence"] is None and summary["gate_tests"] is None and summary["wns_ns"] is None
-    assert summary["frames"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
-    there = {file.name for file in (tmp_path / "out").iterdir()}
-    assert there == {
+    assert summary["black_boxes"] == list(BLOCKS) and summary["routed"] == len(small.core_pins())
+    present = {file.name for file in (tmp_path / "out").iterdir()}
+    assert present == {
         "steps",
         "report.html",
         "summary.json",
         "history.jsonl",
         *(
             f"asp_sensor.{suffix}"
-            for suffix in ("gds", "v", "drc.lyrdb", "connectivity.json", "wires.json", "sdc", "png", "blocks.png")
+            for suffix in ("gds", "v", "drc.lyrdb", "connectivity.json", "parasitics.json", "sdc", "png", "blocks.png")
         ),
     }
-    assert "insides of the frames" in (tmp_path / "out" / "report.html").read_text()
+    assert "insides of the black boxes" in (tmp_path / "out" / "report.html").read_text()
     for name, value in (
         ("open_nets", 1),
         ("shorts", 2),

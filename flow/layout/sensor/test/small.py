@@ -3,7 +3,9 @@
 import json
 
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
-from flow.layout.sensor.steps import DieGds, DieGdsParameters, DieMatch, DiePlan, DiePlanParameters
+from flow.layout.sensor.steps.die_connectivity import DieConnectivity
+from flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
+from flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
 from models.parameters import ArrayParameters, ChipParameters
 from pixels.blocks import AnalogSizes, blocks
 from pixels.footprints import write
@@ -99,7 +101,7 @@ def plan(given, folder, die=DIE, extra=()):
     return run(DiePlan(DiePlanParameters("sky130", die, extra)), given, folder)
 
 
-def match(given, folder):
-    """Metrics of the comparison of what is drawn from the plan."""
+def connectivity(given, folder):
+    """Metrics of the comparison of the GDS of the plan with its nets."""
     run(DieGds(DieGdsParameters()), given, folder)
-    return run(DieMatch(DieGdsParameters()), given, folder)
+    return run(DieConnectivity(DieGdsParameters()), given, folder)

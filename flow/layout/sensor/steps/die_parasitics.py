@@ -1,21 +1,25 @@
-"""The die's wires as the chip's timing sees them: loads and delays at its ports."""
+"""Parasitics of the die's nets, as loads and delays at the chip's ports."""
 
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from base.steps import Step
-from flow.layout.timing import parasitics
 from platforms.coriolis import coriolis_platform
 
-from . import elmore
-from .plan import CORE
+from .. import elmore
+from ..plan import CORE
 
 
 @dataclass(frozen=True)
-class DieWiresParameters:
-    """pdk: process. clock: port. pin_pf: of every pin at the far end of a wire, an assumption. load_pf: for which the
-    chip's outputs were laid out. input_ns, output_ns: delays that the chip's constraints leave to what is around it;
-    those of the die's wires are added."""
+class DieParasiticsParameters:
+    """Assumptions about what the nets connect.
+
+    pdk: process. clock: port. pin_pf: of every pin but the driver's, an assumption. load_pf: for which the chip's
+    outputs were laid out. input_ns, output_ns: I/O delays in the chip's constraints; those of the die's nets are added.
+    """
 
     pdk: str = "sky130"
     clock: str = "clk"
@@ -25,18 +29,16 @@ class DieWiresParameters:
     output_ns: float = field(default=4.0, metadata={"unit": "ns"})
 
 
-class DieWires(Step):
-    """Capacitance to the substrate and resistance of every routed net, Elmore's delay to its slowest pin, and the
-    chip's constraints with these loads and delays.
+class DieParasitics(Step[DieParasiticsParameters]):
+    """Parasitics of every routed net to the substrate, its Elmore delays, the chip's constraints with both.
 
-    worst_load_pf: of an output of the chip, wires and pins. worst_delay_ns: of a wire, the driver left out.
+    worst_load_pf: of an output of the chip, net and pins. worst_delay_ns: of a net, without the driver's resistance.
     loads_over: outputs of the chip with more than the load that it was laid out for.
     """
 
-    name = "die_wires"
+    name = "die_parasitics"
     inputs = {"plan": "die_plan.plan", "sdc": "core.sdc"}
-    outputs = {"nets": "wires.json", "sdc": "die.sdc"}
-    Parameters = DieWiresParameters
+    outputs = {"nets": "parasitics.json", "sdc": "die.sdc"}
     metrics = {
         "wire_pf": "pF",
         "worst_load_pf": "pF",
@@ -45,17 +47,16 @@ class DieWires(Step):
         "worst_delay": "",
         "loads_over": "",
     }
-    uses = (elmore, parasitics)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         p, plan = self.parameters, json.loads(inputs["plan"].read_text())
-        known = coriolis_platform(p.pdk)
-        nets = {}
+        tech = coriolis_platform(p.pdk)
+        nets: dict[str, dict[str, Any]] = {}
         for net, route in plan["routes"].items():
-            driver = tuple(plan["drivers"][net])
-            femto, found = elmore.net(route["reaches"], route["y"], driver, plan["tracks"], known, p.pin_pf)
+            block, pin = plan["drivers"][net]
+            femto, found = elmore.net(route["branches"], route["y"], (block, pin), plan["tracks"], tech, p.pin_pf)
             nets[net] = {
-                "driver": driver[0],
+                "driver": block,
                 "wire_ff": round(femto, 3),
                 "load_pf": round(femto / 1000 + len(found) * p.pin_pf, 6),
                 "delay_ns": {f"{block}.{pin}": round(ns, 6) for (block, pin), ns in found.items()},
@@ -64,7 +65,7 @@ class DieWires(Step):
         outputs["sdc"].write_text(inputs["sdc"].read_text() + "\n".join(self.constraints(nets)) + "\n")
         driven = {net: found["load_pf"] for net, found in nets.items() if found["driver"] == CORE}
         slow = {net: max(found["delay_ns"].values()) for net, found in nets.items()}
-        load, delay = max(driven, key=driven.get), max(slow, key=slow.get)
+        load, delay = max(driven, key=driven.__getitem__), max(slow, key=slow.__getitem__)
         return {
             "wire_pf": round(sum(found["wire_ff"] for found in nets.values()) / 1000, 3),
             "worst_load_pf": round(driven[load], 4),
@@ -74,8 +75,8 @@ class DieWires(Step):
             "loads_over": sum(pf > p.load_pf for pf in driven.values()),
         }
 
-    def constraints(self, nets):
-        """Lines of SDC: what the chip's own say of its ports, with the die's wires."""
+    def constraints(self, nets: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
+        """Lines of SDC: loads and I/O delays of the chip's ports with the die's nets."""
         p = self.parameters
         for net, found in nets.items():
             port = f"[get_ports {{{net}}}]"

@@ -1,14 +1,14 @@
-"""Loads and delays of the die's wires, and the chip's timing with them."""
+"""Loads and delays of the die's nets, and the chip's timing with them."""
 
 import json
 import re
 
 import pytest
 
-from flow.layout.sensor.antenna import DieAntenna
 from flow.layout.sensor.elmore import delays
-from flow.layout.sensor.sta import over
-from flow.layout.sensor.wires import DieWires, DieWiresParameters
+from flow.layout.sensor.steps.die_antenna import DieAntenna
+from flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
+from flow.layout.sensor.steps.die_sta import over
 from flow.layout.steps.antenna import AntennaParameters
 from platforms.coriolis import coriolis_platform
 
@@ -26,35 +26,35 @@ def test_elmore_by_hand():
 
 
 @pytest.fixture(scope="module")
-def wires(tmp_path_factory):
+def parasitics(tmp_path_factory):
     """(metrics, nets, SDC, plan) of the small die."""
-    folder = tmp_path_factory.mktemp("wires")
+    folder = tmp_path_factory.mktemp("parasitics")
     given = small.files(folder)
     small.plan(given, folder)
     given["core.sdc"] = folder / "core.sdc"
     given["core.sdc"].write_text("create_clock -name clk -period 20 [get_ports {clk}]\n")
     metrics = small.run(
-        DieWires(DieWiresParameters(pin_pf=0.03, load_pf=0.0, input_ns=3.0, output_ns=5.0)), given, folder
+        DieParasitics(DieParasiticsParameters(pin_pf=0.03, load_pf=0.0, input_ns=3.0, output_ns=5.0)), given, folder
     )
     return (
         metrics,
-        json.loads(given["die_wires.nets"].read_text()),
-        given["die_wires.sdc"].read_text(),
+        json.loads(given["die_parasitics.nets"].read_text()),
+        given["die_parasitics.sdc"].read_text(),
         json.loads(given["die_plan.plan"].read_text()),
     )
 
 
-def test_a_net_by_hand(wires):
+def test_a_net_by_hand(parasitics):
     """tap[0]: from the chip to the row driver and the column amplifiers; capacitance by length and width."""
-    _, nets, _, plan = wires
+    _, nets, _, plan = parasitics
     known, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
-    assert len(route["reaches"]) == 3 and nets["tap[0]"]["driver"] == "core"
-    xs = [reach["x"] for reach in route["reaches"]]
+    assert len(route["branches"]) == 3 and nets["tap[0]"]["driver"] == "core"
+    xs = [branch["x"] for branch in route["branches"]]
     lengths = {
         (3, tracks["trunk"]): max(xs) - min(xs),
-        (4, tracks["vertical"]): sum(abs(reach["end"] - route["y"]) for reach in route["reaches"]),
+        (4, tracks["branch"]): sum(abs(branch["end"] - route["y"]) for branch in route["branches"]),
     }
-    (core,) = [reach for reach in route["reaches"] if reach["block"] == "core"]
+    (core,) = [branch for branch in route["branches"] if branch["block"] == "core"]
     lengths[1, core["box"][3] - core["box"][1]] = max(core["box"][0] - core["x"], core["x"] - core["box"][2])
     femto = sum(
         length * 1e-6 * (width / 1000 * known.metals[level].area_af_um2 + 2 * known.metals[level].fringe_af_um)
@@ -66,8 +66,8 @@ def test_a_net_by_hand(wires):
     assert min(slow, quick) > 0 and set(nets["tap[0]"]["delay_ns"]) == {"row_driver.tap[0]", "column_amplifiers.tap[0]"}
 
 
-def test_constraints_have_every_port_once(wires):
-    metrics, nets, sdc, _ = wires
+def test_constraints_have_every_port_once(parasitics):
+    metrics, nets, sdc, _ = parasitics
     assert sdc.startswith("create_clock")
     loads = {name: float(load) for load, name in re.findall(r"set_load (\S+) \[get_ports \{(.*?)\}\]", sdc)}
     assert loads == {net: found["load_pf"] for net, found in nets.items() if found["driver"] == "core"}
@@ -95,7 +95,7 @@ def test_slews_that_openSTA_tells_of():
 
 @pytest.mark.parametrize("layer, violations", [((70, 20), 1), ((71, 20), 0)])
 def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
-    """300 um of the trunks' wire at a gate of 0.03 um2; of the verticals' wire nothing is said."""
+    """300 um of the trunks' metal at a gate of 0.03 um2; of the branches' metal nothing is reported."""
     import klayout.db as db
 
     known, layout = coriolis_platform("sky130"), db.Layout()

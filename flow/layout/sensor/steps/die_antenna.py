@@ -1,0 +1,24 @@
+"""Antennas of the die's nets."""
+
+from dataclasses import replace
+
+from flow.layout.steps.antenna import Antenna
+from platforms.coriolis import CoriolisPlatform
+
+from ..routing import BRANCH
+
+
+class DieAntenna(Antenna):
+    """`Antenna` of the whole die, for the metals below the branches.
+
+    Below these, a gate of the chip is connected to nothing of the die but its stub. A branch connects it to the net's
+    driver, whose diffusion a black box does not have.
+    """
+
+    name = "die_antenna"
+    inputs = {"gds": "die_gds.gds"}
+
+    def tech(self) -> CoriolisPlatform:
+        """The process without the branches' metal and those above."""
+        tech = super().tech()
+        return replace(tech, metals=tech.metals[:BRANCH], vias=tech.vias[: BRANCH - 1])

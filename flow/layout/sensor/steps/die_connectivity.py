@@ -1,0 +1,34 @@
+"""Connectivity of the die's GDS, compared with the nets of the plan."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from base.steps import Step
+from platforms.coriolis import coriolis_platform
+from platforms.die import top_metal
+
+from .. import connectivity
+from .die_gds import DieGdsParameters
+
+
+class DieConnectivity(Step[DieGdsParameters]):
+    """Every net of the plan, extracted from the metal of the finished GDS and of the blocks in it.
+
+    lvs_match: of the blocks' pins; the insides of the blocks have their own LVS.
+    """
+
+    name = "die_connectivity"
+    inputs = {"gds": "die_gds.gds", "plan": "die_plan.plan"}
+    outputs = {"report": "connectivity.json"}
+    metrics = {"open_nets": "", "shorts": "", "lvs_match": ""}
+    tools = ("python klayout",)
+
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+        plan, pdk = json.loads(inputs["plan"].read_text()), self.parameters.pdk
+        cells = {block["cell"]: name for name, block in plan["blocks"].items()}
+        found = connectivity.nets(inputs["gds"], cells, coriolis_platform(pdk), top_metal(pdk))
+        opens, shorts = connectivity.compare(found, plan["nets"])
+        outputs["report"].write_text(json.dumps({"open": opens, "short": shorts}, indent=1) + "\n")
+        return {"open_nets": len(opens), "shorts": len(shorts), "lvs_match": not opens and not shorts}

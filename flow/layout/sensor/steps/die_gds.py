@@ -1,0 +1,79 @@
+"""The GDS of the die."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from base.gds import write_gds
+from base.steps import Step, StepError
+from platforms.coriolis import coriolis_platform
+
+from ..plan import BLOCKS, CORE, ORIENTATIONS
+from .die_plan import TOP
+
+if TYPE_CHECKING:
+    import klayout.db as kdb
+
+
+@dataclass(frozen=True)
+class DieGdsParameters:
+    """pdk: process."""
+
+    pdk: str = "sky130"
+
+
+class DieGds(Step[DieGdsParameters]):
+    """The blocks' GDS at the places of the plan, and the plan's metal."""
+
+    name = "die_gds"
+    inputs = {f"{block}.gds": f"{block}.gds" for block in (*BLOCKS, CORE)} | {"plan": "die_plan.plan"}
+    outputs = {"gds": f"{TOP}.gds"}
+    metrics = {"rectangles": ""}
+    tools = ("python klayout",)
+
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+        import klayout.db as db
+
+        plan, layout = json.loads(inputs["plan"].read_text()), db.Layout()
+        tech = coriolis_platform(self.parameters.pdk)
+        layout.dbu = 0.001
+        top = layout.create_cell(TOP)
+        cells = {name: layout.create_cell(block["cell"]) for name, block in plan["blocks"].items()}
+        for name, block in plan["blocks"].items():
+            source = db.Layout()
+            source.read(str(inputs[f"{name}.gds"]))
+            tops = [cell.name for cell in source.top_cells()]
+            if tops != [block["cell"]]:
+                raise StepError(
+                    f"die_gds: {inputs[f'{name}.gds'].name} has the top cells {', '.join(tops)}; "
+                    f"its LEF is of {block['cell']}"
+                )
+            cells[name].copy_tree(source.top_cell())  # renames cells in it whose name is taken
+            top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
+        for _, layer, datatype, *box in plan["shapes"]:
+            top.shapes(layout.layer(layer, datatype)).insert(db.Box(*box))
+        for net, boxes in plan["pins"].items():
+            for _, layer, _, *box in boxes:
+                middle = db.Trans(db.Box(*box).center() - db.Point())
+                for datatype in (tech.pin_datatype, tech.label_datatype):
+                    top.shapes(layout.layer(layer, datatype)).insert(db.Text(net, middle))
+        top.shapes(layout.layer(*tech.outline)).insert(db.Box(0, 0, *plan["die"]))
+        write_gds(layout, outputs["gds"])
+        return {"rectangles": len(plan["shapes"])}
+
+
+def placed(block: Mapping[str, Any]) -> "kdb.Trans":
+    """Transformation of a block of the plan."""
+    import klayout.db as db
+
+    left, bottom, right, top = block["box"]
+    sideways, upright = ORIENTATIONS[block["orientation"]]
+    turn = {
+        (False, False): db.Trans.R0,
+        (True, False): db.Trans.M90,
+        (False, True): db.Trans.M0,
+        (True, True): db.Trans.R180,
+    }[sideways, upright]
+    return db.Trans(turn, right if sideways else left, top if upright else bottom)

@@ -1,0 +1,34 @@
+"""Static timing of the chip with the die's nets at its ports."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flow.layout.steps.sta import Sta, StaParameters
+
+
+class DieSta(Sta):
+    """`Sta` of the chip on the die.
+
+    slews_over: pins whose slew is beyond the cells' tables (max_transition), where delays are extrapolated.
+    worst_slew_ns: the longest of these.
+    """
+
+    inputs = {"verilog": "core.verilog", "spef": "core.spef", "sdc": "die_parasitics.sdc"}
+    metrics = {**Sta.metrics, "slews_over": "", "worst_slew_ns": "ns"}
+
+    def __init__(self, parameters: StaParameters) -> None:
+        super().__init__(parameters)
+        self.name = f"die_sta_{parameters.corner}"
+
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+        found = super().run(inputs, outputs)
+        slews = over(outputs["report"].read_text())
+        return found | {"slews_over": len(slews), "worst_slew_ns": max(slews, default=None)}
+
+
+def over(report: str) -> list[float]:
+    """Every slew (ns) over its limit in OpenSTA's report."""
+    _, _, part = report.partition("max_transition")
+    return [float(slew) for slew in re.findall(r"^\S+\s+[\d.]+\s+([\d.]+)\s+-[\d.]+ \(VIOLATED\)", part, re.M)]
