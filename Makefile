@@ -7,6 +7,7 @@ PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
 TESTS_READY := $(VENV)/.tests-ready
 LAYOUT_READY := $(VENV)/.layout-ready
+LINT_READY := $(VENV)/.lint-ready
 
 # Arguments of `make sim`, each also an option of `python -m talbot sim`
 SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
@@ -32,6 +33,10 @@ $(LAYOUT_READY): $(READY) requirements/layout.lock requirements/pdk.lock
 	@$(PY) -m pip install --quiet --disable-pip-version-check --no-deps --require-hashes -r requirements/pdk.lock
 	@touch $@
 
+$(LINT_READY): $(TESTS_READY) $(LAYOUT_READY) requirements/lint.lock
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/lint.lock
+	@touch $@
+
 .PHONY: setup
 setup: $(TESTS_READY)  ## the Python environment in .venv with all that tests use, from the lock files
 
@@ -49,6 +54,30 @@ sim-help: $(READY)  ## the arguments of make sim, explained
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores)
 	@$(PY) -m pytest -n auto --dist loadfile
+
+.PHONY: test-all
+test-all: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## as test, and fails where a test is skipped for want of a package of Debian or PyPI
+	@$(PY) -m pytest -n auto --dist loadfile --complete
+
+SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:rtl' ':!:conftest.py')
+.PHONY: lint
+lint: $(LINT_READY)  ## ruff, the floor plan (import-linter), types (pyright), docstrings (numpydoc)
+	@$(VENV)/bin/ruff check
+	@$(VENV)/bin/ruff format --check
+	@$(VENV)/bin/lint-imports --no-cache
+	@$(VENV)/bin/pyright
+	@$(VENV)/bin/numpydoc lint $(filter models/%,$(SOURCES))
+	@$(VENV)/bin/numpydoc lint --ignore 'PR01 RT01' $(filter-out models/%,$(SOURCES))
+
+.PHONY: format
+format: $(LINT_READY)  ## ruff's format and the fixes that it makes by itself
+	@$(VENV)/bin/ruff check --fix --quiet
+	@$(VENV)/bin/ruff format --quiet
+
+.PHONY: locks
+locks: $(READY)  ## renew requirements/*.lock from pyproject.toml (uv)
+	@$(PY) -m venv build/uv && build/uv/bin/pip install --quiet 'uv>=0.9,<1'
+	@PATH="$(CURDIR)/build/uv/bin:$$PATH" bash requirements/lock.sh
 
 .PHONY: formal
 formal: $(TESTS_READY)  ## properties of every block proven, and that each catches its broken twin (needs Yosys, z3: make tools)

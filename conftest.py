@@ -5,6 +5,8 @@ is missing it is skipped with the reason. A property fails with the first input 
 """
 
 import importlib.util
+import re
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -17,16 +19,27 @@ settings.load_profile("first")
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
 LAYOUTS = "cells/extract", "cells/compact", "cells/lef", "cells/test"
 NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
+SLOW = "slow: make verify, or pytest --all"
+# What neither Debian nor PyPI has, or a machine cannot do: skipped with --complete, too
+ELSEWHERE = re.compile(
+    r"slow|PDK_ROOT|openroad|LibreLane|a small file system cannot be mounted|needs /proc|no coriolis for"
+)
+# Command that brings what a test was skipped for, by a word of its reason
+BRINGS = {
+    "slow": "make verify",
+    "LibreLane": "make librelane",
+    "PDK_ROOT": "PDK_ROOT=<an installed PDK>",
+} | dict.fromkeys(
+    ("klayout", "c4m", "pdkmaster", "coriolis", "sky130"), "make setup-layout (klayout's program: make tools)"
+)
 collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
-
-
-def pytest_report_header():
-    if collect_ignore:
-        return f"left out: {', '.join(LAYOUTS)}: klayout is not installed (make setup-layout)"
 
 
 def pytest_addoption(parser):
     parser.addoption("--all", action="store_true", help="run the tests marked slow, too (make verify)")
+    parser.addoption(
+        "--complete", action="store_true", help="fail where a test is skipped for want of a tool or package"
+    )
     group = parser.getgroup("netlists", "run the Icarus level of the tests on netlists")
     group.addoption(
         "--netlist",
@@ -74,17 +87,19 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=[item for item in items if item not in in_icarus])
         items[:] = in_icarus
     if not config.getoption("all"):
-        slow = [item for item in items if item.get_closest_marker("slow")]
-        config.hook.pytest_deselected(items=slow)
-        items[:] = [item for item in items if item not in slow]
+        for item in items:
+            if item.get_closest_marker("slow"):
+                item.add_marker(pytest.mark.skip(reason=SLOW))
     if not installed():
         for item in in_icarus:
             item.add_marker(pytest.mark.skip(reason=MISSING))
 
 
 def pytest_sessionfinish(session):
-    """A netlist that no test took has not been tested (in one process: workers share the tests)."""
+    """Fail for a netlist that no test took (in one process: workers share the tests) and for a gap with --complete."""
     options = session.config.option
+    if options.complete and not hasattr(session.config, "workerinput") and session.exitstatus == 0:
+        session.exitstatus = int(bool(missing(session.config.pluginmanager.get_plugin("terminalreporter"))))
     if not options.netlist or options.collectonly or getattr(options, "dist", "no") != "no":
         return
     netlists = session.config.stash[NETLISTS]
@@ -93,3 +108,27 @@ def pytest_sessionfinish(session):
             f"--netlist = {', '.join(unused)}: no test built that; built were: "
             f"{', '.join(sorted(netlists.built)) or 'none'}"
         )
+
+
+def skipped(reporter):
+    """(reason, how many tests), the most frequent first; a module that is skipped whole counts once."""
+    reasons = Counter(f"{folder}: klayout is not installed" for folder in collect_ignore)
+    for report in reporter.stats.get("skipped", ()):
+        reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
+        reasons[reason.removeprefix("Skipped: ").splitlines()[0]] += 1
+    return reasons.most_common()
+
+
+def missing(reporter):
+    """Reasons that a package of Debian or PyPI would remove."""
+    return [reason for reason, _ in skipped(reporter) if not ELSEWHERE.search(reason)]
+
+
+def pytest_terminal_summary(terminalreporter, config):
+    """Print what was left out and the command that brings it."""
+    for reason, count in () if config.getoption("netlist") else skipped(terminalreporter):
+        command = next((command for word, command in BRINGS.items() if word in reason), "make tools")
+        suffix = "" if "make" in reason else f" ({command})"
+        terminalreporter.write_line(f"left out: {count} x {reason}{suffix}")
+    if config.getoption("complete") and (gaps := missing(terminalreporter)):
+        terminalreporter.write_line(f"--complete: {len(gaps)} reasons to skip that a package removes: this run fails")

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
-# layouts ngspice, OpenSTA and KLayout. With --missing only where one of those that cells and layouts use is missing.
+# layouts ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl.
+# With --missing only where one of those that cells and layouts use is missing.
 set -euo pipefail
-packages=(iverilog verilator yosys z3 ngspice opensta klayout)
+packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl)
 
 if [ "${1:-}" = --missing ] && command -v iverilog verilator yosys ngspice sta klayout | wc -l | grep -qx 6; then
     exit 0
@@ -16,5 +17,6 @@ if [ "$(id -u)" -ne 0 ]; then
     echo "tools: user = $(id -un): must be root; run: sudo apt-get install ${packages[*]}" >&2
     exit 2
 fi
-apt-get update -qq
-apt-get install -y --no-install-recommends "${packages[@]}"
+# Another apt may hold the lock for a while (unattended upgrades)
+apt-get -o DPkg::Lock::Timeout=600 update -qq
+apt-get -o DPkg::Lock::Timeout=600 install -y --no-install-recommends "${packages[@]}"
