@@ -52,12 +52,8 @@ sim-help: $(READY)  ## the arguments of make sim, explained
 	@$(PY) -m talbot sim --help
 
 .PHONY: test
-test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores)
-	@$(PY) -m pytest -n auto --dist loadfile
-
-.PHONY: test-all
-test-all: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## as test, and fails where a test is skipped for want of a package of Debian or PyPI
-	@$(PY) -m pytest -n auto --dist loadfile --complete
+test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
+	@$(PY) -m pytest -n auto --dist loadfile $(if $(COMPLETE),--complete)
 
 SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:rtl' ':!:conftest.py')
 .PHONY: lint
