@@ -2,6 +2,8 @@
 
 import io
 import re
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -10,8 +12,8 @@ from matplotlib.figure import Figure
 COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 
-def svg(figure):
-    """SVG text of a figure, to stand in a page."""
+def svg(figure: Figure) -> str:
+    """SVG text of a figure, for a page."""
     FigureCanvasSVG(figure)
     out = io.StringIO()
     figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None})
@@ -19,14 +21,14 @@ def svg(figure):
     return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg") :], count=1)
 
 
-def save(figure, path):
+def save(figure: Figure, path: Path) -> None:
     """Write a figure as a PNG."""
     FigureCanvasAgg(figure)
     figure.savefig(path, format="png", dpi=130, bbox_inches="tight")
 
 
-def bars(parts, unit, title):
-    """Horizontal bars, one a part, with value and share; ``parts``: dict name -> value."""
+def bars(parts: Mapping[str, float], unit: str, title: str) -> Figure:
+    """Draw horizontal bars, one for each of ``parts`` (name -> value), with value and share."""
     total = sum(parts.values())
     figure = Figure(figsize=(4.6, 0.42 * len(parts) + 0.7))
     axes = figure.add_subplot()
@@ -45,8 +47,16 @@ def bars(parts, unit, title):
     return figure
 
 
-def curves(series, x_label, y_label, title, log_x=False, log_y=False, mark=None):
-    """Lines with markers. ``series``: dict name -> list of (x, y, label or ''); ``mark``: one (x, y) to circle."""
+def curves(
+    series: Mapping[str, Sequence[tuple[float, float, str]]],
+    x_label: str,
+    y_label: str,
+    title: str,
+    log_x: bool = False,
+    log_y: bool = False,
+    mark: tuple[float, float] | None = None,
+) -> Figure:
+    """Draw lines with markers. series: name -> points (x, y, label or ''); mark: one (x, y) to circle."""
     figure = Figure(figsize=(4.6, 3.1))
     axes = figure.add_subplot()
     for i, (name, points) in enumerate(series.items()):

@@ -1,8 +1,16 @@
 """GDS as every step writes it: the same layout is the same file."""
 
+from __future__ import annotations
 
-def write_gds(layout, path, top=None):
-    """Write a klayout.db.Layout to the file ``path``; top: klayout.db.Cell, that and what is below it alone."""
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import klayout.db as db
+
+
+def write_gds(layout: db.Layout, path: Path, top: db.Cell | None = None) -> None:
+    """Write ``layout`` to the file ``path`` with no time stamp; top: only this cell and what is below it."""
     import klayout.db as db
 
     options = db.SaveLayoutOptions()

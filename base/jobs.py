@@ -59,7 +59,9 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
         with warnings.catch_warnings():  # joblib restarts a process that has grown, and warns
             warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
-            for _ in joblib.Parallel(return_as="generator_unordered", batch_size=1)(calls):
+            # joblib has no types: pyright takes those of its defaults
+            parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
+            for _ in parallel(calls):
                 bar.update()
     return [json.loads(file.read_text()) for file in files]
 

@@ -9,7 +9,7 @@ BASE = Path(__file__).with_name("base.html")
 
 
 def render(template: Path, **values: Any) -> str:
-    """HTML of a Jinja2 ``template`` with ``values``; text is escaped. Raises jinja2.UndefinedError for a missing one."""
+    """HTML of a Jinja2 ``template`` with ``values``, text escaped. Raises jinja2.UndefinedError for a missing value."""
     loader = FileSystemLoader([template.parent, BASE.parent])
     environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined)
     return environment.get_template(template.name).render(**values)

@@ -1,14 +1,16 @@
-"""What a run is doing: a bar on a terminal, a line a long step elsewhere."""
+"""Progress: a bar on a terminal, a line for each long step elsewhere."""
 
 import sys
+from collections.abc import Iterable
+from typing import Any, Self
 
 from tqdm import tqdm
 
 
 class Steps:
-    """A bar over the steps named in ``names``; `note` is called with a step's name, or with a line about it."""
+    """A bar over the steps named in ``names``."""
 
-    def __init__(self, names):
+    def __init__(self, names: Iterable[str]) -> None:
         self.names = list(names)
         self.bar = tqdm(
             total=len(self.names),
@@ -18,13 +20,14 @@ class Steps:
             bar_format="{n_fmt}/{total_fmt} |{bar:24}| {desc} [{elapsed}]",
         )
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         self.bar.close()
 
-    def note(self, text):
+    def note(self, text: str) -> None:
+        """Show ``text``: a step's name, which moves the bar, or a line about the step."""
         if text in self.names:
             self.bar.n = self.names.index(text)
         elif self.bar.disable:

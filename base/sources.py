@@ -2,7 +2,8 @@
 
 From a module on, the closure of: what it imports (a re-export leads to the file that defines the name), modules that
 its strings name (``[sys.executable, "-m", "rtl.export"]``, ``import_module("a.b")``, f-strings as
-``f"platforms.{pdk}.layers"``; for "pytest" conftest.py), and data files that its strings name (``"bench.sv"``, ``"*.tcl"``). No text is run.
+``f"platforms.{pdk}.layers"``; for "pytest" conftest.py), and data files that its strings name (``"bench.sv"``,
+``"*.tcl"``). No text is run.
 """
 
 import ast
@@ -36,8 +37,8 @@ class Reference:
 class Text:
     """What a module's text refers to.
 
-    imports: with the name that each binds; named: modules that strings name; patterns: of f-strings, for modules' names;
-    files: data files that strings name; plain: whether it is an __init__.py of re-exports alone.
+    imports: with the name that each binds; named: modules that strings name; patterns: of f-strings, for modules'
+    names; files: data files that strings name; plain: whether it is an __init__.py of re-exports alone.
     """
 
     path: Path

@@ -1,8 +1,9 @@
-"""Tools as child processes: none outlives an interrupted parent, a missing or failed one is named."""
+"""Tools as child processes: none outlives an interrupted parent, and errors name the tool that is missing or failed."""
 
 import os
 import signal
 import subprocess
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 
@@ -14,17 +15,23 @@ class ToolTimeout(ToolError):
     """A tool was stopped at its time limit."""
 
 
-def finish(command, env=None, cwd=None, seconds=None):
-    """Run ``command`` to its end; returns subprocess.CompletedProcess with its text output.
+def finish(
+    command: Sequence[object],
+    env: Mapping[str, str] | None = None,
+    cwd: Path | str | None = None,
+    seconds: float | None = None,
+) -> subprocess.CompletedProcess[str]:
+    """Run ``command`` to its end and return its status and text output.
 
-    env: variables on top of this process's. It gets a process group of its own, which any exception here (Ctrl-C
-    too) ends as a whole: a compiler driver's compiler as well. seconds: after which it is stopped. Raises ToolError
-    when there is no such program, ToolTimeout.
+    env: variables added to this process's. The command has a process group of its own, which any exception (Ctrl-C too)
+    ends as a whole, with what the command started. seconds: time limit. Raises ToolError when there is no such program,
+    ToolTimeout.
     """
-    command = [str(part) for part in command]
+    words = [str(part) for part in command]
+    name = Path(words[0]).name
     try:
         child = subprocess.Popen(
-            command,
+            words,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -35,26 +42,28 @@ def finish(command, env=None, cwd=None, seconds=None):
             start_new_session=True,
         )
     except FileNotFoundError as error:
-        raise ToolError(
-            f"{Path(command[0]).name}: not found; install it with: make tools "
-            f"(Debian: apt-get install {Path(command[0]).name})"
-        ) from error
+        raise ToolError(f"{name}: not found; install it with: make tools (Debian: apt-get install {name})") from error
     with child:
         try:
             out, err = child.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
             os.killpg(child.pid, signal.SIGKILL)
-            raise ToolTimeout(f"{Path(command[0]).name}: no end after {seconds} s") from None
+            raise ToolTimeout(f"{name}: no end after {seconds} s") from None
         except BaseException:
             os.killpg(child.pid, signal.SIGKILL)
             raise
-    return subprocess.CompletedProcess(command, child.returncode, out, err)
+    return subprocess.CompletedProcess(words, child.returncode, out, err)
 
 
-def run(command, env=None, cwd=None, seconds=None):
-    """As `finish`; returns what the tool printed. Raises ToolError with its last lines when it fails."""
+def run(
+    command: Sequence[object],
+    env: Mapping[str, str] | None = None,
+    cwd: Path | str | None = None,
+    seconds: float | None = None,
+) -> str:
+    """Run ``command`` as `finish` does and return its output. Raises ToolError with its last lines when it fails."""
     result = finish(command, env, cwd, seconds)
     if result.returncode:
         tail = "\n".join((result.stderr or result.stdout).strip().splitlines()[-15:])
-        raise ToolError(f"{Path(command[0]).name} failed with status {result.returncode}:\n{tail}")
+        raise ToolError(f"{Path(str(command[0])).name} failed with status {result.returncode}:\n{tail}")
     return result.stdout

@@ -16,7 +16,7 @@ SIZE = re.compile(r"(?m)^\s*SIZE\s+(\S+)\s+BY\s+(\S+)\s*;")
 
 @dataclass(frozen=True)
 class Pin:
-    """direction, use: as LEF words them, '' where it has none. antenna: keyword -> um2. boxes: in the file's order."""
+    """A pin. direction, use: as LEF words them, '' where it has none. antenna: keyword -> um2. boxes: in the file's order."""
 
     name: str
     direction: str

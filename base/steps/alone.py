@@ -1,5 +1,5 @@
-"""A call in a process of its own: what it used is measured, a library that crashes ends no one else, and the end of
-this process is the end of that one and of the tools that it runs."""
+"""A call in a process of its own: its memory is measured, a library that crashes ends nothing else, and the end of
+this process ends that one and the tools that it runs."""
 
 import ctypes
 import multiprocessing
@@ -8,6 +8,11 @@ import resource
 import signal
 import sys
 import threading
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from types import FrameType
+from typing import Any
 
 from .step import StepError
 
@@ -15,8 +20,11 @@ ONE_AT_A_TIME = threading.Lock()
 PR_SET_PDEATHSIG = 1  # linux/prctl.h: the signal that a process gets when its parent ends
 
 
-def alone(call, *arguments):
-    """(result, peak memory in MiB of the call or of the largest tool it ran). Exceptions come through."""
+def alone(call: Callable[..., Any], *arguments: Any) -> tuple[Any, int]:
+    """Return the result of ``call(*arguments)`` and the peak memory, MiB, of it or of the largest tool it ran.
+
+    Raises what the call raises, and StepError where its process ends without a result.
+    """
     context = multiprocessing.get_context("spawn")
     receiver, sender = context.Pipe(duplex=False)
     child = context.Process(target=_measured, args=(sender, call, arguments))
@@ -26,7 +34,7 @@ def alone(call, *arguments):
         result, peak = receiver.recv()
     except EOFError:
         raise StepError(
-            f"{getattr(call, '__qualname__', call)}: its process ended without a word "
+            f"{getattr(call, '__qualname__', call)}: its process ended with no result "
             "(a crash in a library, or no memory left)"
         ) from None
     except BaseException:
@@ -40,8 +48,8 @@ def alone(call, *arguments):
     return result, peak
 
 
-def _start(child):
-    """With fixed hashes of texts: sets have the same order each time, and what is written from them is the same file."""
+def _start(child: BaseProcess) -> None:
+    """Start with fixed hashes of texts: sets keep their order from run to run, and so do files written from them."""
     with ONE_AT_A_TIME:
         before = os.environ.get("PYTHONHASHSEED")
         os.environ["PYTHONHASHSEED"] = "0"
@@ -53,7 +61,7 @@ def _start(child):
                 os.environ["PYTHONHASHSEED"] = before
 
 
-def _measured(sender, call, arguments):
+def _measured(sender: Connection, call: Callable[..., Any], arguments: tuple[Any, ...]) -> None:
     signal.signal(signal.SIGTERM, _end)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
@@ -61,19 +69,20 @@ def _measured(sender, call, arguments):
         result = call(*arguments)
     except Exception as error:
         result = error
-    _send_workers_home()
+    _end_workers()
     kib = max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
     sender.send((result, round(kib / 1024)))
 
 
-def _send_workers_home():
-    """The end of this process would wait for joblib's idle workers, five minutes."""
+def _end_workers() -> None:
+    """End joblib's idle workers, for which the end of this process would wait five minutes."""
     if "joblib.externals.loky" in sys.modules:
         from joblib.externals.loky import get_reusable_executor
 
-        get_reusable_executor(reuse=True).shutdown(kill_workers=True)
+        # joblib has no types
+        get_reusable_executor(reuse=True).shutdown(kill_workers=True)  # pyright: ignore[reportArgumentType]
 
 
-def _end(signum, frame):
-    """As an exception, so that what runs in base.tools ends its tool."""
+def _end(signum: int, frame: FrameType | None) -> None:
+    """Raise an exception, so that what runs in base.tools ends its tool."""
     raise SystemExit(128 + signum)

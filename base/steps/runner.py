@@ -30,8 +30,8 @@ Record = dict[str, Any]  # of a step's run, as record.json holds it
 class Runner:
     """Runs steps into ``folder``/<step>.<digest>/ and knows the paths of their outputs.
 
-    files: name -> path, what is given from outside. note: called with a line about progress. shared: folder of the steps
-    that other runs share. root: of the repository whose files decide what a step does.
+    files: name -> path, what is given from outside. note: called with a line about progress. shared: folder of the
+    steps that other runs share. root: of the repository whose files decide what a step does.
     """
 
     def __init__(
@@ -59,6 +59,7 @@ class Runner:
         self.note(step.name)
 
         def make(part: Path) -> None:
+            """Run the step into ``part``, with its record."""
             begin = time.perf_counter()
             outputs = {name: part / file for name, file in step.outputs.items()}
             metrics, peak = alone(step.run, inputs, outputs)
@@ -83,8 +84,11 @@ class Runner:
         return self.records[step.name]
 
     def run_all(self, steps: Sequence[Step[Any]]) -> list[Record]:
-        """The records of ``steps``, in their order. Each begins when what it needs is there: at once if others wait for
-        it, else when a core is free. Raises StepError, also for steps that need each other in a circle."""
+        """Return the records of ``steps`` in their order.
+
+        A step begins when its inputs are complete: at once if others wait for it, else when a core is free. Raises
+        StepError, also for steps that need each other in a cycle.
+        """
         made_by = {f"{step.name}.{name}": step.name for step in steps for name in step.outputs}
         needs = {step.name: {made_by[source] for source in step.inputs.values() if source in made_by} for step in steps}
         try:
@@ -95,6 +99,7 @@ class Runner:
         ended = {step.name: Event() for step in steps}
 
         def begin(step: Step[Any]) -> None:
+            """Wait for what ``step`` needs, then run it."""
             try:
                 for name in needs[step.name]:
                     ended[name].wait()
@@ -107,10 +112,10 @@ class Runner:
             finally:
                 ended[step.name].set()
 
-        try:  # a thread a step, in batches of one: those that wait take nobody's place
-            joblib.Parallel(n_jobs=len(steps), backend="threading", batch_size=1)(
-                joblib.delayed(begin)(step) for step in steps
-            )
+        # A thread for each step, in batches of one: a step that waits blocks no other. joblib has no types
+        parallel = joblib.Parallel(n_jobs=len(steps), backend="threading", batch_size=1)  # pyright: ignore[reportArgumentType]
+        try:
+            parallel(joblib.delayed(begin)(step) for step in steps)
         except BaseException:
             for child in multiprocessing.active_children():  # else their threads wait for them to the end
                 child.terminate()

@@ -1,4 +1,4 @@
-"""Versions of the tools and packages that a result rests on."""
+"""Versions of the tools and packages that decide a result."""
 
 import importlib.metadata
 import re
@@ -7,7 +7,7 @@ from functools import cache
 
 from base.tools import ToolError, finish
 
-# What to call for the version and where it stands in the answer; 'python NAME' is the Python package NAME
+# Command that prints the version, and the pattern of it in the output; 'python NAME' is the Python package NAME
 COMMANDS = {
     "yosys": (["yosys", "-V"], r"Yosys (\S+)"),
     "yosys-abc": (["yosys", "-V"], r"Yosys (\S+)"),
@@ -20,14 +20,14 @@ COMMANDS = {
 
 
 @cache
-def version(tool):
-    """Of a program or a Python package, as text. Raises ToolError when it is not there."""
+def version(tool: str) -> str:
+    """Version of a program or a Python package. Raises ToolError when it is not installed."""
     if tool in COMMANDS:
         command, pattern = COMMANDS[tool]
         if not shutil.which(command[0]):
             raise ToolError(f"{command[0]}: not found; install it with: make tools")
-        said = finish(command)
-        match = re.search(pattern, said.stdout + said.stderr)
+        done = finish(command)
+        match = re.search(pattern, done.stdout + done.stderr)
         return match[1] if match else "unknown"
     package = tool.removeprefix("python ")
     try:

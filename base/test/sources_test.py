@@ -5,7 +5,7 @@ import pytest
 from base.sources import Tree, code
 
 FILES = {
-    "pkg/__init__.py": '"""Re-exports."""\nfrom .near import used\nfrom .other import unused\n__all__ = ["unused", "used"]\n',
+    "pkg/__init__.py": '"""Text."""\nfrom .near import used\nfrom .other import unused\n__all__ = ["unused", "used"]\n',
     "pkg/near.py": "from models.deep import value\nused = value\n",
     "pkg/other.py": "unused = 1\n",
     "models/deep.py": "value = 1\n",
@@ -20,7 +20,7 @@ FILES = {
     "plain/x.py": "from pkg import used\n",
     "plain/process.py": 'import sys\ncommand = [sys.executable, "-m", "tool"]\n',
     "plain/program.py": 'PROGRAM = "import sys; from tool.inner import main; main()"\n',
-    "plain/chosen.py": 'from importlib import import_module\ndef of(name):\n    return import_module(f"platforms.{name}.layers")\n',
+    "plain/chosen.py": 'def of(name):\n    return import_module(f"platforms.{name}.layers")\n',
     "plain/lazy.py": "def f():\n    from state import part\n    return part\n",
     "plain/tests.py": 'command = ["python", "-m", "pytest"]\n',
     "plain/documented.py": '"""As tool.inner does; see page.html."""\n',
