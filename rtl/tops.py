@@ -14,6 +14,12 @@ if TYPE_CHECKING:
 Build = Callable[[SensorParameters], "Component"]
 
 
+def _array(sensor: SensorParameters) -> tuple[int, int, int, tuple[int, ...], int, int]:
+    """The parameters that depend on the array: rows, cols, lanes, order, tile_rows, tile_cols."""
+    array, tile = sensor.array, sensor.tile
+    return array.rows, array.cols, sensor.chip.lanes, tuple(tile.order), tile.rows, tile.cols
+
+
 def amp_ctrl(sensor: SensorParameters) -> "Component":
     """The timing of the amplifiers."""
     from rtl.amp_ctrl import AmpCtrl
@@ -25,14 +31,7 @@ def readout_seq(sensor: SensorParameters) -> "Component":
     """The readout sequencer."""
     from rtl.readout_seq import ReadoutSeq
 
-    return ReadoutSeq(
-        sensor.array.rows,
-        sensor.array.cols,
-        sensor.chip.lanes,
-        tuple(sensor.tile.order),
-        sensor.tile.rows,
-        sensor.tile.cols,
-    )
+    return ReadoutSeq(*_array(sensor))
 
 
 def edge_adc(sensor: SensorParameters) -> "Component":
@@ -50,7 +49,7 @@ def adc_bank(sensor: SensorParameters) -> "Component":
 
 
 def divider(variant: str) -> Build:
-    """Builds one variant of the quadrature divider."""
+    """Return the function that builds one variant of the quadrature divider."""
 
     def build(sensor: SensorParameters) -> "Component":
         from rtl.quad_divider import quad_divider
@@ -61,7 +60,7 @@ def divider(variant: str) -> Build:
 
 
 def phase_path(sensor: SensorParameters) -> "Component":
-    """Phase and amplitude of a tile's samples."""
+    """Phase and amplitude of a sample's taps."""
     from rtl.phase_path import PhasePath
 
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
@@ -85,17 +84,8 @@ def asp_chip(sensor: SensorParameters) -> "Component":
     """The whole chip."""
     from rtl.asp_chip import AspChip
 
-    return AspChip(
-        sensor.array.rows,
-        sensor.array.cols,
-        sensor.chip.lanes,
-        tuple(sensor.tile.order),
-        sensor.tile.rows,
-        sensor.tile.cols,
-        sensor.chip.divider,
-        sensor.chip.n_frac,
-        sensor.chip.cordic_iterations,
-    )
+    chip = sensor.chip
+    return AspChip(*_array(sensor), chip.divider, chip.n_frac, chip.cordic_iterations)
 
 
 TOPS: dict[str, Build] = {

@@ -1,4 +1,4 @@
-"""Exported Verilog: the same bytes from run to run and place to place, accepted by the tools that must take it."""
+"""Exported Verilog: the same bytes from run to run and place to place, accepted by the tools that read it."""
 
 import os
 import re
@@ -19,7 +19,7 @@ SMALL = SensorParameters(array=ArrayParameters(9, 20), chip=ChipParameters(lanes
 
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
-    """Every top of the default sensor in one folder, from a process of its own with another hash seed and width."""
+    """Every top of the default sensor in one folder, from its own process with another hash seed and width."""
     out = tmp_path_factory.mktemp("exported")
     subprocess.run(
         [sys.executable, "-m", "rtl.export", "--out", out],
@@ -59,7 +59,7 @@ def test_lint_finds_what_is_wrong(tmp_path):
         lint(path, "Wide")
 
 
-def test_a_part_keeps_its_name_until_it_is_whole(tmp_path, capsys):
+def test_files_are_written_atomically(tmp_path, capsys):
     assert main(["--top", "RegFile", "--out", str(tmp_path), "--rows", "9"]) == 0
     assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
     assert (tmp_path / "RegFile.v").read_text() == translate("RegFile", SensorParameters(array=ArrayParameters(9, 384)))

@@ -1,4 +1,4 @@
-"""The RTL is not built from the golden models: of models/, only the functional and cycle levels import more."""
+"""The RTL does not use the golden models: of models/, it imports the parameters; FL and CL may import more."""
 
 import ast
 from pathlib import Path

@@ -39,7 +39,7 @@ def front_end(lanes, rough=True):
 
 
 class Harness(Component):
-    """The bank with the front end at its pins; streams and settings are brought out."""
+    """The bank with the front end at its pins; its streams and settings are ports."""
 
     def construct(s, dut, lanes, rough):
         s.step = RecvIfcRTL(step_msg(lanes))
@@ -68,7 +68,7 @@ def simulator(cls, verilog, lanes=LANES, rough=True):
 
 
 class Run:
-    """What a bank did with a list of StepMsg: messages with their cycles, hold and idle cycle by cycle, counters."""
+    """A run of a bank with a list of StepMsg: messages with their cycles, hold and idle in every cycle, counters."""
 
     def __init__(self, sim, steps, mode, threshold, pattern=ALWAYS, limit=None):
         sim.mode @= MODES.index(mode)
@@ -80,7 +80,7 @@ class Run:
         sim.reset @= 0
         self.messages, self.sent_at, self.hold, self.idle, self.counts = [], [], [], [], []
         self.held = []  # row, group, k, sub, en at each hold
-        limit = limit or (len(steps) + 4) * (20 + 2 * sim.dut.en.nbits * len(pattern))  # far beyond what it takes
+        limit = limit or (len(steps) + 4) * (20 + 2 * sim.dut.en.nbits * len(pattern))  # far more than it takes
         steps, cycle, ends = list(steps), 0, sum(int(m.kind) == END for m in steps)
         while ends > len(self.counts) or steps or self.idle[-1:] != [True]:
             offer, ready = pattern[cycle % len(pattern)]
@@ -106,7 +106,7 @@ class Run:
 
 
 def steps_of(scan):
-    """StepMsg of a whole frame."""
+    """StepMsg of a frame."""
     Step = step_msg(scan.lanes)
     out = [Step(FRAME, 0, 0, 0, 0, 0)]
     for row in scan.row_list.tolist():
@@ -116,7 +116,7 @@ def steps_of(scan):
 
 
 def expected(steps, lanes, mode, threshold, rough=True):
-    """(messages, [(made, left out) of every END]) of a list of StepMsg by the golden model."""
+    """Messages, and (made, left out) of every END, of a list of StepMsg by the golden model."""
     golden = front_end(lanes, rough).convert(SAMPLES, mode, threshold)
     messages, counts = [], []
     for step in steps:
@@ -188,7 +188,7 @@ class TestAdcBankFL:
         assert got.idle[-1]
 
     def test_all_bits_of_the_address(self):
-        """Row, group, k and sub come to the pins as they are; without a lane nothing is sampled there."""
+        """Row, group, k and sub are at the pins unchanged; without a lane nothing is sampled there."""
         Step = step_msg(LANES)
         values = 0x3FF, 0, 0x155, 0x2AA
         steps = [Step(FRAME, 0, 0, 0, 0, 0)]
@@ -200,7 +200,7 @@ class TestAdcBankFL:
 
     @pytest.mark.parametrize("row", (0, 1))
     def test_one_lane_alone(self, row):
-        """The result of the only lane leaves when it is there, and not before; until then `idle` is low."""
+        """The result of the only lane is sent when it is ready, and not before; until then `idle` is low."""
         Step = step_msg(LANES)
         steps = [Step(SAMPLE, row, 0, 2, 0, 1 << lane) for lane in range(LANES)]
         steps = [Step(FRAME, 0, 0, 0, 0, 0), *steps, Step(END, 0, 0, 0, 0, 0)]
@@ -218,11 +218,11 @@ class TestAdcBankFL:
         assert sim.idle and not sim.scan.val
 
     def test_reset_at_any_moment(self):
-        """Nothing is left of the steps, conversions and results under way."""
+        """A reset drops the steps, conversions and results in progress."""
         Step = step_msg(LANES)
         steps = [Step(FRAME, 0, 0, 0, 0, 0), *[Step(SAMPLE, 0, 1, 2, 0, 0xDB)] * 3, Step(END, 0, 0, 0, 0, 0)]
         for cycles in range(2, 40, 6):
-            with contextlib.suppress(AssertionError):  # it does not end: nothing is taken behind some cycles
+            with contextlib.suppress(AssertionError):  # it does not end: nothing is taken after some cycles
                 self.run(steps, "edge", 1, [(True, True)] * 20 + [(True, False)] * 40, cycles)
             self.check(steps, "edge", 10)
 
@@ -242,7 +242,7 @@ class TestAdcBankCL(TestAdcBankFL):
         [(1, "edge", 10, [8, 8]), (0, "edge", 1, [10, 10]), (0, "edge", 0, [10, 8]), (0, "image", 0, [10, 8])],
     )
     def test_cycles_a_step(self, row, mode, threshold, interval):
-        """Zeros cost what eight results take to leave; samples that convert, their ten decisions.
+        """Zeros take the eight cycles of sending the results; samples that convert, their ten decisions.
 
         Without a window a step has eight decisions, and every other one waits for the last lane's result to leave.
         """
@@ -265,7 +265,7 @@ class TestAdcBankCL(TestAdcBankFL):
 class TestAdcBankRTL(TestAdcBankCL):
     cls = AdcBank
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         golden = shown_after_reset(build(AdcBankFL(LANES)), before=0)
         assert shown_after_reset(build(self.cls(LANES), self.verilog, f"AdcBank{LANES}")) == golden
 

@@ -13,7 +13,7 @@ from rtl.amp_ctrl.ports import DURATIONS
 from rtl.harness.reset import shown_after_reset
 from rtl.harness.testbench import build
 
-# A test that several levels inherit runs on each of them: that is meant.
+# A test that several levels inherit runs on each of them, as intended.
 SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 PHASES = ("pixel_reset", "integrate", "cm_reset", "read")
 
@@ -21,7 +21,7 @@ timings = st.builds(AmpTiming, **{name: st.integers(1, 5) for name in DURATIONS}
 
 
 def drive(sim, timing=None, four_tap=0, **ports):
-    """Set the inputs; ``timing``: AmpTiming or None for what is there."""
+    """Set the inputs; ``timing``: AmpTiming, or None to leave them."""
     if timing is not None:
         for name in (*DURATIONS, "n_cm"):
             port = getattr(sim, name)
@@ -90,7 +90,7 @@ class TestAmpCtrlFL:
         assert self.check_row(self.fresh(sim), timing, four_tap, lambda _: True) == row_cycles(timing, four_tap)
 
     def test_back_to_back(self, sim):
-        """A start in the very cycle of `done` is taken."""
+        """A start in the cycle of `done` is accepted."""
         self.fresh(sim)
         for _ in range(3):
             self.check_row(sim, AmpTiming(1, 1, 1, 1, 1, 1, n_cm=0), 0, lambda _: True)
@@ -124,7 +124,7 @@ class TestAmpCtrlFL:
         self.check_row(sim, timing, 0, lambda _: True)
 
     def test_longest_durations(self, sim):
-        """All 16 bits of a duration count."""
+        """All 16 bits of a duration have an effect."""
         self.fresh(sim)
         drive(sim, AmpTiming(1, 65535, 1, 1, 1, 1, n_cm=0), start=1)
         sim.sim_tick()
@@ -137,7 +137,7 @@ class TestAmpCtrlFL:
 
     @pytest.mark.parametrize("name", DURATIONS)
     def test_all_bits_of_the_configuration(self, sim, name):
-        """A duration with one high bit is long: its phase still stands some cycles on, when a reset ends the row."""
+        """A duration with one high bit is long: its phase is still high when a later reset ends the row."""
         for bit in range(16):
             self.fresh(sim)
             timing = AmpTiming(**{**dict.fromkeys(DURATIONS, 1), name: 1 << bit | 1}, n_cm=bit % 2)
@@ -164,7 +164,7 @@ class TestAmpCtrlFL:
 class TestAmpCtrlRTL(TestAmpCtrlFL):
     level = AmpCtrl
 
-    def test_what_a_reset_leaves(self, sim):
+    def test_outputs_after_a_reset(self, sim):
         assert shown_after_reset(sim) == shown_after_reset(build(AmpCtrlFL()), before=0)
 
 

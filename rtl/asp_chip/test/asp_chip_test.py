@@ -47,7 +47,7 @@ PHASE = pattern_frame(Window(1, 1, 0, 2), "tof", mask=0x000F0F, phase=True, nois
 
 
 class ChipTests:
-    """One chip a class; the tests that a simulation in Python can bear."""
+    """One chip per class; the tests that are short enough for a simulation in Python."""
 
     component, verilog, examples = None, False, 5
 
@@ -102,7 +102,7 @@ class ChipTests:
 
 
 class FrameTests(ChipTests):
-    """Everything else."""
+    """The other tests: they take too long for the RTL level in PyMTL."""
 
     @pytest.mark.parametrize("name", FRAMES)
     def test_pattern(self, name):
@@ -110,7 +110,7 @@ class FrameTests(ChipTests):
         self.check(self.bench(), frame, golden_frame(None, SENSOR, frame, PATTERN))
 
     def test_front_end_at_the_pins(self):
-        """Values that only the comparators know, any of them, with a link that is slow: nothing lost or doubled."""
+        """Random values at the comparators, and a slow link: no sample is lost or repeated."""
         held = np.random.default_rng(3).normal(0, 30, (1, ROWS, COLS))
 
         class FrontEnd(PatternEnd):
@@ -127,7 +127,7 @@ class FrameTests(ChipTests):
         }
 
     def test_any_frame(self):
-        """Any configuration, any stall: the golden bytes, or an error where there is nothing to read."""
+        """Any configuration, any stall: the golden bytes, or an error if there is nothing to read."""
         tiles = [st.tuples(st.integers(0, last), st.integers(0, last)).map(sorted) for last in (FULL.row1, FULL.col1)]
 
         @settings(max_examples=self.examples, deadline=None, suppress_health_check=[HealthCheck.too_slow])
@@ -173,7 +173,7 @@ class FrameTests(ChipTests):
         assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream
 
     def test_two_frames(self):
-        """Nothing of one frame is left in the next, after a change of everything."""
+        """A frame does not depend on the frame before, after a change of everything."""
         bench = self.bench()
         for name in ("raw, a window", "edge"):
             frame = FRAMES[name]
@@ -181,7 +181,7 @@ class FrameTests(ChipTests):
             self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
 
     def test_one_cycle_of_reset_within_a_frame(self):
-        """No `done` of the frame that it ended, and the next one is whole."""
+        """No `done` for the frame that the reset ended; the next frame is complete."""
         bench, frame = self.bench(), FRAMES["raw, a window"]
         bench.write(frame_writes(frame))
         bench.spi.transfer(command("start"))
@@ -198,7 +198,7 @@ class FrameTests(ChipTests):
         self.check(bench, frame, golden_frame(None, SENSOR, frame, PATTERN))
 
     def test_status_within_a_frame(self):
-        """Busy and not done while the frame's bytes leave."""
+        """Busy and not done while the frame's bytes are sent."""
         bench, frame = self.bench(stall=0.9), FRAMES["every sample"]
         bench.write(frame_writes(frame))
         bench.spi.transfer(command("start"))
@@ -211,7 +211,7 @@ class FrameTests(ChipTests):
         assert bytes(bench.stream) == golden_frame(None, SENSOR, frame, PATTERN).stream and bench.status()["done"]
 
     def test_impossible_frames_do_not_start(self):
-        """Every time anew, and a good one starts after them."""
+        """Each is refused, and a valid frame starts after them."""
         bench = self.bench()
         field = {f.name: f for f in CHIP.configuration}
         good = CHIP.image(CHIP.configuration, {"row1": FULL.row1, "col1": FULL.col1})
@@ -238,7 +238,7 @@ class TestVerilog(FrameTests):
     component, verilog, examples = AspChip, True, 15
 
     def test_every_configuration_bit(self):
-        """All of them high, then low, over SPI; the pins show what they show, and the next frame is whole."""
+        """All bits high, then low, over SPI; the pins follow, and the next frame is complete."""
         bench, writable = self.bench(), CHIP.writable()
         first, last = min(writable), max(writable)
         for value, mode in ((0xFF, 3), (0, 0)):

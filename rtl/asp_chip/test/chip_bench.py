@@ -34,7 +34,7 @@ class ChipBench:
         self.spi = SpiHost(sim, self.tick)
 
     def tick(self):
-        """One cycle: comparators answer, the link takes what is there."""
+        """One cycle: the comparators decide, the link takes a byte if there is one."""
         sim = self.sim
         answers = self.answers() if self.held is not None else 0
         ready = self.random.random() >= self.stall
@@ -51,7 +51,7 @@ class ChipBench:
         sim.sim_tick()
 
     def sample(self):
-        """The enabled lanes take the pixels that the pins name."""
+        """The enabled lanes sample the pixels at the pins' address."""
         sim = self.sim
         assert int(sim.en) != 0
         for lane in range(self.lanes):
@@ -70,12 +70,12 @@ class ChipBench:
         return int(sum(int(above) << lane for lane, above in enumerate(self.taken >= levels)))
 
     def watch(self):
-        """What must hold in every cycle: no two of the amplifier's phases together."""
+        """Check in every cycle: at most one of the amplifier's phases is high."""
         sim = self.sim
         assert int(sim.pixel_reset) + int(sim.integrate) + int(sim.cm_reset) + int(sim.read) <= 1
 
     def write(self, writes):
-        """Bring the registers to ``writes`` ((address, byte) pairs), sending only what they do not hold."""
+        """Set the registers to ``writes``, (address, byte) pairs, sending only the bytes that differ."""
         for transfer in write_transfers([w for w in writes if self.registers.get(w[0]) != w[1]]):
             self.spi.transfer(transfer)
         self.registers.update(writes)

@@ -1,4 +1,4 @@
-"""The pattern generator against its golden function, and the function against what it is for."""
+"""The pattern generator against its golden function, and the function against its purpose."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ class TestRTL:
 
     @pytest.mark.parametrize("on", (True, False))
     def test_answers_are_comparisons(self, on):
-        """A sampled pixel keeps its value until the next hold, whatever the address does; off, nothing is touched."""
+        """A sampled pixel keeps its value until the next hold, whatever the address is; when off, `analog` passes."""
         sim = build(Pattern(self.lanes), self.verilog, f"Pattern_{self.lanes}")
         rng = np.random.default_rng(self.lanes)
         sim.on @= on

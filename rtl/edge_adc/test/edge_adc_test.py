@@ -30,7 +30,7 @@ def simulator(cls, verilog):
 
 
 class Bench:
-    """Drives one lane. Each conversion: cycle of `go`, cycle in which its result first stood at the port, DAC codes."""
+    """Drives one lane. Each conversion: cycle of `go`, first cycle of its result at the port, DAC codes."""
 
     def __init__(self, sim, values, unsigned, threshold, converter=IDEAL):
         self.sim, self.converter, self.unsigned = sim, converter, unsigned
@@ -72,7 +72,7 @@ class Bench:
         return self
 
     def compare(self):
-        """Answer the DAC with the value that was held last."""
+        """Compare the DAC with the value that was held last."""
         sim = self.sim
         answer = False
         if self.go_at:
@@ -119,7 +119,7 @@ class TestEdgeAdcFL:
             assert self.bench(values, False, threshold).run().results == expected(values, False, threshold)
 
     def test_a_code_inside_the_window_becomes_zero(self):
-        """A comparator whose answers do not fit together: outside the window, then a code inside it."""
+        """A comparator with inconsistent decisions: outside the window, then a code inside it."""
         offset = Converter(IDEAL.levels.copy(), np.zeros(1), 0.0, 0.0, 0)
         offset.levels[0, 0, 128 + 20] -= 15  # level(T) far too low
         bench = self.bench([10.0, 25.0, -10.0], False, 20, offset).run()
@@ -135,7 +135,7 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
     cls = EdgeAdcCL
 
     def test_latency(self):
-        """From go to the result at the port, and from go to go with nothing in the way."""
+        """From go to the result at the port, and from go to go without stalls."""
         for values, unsigned, threshold, latency, interval in (
             ([0.0] * 6, False, 10, 3, 4),
             ([99.0] * 6, False, 10, 11, 10),
@@ -157,7 +157,7 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
     def test_same_cycles_as_the_cycle_level(self, values, unsigned, pattern):
         def trace(bench):
             bench.run(pattern)
-            taken = convert(np.array(values), unsigned, 10).decisions  # the DAC rests after them
+            taken = convert(np.array(values), unsigned, 10).decisions  # the DAC stays after them
             return (
                 bench.go_at,
                 bench.result_at,
@@ -182,7 +182,7 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
         assert bench.dacs[0] == [138, 119, 128, 192, 224, 208, 200, 196]
 
     def test_reset_at_any_moment(self):
-        """Nothing of the conversion under way, or of results that wait, is left."""
+        """A reset drops the conversion in progress and the results that wait."""
         for cycles in range(1, 26, 2):
             bench = self.bench([60.0, -50.0], False, 10)
             with contextlib.suppress(AssertionError):  # it never ends: nothing is taken
@@ -196,7 +196,7 @@ class TestEdgeAdcCL(TestEdgeAdcFL):
 class TestEdgeAdcRTL(TestEdgeAdcCL):
     cls = EdgeAdc
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         golden = shown_after_reset(simulator(EdgeAdcFL, False), before=0)
         assert shown_after_reset(simulator(self.cls, self.verilog)) == golden
 

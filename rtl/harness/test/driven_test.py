@@ -13,7 +13,7 @@ LEVELS = False, "icarus"
 
 
 class Counter(Component):
-    """Counts `step`; `carry` says, in the same cycle, that the next count is 0."""
+    """Counts `step`; `carry` is high in the same cycle if the next count is 0."""
 
     def construct(s):
         s.step, s.value, s.carry = InPort(4), OutPort(4), OutPort()
@@ -43,7 +43,7 @@ class Careless(Component):
 
 
 class Around(Component):
-    """A harness: the counter's step is its own count's carry, beside an input."""
+    """A harness whose counter's step depends on an input and on its own count."""
 
     def construct(s, dut):
         s.step, s.value = InPort(4), OutPort(4)
@@ -56,7 +56,7 @@ class Around(Component):
 
 
 def seen(sim, steps):
-    """(value, and carry where there is one) ahead of every clock edge."""
+    """The value, and carry or 0, ahead of every clock edge."""
     out = []
     for step in steps:
         sim.step @= step
@@ -69,7 +69,7 @@ def seen(sim, steps):
 STEPS = [1, 1, 3, 0, 1, 15, 0, 2, 15, 15, 1, 7, 9, 5] * 4
 
 
-def test_every_cycle_is_pymtl_s():
+def test_equals_pymtl_in_every_cycle():
     runs = [seen(build(Counter(), level), STEPS) for level in LEVELS]
     assert runs[0] == runs[1] and any(carry for _, carry in runs[0])
 
@@ -92,7 +92,7 @@ def test_x_must_not_leave_reset():
         build(Careless(), "icarus")
 
 
-def test_a_simulation_that_ends_early_says_so(tmp_path):
+def test_a_simulation_that_ends_early_is_an_error(tmp_path):
     path = tmp_path / "Counter.v"
     path.write_text(
         "module Counter(input clk, reset, input [3:0] step, output [3:0] value, output carry);\n"

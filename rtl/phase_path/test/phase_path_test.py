@@ -1,4 +1,4 @@
-"""PhasePath at every level: taps in, the golden model's phase and amplitude out, marks in their places."""
+"""PhasePath at every level: taps in, the golden model's phase and amplitude out, marks in order."""
 
 import contextlib
 from functools import cache
@@ -60,7 +60,7 @@ def simulator(cls, verilog, chip):
 
 
 class Run:
-    """What came out, message by message, and in which cycles messages went in and out."""
+    """The messages sent, and the cycles in which messages are taken and sent."""
 
     def __init__(self, sim, sent, on, noise_floor=0, pattern=ALWAYS, limit=None):
         sim.on @= on
@@ -72,7 +72,7 @@ class Run:
         sim.reset @= 0
         self.messages, self.in_at, self.out_at = [], [], []
         sent, cycle = list(sent), 0
-        limit = limit or (len(sent) + 4) * (20 + 2 * len(pattern))  # far beyond what it takes
+        limit = limit or (len(sent) + 4) * (20 + 2 * len(pattern))  # far more than it takes
         while not self.messages or self.messages[-1][0] != END:
             offer, ready = pattern[cycle % len(pattern)]
             sim.recv.val @= bool(sent) and offer
@@ -108,7 +108,7 @@ class TestPhasePathFL:
         assert got.messages == expected(frame, self.chip, noise_floor)
 
     def test_every_sample_of_full_steps(self):
-        """All lanes of a step hold their taps, whatever they are."""
+        """The taps of all lanes of a step are stored, whatever their values."""
         rng = np.random.default_rng(2)
         frame = [(1, rng.integers(0, 256, (20, 4, LANES)).tolist())]
         assert self.run(messages(frame), True).messages == expected(frame, self.chip, 0)
@@ -132,11 +132,11 @@ class TestPhasePathFL:
         assert [data for _, data in got.messages[2:-1]] == [0, 0, 0, 31]
 
     def test_reset_at_any_moment(self):
-        """Nothing is left of the message inside, the taps of a step and the division under way."""
+        """A reset drops the message inside, the taps of a step and the division in progress."""
         frame = [(3, [[[200, 9, 77], [30, 8, 76], [10, 7, 75], [99, 6, 74]]] * 2)]
         for cycles in range(1, 50, 4):
             for on in (True, False):
-                with contextlib.suppress(AssertionError):  # it does not end: nothing leaves behind some cycles
+                with contextlib.suppress(AssertionError):  # it does not end: nothing is sent after some cycles
                     self.run(messages(frame), on, 0, [(True, True)] * 30 + [(True, False)] * 30, cycles)
                 assert self.run(messages(frame), True).messages == expected(frame, self.chip, 0), cycles
 
@@ -169,7 +169,7 @@ class TestPhasePathCL(TestPhasePathFL):
 class TestPhasePathRTL(TestPhasePathCL):
     cls = PhasePath
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         golden = shown_after_reset(simulator(PhasePathCL, False, self.chip), before=0)
         assert shown_after_reset(simulator(self.cls, self.verilog, self.chip)) == golden
 
@@ -200,7 +200,7 @@ def test_other_lanes_and_dividers(cls, chip):
 
 @pytest.mark.parametrize("divider, cycles", [("radix2", 102), ("radix4", 74), ("pipelined", 32), ("cordic", 116)])
 def test_cycles_of_a_full_step(divider, cycles):
-    """From tap 0 of one step of eight samples to tap 0 of the next, with nothing in the way."""
+    """From tap 0 of one step of eight samples to tap 0 of the next, without stalls."""
     chip = ChipParameters(LANES, divider)
     got = Run(simulator(PhasePathCL, False, chip), messages([(1, [[[9] * 8] * 4] * 3)]), True)
     assert np.diff(np.array(got.in_at[2:-1]).reshape(3, 32)[:, 0]).tolist() == [cycles, cycles]

@@ -19,14 +19,14 @@ SETTINGS = settings(
     max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.differing_executors]
 )
 SAMPLES = st.integers(-256, 255)
-PATTERN = st.lists(st.booleans(), max_size=12)  # cycles in which a side of the bench is willing
+PATTERN = st.lists(st.booleans(), max_size=12)  # cycles in which a side of the bench is ready
 EDGES = (-256, -255, -129, -128, -127, -1, 0, 1, 2, 127, 128, 254, 255)
 RUSH = ()
 
 
 @dataclass(frozen=True)
 class Config:
-    """What is under test."""
+    """The component under test."""
 
     variant: str
     n_frac: int = 8
@@ -134,7 +134,7 @@ class TestFL:
             got, _ = bench.run(mixed)
             assert len({int(message.to_bits()) for message, _ in got[1::2]}) == 1
 
-    def test_reset_forgets_what_is_under_way(self, benches):
+    def test_reset_drops_the_division_in_progress(self, benches):
         for bench in benches:
             latency, _ = timing(*astuple(bench.config))
             for ticks in (1, 2, latency - 1, latency, latency + 2):
@@ -193,7 +193,7 @@ class TestCL(TestFL):
 class TestRTL(TestCL):
     component = staticmethod(quad_divider)
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         for config in self.configs:
             golden = shown_after_reset(simulator(QuadDividerFL, False, config), before=0)
             assert shown_after_reset(simulator(type(self).component, self.verilog, config)) == golden, config

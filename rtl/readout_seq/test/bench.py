@@ -1,4 +1,4 @@
-"""What surrounds ReadoutSeq: amplifiers and converter bank as their handshakes alone, and a record of a frame."""
+"""The test bench of ReadoutSeq: the handshakes of amplifiers and converter bank, and a record of a frame."""
 
 from dataclasses import dataclass, field
 from functools import cache
@@ -34,14 +34,14 @@ class Size:
         return self.rows, self.cols, self.lanes, self.order, self.tile_rows, self.tile_cols
 
     def whole(self, **ports):
-        """Values of the configuration ports for the whole array, all types, but for ``ports``."""
+        """Values of the configuration ports for the whole array, all types, except for ``ports``."""
         rows, cols = self.tiles
         return (
             dict(mode=0, mask=2**24 - 1, row0=0, row1=rows - 1, col0=0, col1=cols - 1, decimation=0, overlap=0) | ports
         )
 
     def scan(self, ports):
-        """The golden Scan, or None where these values of the ports are an error."""
+        """The golden Scan, or None if these values of the ports are an error."""
         types = TileParameters().types[: self.tile_rows * self.tile_cols]
         try:
             frame = FrameParameters(
@@ -67,7 +67,7 @@ def simulator(cls, size, verilog):
 
 
 def messages(scan):
-    """The golden messages of a frame, (kind, row, group, k, sub, en); 0 where a kind says nothing."""
+    """The golden messages of a frame, (kind, row, group, k, sub, en); 0 in fields that a kind does not use."""
     out = [(FRAME, 0, 0, 0, 0, 0)]
     for row in scan.row_list:
         out.append((ROW, row, 0, 0, 0, 0))
@@ -75,7 +75,7 @@ def messages(scan):
     return out + [(END, 0, 0, 0, 0, 0)]
 
 
-def said(msg):
+def fields_of(msg):
     """A StepMsg as ``messages`` writes it."""
     kind = int(msg.kind)
     if kind == SAMPLE:
@@ -84,10 +84,10 @@ def said(msg):
 
 
 def amplifiers(integrate, read, err_at=None):
-    """AmpCtrl's handshake, a cycle a yield: gives (amp_done, amp_err), is sent (amp_start, hold_free).
+    """AmpCtrl's handshake, a cycle a yield: yields (amp_done, amp_err), receives (amp_start, hold_free).
 
     integrate, read: functions that give a row's cycles. From start to done there are integrate + read + 1.
-    err_at: (row counted from 0, cycles behind its start, amp_done too) at which amp_err rises, to stay until the
+    err_at: (row counted from 0, cycles after its start, amp_done too) at which amp_err rises, to stay until the
     next start.
     """
     err, number = 0, -1
@@ -105,7 +105,7 @@ def amplifiers(integrate, read, err_at=None):
             continue
         for _ in range(integrate()):
             start, free = yield 0, 0
-            assert not start, "amp_start while a row is under way"
+            assert not start, "amp_start while a row is in progress"
         while not free:
             start, free = yield 0, 0
         for _ in range(read()):
@@ -130,7 +130,7 @@ def amp_ctrl(timing, four_tap):
     sim.reset @= 0
     while True:
         start, free = yield int(sim.done), int(sim.cfg_err)
-        assert not (start and sim.busy), "amp_start while a row is under way"
+        assert not (start and sim.busy), "amp_start while a row is in progress"
         assert free or not sim.read, "a sample-and-hold in use is overwritten"
         sim.start @= start
         sim.hold_free @= free
@@ -138,7 +138,7 @@ def amp_ctrl(timing, four_tap):
 
 
 def bank(ready, conversion):
-    """AdcBank's handshake: gives (rdy, idle), is sent whether a step was taken. Functions: rdy, cycles of a step."""
+    """AdcBank's handshake: yields (rdy, idle), receives whether a step was taken. Functions: rdy, cycles of a step."""
     busy = 0
     while True:
         taken = yield ready(), int(busy == 0)
@@ -147,7 +147,7 @@ def bank(ready, conversion):
 
 @dataclass
 class Record:
-    """What was seen, by cycle; `start` is given in cycle 0."""
+    """The values at the ports by cycle; `start` is high in cycle 0."""
 
     taken: list = field(default_factory=list)  # (cycle, message)
     starts: list = field(default_factory=list)  # (cycle, amp_row)
@@ -162,7 +162,7 @@ class Record:
 
 
 class Bench:
-    """One simulator of any level, and its surroundings, which live on from frame to frame."""
+    """One simulator of any level, and its surroundings, which keep their state from frame to frame."""
 
     def __init__(self, sim, amplifier, converters):
         self.sim, self.amplifier, self.converters = sim, amplifier, converters
@@ -191,10 +191,10 @@ class Bench:
             name: int(getattr(sim, name))
             for name in ("busy", "done", "cfg_err", "amp_start", "amp_row", "four_tap", "hold_free", "cycles")
         }
-        pins["offer"] = said(sim.step.msg) if sim.step.val else None
+        pins["offer"] = fields_of(sim.step.msg) if sim.step.val else None
         taken = pins["offer"] is not None and ready
         number = len(record.pins)
-        assert record.standing in (None, pins["offer"]), "an offer was changed or taken back"
+        assert record.standing in (None, pins["offer"]), "an offer was changed or withdrawn"
         record.standing = None if taken else pins["offer"]
         record.pins.append(pins)
         record.idle.append(idle)

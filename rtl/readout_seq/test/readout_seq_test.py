@@ -1,4 +1,4 @@
-"""ReadoutSeq at every level: the golden scan's messages and rows, whatever the timing around it."""
+"""ReadoutSeq at every level: the golden scan's messages and rows, with any timing at the other ports."""
 
 import random
 from itertools import count
@@ -15,7 +15,7 @@ from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
 
 from .bench import SMALL_TILE, Bench, Record, Size, amp_ctrl, amplifiers, bank, messages, simulator
 
-# A test that several levels inherit runs on each of them: that is meant.
+# A test that several levels inherit runs on each of them, as intended.
 SETTINGS = settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 SIZES = (
     Size(7, 31, 2),
@@ -33,7 +33,7 @@ masks = st.one_of(st.just(2**24 - 1), st.integers(0, 23).map(lambda t: 1 << t), 
 
 @st.composite
 def configurations(draw, size):
-    """Values of the configuration ports; most of them can be read."""
+    """Values of the configuration ports; most of them are valid."""
     ports = {
         "mode": draw(st.integers(0, 3)),
         "mask": draw(masks),
@@ -69,7 +69,7 @@ class TestReadoutSeqFL:
         return Bench(simulator(self.cls, size, self.verilog), *surroundings)
 
     def check(self, record, scan, overlap, before):
-        """One frame's record; ``before``: the pins that must not have moved where there is no frame."""
+        """One frame's record; ``before``: the pins, which must not change if there is no frame."""
         if scan is None:
             assert record.pins[1] == before | {"cfg_err": 1} and not record.taken and not record.starts
             return
@@ -180,7 +180,7 @@ class TestReadoutSeqFL:
         seeds,
     )
     def test_amplifiers_refuse(self, mask, row, cycles, with_done, overlap, seed):
-        """amp_err: the offer that stands is taken, then nothing more; the next frame is whole again."""
+        """amp_err: the current offer is taken, then nothing more; the next frame is complete."""
         size = self.sizes[0]
         ports = size.whole(overlap=overlap, mask=mask)
         golden = messages(size.scan(ports))
@@ -193,7 +193,7 @@ class TestReadoutSeqFL:
         if (row, cycles) == (0, 0):
             assert not record.messages
         assert bench.cycle(Record())["cfg_err"]
-        record = bench.frame(ports)  # amp_err stands until its first amp_start
+        record = bench.frame(ports)  # amp_err stays high until its first amp_start
         assert record.messages == golden and record.pins[-1]["done"]
 
     @pytest.mark.parametrize("row", [0, 1])
@@ -315,7 +315,7 @@ class TestReadoutSeqCL(TestReadoutSeqFL):
 class TestReadoutSeqRTL(TestReadoutSeqCL):
     cls = ReadoutSeq
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         for size in self.sizes:
             golden = shown_after_reset(simulator(ReadoutSeqFL, size, False), before=0)
             assert shown_after_reset(simulator(self.cls, size, self.verilog)) == golden, size

@@ -17,7 +17,7 @@ from .spi_host import SpiHost
 
 CHIP = register_map()
 FIRST = min(CHIP.writable())
-LAST_ROW, LAST_COL = 2, 2  # a small array's, so that these resets are not the map's
+LAST_ROW, LAST_COL = 2, 2  # of a small array: other resets than the map's
 SETTINGS = settings(max_examples=8, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 
 
@@ -79,7 +79,7 @@ class TestFL:
         assert bench.read(0, 4) == bytes((CHIP["id"].reset, CHIP["version"].reset, 0, 0))
 
     def test_every_address_after_reset(self):
-        """What exists has its reset value, the rest reads 0, each asked for alone and all in one transfer."""
+        """Existing bits have their reset values, others read 0; read byte by byte, and all in one transfer."""
         bench, image = self.bench(), CHIP.image(CHIP.configuration, {"row1": LAST_ROW, "col1": LAST_COL})
         expected = [image.get(address, 0) for address in range(128)]
         expected[CHIP["id"].byte], expected[CHIP["version"].byte] = CHIP["id"].reset, CHIP["version"].reset
@@ -87,7 +87,7 @@ class TestFL:
         assert [bench.read(address)[0] for address in range(128)] == expected
 
     def test_a_byte_alone(self):
-        """Each byte written alone, over all ones and over zeros: nothing else moves, ever, in any cycle."""
+        """Each byte written alone, over all ones and over zeros: no other bit changes in any cycle."""
         bench, writable = self.bench(), CHIP.writable()
         cfg = [int(bench.sim.cfg.to_bits())]
 
@@ -232,7 +232,7 @@ class TestFL:
         bench.spi.transfer(data)
         bench.spi.tick = bench.tick
 
-    def test_counters_are_taken_at_their_first_byte(self):
+    def test_counters_are_captured_at_their_first_byte(self):
         bench = self.bench()
         counters = {f.name: 0x0123456789ABCDEF * (i + 1) & (1 << 64) - 1 for i, f in enumerate(CHIP.counters)}
         bench.status(**counters)
@@ -254,7 +254,7 @@ class TestFL:
             assert bench.read(a, 2) == (b"\x55\x22" if cut >= 16 else b"\x11\x22"), cut
 
     def test_reset_in_a_transfer(self):
-        """What is left of the transfer is no transfer, until csn has been high."""
+        """The rest of the transfer is ignored, until csn has been high."""
         bench = self.bench()
         for bit in range(1, 24):
             left = [bit]
@@ -287,7 +287,7 @@ class TestFL:
         assert bench.read(CHIP["busy"].byte)[0] == 1 << CHIP["refused"].shift
         bench.sim.loop.rdy @= 1
         bench.spi.wait(4)
-        assert bench.loop[5:] == [77], "the byte that found no room is refused, not the one before it"
+        assert bench.loop[5:] == [77], "the byte without room is refused, not the one before it"
 
     def test_half_bits_of_any_length(self):
         for half in (4, 5, 8, 13):
@@ -295,8 +295,8 @@ class TestFL:
             bench.write([(FIRST + 2, half)])
             assert bench.read(FIRST + 2)[0] == half
 
-    def test_a_clock_that_stands(self):
-        """An odd number of cycles between two bytes, too: what is held for long must not move."""
+    def test_a_stopped_clock(self):
+        """An odd number of cycles between two bytes, too: held values must not change."""
         image = CHIP.image(CHIP.configuration, {"row1": LAST_ROW, "col1": LAST_COL})
         expected = [image.get(address, 0) for address in range(FIRST, max(CHIP.writable()) + 1)]
         for pauses in ((0,) * 7 + (1,), (1, 0, 0), (0, 0, 0, 0, 17)):
@@ -308,7 +308,7 @@ class TestFL:
                 assert bench.read(address)[0] == CHIP.writable()[address]
 
     def test_any_transfers(self):
-        """Any bytes at any address, whole or cut, with and without busy: as the golden bank says."""
+        """Any bytes at any address, complete or cut, with and without busy, equal the golden bank."""
         a_transfer = st.tuples(st.binary(min_size=1, max_size=6), st.integers(0, 7), st.booleans())
 
         @SETTINGS
@@ -331,7 +331,7 @@ class TestFL:
 
     @staticmethod
     def expected(bank, data, busy):
-        """What the golden bank answers to whole bytes ``data``."""
+        """The golden bank's answer to the complete bytes ``data``."""
         out = bytearray(1)
         address = data[0] & 0x7F if data else 0
         for byte in data[1:]:
@@ -347,7 +347,7 @@ class TestFL:
 class TestRTL(TestFL):
     component = RegFile
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         golden = shown_after_reset(build(RegFileFL(LAST_ROW, LAST_COL)), before=0)
         assert shown_after_reset(self.bench().sim) == golden
 

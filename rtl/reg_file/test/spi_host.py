@@ -1,4 +1,4 @@
-"""An SPI host in Python: plays transfers on the pins of a simulated component, mode 0."""
+"""An SPI host in Python: transfers on the pins of a simulated component, mode 0."""
 
 from itertools import cycle
 
@@ -7,7 +7,7 @@ class SpiHost:
     """Drives sclk, csn and mosi of ``dut`` and samples miso.
 
     half: system-clock cycles of half an SPI clock, at least 4. tick: called for every cycle. pauses: cycles that the
-    clock stands before each bit of a transfer, cyclic.
+    clock is stopped before each bit of a transfer, cyclic.
     """
 
     def __init__(self, dut, tick, half=4):

@@ -1,4 +1,4 @@
-"""Traces of a block's tests: they fit its Verilog and its gates, and tell a bug by test, cycle and port."""
+"""Traces of a block's tests: they match its Verilog and its gates, and report a bug by test, cycle and port."""
 
 import shutil
 import subprocess
@@ -6,11 +6,11 @@ import sys
 
 import pytest
 
+from base.paths import ROOT
 from rtl.harness.icarus import MISSING, installed
 from rtl.harness.testbench import build, hooked
 from rtl.replay import load, record, replay, replay_files
 from rtl.replay.__main__ import main
-from rtl.replay.record import ROOT
 
 LIBRARY = ROOT / "cells" / "gates.lib"
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
@@ -33,7 +33,7 @@ def recorded(folder):
 
 @pytest.fixture(scope="module")
 def gates(folder, recorded):
-    """(netlist, cell models) of EdgeAdc in the abstract library's cells."""
+    """The netlist of EdgeAdc in the abstract library's cells, and the cells' models."""
     netlist, cells = folder / "gates.v", folder / "cells.v"
     for script in (
         f"read_verilog -sv {recorded[1]}; synth -flatten -top EdgeAdc; dfflibmap -liberty {LIBRARY}; "
@@ -71,7 +71,7 @@ def test_a_bug_is_named_by_test_cycle_and_port(recorded, folder):
     assert want == load(path).values(found[0].cycle)[1]["dac"] and got == want ^ 1
 
 
-def test_x_behind_a_reset_does_not_match(recorded, folder):
+def test_x_after_a_reset_does_not_match(recorded, folder):
     path, verilog = recorded
     bug = planted(verilog, folder, "if ( reset ) begin", "if ( 1'b0 ) begin")
     found = replay_files([path], [bug])
@@ -126,7 +126,7 @@ def test_the_tests_themselves_run_on_gates(gates, folder, simulator):
     assert bad.returncode == 1 and "1 failed" in bad.stdout, bad.stdout
 
 
-def test_several_simulators_follow_one_another():
+def test_traces_of_several_simulators_are_joined():
     from rtl.edge_adc import EdgeAdc
     from rtl.replay.recorder import Recorder
 

@@ -146,7 +146,7 @@ class TestRunLengthFL:
             samples[:, -1] = 1
         elif kind == "least":
             samples[:] = np.arange(-3, 3).repeat(6)[:, None]
-        elif kind == "inside":  # codes that no converter gives under this threshold
+        elif kind == "inside":  # codes that no converter produces with this threshold
             samples[:] = np.arange(-18, 18)[:, None] // 2
         elif kind == "highest":
             samples[:] = np.array([-128, -127, 0, 127])[np.arange(COLS) % 4][:, None]
@@ -168,7 +168,7 @@ class TestRunLengthFL:
             samples[i, layout.places_of(i), 0] = row
         assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
 
-    def test_frames_follow_each_other_and_frame_sync_parts_them(self):
+    def test_frame_sync_is_low_between_frames(self):
         header = header_of(threshold=3, frame_number=77)
         samples = samples_of(header, 2)
         messages = messages_of(header, samples)
@@ -206,7 +206,7 @@ class TestRunLengthFL:
         assert got[26:-14] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
 
     def test_the_longest_tokens(self):
-        """The runs' order rises to its end, then the largest value comes: a token of 22 to 24 bits at every place.
+        """The runs' order rises to its end, then the largest value follows: a token of 22 to 24 bits at every place.
 
         What a row begins with brings the runs' order to 0, and the token to its place.
         """
@@ -252,7 +252,7 @@ class TestRunLengthFL:
         messages = messages_of(header, samples)
         bench = self.bench(header)
         bench.run(messages[:100])
-        for cycles in (27, 36):  # the link sticks: bytes wait everywhere
+        for cycles in (27, 36):  # the link stalls: bytes wait everywhere
             with contextlib.suppress(AssertionError):
                 self.bench(header).run(messages, taken=[True] * cycles + [False] * 50, limit=cycles + 30)
             assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
@@ -265,7 +265,7 @@ class TestRunLengthCL(TestRunLengthFL):
 
     @SETTINGS
     @given(frames(), BURSTS, BURSTS)
-    def test_every_port_in_every_cycle_is_the_cycle_level_s(self, frame, offered, taken):
+    def test_equals_the_cycle_level_in_every_cycle(self, frame, offered, taken):
         header, samples, *counts = frame
         benches = [self.bench(header, *counts), Bench(RunLengthCL, False, header, *counts)]
         for bench in benches:
@@ -274,7 +274,7 @@ class TestRunLengthCL(TestRunLengthFL):
         assert logs[0] == logs[1]
 
     def test_a_sample_a_cycle_and_a_byte_a_cycle(self):
-        """Beyond header, samples and trailer, a row costs its message, its last byte or two and its mark."""
+        """Besides header, samples and trailer, a row takes its message, its last byte or two and its mark."""
         for mode, share in (("edge", 0), ("edge", 0.2), ("edge", 1), ("raw", 1)):
             header = header_of(mode)
             messages = messages_of(header, samples_of(header, 1, share, 10))
@@ -287,12 +287,12 @@ class TestRunLengthCL(TestRunLengthFL):
 class TestRunLength(TestRunLengthCL):
     cls = RunLength
 
-    def test_what_a_reset_leaves(self):
+    def test_outputs_after_a_reset(self):
         golden = shown_after_reset(simulator(RunLengthFL, False), before=0)
         assert shown_after_reset(simulator(self.cls, self.verilog)) == golden
 
     def test_all_bits_of_the_header(self):
-        """The ports of a header, whatever they say; the other levels look at what is a frame only."""
+        """Any values at the ports of the header; the other levels accept valid frames only."""
         ports = {"row0": 13, "row1": 14, "col0": 15, "col1": 16, "mask": 17, "frame_number": 20}
         for value in (-1, 0, 0x555555, 0xAAAAAA, 0):
             bench, at = self.bench(header_of()), 0
