@@ -1,0 +1,1 @@
+"""The pixel array and the analog blocks: their behavior in SystemVerilog, and their footprints on the die."""

@@ -1,19 +1,20 @@
-"""The analog blocks as hard macros: their sizes, and the pins by which the chip and they themselves meet.
+"""The analog blocks as hard macros: their sizes, and the pins at which they meet the chip and each other.
 
-A pin has the name of the net that it is on, the same at every block. Signals of the chip come from the south; blocks
-that touch hand on rows, columns and lanes edge to edge.
+A pin has the name of the net that it is on, the same at every block. Signals of the chip come from the south; rows,
+columns and lanes continue edge to edge between blocks that touch.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, check_real
 
 SUPPLIES = "vdda", "vssa"
-# Phases of a row that the row driver gates with its row (rtl/amp_ctrl/README.md): each is a line of the row
+# Phases that the row driver gates with its row (rtl/amp_ctrl/README.md): each is a line of the row
 ROW_PHASES = {"pixel_reset": 1, "shutter": 1, "integrate": 1, "read": 1, "tap": 2}
 DIODES = "a", "b"
 ROW_BITS, GROUP_BITS, K_BITS, BALANCE_BITS, CODE_BITS = 10, 8, 3, 10, 8
-# What the blocks take from the chip, bits each: phases of the amplifiers; position and trim as pixels/afe.sv has them
+# Inputs of the blocks from the chip, bits each: phases of the amplifiers; position and trim as in pixels/afe.sv
 DRIVER_IN = {"amp_row": ROW_BITS} | ROW_PHASES
 COLUMNS_IN = {
     "ref_ctl": 1,
@@ -33,10 +34,10 @@ CONTROL_PITCH_UM = 4.0  # of the column amplifiers' control pins
 
 @dataclass(frozen=True)
 class AnalogSizes:
-    """Room kept for circuits that this project does not have: assumptions, not measured. um, 20..1000 each.
+    """Room for circuits that this project does not have: assumptions, not measured. um, 20..1000 each.
 
     row_driver: width. columns: height of the column amplifiers. lane, lanes: width of a converter, height of all.
-    chip: room between the column amplifiers' control pins, in their west, and the converters, where the chip lies.
+    chip: room between the column amplifiers' control pins, in their west, and the converters, where the chip is.
     supply: width of a supply pin.
     """
 
@@ -47,7 +48,7 @@ class AnalogSizes:
     chip_um: float = field(default=840.0, metadata={"unit": "um"})
     supply_um: float = field(default=10.0, metadata={"unit": "um"})
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         for name in ("row_driver_um", "columns_um", "lane_um", "lanes_um", "chip_um"):
             check_real(name, getattr(self, name), 20, 1000)
         check_real("supply_um", self.supply_um, 2, 30)
@@ -55,8 +56,11 @@ class AnalogSizes:
 
 @dataclass(frozen=True)
 class Pin:
-    """direction: input, output or inout, as the block sees it. side: north, south, west or east. at_um: of its middle
-    along that side. supply: whether it is of a supply."""
+    """A pin on a block's edge.
+
+    direction: input, output or inout, as the block sees it. side: north, south, west or east. at_um: of its middle
+    along that side. supply: whether it is of a supply.
+    """
 
     name: str
     direction: str
@@ -67,17 +71,18 @@ class Pin:
 
 @dataclass(frozen=True)
 class Block:
-    """pins: tuple of Pin, of a supply several of one name."""
+    """A block of the die; pins: of a supply several of one name."""
 
     name: str
     width_um: float
     height_um: float
-    pins: tuple
+    pins: tuple[Pin, ...]
 
 
-def blocks(array=None, chip=None, sizes=None):
-    """tuple of the four Blocks. array: ArrayParameters; chip: ChipParameters; sizes: AnalogSizes. Raises
-    ParameterError where the pins find no room."""
+def blocks(
+    array: ArrayParameters | None = None, chip: ChipParameters | None = None, sizes: AnalogSizes | None = None
+) -> tuple[Block, ...]:
+    """The four analog blocks. Raises ParameterError where there is no room for the pins."""
     array, chip, sizes = array or ArrayParameters(), chip or ChipParameters(), sizes or AnalogSizes()
     return (
         _pixel_array(array, sizes),
@@ -87,13 +92,13 @@ def blocks(array=None, chip=None, sizes=None):
     )
 
 
-def bits(ports):
-    """Names of the pins of ports (dict name -> bits), a bus bit by bit."""
+def bits(ports: Mapping[str, int]) -> list[str]:
+    """Names of the pins of ports (name -> bits), a bus bit by bit."""
     return [name if width == 1 else f"{name}[{bit}]" for name, width in ports.items() for bit in range(width)]
 
 
-def row_lines(array):
-    """(name, um from the south) of every row's lines; row 0 is the north one, as images have it."""
+def row_lines(array: ArrayParameters) -> list[tuple[str, float]]:
+    """Pairs (name, um from the south) of every row's lines; row 0 is the north one, as images have it."""
     lines = [f"{name}{bit if width > 1 else ''}_row" for name, width in ROW_PHASES.items() for bit in range(width)]
     pitch = array.pitch * 1e6
     return [
@@ -103,8 +108,8 @@ def row_lines(array):
     ]
 
 
-def column_lines(array):
-    """(name, um from the west) of every column's two lines, one a diode."""
+def column_lines(array: ArrayParameters) -> list[tuple[str, float]]:
+    """Pairs (name, um from the west) of every column's two lines, one a diode."""
     pitch = array.pitch * 1e6
     return [
         (f"column_{diode}[{column}]", (column + (place + 0.5) / len(DIODES)) * pitch)
@@ -113,8 +118,8 @@ def column_lines(array):
     ]
 
 
-def lane_lines(chip, sizes):
-    """(name, um from the west of the converters) of the lines from the column amplifiers to every lane."""
+def lane_lines(chip: ChipParameters, sizes: AnalogSizes) -> list[tuple[str, float]]:
+    """Pairs (name, um from the west of the converters) of the lines from the column amplifiers to every lane."""
     return [
         (f"lane_{diode}[{lane}]", (lane + (place + 1) / (len(DIODES) + 1)) * sizes.lane_um)
         for lane in range(chip.lanes)
@@ -122,7 +127,7 @@ def lane_lines(chip, sizes):
     ]
 
 
-def _pixel_array(array, sizes):
+def _pixel_array(array: ArrayParameters, sizes: AnalogSizes) -> Block:
     width, height = array.cols * array.pitch * 1e6, array.rows * array.pitch * 1e6
     return Block(
         "pixel_array",
@@ -131,12 +136,12 @@ def _pixel_array(array, sizes):
         (
             *(Pin(name, "input", "west", at) for name, at in row_lines(array)),
             *(Pin(name, "output", "south", at) for name, at in column_lines(array)),
-            *_supplies("east", height, sizes),
+            *_supplies("east", height),
         ),
     )
 
 
-def _row_driver(array, sizes):
+def _row_driver(array: ArrayParameters, sizes: AnalogSizes) -> Block:
     height = array.rows * array.pitch * 1e6
     return Block(
         "row_driver",
@@ -145,13 +150,13 @@ def _row_driver(array, sizes):
         (
             *_spread("row_driver", bits(DRIVER_IN), "input", 0, sizes.row_driver_um),
             *(Pin(name, "output", "east", at) for name, at in row_lines(array)),
-            *_supplies("west", height, sizes),
+            *_supplies("west", height),
         ),
     )
 
 
-def _column_amplifiers(array, chip, sizes):
-    """From the west, the control pins, room for the chip, the lines to the converters."""
+def _column_amplifiers(array: ArrayParameters, chip: ChipParameters, sizes: AnalogSizes) -> Block:
+    """From the west: the control pins, room for the chip, the lines to the converters."""
     width, pins = array.cols * array.pitch * 1e6, bits(COLUMNS_IN)
     control = CONTROL_PITCH_UM * (len(pins) - 1) + 2 * MARGIN_UM
     begin = control + sizes.chip_um
@@ -168,14 +173,14 @@ def _column_amplifiers(array, chip, sizes):
             *(Pin(name, "input", "north", at) for name, at in column_lines(array)),
             *_spread("column_amplifiers", pins, "input", 0, control),
             *(Pin(name, "output", "south", begin + at) for name, at in lane_lines(chip, sizes)),
-            *_supplies("west", sizes.columns_um, sizes),
-            *_supplies("east", sizes.columns_um, sizes),
+            *_supplies("west", sizes.columns_um),
+            *_supplies("east", sizes.columns_um),
         ),
     )
 
 
-def _adc_lanes(chip, sizes):
-    """Every lane has its codes and its decision at its own place, the rest is spread over all."""
+def _adc_lanes(chip: ChipParameters, sizes: AnalogSizes) -> Block:
+    """Codes and decision of a lane are at its place; the other pins are spread over all lanes."""
     width = chip.lanes * sizes.lane_um
     own = [
         name
@@ -200,12 +205,12 @@ def _adc_lanes(chip, sizes):
                 Pin(pin.name, "output" if pin.name.startswith("comparator") else "input", "south", pin.at_um)
                 for pin in pins
             ),
-            *_supplies("east", sizes.lanes_um, sizes),
+            *_supplies("east", sizes.lanes_um),
         ),
     )
 
 
-def _spread(block, names, direction, begin, end):
+def _spread(block: str, names: Sequence[str], direction: str, begin: float, end: float) -> list[Pin]:
     """Pins on the south side, evenly from ``begin`` to ``end`` (um). Raises ParameterError."""
     step = (end - begin - 2 * MARGIN_UM) / max(len(names) - 1, 1)
     if step < 1.5:
@@ -215,7 +220,7 @@ def _spread(block, names, direction, begin, end):
     return [Pin(name, direction, "south", begin + MARGIN_UM + step * k) for k, name in enumerate(names)]
 
 
-def _supplies(side, length, sizes):
+def _supplies(side: str, length: float) -> list[Pin]:
     """A pair of supply pins for every 500 um of the side, one at least."""
     count = max(1, round(length / 500))
     return [

@@ -2,14 +2,17 @@
 
 import asyncio
 import contextlib
+from collections.abc import Iterator
+from typing import Any
 
 
 @contextlib.contextmanager
-def patience():
-    """c4m-flexcell gives up on a cell after 1 s by the wall clock, which a busy machine exceeds; here after 60 s."""
-    wait = asyncio.wait
-    asyncio.wait = lambda tasks, timeout: wait(tasks, timeout=60 * timeout)
+def patience() -> Iterator[None]:
+    """Let c4m-flexcell give up on a cell after 60 s instead of 1 s of wall clock, which a busy machine exceeds."""
+    library: Any = asyncio
+    wait = library.wait
+    library.wait = lambda tasks, timeout: wait(tasks, timeout=60 * timeout)
     try:
         yield
     finally:
-        asyncio.wait = wait
+        library.wait = wait

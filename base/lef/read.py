@@ -16,7 +16,10 @@ SIZE = re.compile(r"(?m)^\s*SIZE\s+(\S+)\s+BY\s+(\S+)\s*;")
 
 @dataclass(frozen=True)
 class Pin:
-    """A pin. direction, use: as LEF words them, '' where it has none. antenna: keyword -> um2. boxes: in the file's order."""
+    """A pin of a macro.
+
+    direction, use: as LEF words them, '' where it has none. antenna: keyword -> um2. boxes: in the file's order.
+    """
 
     name: str
     direction: str
@@ -31,12 +34,12 @@ class Pin:
 
     @property
     def x_um(self) -> float:
-        """Center of the first box."""
+        """The x of the center of the first box."""
         return round((self.boxes[0][1][0] + self.boxes[0][1][2]) / 2, 3)
 
     @property
     def y_um(self) -> float:
-        """Center of the first box."""
+        """The y of the center of the first box."""
         return round((self.boxes[0][1][1] + self.boxes[0][1][3]) / 2, 3)
 
 

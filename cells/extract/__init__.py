@@ -1,4 +1,4 @@
-"""Cells as they are laid out: GDS in, a SPICE subcircuit with measured transistors and stray capacitances out."""
+"""Cells as they are laid out: GDS in, a SPICE subcircuit with measured transistors and parasitics out."""
 
 from cells.extract.subcircuit import extract
 

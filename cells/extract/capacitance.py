@@ -1,74 +1,109 @@
-"""Stray capacitances between the nets of a cell: areas, sidewalls and fringe fields (2.5-D).
+"""Capacitances between the nets of a cell: areas, sidewalls and fringe fields (2.5-D).
 
-A wire's underside sees the nearest conductor below it, else well or substrate. An edge sees, on its own layer, the
+A conductor's underside sees the nearest conductor below it, else well or substrate. An edge sees, on its own layer, the
 nearest edge that faces it (coefficient * length / (distance + offset)); of its fringe field the part
-2/pi * (atan(k far) - atan(k near)), k = 0.02 /um * the overlap coefficient in aF/um2, lands between the lateral
-distances near and far (Magic's ExtCouple.c), on the nearest layer below or above; nothing lands beyond the edge that
+2/pi * (atan(k far) - atan(k near)), k = 0.02 /um * the overlap coefficient in aF/um2, ends between the lateral
+distances near and far (Magic's ExtCouple.c), on the nearest layer below or above; nothing ends beyond the edge that
 faces it. Gates are left out over active: the transistor model has their capacitances.
 """
 
 import math
 from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
-from platforms.layers import DIFFUSION
+import klayout.db as db
+
+from platforms.extraction import ExtractionPlatform
+from platforms.layers import DIFFUSION, Crossing, Layer
+
+from .devices import CellLayout
+
+EPSILON = 1e-6  # um
+Crossings = Mapping[tuple[str, str], Crossing]  # by LEF names of the upper and the lower layer
+Span = tuple[float, float]  # distances near and far from an edge, um
 
 
-def capacitances(found, tech):
-    """{(net, net): fF}, the names of each pair sorted. found: cells.extract.devices.Layout."""
-    total = defaultdict(float)
+class Rectangle(NamedTuple):
+    """A rectangle of a net, um."""
 
-    def add(a, b, attofarad):
+    left: float
+    bottom: float
+    right: float
+    top: float
+    net: str
+
+
+class Strip(NamedTuple):
+    """Part of a rectangle outside an edge: distances from the edge and positions along it, um."""
+
+    near: float
+    far: float
+    start: float
+    end: float
+    net: str
+
+
+class _Total:
+    """Sums of capacitances by pair of nets, fF."""
+
+    def __init__(self) -> None:
+        self.pairs: dict[tuple[str, str], float] = defaultdict(float)
+
+    def add(self, a: str, b: str, attofarad: float) -> None:
+        """Add the capacitance between ``a`` and ``b``; none of a net to itself."""
         if a != b:
-            total[min(a, b), max(a, b)] += attofarad / 1000
+            self.pairs[min(a, b), max(a, b)] += attofarad / 1000
 
+
+def capacitances(found: CellLayout, tech: ExtractionPlatform) -> dict[tuple[str, str], float]:
+    """Capacitance in fF of every pair of nets, the names of each pair sorted."""
+    total = _Total()
     crossings = {(c.upper, c.lower): c for c in tech.crossings}
-    _areas(found, tech, crossings, add)
-    strips = _Rectangles(found)
-    for wire in tech.conductors:
-        for net, region in found.shapes[wire.lef].items():
+    _areas(found, tech, crossings, total)
+    rectangles = _Rectangles(found)
+    for layer in tech.conductors:
+        for net, region in found.shapes[layer.lef].items():
             for edge in region.merged().edges().each():
-                _edge(edge, net, wire, strips, tech, crossings, add)
-    return dict(total)
+                _edge(edge, net, layer, rectangles, tech, crossings, total)
+    return dict(total.pairs)
 
 
-def _below(wire, tech):
-    """Conductors under ``wire``, the nearest first; diffusion under all."""
-    names = [w.lef for w in tech.conductors]
-    return [*reversed(names[: names.index(wire.lef)]), DIFFUSION]
+def _below(layer: Layer, tech: ExtractionPlatform) -> list[str]:
+    """Conductors under ``layer``, the nearest first; diffusion under all."""
+    names = [conductor.lef for conductor in tech.conductors]
+    return [*reversed(names[: names.index(layer.lef)]), DIFFUSION]
 
 
-def _areas(found, tech, crossings, add):
+def _areas(found: CellLayout, tech: ExtractionPlatform, crossings: Crossings, total: _Total) -> None:
     um2 = found.dbu**2
-    for wire in tech.conductors:
-        for net, region in found.shapes[wire.lef].items():
+    for layer in tech.conductors:
+        for net, region in found.shapes[layer.lef].items():
             rest = region.merged()
-            for lower in _below(wire, tech):
-                if wire.lef == "poly":
+            for lower in _below(layer, tech):
+                if layer.lef == "poly":
                     rest -= found.active
                     continue
                 for other, below in found.shapes[lower].items():
                     if rest.bbox().touches(below.bbox()):
                         area = (rest & below).area() * um2
-                        add(net, other, area * crossings[wire.lef, lower].overlap_af_um2)
+                        total.add(net, other, area * crossings[layer.lef, lower].overlap_af_um2)
                         rest -= below
             for bulk, well in found.wells.items():
-                add(net, bulk, (rest & well).area() * um2 * wire.area_af_um2)
+                total.add(net, bulk, (rest & well).area() * um2 * layer.area_af_um2)
 
 
 class _Rectangles:
-    """The conductors as rectangles in um, by layer: (left, bottom, right, top, net)."""
+    """The conductors, wells and active as rectangles, by layer."""
 
-    def __init__(self, found):
+    def __init__(self, found: CellLayout) -> None:
         self.layers = {name: _split(nets, found.dbu) for name, nets in found.shapes.items()}
         self.wells = _split(found.wells, found.dbu)
         self.active = _split({"": found.active}, found.dbu)
         self.dbu = found.dbu
 
-    def beside(self, rectangles, edge, halo):
-        """Rectangles in the strip of width ``halo`` outside ``edge``, as (near, far, start, end, net): distances from
-
-        the edge and positions along it, um.
-        """
+    def beside(self, rectangles: Sequence[Rectangle], edge: db.Edge, halo_um: float) -> Iterator[Strip]:
+        """Parts of ``rectangles`` in the strip of width ``halo_um`` outside ``edge``."""
         x1, y1, x2, y2 = (v * self.dbu for v in (edge.p1.x, edge.p1.y, edge.p2.x, edge.p2.y))
         vertical = x1 == x2
         # A hull runs clockwise: what is on the left of the edge is outside.
@@ -77,87 +112,120 @@ class _Rectangles:
         for left, bottom, right, top, net in rectangles:
             low, high, a, b = (left, right, bottom, top) if vertical else (bottom, top, left, right)
             near, far = ((low - at), (high - at)) if sign > 0 else ((at - high), (at - low))
-            a, b, near, far = max(a, start), min(b, end), max(near, 0.0), min(far, halo)
-            if b - a > 1e-6 and far - near > 1e-6:
-                yield near, far, a, b, net
+            a, b, near, far = max(a, start), min(b, end), max(near, 0.0), min(far, halo_um)
+            if b - a > EPSILON and far - near > EPSILON:
+                yield Strip(near, far, a, b, net)
 
 
-def _split(nets, dbu):
+def _split(nets: Mapping[str, db.Region], dbu: float) -> list[Rectangle]:
     found = []
     for net, region in nets.items():
         for trapezoid in region.decompose_trapezoids_to_region().each():
             box = trapezoid.bbox()
-            found.append((box.left * dbu, box.bottom * dbu, box.right * dbu, box.top * dbu, net))
+            found.append(Rectangle(box.left * dbu, box.bottom * dbu, box.right * dbu, box.top * dbu, net))
     return found
 
 
-def _edge(edge, net, wire, strips, tech, crossings, add):
-    """All that one edge of ``net`` on ``wire`` sees."""
-    names = [w.lef for w in tech.conductors]
-    own = names.index(wire.lef)
-    layers = {name: list(strips.beside(strips.layers[name], edge, tech.halo_um)) for name in [*names, DIFFUSION]}
-    wells = list(strips.beside(strips.wells, edge, tech.halo_um))
-    active = list(strips.beside(strips.active, edge, tech.halo_um)) if wire.lef == "poly" else []
+def _edge(
+    edge: db.Edge,
+    net: str,
+    layer: Layer,
+    rectangles: _Rectangles,
+    tech: ExtractionPlatform,
+    crossings: Crossings,
+    total: _Total,
+) -> None:
+    """All that one edge of ``net`` on ``layer`` sees."""
+    names = [conductor.lef for conductor in tech.conductors]
+    own = names.index(layer.lef)
+    strips = {
+        name: list(rectangles.beside(rectangles.layers[name], edge, tech.halo_um)) for name in [*names, DIFFUSION]
+    }
+    strips["well"] = list(rectangles.beside(rectangles.wells, edge, tech.halo_um))
+    strips["active"] = list(rectangles.beside(rectangles.active, edge, tech.halo_um)) if layer.lef == "poly" else []
     start, end = sorted((edge.p1.y, edge.p2.y) if edge.p1.x == edge.p2.x else (edge.p1.x, edge.p2.x))
-    cuts = {start * strips.dbu, end * strips.dbu}
-    for rectangles in (*layers.values(), wells, active):
-        cuts.update(v for r in rectangles for v in r[2:4])
-    cuts = sorted(cuts)
-    for a, b in zip(cuts, cuts[1:]):
+    ends = {start * rectangles.dbu, end * rectangles.dbu}
+    for parts in strips.values():
+        ends.update(v for strip in parts for v in (strip.start, strip.end))
+    bounds = sorted(ends)
+    for a, b in zip(bounds, bounds[1:]):
         length = b - a
-        if length < 1e-6:
+        if length < EPSILON:
             continue
         here = {
-            name: [(r[0], r[1], r[4]) for r in rectangles if r[2] <= a + 1e-6 and r[3] >= b - 1e-6]
-            for name, rectangles in (*layers.items(), ("well", wells), ("active", active))
+            name: [
+                (strip.near, strip.far, strip.net)
+                for strip in parts
+                if strip.start <= a + EPSILON and strip.end >= b - EPSILON
+            ]
+            for name, parts in strips.items()
         }
-        facing = min(here[wire.lef], default=(tech.halo_um, 0, net))
-        add(
-            net,
-            facing[2],
-            length * wire.sidewall_af_um / 2 / (facing[0] + wire.sidewall_offset_um) if facing[2] != net else 0.0,
-        )
-        free = [(0.0, facing[0])]
-        if not (here["active"] and min(here["active"])[0] < 1e-6):  # not along a channel
-            _down(free, here, net, wire, names[:own], length, crossings, add)
-        _up(free, here, net, wire, names[own + 1 :], length, crossings, add)
+        near, _, other = min(here[layer.lef], default=(tech.halo_um, 0, net))
+        if other != net:
+            total.add(net, other, length * layer.sidewall_af_um / 2 / (near + layer.sidewall_offset_um))
+        free = [(0.0, near)]
+        if not (here["active"] and min(here["active"])[0] < EPSILON):  # not along a channel
+            _down(free, here, net, layer, names[:own], length, crossings, total)
+        _up(free, here, net, layer, names[own + 1 :], length, crossings, total)
 
 
-def _down(free, here, net, wire, below, length, crossings, add):
+Intervals = list[tuple[float, float, str]]  # near, far, net
+
+
+def _down(
+    free: list[Span],
+    here: Mapping[str, Intervals],
+    net: str,
+    layer: Layer,
+    below: Sequence[str],
+    length: float,
+    crossings: Crossings,
+    total: _Total,
+) -> None:
     for lower in [*reversed(below), DIFFUSION]:
-        if wire.lef == "poly":
+        if layer.lef == "poly":
             free = _without(free, here["active"])
             continue
-        crossing = crossings[wire.lef, lower]
+        crossing = crossings[layer.lef, lower]
         for near, far, other in _pieces(free, here[lower]):
-            add(net, other, length * crossing.down_af_um * _share(crossing.overlap_af_um2, near, far))
+            total.add(net, other, length * crossing.down_af_um * _share(crossing.overlap_af_um2, near, far))
         free = _without(free, here[lower])
     for near, far, bulk in _pieces(free, here["well"]):
-        add(net, bulk, length * wire.fringe_af_um * _share(wire.area_af_um2, near, far))
+        total.add(net, bulk, length * layer.fringe_af_um * _share(layer.area_af_um2, near, far))
 
 
-def _up(free, here, net, wire, above, length, crossings, add):
+def _up(
+    free: list[Span],
+    here: Mapping[str, Intervals],
+    net: str,
+    layer: Layer,
+    above: Sequence[str],
+    length: float,
+    crossings: Crossings,
+    total: _Total,
+) -> None:
     for upper in above:
-        crossing = crossings[upper, wire.lef]
+        crossing = crossings[upper, layer.lef]
         for near, far, other in _pieces(free, here[upper]):
-            add(net, other, length * crossing.up_af_um * _share(crossing.overlap_af_um2, near, far))
+            total.add(net, other, length * crossing.up_af_um * _share(crossing.overlap_af_um2, near, far))
         free = _without(free, here[upper])
 
 
-def _share(overlap, near, far):
+def _share(overlap: float, near: float, far: float) -> float:
     k = 0.02 * overlap
     return 2 / math.pi * (math.atan(k * far) - math.atan(k * near))
 
 
-def _pieces(free, intervals):
-    """The parts of ``intervals`` (near, far, net) in ``free`` (near, far)."""
+def _pieces(free: Sequence[Span], intervals: Intervals) -> Iterator[tuple[float, float, str]]:
+    """The parts of ``intervals`` in ``free``."""
     for near, far, net in intervals:
         for a, b in free:
             if min(b, far) > max(a, near):
                 yield max(a, near), min(b, far), net
 
 
-def _without(free, intervals):
+def _without(free: list[Span], intervals: Iterable[tuple[float, float, str]]) -> list[Span]:
     for near, far, _ in intervals:
-        free = [part for a, b in free for part in ((a, min(b, near)), (max(a, far), b)) if part[1] - part[0] > 1e-6]
+        rest = [part for a, b in free for part in ((a, min(b, near)), (max(a, far), b))]
+        free = [(a, b) for a, b in rest if b - a > EPSILON]
     return free

@@ -1,21 +1,25 @@
 """Nets and transistors of a laid-out cell, found by KLayout."""
 
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import klayout.db as db
 
 from models.parameters import ParameterError
-from platforms.layers import DIFFUSION
+from platforms.extraction import ExtractionPlatform
+from platforms.layers import DIFFUSION, GdsLayer
 
 MARKS = ("hvtp", "lvtn", "library")
+REACH = 1000  # dbu around a cell in which there is substrate
 
 
 @dataclass(frozen=True)
 class Device:
-    """A transistor. kind: 'n' or 'p'. w, l: um; ad, as_: um2; pd, ps: um, a shared diffusion divided among its gates;
+    """A transistor.
 
-    sa, sb: um from the gate to the ends of its diffusion. marks: the threshold and library marks over the gate.
-    at: middle of its gate, dbu.
+    kind: 'n' or 'p'. width, length: um. ad, as_: um2; pd, ps: um, a shared diffusion divided among its gates. sa, sb:
+    um from the gate to the ends of its diffusion. marks: the threshold and library marks over the gate. at: middle of
+    its gate, dbu.
     """
 
     kind: str
@@ -23,41 +27,40 @@ class Device:
     gate: str
     source: str
     bulk: str
-    w: float
-    l: float
+    width: float
+    length: float
     ad: float
     as_: float
     pd: float
     ps: float
     sa: float
     sb: float
-    marks: frozenset
+    marks: frozenset[str]
     at: db.Point
 
 
 @dataclass
-class Layout:
-    """What was found. shapes: conductor (a wire's name or DIFFUSION) -> net -> region (in dbu); wells: net -> region;
+class CellLayout:
+    """Nets and transistors of a cell; regions in dbu.
 
-    ports: the names that labels give; dbu: um. active: all diffusion, gates included. islands: 'n' or 'p' -> net ->
-
-    sources and drains; vias: region of every one of ExtractionPlatform.vias; labels: net -> [(layer, point)], highest
-    first.
+    dbu: um. ports: names that labels give. active: all diffusion, gates included. shapes: conductor (LEF name or
+    DIFFUSION) -> net -> region. wells: net -> region. islands: 'n' or 'p' -> net -> sources and drains. vias: region of
+    every one of ExtractionPlatform.vias. labels: net -> (conductor, point), the highest conductor first.
     """
 
     dbu: float
-    ports: set
-    devices: list
-    shapes: dict = field(default_factory=dict)
-    wells: dict = field(default_factory=dict)
-    active: db.Region = None
-    islands: dict = field(default_factory=dict)
-    vias: list = field(default_factory=list)
-    labels: dict = field(default_factory=dict)
+    active: db.Region
+    ports: set[str] = field(default_factory=set)
+    devices: list[Device] = field(default_factory=list)
+    shapes: dict[str, dict[str, db.Region]] = field(default_factory=dict)
+    wells: dict[str, db.Region] = field(default_factory=dict)
+    islands: dict[str, dict[str, db.Region]] = field(default_factory=dict)
+    vias: list[db.Region] = field(default_factory=list)
+    labels: dict[str, list[tuple[str, db.Point]]] = field(default_factory=dict)
 
 
-def read_cell(gds, name):
-    """(db.Layout, its cell ``name``, flat). Raises ParameterError for a file or cell that is not there."""
+def read_cell(gds: str | Path, name: str) -> tuple[db.Layout, db.Cell]:
+    """The layout in the file ``gds`` and its cell ``name``, flat. Raises ParameterError where there is none."""
     layout = db.Layout()
     try:
         layout.read(str(gds))
@@ -70,68 +73,71 @@ def read_cell(gds, name):
     return layout, cell
 
 
-def find(gds, name, tech):
-    """The Layout of cell ``name`` in the file ``gds`` in the process ``tech`` (ExtractionPlatform)."""
+def find(gds: str | Path, name: str, tech: ExtractionPlatform) -> CellLayout:
+    """Nets and transistors of cell ``name`` in the file ``gds``. Raises ParameterError."""
     layout, cell = read_cell(gds, name)
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, cell, []))
-    layers = _layers(l2n, layout, tech, cell.bbox())
+    layers, texts = _layers(l2n, layout, tech, cell.bbox())
     for kind in "np":
         extractor = db.DeviceExtractorMOS4Transistor(kind)
         l2n.extract_devices(
             extractor,
             {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"], "P": layers["poly"], "W": layers[f"{kind}bulk"]},
         )
-    _connect(l2n, layers, tech)
+    _connect(l2n, layers, texts, tech)
     l2n.extract_netlist()
     circuit = l2n.netlist().top_circuit()
-    found = _collect(l2n, circuit, layers, tech)
-    found.dbu = layout.dbu
-    strips = {
+    found = _collect(l2n, circuit, layers, tech, layout.dbu)
+    marks = {
         mark: db.Region(cell.begin_shapes_rec(layout.layer(*tech.devices[mark])))
         for mark in MARKS
         if mark in tech.devices
     }
-    found.devices = [_device(device, found, strips) for device in circuit.each_device()]
-    found.vias = [db.Region(list(layers[via.lef].each_merged())) for via in tech.vias]
+    found.devices = [_device(device, found, marks) for device in circuit.each_device()]
+    found.vias = [_merged(layers[via.lef]) for via in tech.vias]
     found.labels = _labels(layout, cell, tech)
     return found
 
 
-def _labels(layout, cell, tech):
+def _merged(region: db.Region) -> db.Region:
+    """The region merged, and of no layout any more."""
+    merged = db.Region()
+    for polygon in region.each_merged():
+        merged.insert(polygon)
+    return merged
+
+
+def _labels(layout: db.Layout, cell: db.Cell, tech: ExtractionPlatform) -> dict[str, list[tuple[str, db.Point]]]:
     found = {}
-    for wire in reversed(tech.conductors):
-        for layer in (wire.pin, wire.label):
+    for conductor in reversed(tech.conductors):
+        for layer in (conductor.pin, conductor.label):
             for shape in cell.shapes(layout.layer(*layer)).each(db.Shapes.STexts):
-                found.setdefault(shape.text_string, []).append((wire.lef, db.Point() + shape.text_trans.disp))
+                point = db.Point() + shape.text_trans.disp
+                found.setdefault(shape.text_string, []).append((conductor.lef, point))
     return found
 
 
-def _layers(l2n, layout, tech, box):
-    """Every region by name; all registered, so that their nets can be asked for."""
+def _layers(
+    l2n: db.LayoutToNetlist, layout: db.Layout, tech: ExtractionPlatform, box: db.Box
+) -> tuple[dict[str, db.Region], dict[str, db.Texts]]:
+    """Every region and every layer of labels by name, registered, so that ``l2n`` knows the nets of their shapes."""
 
-    def drawn(name, spec):
-        return l2n.make_layer(layout.layer(*spec), name)
+    def drawn(name: str, layer: GdsLayer) -> db.Region:
+        return l2n.make_layer(layout.layer(*layer), name)
 
-    raw = {name: drawn(name, spec) for name, spec in tech.devices.items() if name not in MARKS}
-    layers = {wire.lef: drawn(wire.lef, wire.gds) for wire in tech.conductors}
-    layers |= {
-        f"{wire.lef}.label": l2n.make_text_layer(layout.layer(*wire.label), f"{wire.lef}.label")
-        for wire in tech.conductors
-    }
-    layers |= {
-        f"{wire.lef}.pinlabel": l2n.make_text_layer(layout.layer(*wire.pin), f"{wire.lef}.pinlabel")
-        for wire in tech.conductors
-    }
-    for i, spec in enumerate(tech.well_labels):
-        layers[f"well.label{i}"] = l2n.make_text_layer(layout.layer(*spec), f"well.label{i}")
-    for via in tech.vias:
-        layers[via.lef] = drawn(via.lef, via.gds)
+    raw = {name: drawn(name, layer) for name, layer in tech.devices.items() if name not in MARKS}
+    conductors = {conductor.lef: drawn(conductor.lef, conductor.gds) for conductor in tech.conductors}
+    labels = {f"{conductor.lef}.label": conductor.label for conductor in tech.conductors}
+    labels |= {f"{conductor.lef}.pinlabel": conductor.pin for conductor in tech.conductors}
+    labels |= {f"well.label{i}": layer for i, layer in enumerate(tech.well_labels)}
+    texts = {name: l2n.make_text_layer(layout.layer(*layer), name) for name, layer in labels.items()}
+    vias = {via.lef: drawn(via.lef, via.gds) for via in tech.vias}
     active = raw["diff"] + raw.get("tap", db.Region())
-    nwell, poly = raw["nwell"], layers["poly"]
-    pwell = db.Region(box.enlarged(1000)) - nwell
+    nwell, poly = raw["nwell"], conductors["poly"]
+    pwell = db.Region(box.enlarged(REACH)) - nwell
     pactive = active & raw["psdm"]
     nactive = active & raw["nsdm"] if "nsdm" in raw else active - pactive
-    made = {
+    derived = {
         "nbulk": pwell,
         "pbulk": nwell,
         "ngate": (nactive - nwell) & poly,
@@ -142,90 +148,88 @@ def _layers(l2n, layout, tech, box):
         "ptap": pactive - nwell,
         "active": active,
     }
-    for name, region in made.items():
+    for name, region in derived.items():
         if name != "pbulk":
             l2n.register(region, name)
-    return layers | made
+    return conductors | vias | derived, texts
 
 
-def _connect(l2n, layers, tech):
+def _connect(
+    l2n: db.LayoutToNetlist, layers: dict[str, db.Region], texts: dict[str, db.Texts], tech: ExtractionPlatform
+) -> None:
     diffusions = [layers[name] for name in ("nsd", "psd", "ntap", "ptap")]
-    own = [layers[wire.lef] for wire in tech.conductors] + diffusions + [layers["nbulk"], layers["pbulk"]]
-    for region in own:
+    conductors = [layers[conductor.lef] for conductor in tech.conductors]
+    for region in [*conductors, *diffusions, layers["nbulk"], layers["pbulk"]]:
         l2n.connect(region)
-    for wire in tech.conductors:
-        l2n.connect(layers[wire.lef], layers[f"{wire.lef}.label"])
-        l2n.connect(layers[wire.lef], layers[f"{wire.lef}.pinlabel"])
+    for conductor in tech.conductors:
+        l2n.connect(layers[conductor.lef], texts[f"{conductor.lef}.label"])
+        l2n.connect(layers[conductor.lef], texts[f"{conductor.lef}.pinlabel"])
     l2n.connect(layers["pbulk"], layers["ntap"])
     l2n.connect(layers["nbulk"], layers["ptap"])
     for i, bulk in enumerate(("pbulk", "nbulk")[: len(tech.well_labels)]):
-        l2n.connect(layers[bulk], layers[f"well.label{i}"])
+        l2n.connect(layers[bulk], texts[f"well.label{i}"])
     for via in tech.vias:
-        cut = layers[via.lef]
-        l2n.connect(cut)
-        l2n.connect(cut, layers[via.above])
-        for lower in via.below:
-            for region in diffusions if lower == DIFFUSION else [layers[lower]]:
-                l2n.connect(cut, region)
+        l2n.connect(layers[via.lef])
+        l2n.connect(layers[via.lef], layers[via.above])
+        for below in via.below:
+            for region in diffusions if below == DIFFUSION else [layers[below]]:
+                l2n.connect(layers[via.lef], region)
 
 
-def _collect(l2n, circuit, layers, tech):
-    found = Layout(dbu=0, ports=set(), devices=[], active=db.Region(list(layers["active"].each_merged())))
-    groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {wire.lef: (wire.lef,) for wire in tech.conductors}
+def _collect(
+    l2n: db.LayoutToNetlist, circuit: db.Circuit, layers: dict[str, db.Region], tech: ExtractionPlatform, dbu: float
+) -> CellLayout:
+    found = CellLayout(dbu, _merged(layers["active"]))
+    groups = {DIFFUSION: ("nsd", "psd", "ntap", "ptap")} | {layer.lef: (layer.lef,) for layer in tech.conductors}
     found.shapes = {conductor: {} for conductor in groups}
     found.islands = {"n": {}, "p": {}}
+
+    def add(regions: dict[str, db.Region], net: db.Net, *names: str) -> None:
+        region = db.Region()
+        for name in names:
+            region += l2n.shapes_of_net(net, layers[name], True)
+        if not region.is_empty():
+            regions[node(net)] = regions.get(node(net), db.Region()) + region.merged()
+
     for net in circuit.each_net():
-        name = node(net)
         if net.name:
-            found.ports.add(name)
+            found.ports.add(node(net))
         for conductor, names in groups.items():
-            region = db.Region()
-            for layer in names:
-                region += l2n.shapes_of_net(net, layers[layer], True)
-            if not region.is_empty():
-                found.shapes[conductor][name] = found.shapes[conductor].get(name, db.Region()) + region.merged()
+            add(found.shapes[conductor], net, *names)
         for kind, islands in found.islands.items():
-            region = l2n.shapes_of_net(net, layers[f"{kind}sd"], True)
-            if not region.is_empty():
-                islands[name] = islands.get(name, db.Region()) + region.merged()
+            add(islands, net, f"{kind}sd")
         for bulk in ("nbulk", "pbulk"):
-            region = l2n.shapes_of_net(net, layers[bulk], True)
-            if not region.is_empty():
-                found.wells[name] = found.wells.get(name, db.Region()) + region.merged()
+            add(found.wells, net, bulk)
     return found
 
 
-def node(net):
+def node(net: db.Net) -> str:
     """A net's name as SPICE can hold it: its label (the first of several), or n<number>."""
     return net.name.split(",")[0] if net.name else f"n{net.cluster_id}"
 
 
-def _device(device, found, strips):
+def _device(device: db.Device, found: CellLayout, marks: dict[str, db.Region]) -> Device:
     net = {t.name: node(device.net_for_terminal(t.id())) for t in device.device_class().terminal_definitions()}
-    value = device.parameter
-    at = device.trans.disp
+    value, at = device.parameter, device.trans.disp
     point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
-    w, length = value("W"), value("L")
     spot = db.Region(db.Box(point.x - 5, point.y - 5, point.x + 5, point.y + 5))
-    marks = frozenset(mark for mark, strip in strips.items() if not strip.interacting(spot).is_empty())
     box = found.active.bbox()
     line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
     run = next(part.bbox() for part in line.each_merged() if part.inside(point))
-    sa, sb = ((point.x - run.left) * found.dbu - length / 2, (run.right - point.x) * found.dbu - length / 2)
     return Device(
-        device.device_class().name,
-        net["D"],
-        net["G"],
-        net["S"],
-        net["B"],
-        w,
-        length,
-        value("AD"),
-        value("AS"),
-        value("PD"),
-        value("PS"),
-        sa,
-        sb,
-        marks,
-        point,
+        kind=device.device_class().name,
+        drain=net["D"],
+        gate=net["G"],
+        source=net["S"],
+        bulk=net["B"],
+        width=value("W"),
+        length=value("L"),
+        ad=value("AD"),
+        as_=value("AS"),
+        pd=value("PD"),
+        ps=value("PS"),
+        sa=(point.x - run.left) * found.dbu - value("L") / 2,
+        sb=(run.right - point.x) * found.dbu - value("L") / 2,
+        marks=frozenset(mark for mark, region in marks.items() if not region.interacting(spot).is_empty()),
+        at=point,
     )

@@ -1,19 +1,26 @@
-"""Resistance of contacts and wires between a net's pin, its sources and drains, and its gates.
+"""Resistance of contacts and conductors between a net's pin, its sources and drains, and its gates.
 
-KLayout's network extraction counts squares on every wire; a source or drain is one node, joined to the wire above by
-its contacts (a p diffusion with one contact has 585 ohm before its transistor). Of the network's inner nodes those with
-at most BRANCHES resistors are then taken out, which changes nothing for its terminals. Without any inner nodes a net of
-n terminals has n^2 / 2 resistors, and buf_16 takes twice as long.
+KLayout's network extraction counts squares on every conductor; a source or drain is one node, connected to the metal
+above by its contacts (a p diffusion with one contact has 585 ohm before its transistor). Of the network's inner nodes
+those with at most BRANCHES resistors are then taken out, which changes nothing for its terminals. Without any inner
+nodes a net of n terminals has n^2 / 2 resistors, and buf_16 takes twice as long.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any, NamedTuple
 
 import klayout.db as db
-from klayout import pex
+import klayout.pex
 
 from models.parameters import ParameterError
+from platforms.extraction import ExtractionPlatform
 from platforms.layers import DIFFUSION
+
+from .devices import CellLayout, Device
+
+pex: Any = klayout.pex  # KLayout's types leave out its classes
 
 IDEAL = 1e-3  # ohm a square of a diffusion, in which the transistor's model has the resistance
 LEAST = 1e-3  # ohm; what is less is as much
@@ -24,27 +31,45 @@ VIEWS = (db.Trans(), db.Trans(db.Trans.M90))  # as drawn, and mirrored
 
 @dataclass(frozen=True)
 class Resistances:
-    """resistors: [(node, node, ohm)]. terminals: device number -> {'drain', 'gate', 'source': node}. Nodes that are not
+    """Resistors and the nodes that transistors are at.
 
-    in it have their net's name.
+    resistors: (node, node, ohm). terminals: device number -> 'drain', 'gate' or 'source' -> node; a terminal that is
+    not in it is at the node with its net's name.
     """
 
-    resistors: list
-    terminals: dict
+    resistors: list[tuple[str, str, float]]
+    terminals: dict[int, dict[str, str]]
 
 
-def resistances(found, tech):
-    """Resistances of a Layout (cells.extract.devices)."""
+class Terminal(NamedTuple):
+    """Where a transistor ('drain', 'gate' or 'source' of a device by number) is on a net."""
+
+    device: int
+    role: str
+    conductor: str
+    region: db.Region
+
+
+class Port(NamedTuple):
+    """A place on a net, and the terminals (device, role) there."""
+
+    conductor: str
+    shape: "db.Region | db.Point"
+    users: list[tuple[int, str]]
+
+
+def resistances(found: CellLayout, tech: ExtractionPlatform) -> Resistances:
+    """Resistances of a cell. Raises ParameterError for a net whose terminals no resistance connects."""
     resistors, terminals = [], {i: {} for i in range(len(found.devices))}
-    sides = {net: [] for net in {d for device in found.devices for d in (device.drain, device.gate, device.source)}}
+    by_net: dict[str, list[Terminal]] = {}
     for i, device in enumerate(found.devices):
-        for role, region in _sides(device, found).items():
-            sides[getattr(device, role)].append((i, role, *region))
-    for net in sorted(sides):
-        ports = _ports(net, sides[net], found)
+        for role, (conductor, region) in _sides(device, found).items():
+            by_net.setdefault(getattr(device, role), []).append(Terminal(i, role, conductor, region))
+    for net in sorted(by_net):
+        ports = _ports(net, by_net[net], found)
         nodes = [net, *(f"{net}_r{k}" for k in range(1, len(ports)))]
-        for node, (_, _, users) in zip(nodes, ports, strict=True):
-            for i, role in users:
+        for node, port in zip(nodes, ports, strict=True):
+            for i, role in port.users:
                 terminals[i][role] = node
         if len(ports) > 1:
             kept = {
@@ -52,16 +77,16 @@ def resistances(found, tech):
             }
             if set(range(len(ports))) - {end for pair in kept for end in pair}:
                 raise ParameterError(f"net = {net}: no resistance below {MOST:g} ohm joins its {len(ports)} terminals")
-            number = {k: node for k, node in enumerate(nodes)}
+            number = dict(enumerate(nodes))
             for end in sorted({end for pair in kept for end in pair} - set(number)):
                 number[end] = f"{net}_r{len(number)}"
             resistors += [(number[a], number[b], 1 / siemens) for (a, b), siemens in sorted(kept.items())]
     return Resistances(resistors, terminals)
 
 
-def _sides(device, found):
-    """role -> (layer, region) of a transistor: its gate's poly, the islands of its source and drain."""
-    step = round(device.l / found.dbu / 2) + 10
+def _sides(device: Device, found: CellLayout) -> dict[str, tuple[str, db.Region]]:
+    """Role -> (conductor, region) of a transistor: its gate's poly, the islands of its source and drain."""
+    step = round(device.length / found.dbu / 2) + 10
     poly, gate = found.shapes["poly"][device.gate], db.Box(device.at, device.at).enlarged(5)
     sides = {"gate": ("poly", (poly & found.active).interacting(db.Region(gate)))}
     left, right = (_island(device, found, sign * step) for sign in (-1, 1))
@@ -70,7 +95,7 @@ def _sides(device, found):
     return sides
 
 
-def _island(device, found, step):
+def _island(device: Device, found: CellLayout, step: int) -> tuple[str, db.Region]:
     """(net, region) of the diffusion ``step`` dbu beside the middle of a gate."""
     spot = db.Region(db.Box(device.at, device.at).enlarged(2).moved(step, 0))
     for net, islands in found.islands[device.kind].items():
@@ -80,25 +105,24 @@ def _island(device, found, step):
     raise AssertionError(f"no diffusion beside a gate of {device.gate}")
 
 
-def _ports(net, sides, found):
-    """[(layer, region or point, [(device number, role)])] of a net's terminals; its pin, if it has one, first."""
-    ports = {}
-    for i, role, layer, region in sides:
-        key = layer, str(region.bbox())
-        ports.setdefault(key, (layer, region, []))[2].append((i, role))
-    ports = sorted(ports.values(), key=lambda port: (port[0] != "poly", str(port[1].bbox())))
-    for wire, point in found.labels.get(net, ()):
-        if not found.shapes[wire].get(net, db.Region()).interacting(_spot(point)).is_empty():
-            return [(wire, point, []), *ports]
+def _ports(net: str, terminals: Sequence[Terminal], found: CellLayout) -> list[Port]:
+    """The ports of a net's terminals; its pin, if it has one, first."""
+    by_place: dict[tuple[bool, str, str], Port] = {}
+    for i, role, conductor, region in terminals:
+        place = conductor != "poly", str(region.bbox()), conductor
+        by_place.setdefault(place, Port(conductor, region, [])).users.append((i, role))
+    ports = [port for _, port in sorted(by_place.items(), key=lambda item: item[0][:2])]
+    for conductor, point in found.labels.get(net, ()):
+        spot = db.Region(db.Box(point, point).enlarged(1))
+        if not found.shapes[conductor].get(net, db.Region()).interacting(spot).is_empty():
+            return [Port(conductor, point, []), *ports]
     return ports
 
 
-def _spot(point):
-    return db.Region(db.Box(point, point).enlarged(1))
-
-
-def _conductances(net, ports, found, tech):
-    """{(a, b): S} of ``net``: its ports, numbered in their order, and inner nodes, numbered from there."""
+def _conductances(
+    net: str, ports: Sequence[Port], found: CellLayout, tech: ExtractionPlatform
+) -> dict[tuple[int, int], float]:
+    """Conductance in S of pairs of nodes of ``net``: ports, numbered in their order, and inner nodes, from there."""
     names = ["n", "p", *(layer.lef for layer in tech.conductors)]
     number = {name: k for k, name in enumerate(names)}
     rules, geometry = pex.RExtractorTech(), {}
@@ -124,25 +148,32 @@ def _conductances(net, ports, found, tech):
                     region & geometry[number[lower]] & geometry[number[via.above]],
                     tech.contact_ohm[lower],
                 )
-    points, polygons = {}, {}
-    for layer, shape, _ in ports:
-        (points if isinstance(shape, db.Point) else polygons).setdefault(number[layer], []).append(shape)
-    flat = {
-        layer: [part for region in regions for part in region.merged().each()] for layer, regions in polygons.items()
-    }
+    points: dict[int, list[db.Point]] = {}
+    flat: dict[int, list[db.Polygon]] = {}
+    for port in ports:
+        if isinstance(port.shape, db.Point):
+            points.setdefault(number[port.conductor], []).append(port.shape)
+        else:
+            flat.setdefault(number[port.conductor], []).extend(port.shape.merged().each())
     network = _network(found.dbu, rules, geometry, points, flat)
-    return _reduced(network, [(number[layer], shape) for layer, shape, _ in ports], flat)
+    return _reduced(network, [(number[port.conductor], port.shape) for port in ports], flat)
 
 
-def _network(dbu, tech, geometry, points, polygons):
-    """KLayout's network of a net; mirrored where its squares, counted as drawn, come to more than MOST.
+def _network(
+    dbu: float,
+    rules: Any,
+    geometry: Mapping[int, db.Region],
+    points: Mapping[int, Sequence[db.Point]],
+    polygons: Mapping[int, Sequence[db.Polygon]],
+) -> Any:
+    """KLayout's network of a net; mirrored where its squares, counted as drawn, are more than MOST.
 
     It cuts a polygon into trapezoids, sometimes one without a height (1.3e11 ohm in xor2_2), and none of the mirrored.
     """
     found = []
     for view in VIEWS:
         network = pex.RNetExtractor(dbu).extract(
-            tech,
+            rules,
             {layer: region.transformed(view) for layer, region in geometry.items()},
             {layer: [view * point for point in same] for layer, same in points.items()},
             {layer: [polygon.transformed(view) for polygon in same] for layer, same in polygons.items()},
@@ -154,7 +185,9 @@ def _network(dbu, tech, geometry, points, polygons):
     return min(found, key=lambda view: view[0])[1]
 
 
-def _via(tech, geometry, layer, lower, upper, region, ohm):
+def _via(
+    rules: Any, geometry: dict[int, db.Region], layer: int, lower: int, upper: int, region: db.Region, ohm: float
+) -> None:
     if region.is_empty():
         return
     geometry[layer] = region
@@ -162,24 +195,26 @@ def _via(tech, geometry, layer, lower, upper, region, ohm):
     via.cut_layer, via.bottom_conductor, via.top_conductor = layer, lower, upper
     area = region.area() / region.count() * 1e-6
     via.resistance = ohm * area
-    tech.add_via(via)
+    rules.add_via(via)
 
 
-def _reduced(network, ports, flat):
-    """{(a, b): S} between the ports ((layer, shape)), numbered in their order, and inner nodes, numbered from there."""
+def _reduced(
+    network: Any, ports: Sequence[tuple[int, "db.Region | db.Point"]], flat: Mapping[int, Sequence[db.Polygon]]
+) -> dict[tuple[int, int], float]:
+    """Conductances between the ports (layer, shape), numbered in their order, and inner nodes, numbered from there."""
     number, count = {}, len(ports)
     for node in sorted(network.each_node(), key=lambda node: (node.layer(), str(node.location()))):  # not by address
         hit = next(
             (
                 k
                 for k, (layer, shape) in enumerate(ports)
-                if node.layer() == layer and _is(node, shape, flat.get(layer))
+                if node.layer() == layer and _is(node, shape, flat.get(layer, ()))
             ),
             None,
         )
         number[node.object_id()] = count if hit is None else hit
         count += hit is None
-    beside = [{} for _ in range(count)]  # node -> neighbour: S
+    beside: list[dict[int, float]] = [{} for _ in range(count)]  # node -> neighbor: S
     for a, b, ohm in sorted(
         (*sorted((number[e.a().object_id()], number[e.b().object_id()])), e.resistance())
         for e in network.each_element()
@@ -190,14 +225,14 @@ def _reduced(network, ports, flat):
     return {(a, b): conductance for a, same in enumerate(beside) for b, conductance in same.items() if a < b}
 
 
-def _join(beside, a, b, conductance):
+def _join(beside: list[dict[int, float]], a: int, b: int, conductance: float) -> None:
     if a != b:
         for one, other in ((a, b), (b, a)):
             beside[one][other] = beside[one].get(other, 0.0) + conductance
 
 
-def _eliminate(beside, node):
-    """Take ``node`` out: between each two of its neighbours its conductances' product over their sum (star to mesh)."""
+def _eliminate(beside: list[dict[int, float]], node: int) -> None:
+    """Take ``node`` out: between each two of its neighbors its conductances' product over their sum (star to mesh)."""
     arms = beside[node]
     beside[node] = {}
     for other in arms:
@@ -206,7 +241,7 @@ def _eliminate(beside, node):
         _join(beside, a, b, x * y / sum(arms.values()))
 
 
-def _is(node, shape, polygons):
+def _is(node: Any, shape: "db.Region | db.Point", polygons: Sequence[db.Polygon]) -> bool:
     """Whether a network's node is the port ``shape``."""
     if isinstance(shape, db.Point):
         return node.type() == pex.RNode.VertexPort

@@ -1,21 +1,29 @@
 """The subcircuit of a laid-out cell as SPICE text."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from cells.extract.capacitance import capacitances
 from cells.extract.devices import find
 from cells.extract.resistance import Resistances, resistances
 from models.parameters import ParameterError
+from platforms.extraction import ExtractionPlatform
 
 SMALLEST = 1e-4  # fF; less is left out
 
 
-def extract(gds, name, tech, ports=None, capacitors=True, resistors=True):
+def extract(
+    gds: str | Path,
+    name: str,
+    tech: ExtractionPlatform,
+    ports: Sequence[str] = (),
+    capacitors: bool = True,
+    resistors: bool = True,
+) -> str:
     """SPICE text of cell ``name`` in the file ``gds``: transistors in um and um2, capacitors in fF, resistors in ohm.
 
-    ports: their
-    names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else sorted.
-    Raises ParameterError when GDS, cell or ports do not fit.
+    ports: their names in order; without it they come from the netlist beside the GDS (same name, .spice or .spi), else
+    sorted. Raises ParameterError when GDS, cell or ports do not fit.
     """
     found = find(gds, name, tech)
     ports = tuple(ports or _schematic_ports(Path(gds), name) or sorted(found.ports))
@@ -28,8 +36,8 @@ def extract(gds, name, tech, ports=None, capacitors=True, resistors=True):
     for i, d in enumerate(found.devices):
         at = {"drain": d.drain, "gate": d.gate, "source": d.source, **ohmic.terminals.get(i, {})}
         lines.append(
-            f"X{i} {at['drain']} {at['gate']} {at['source']} {d.bulk} {tech.model(d.kind, d.w, d.marks)} "
-            f"w={d.w:.4g} l={d.l:.4g} ad={d.ad:.4g} as={d.as_:.4g} pd={d.pd:.4g} ps={d.ps:.4g} "
+            f"X{i} {at['drain']} {at['gate']} {at['source']} {d.bulk} {tech.model(d.kind, d.width, d.marks)} "
+            f"w={d.width:.4g} l={d.length:.4g} ad={d.ad:.4g} as={d.as_:.4g} pd={d.pd:.4g} ps={d.ps:.4g} "
             f"sa={d.sa:.4g} sb={d.sb:.4g}"
         )
     if capacitors:
@@ -39,7 +47,7 @@ def extract(gds, name, tech, ports=None, capacitors=True, resistors=True):
     return "\n".join([*lines, ".ends", ""])
 
 
-def _schematic_ports(gds, name):
+def _schematic_ports(gds: Path, name: str) -> list[str]:
     for suffix in (".spice", ".spi"):
         beside = gds.with_suffix(suffix)
         if beside.exists():
@@ -47,4 +55,4 @@ def _schematic_ports(gds, name):
                 words = line.split()
                 if words[:1] and words[0].lower() == ".subckt" and words[1] == name:
                     return [word for word in words[2:] if "=" not in word]
-    return None
+    return []

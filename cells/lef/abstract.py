@@ -12,7 +12,7 @@ import klayout.db as db
 
 from base.lef import write
 from base.lef.write import Rectangles
-from cells.extract.devices import Layout, find, read_cell
+from cells.extract.devices import CellLayout, find, read_cell
 from models.parameters import ParameterError, check_choice
 from platforms.extraction import ExtractionPlatform
 from platforms.layers import DIFFUSION
@@ -23,7 +23,7 @@ USES = ("SIGNAL", "CLOCK", "POWER", "GROUND")
 
 @dataclass(frozen=True)
 class PinKind:
-    """direction: INPUT, OUTPUT or INOUT; use: SIGNAL, CLOCK, POWER or GROUND."""
+    """What a pin is; direction: INPUT, OUTPUT or INOUT; use: SIGNAL, CLOCK, POWER or GROUND."""
 
     direction: str
     use: str = "SIGNAL"
@@ -72,13 +72,13 @@ def _outline(gds: str | Path, name: str, tech: ExtractionPlatform) -> db.DBox:
     raise ParameterError(f"cell = {name!r}: must have an outline on one of the GDS layers {tech.outlines}")
 
 
-def _pin(pin: str, kind: PinKind, found: Layout, metals: Sequence[str]) -> write.Pin:
+def _pin(pin: str, kind: PinKind, found: CellLayout, metals: Sequence[str]) -> write.Pin:
     shapes = {metal: found.shapes[metal][pin] for metal in metals if pin in found.shapes[metal]}
     if not shapes:
         raise ParameterError(f"pin = {pin!r}: must be a labelled net with metal in the cell")
     statements = []
     if kind.use in ("SIGNAL", "CLOCK"):
-        gates = sum(d.w * d.l for d in found.devices if d.gate == pin)
+        gates = sum(d.width * d.length for d in found.devices if d.gate == pin)
         diffusion = found.shapes[DIFFUSION].get(pin)
         if gates:
             statements.append(f"ANTENNAGATEAREA {gates:.4f}")

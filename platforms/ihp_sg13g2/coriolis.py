@@ -33,7 +33,7 @@ def library() -> Any:
     with patience():
         stdcell._fab.StdCellFactory(lib=made, cktfab=cktfab, layoutfab=layoutfab, canvas=canvas).add_default()
         for cell in made.cells:
-            cell.layout
+            _ = cell.layout
     return made
 
 

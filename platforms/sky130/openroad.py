@@ -9,45 +9,46 @@ from itertools import chain, zip_longest
 from platforms.openroad import OpenRoadPlatform, Strap
 
 from . import layers
+from .cells import LIBRARY, SITE
 
-_CELLS = "sky130A/libs.ref/sky130_fd_sc_hd"
+_CELLS = f"sky130A/libs.ref/{LIBRARY}"
 
 PLATFORM = OpenRoadPlatform(
     name="sky130",
-    library="sky130_fd_sc_hd",
+    library=LIBRARY,
     orfs_platform="sky130hd",
     pdk="sky130A",
     liberty={
-        corner: f"{_CELLS}/lib/sky130_fd_sc_hd__{name}.lib"
+        corner: f"{_CELLS}/lib/{LIBRARY}__{name}.lib"
         for corner, name in (("slow", "ss_100C_1v60"), ("typical", "tt_025C_1v80"), ("fast", "ff_n40C_1v95"))
     },
-    tech_lef=f"{_CELLS}/techlef/sky130_fd_sc_hd__nom.tlef",
-    cell_lef=f"{_CELLS}/lef/sky130_fd_sc_hd.lef",
-    cell_gds=f"{_CELLS}/gds/sky130_fd_sc_hd.gds",
-    cell_models=(f"{_CELLS}/verilog/primitives.v", f"{_CELLS}/verilog/sky130_fd_sc_hd.v"),
+    tech_lef=f"{_CELLS}/techlef/{LIBRARY}__nom.tlef",
+    cell_lef=f"{_CELLS}/lef/{LIBRARY}.lef",
+    cell_gds=f"{_CELLS}/gds/{LIBRARY}.gds",
+    cell_models=(f"{_CELLS}/verilog/primitives.v", f"{_CELLS}/verilog/{LIBRARY}.v"),
     rcx_rules=tuple(
         f"sky130A/libs.tech/{folder}/rules.openrcx.sky130A.nom.magic" for folder in ("librelane", "openlane")
     ),  # renamed in 2025
-    site="unithd",
-    site_um=0.46,
-    row_um=2.72,
+    site=SITE.name,
+    site_um=SITE.width_um,
+    row_um=SITE.height_um,
     supply=("VPWR", ("VPWR", "VPB")),
     ground=("VGND", ("VGND", "VNB")),
-    high="sky130_fd_sc_hd__conb_1/HI",
-    low="sky130_fd_sc_hd__conb_1/LO",
-    diode="sky130_fd_sc_hd__diode_2",
-    tap="sky130_fd_sc_hd__tapvpwrvgnd_1",
+    high=f"{LIBRARY}__conb_1/HI",
+    low=f"{LIBRARY}__conb_1/LO",
+    diode=f"{LIBRARY}__diode_2",
+    tap=f"{LIBRARY}__tapvpwrvgnd_1",
     tap_um=14.0,
-    clock_buffer="sky130_fd_sc_hd__clkbuf_4",
+    clock_buffer=f"{LIBRARY}__clkbuf_4",
     straps=(Strap("met1", 0.48), Strap("met4", 1.6, 27.14, 13.57), Strap("met5", 1.6, 27.2, 13.6)),
     pins=("met3", "met2"),
     signal=("met1", "met5"),
     clock=("met3", "met5"),
     signal_rc="met2",
     clock_rc="met5",
-    fill=tuple(f"sky130_fd_sc_hd__fill_{width}" for width in (1, 2, 4, 8)),
+    fill=tuple(f"{LIBRARY}__fill_{width}" for width in (1, 2, 4, 8)),
     # probes have metal on all layers; lpflow cells belong to designs with several supplies
-    dont_use=("sky130_fd_sc_hd__probe*", "sky130_fd_sc_hd__lpflow*"),
+    dont_use=(f"{LIBRARY}__probe*", f"{LIBRARY}__lpflow*"),
     gds={part.lef: part.gds for part in chain(*zip_longest(layers.METALS, layers.VIAS)) if part},
     outline=layers.PRBOUNDARY,
     pin_datatype=layers.PIN,

@@ -3,8 +3,10 @@
 From tt-support-tools (tile_sizes.yaml; the rows of def/tt_block_1x1_pg.def) and src/config.json of its template.
 """
 
+from .cells import SITE
+
 SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76)}
-SITE_UM, ROW_UM, MARGIN_SITES, MARGIN_ROWS = 0.46, 2.72, 12, 2
+MARGIN_SITES, MARGIN_ROWS = 12, 2
 FULL = 0.60  # cells' area by core area for which the default density is meant
 
 CONFIG = {
@@ -33,8 +35,8 @@ CONFIG = {
 }
 
 
-def core_um2(tiles):
+def core_um2(tiles: str) -> float:
     """Area for cells in so many tiles."""
     width, height = SIZES_UM[tiles]
-    columns, rows = round(width / SITE_UM) - MARGIN_SITES, round(height / ROW_UM) - MARGIN_ROWS
-    return columns * SITE_UM * rows * ROW_UM
+    columns, rows = round(width / SITE.width_um) - MARGIN_SITES, round(height / SITE.height_um) - MARGIN_ROWS
+    return columns * SITE.width_um * rows * SITE.height_um

@@ -18,7 +18,7 @@ from cells.compact.route import route
 from cells.compact.rules import broken
 from cells.compact.transistors import Schematic, Switch
 from cells.extract import extract
-from cells.extract.compare import differences
+from cells.extract.test.compare import differences
 from cells.netlist import spice
 from models.parameters import ParameterError
 from platforms.extraction import extraction_platform

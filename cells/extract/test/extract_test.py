@@ -6,13 +6,15 @@ import sys
 
 import pytest
 
-db = pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
+pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
+
+import klayout.db as db
 
 from cells.extract import extract
 from cells.extract.capacitance import capacitances
-from cells.extract.compare import differences
 from cells.extract.devices import find
 from cells.extract.resistance import resistances
+from cells.extract.test.compare import differences
 from cells.netlist import spice
 from models.parameters import ParameterError
 from platforms.extraction import extraction_platform

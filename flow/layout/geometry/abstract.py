@@ -96,6 +96,7 @@ def antennas(
     nets = next(connected(layout, top, tech, [len(tech.metals) - 1]))
 
     def area(net: "db.Net", region: "db.Region") -> float:
+        """The um2 of a net in ``region``."""
         return nets.l2n.shapes_of_net(net, region, True).merged().area() * layout.dbu**2
 
     charges = {}
@@ -140,6 +141,7 @@ def read_back(lef: Path, gds: Path, directions: Mapping[str, str], tech: Corioli
     layers = {info.name: layout.layer(info) for info in layout.layer_infos()}
 
     def shapes(name: str) -> "db.Shapes":
+        """Shapes on a layer of the LEF."""
         return macro.shapes(layers[name]) if name in layers else db.Shapes()
 
     wrong, labelled, outline = [], set(), db.Region(shapes("OUTLINE"))

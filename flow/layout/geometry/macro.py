@@ -13,7 +13,7 @@ from .abstract import EDGE_UM
 
 
 class MacroPin(NamedTuple):
-    """direction: in lower case. metal: its name in Coriolis. box: um."""
+    """A pin; direction: in lower case. metal: its name in Coriolis. box: um."""
 
     direction: str
     metal: str

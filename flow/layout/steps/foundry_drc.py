@@ -8,7 +8,7 @@ from pathlib import Path
 
 from base.steps import Step, StepError
 from base.tools import finish
-from platforms.foundry import foundry
+from platforms.foundry import foundry_checks
 
 from . import klayout_decks
 from .klayout_decks import run_deck, violations
@@ -59,7 +59,7 @@ class FoundryDrc(Step):
             "input": inputs["gds"].resolve(),
             "topcell": self.parameters.top,
             "report": outputs["report"].resolve(),
-            **dict(foundry(self.parameters.pdk).defines),
+            **dict(foundry_checks(self.parameters.pdk).defines),
         }
         log = outputs["report"].with_suffix(".log")
         if run_deck(inputs["deck"].resolve(), {}, log, said):
@@ -80,7 +80,7 @@ class MagicDrc(Step):
     tools = ("magic",)
 
     def run(self, inputs, outputs):
-        folder, known = outputs["report"].parent.resolve(), foundry(self.parameters.pdk)
+        folder, known = outputs["report"].parent.resolve(), foundry_checks(self.parameters.pdk)
         magic = inputs["magic"].resolve()
         root = Path(str(magic).removesuffix(known.magic))
         script = folder / "drc.tcl"

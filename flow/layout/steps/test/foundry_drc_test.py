@@ -7,7 +7,7 @@ import pytest
 from base.steps import StepError
 from flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
 from models.parameters import ParameterError
-from platforms.foundry import foundry, installed
+from platforms.foundry import foundry_checks, installed
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 
@@ -65,7 +65,7 @@ end
 
 @pytest.fixture
 def root(tmp_path):
-    known = foundry("sky130")
+    known = foundry_checks("sky130")
     for path, text in (
         (known.klayout, DECK),
         (f"{known.magic}/small.tech", TECHNOLOGY),
@@ -100,14 +100,14 @@ def test_a_space_that_is_too_small(tool, kind, gap_nm, broken, root):
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not installed")
 def test_a_deck_that_fails_is_told(root):
-    (root / foundry("sky130").klayout).write_text("no_such_word(1)\n")
+    (root / foundry_checks("sky130").klayout).write_text("no_such_word(1)\n")
     with pytest.raises(StepError, match="sky130A_mr.drc failed: .*no_such_word"):
         checked(FoundryDrc(FoundryDrcParameters("sky130", "top")), root, 150)
 
 
 @pytest.mark.skipif(not shutil.which("magic"), reason="magic: not installed")
 def test_a_technology_that_fails_is_told(root):
-    (root / foundry("sky130").magic / "sky130A.magicrc").write_text("no_such_word\n")
+    (root / foundry_checks("sky130").magic / "sky130A.magicrc").write_text("no_such_word\n")
     with pytest.raises(StepError, match="magic_drc: Magic failed"):
         checked(MagicDrc(FoundryDrcParameters("sky130", "top")), root, 150)
 
