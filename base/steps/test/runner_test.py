@@ -159,7 +159,7 @@ def test_a_circle_is_told(tmp_path, text):
 
 
 def test_of_steps_that_run_together_the_failed_one_is_told(tmp_path, text):
-    with pytest.raises(StepError, match="ended without a word"):
+    with pytest.raises(StepError, match="ended with no result"):
         Runner(tmp_path / "steps", {"text": text}).run_all([Crash(), Repeat()])
 
 
@@ -170,7 +170,7 @@ def test_a_step_that_breaks_its_declaration_leaves_nothing(tmp_path, text):
 
 
 def test_a_crash_in_a_step_is_told(tmp_path, text):
-    with pytest.raises(StepError, match="ended without a word"):
+    with pytest.raises(StepError, match="ended with no result"):
         Runner(tmp_path / "steps", {"text": text}).run(Crash())
 
 
