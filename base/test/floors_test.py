@@ -1,0 +1,43 @@
+"""The floor plan of pyproject.toml holds, and a dependency against it is found."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from base.paths import ROOT
+
+FOLDERS = "models", "base", "rtl", "platforms", "cells", "pixels", "flow", "verif", "talbot"
+LINT = "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"
+
+
+def lint(folder):
+    """The process of import-linter in ``folder``."""
+    command = [sys.executable, "-W", "ignore", "-c", LINT, "--no-cache"]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_every_import_keeps_the_floor_plan():
+    done = lint(ROOT)
+    assert done.returncode == 0, done.stdout[-3000:]
+
+
+@pytest.mark.parametrize(
+    "file, line, contract",
+    [
+        ("base/gds.py", "import platforms.foundry", "Floors"),
+        ("models/pixel/response.py", "from base.files import write", "Floors"),
+        ("cells/corner.py", "from flow.frame import request", "Floors"),
+        ("pixels/footprints.py", "import cells.corner", "Floors"),
+        ("flow/layout/geometry/boxes.py", "import flow.layout.chain", "cycles"),
+    ],
+)
+def test_an_import_against_it_is_found(tmp_path, file, line, contract):
+    for folder in FOLDERS:
+        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    path = tmp_path / file
+    path.write_text(f"{path.read_text()}\n\n{line}\n")
+    done = lint(tmp_path)
+    assert done.returncode == 1 and contract in done.stdout
