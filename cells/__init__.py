@@ -1,0 +1,1 @@
+"""Cell libraries from transistors: extraction, characterization, Liberty and LEF; the compact cells."""

@@ -3,21 +3,25 @@
 import argparse
 import json
 import sys
-import time
+from collections.abc import Sequence
 from pathlib import Path
 
 from base.tools import ToolError
-from cells import run, sources
+from cells import sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
+from cells.library import characterize_library
 from cells.spice.engine import SimulationError
 from models.parameters import ParameterError
 
 ROOT = Path(__file__).resolve().parent.parent
 
 
-def main(argv=None):
-    parser = argparse.ArgumentParser(prog="python -m cells", description=__doc__.splitlines()[0])
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; returns its exit status."""
+    parser = argparse.ArgumentParser(
+        prog="python -m cells", description="Characterize a cell library at one corner, to build/cells/<library>/."
+    )
     parser.add_argument("--lib", default="sky130_hd", help=f"{', '.join(sources.LIBRARIES)}, or a SPICE file of cells")
     parser.add_argument("--corner", default="tt_025C_1v80", help="process, temperature, supply: ff_n40C_1v95")
     parser.add_argument("--cells", help="names with commas between (inv_1,nand2_1); default: all for synthesis")
@@ -28,24 +32,21 @@ def main(argv=None):
         "--netlist",
         default="extracted",
         choices=sources.NETLISTS,
-        help="what is simulated: with stray capacitances, transistors as laid out, or as drawn",
+        help="what is simulated: with parasitics, with capacitances, transistors as laid out, or the schematic",
     )
     parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json to compare with")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "cells", help="folder of the libraries")
     options = parser.parse_args(argv)
     try:
-        conditions = Conditions(Corner.parse(options.corner), options.models)
-        started = time.monotonic()
-        summary = run.run(
+        summary = characterize_library(
             options.lib,
-            conditions,
+            Conditions(Corner.parse(options.corner), options.models),
             options.cells and options.cells.split(","),
             options.netlist,
             options.out,
             options.reference,
             options.workers,
-            started,
         )
     except (ParameterError, ToolError, SimulationError, OSError) as error:
         print(f"cells: {error}", file=sys.stderr)

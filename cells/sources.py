@@ -1,14 +1,18 @@
-"""Where the cells of a library come from: netlist and area of each, abstracts and Verilog of all."""
+"""Sources of the cells of a library: netlist and area of each, abstracts and Verilog of all."""
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
+from types import ModuleType
 
 from base.lef.write import library as lef_library
 from cells.characterize.job import Source
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
-from cells.compact.library import schematic_spice, written
+from cells.compact.library import schematic_spice
+from cells.compact.write import written
 from cells.extract import extract
+from cells.liberty.build import Constant
 from cells.netlist import spice
 from models.parameters import ParameterError
 from platforms.extraction import extraction_platform
@@ -23,10 +27,10 @@ CONSTANTS = {"sky130_hd": {"conb_1": {"HI": 1, "LO": 0}}, "compact": {"zero_x1":
 _NOT_LOGIC = ("zero_x1", "one_x1", "tie", "diode")
 
 
-def names(library):
+def names(library: str) -> list[str]:
     """Cells of ``library`` that synthesis may use, sorted: of LIBRARIES, or every .subckt of a SPICE file.
 
-    The compact cells are drawn first if their files are missing.
+    The compact cells are drawn first where their files are missing.
     """
     if library == "sky130_hd":
         return sky130_hd.names()
@@ -35,8 +39,8 @@ def names(library):
     return sorted(spice.read_all(_file(library)))
 
 
-def left_out(library):
-    """{cell: why} of the cells of ``library`` that are not characterized, for want of a function."""
+def left_out(library: str) -> dict[str, str]:
+    """Why each of the other cells of ``library`` is not characterized."""
     if library == "sky130_hd":
         return sky130_hd.left_out()
     if library == "compact":
@@ -44,16 +48,16 @@ def left_out(library):
     return {}
 
 
-def title(library):
-    """What its folder and files are called."""
+def title(library: str) -> str:
+    """The name of the library's folder and files."""
     return library if library in LIBRARIES else _file(library).stem
 
 
-def source(library, name, netlist="extracted"):
-    """Source of one cell. netlist: 'extracted' with stray capacitances and the resistance of wires and contacts,
+def source(library: str, name: str, netlist: str = "extracted") -> Source:
+    """The Source of one cell. Raises ParameterError for a cell that is missing.
 
-    'capacitances' with the former alone, 'devices' with the transistors as laid out alone, 'schematic' as the library's
-    own netlist has it. Raises ParameterError for a cell that is not there.
+    netlist: 'extracted' with parasitic capacitances and resistances, 'capacitances' with the former alone, 'devices'
+    with the transistors as laid out alone, 'schematic' as the library's own netlist has it.
     """
     if netlist not in NETLISTS:
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
@@ -77,10 +81,10 @@ def source(library, name, netlist="extracted"):
     return Source(name, text, sky130_hd.area(name))
 
 
-def files(library, cells):
-    """{'lef': text, 'v': text} of ``cells`` (short names) and of those that hold a constant; of the compact library all cells.
+def files(library: str, cells: Iterable[str]) -> dict[str, str]:
+    """The texts 'lef' and 'v' of ``cells`` (short names) and of those that hold a constant.
 
-    Nothing of a SPICE file, which has neither.
+    Of the compact library all cells are in them; a SPICE file has neither.
     """
     if library not in LIBRARIES:
         return {}
@@ -95,31 +99,34 @@ def files(library, cells):
     }
 
 
-def constants(library):
-    """{cell's whole name: (pin: level, area in um2)} of the cells that hold a constant."""
+def constants(library: str) -> dict[str, Constant]:
+    """The cells that hold a constant, by whole name."""
     if library not in LIBRARIES:
         return {}
     if library == "compact":
-        return {name: (pins, _compact_areas()[name]) for name, pins in CONSTANTS[library].items()}
-    return {f"{sky130_hd.LIBRARY}__{name}": (pins, sky130_hd.area(name)) for name, pins in CONSTANTS[library].items()}
+        return {name: Constant(levels, _compact_areas()[name]) for name, levels in CONSTANTS[library].items()}
+    return {
+        f"{sky130_hd.LIBRARY}__{name}": Constant(levels, sky130_hd.area(name))
+        for name, levels in CONSTANTS[library].items()
+    }
 
 
-def process(library):
-    """Module with the models of the process that ``library`` is made in."""
+def process(library: str) -> ModuleType:
+    """The module with the transistor models of the library's process."""
     if library not in LIBRARIES:
         _file(library)
     return sky130
 
 
-def _file(library):
-    """Path of a SPICE file given as library. Raises ParameterError when there is none."""
+def _file(library: str) -> Path:
+    """Path of a SPICE file given as library. Raises ParameterError when it is missing."""
     path = Path(library)
     if not path.is_file():
         raise ParameterError(f"library = {library!r}: must be one of {', '.join(LIBRARIES)}, or a SPICE file")
     return path
 
 
-def _compact_areas():
-    """um2 of every compact cell, drawn now if the files are missing or other code drew them."""
+def _compact_areas() -> dict[str, float]:
+    """The um2 of every compact cell; the cells are drawn where the files are missing or other code drew them."""
     written(COMPACT)
     return json.loads((COMPACT / "areas.json").read_text())

@@ -1,0 +1,1 @@
+"""The characterizer: one cell at one corner, measured."""

@@ -1,20 +1,44 @@
-"""A cell on the bench: inputs driven, outputs loaded, one change at a time."""
+"""A test bench for a cell: inputs driven, outputs loaded, one change at a time."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import ModuleType, TracebackType
+from typing import NamedTuple, Self, TypeVar
 
+import numpy as np
+
+from cells.characterize.conditions import Conditions
+from cells.netlist.function import Cell
+from cells.netlist.states import Change, State, Vector
 from cells.spice.circuit import circuit
-from cells.spice.engine import SimulationError, Simulator
+from cells.spice.engine import Points, SimulationError, Simulator
+from cells.spice.settings import Settings
+from cells.spice.wave import Wave
 
 REST = 0.2e-9  # s before the edge that is measured, in which nothing moves
 QUICK = 0.05e-9  # s of the ramps that bring a cell into its state
 DOUBLINGS = 6  # of the time given to an output before it counts as stuck
+Ramps = Mapping[int, Sequence[tuple[float, float, int]]]  # input number -> (start s, length s, level)
+T = TypeVar("T")
+
+
+def spread(items: Sequence[T], most: int) -> list[T]:
+    """At most ``most`` of ``items``, spread over all."""
+    return [items[round(i)] for i in np.linspace(0, len(items) - 1, min(len(items), most))]
+
+
+class Tail(NamedTuple):
+    """How long an output takes: s without load, and s a farad; the slowest so far."""
+
+    base: float = 0.3e-9
+    rate: float = 2e4
 
 
 @dataclass(frozen=True)
 class Edge:
-    """Measured at one slew and load. delay, slew: s; energy: J from the supply less what the load takes;
+    """An edge at one slew and load.
 
-    charge: C into the input; inputs held the same.
+    delay, slew: s. energy: J from the supply less what the load takes. charge: C into the input.
     """
 
     delay: float
@@ -24,12 +48,13 @@ class Edge:
 
 
 class Bench:
-    """A context manager around one Simulator for ``cell`` (Cell) of ``process`` under ``conditions``.
+    """A context manager around one Simulator for ``cell``.
 
-    leakage: with the process's models for leakage.
+    process: a module like platforms.sky130.models; leakage: with its models for leakage. pressed, middle: F at each
+    output while constraints and input capacitances are measured.
     """
 
-    def __init__(self, cell, process, conditions, leakage=False):
+    def __init__(self, cell: Cell, process: ModuleType, conditions: Conditions, leakage: bool = False) -> None:
         self.cell, self.conditions = cell, conditions
         self.machine = machine = cell.machine
         self.volts = conditions.corner.supply
@@ -43,55 +68,65 @@ class Bench:
             conditions.corner.temperature,
             conditions.settings,
         )
-        self.tail = {}  # output -> [s, s a farad]: the slowest seen
-        self.pressed = {}  # output -> F under which constraints are measured
-        self.middle = {}  # output -> F in the middle of its load axis
-        self.edges = {}  # what `edge` has measured
-        self.stubborn = set()  # states that the operating point does not find
+        self.pressed: dict[str, float] = {}
+        self.middle: dict[str, float] = {}
+        self._tail: dict[str, Tail] = {}
+        self._edges: dict[tuple[Change, str, float, float], Edge] = {}
+        self._stubborn: set[State] = set()  # states that the operating point does not find
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         self.simulator.__enter__()
         return self
 
-    def __exit__(self, *error):
-        self.simulator.__exit__(*error)
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.simulator.__exit__(kind, error, at)
 
     @property
-    def settling(self):
-        """Seconds that a cell without load gets to settle: 2 ns at nominal supply, more at a low one or when cold."""
+    def settling(self) -> float:
+        """Seconds that a cell without load gets to settle: 2 ns at nominal supply, more at a low one."""
         return 2e-9 * max(1.0, (1.8 / self.volts) ** 6)
 
-    def patience(self, output, load):
-        """Seconds that ``output`` gets to arrive with ``load`` F on it, from what was seen so far."""
-        base, rate = self.tail.setdefault(output, [0.3e-9, 2e4])
-        return base + rate * load
+    def patience(self, output: str, load: float) -> float:
+        """Seconds that ``output`` gets to arrive with ``load`` F on it, from the edges so far."""
+        tail = self._tail.get(output, Tail())
+        return tail.base + tail.rate * load
 
-    def run(self, state, edges, after, step, loads, pause=None, **how):
-        """(Wave, time from which ``edges`` count): the cell in ``state``, then driven by ``edges``.
+    def run(
+        self,
+        state: State,
+        edges: Ramps,
+        after: float,
+        step: float,
+        loads: Mapping[str, float],
+        pause: float | None = None,
+        settings: Settings | None = None,
+        retry: bool = True,
+    ) -> tuple[Wave, float]:
+        """Bring the cell into ``state``, then drive it by ``edges``; returns the wave and the time at which they start.
 
-        edges: input number -> [(start, length, level)], s and 0 or 1: ramps. after: s simulated from then on. step:
-        longest time step. loads: output -> F. how: further arguments of `Simulator.transient`.
+        after: s simulated from then on. step: longest time step. loads: F at the outputs. pause: s between two input
+        vectors. settings, retry: see `Simulator.transient`.
 
-        A cell with storage starts from the levels of its nodes in ``state``, as the search for the operating point
-        is told; where that ends elsewhere, and where an output floats, inputs are applied one after another.
+        A cell with storage starts from the levels of its nodes in ``state``; where the operating point is another, and
+        where an output floats, input vectors are applied one after another.
         """
-        floats = "Z" in state.outputs
-        for by_path in (True,) if floats or state in self.stubborn else (False, True):
-            vectors = state.path if by_path else (state.inputs,)
-            nodes = [(n, v * self.volts) for n, v in state.nodes] if self.machine.sequential and not by_path else ()
-            points, start = self._stimulus(vectors, pause or self.settling + QUICK, edges)
-            wave = self.simulator.transient(points, loads, start + after, step, nodes, **how)
-            if by_path or all(
-                abs(wave.at(output, start) - level * self.volts) < 0.1 * self.volts
+        pause = pause or self.settling + QUICK
+        if "Z" not in state.outputs and state not in self._stubborn:
+            nodes = [(n, v * self.volts) for n, v in state.nodes] if self.machine.sequential else ()
+            points, start = self._stimulus((state.inputs,), pause, edges)
+            wave = self.simulator.transient(points, loads, start + after, step, nodes, settings, retry)
+            if all(
+                abs(wave.at(output, start) - int(level) * self.volts) < 0.1 * self.volts
                 for output, level in zip(self.machine.outputs, state.outputs, strict=True)
             ):
                 return wave, start
-            self.stubborn.add(state)
-        raise AssertionError("not reached")
+            self._stubborn.add(state)
+        points, start = self._stimulus(state.path, pause, edges)
+        return self.simulator.transient(points, loads, start + after, step, (), settings, retry), start
 
-    def _stimulus(self, vectors, pause, edges):
-        """(input -> points, time from which edges count). vectors: applied one after another, every ``pause`` s."""
-        points = {}
+    def _stimulus(self, vectors: Sequence[Vector], pause: float, edges: Ramps) -> tuple[dict[str, Points], float]:
+        """The sources, and the time at which ``edges`` start. vectors: applied one after another, every ``pause`` s."""
+        points: dict[str, Points] = {}
         start = REST + pause * (len(vectors) - 1)
         for i, pin in enumerate(self.machine.inputs):
             line, level = [(0.0, vectors[0][i] * self.volts)], vectors[0][i]
@@ -106,63 +141,62 @@ class Bench:
             points[pin] = line
         return points, start
 
-    def edge(self, change, output, slew, load):
-        """Edge of ``output`` (a name) when ``change`` happens with the input slew ``slew`` s and ``load`` F on it.
+    def edge(self, change: Change, output: str, slew: float, load: float) -> Edge:
+        """Edge of ``output`` when ``change`` happens with the input slew ``slew`` s and ``load`` F on it.
 
-        Measured once, then known. Raises SimulationError when the output does not arrive.
+        Measured once and kept. Raises SimulationError when the output does not arrive.
         """
         key = change, output, slew, load
-        if key not in self.edges:
-            self.edges[key] = self._edge(*key)
-        return self.edges[key]
+        if key not in self._edges:
+            self._edges[key] = self._edge(*key)
+        return self._edges[key]
 
-    def _edge(self, change, output, slew, load):
+    def _edge(self, change: Change, output: str, slew: float, load: float) -> Edge:
         ramp = self.conditions.ramp(slew)
-        pin, rising = self.machine.inputs[change.pin], bool(change.after.inputs[change.pin])
-        k = self.machine.outputs.index(output)
-        up = bool(change.after.outputs[k])
+        up = bool(change.after.outputs[self.machine.outputs.index(output)])
         tail = self.patience(output, load)
         for _ in range(DOUBLINGS):
             step = (ramp + tail) / self.conditions.settings.steps
             wave, start = self.run(
                 change.before,
-                {change.pin: [(0.0, ramp, int(rising))]},
+                {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]},
                 ramp + tail,
                 step,
                 {output: load},
                 pause=2 * tail + QUICK,
             )
-            found = self._measure(wave, pin, rising, output, up, start, start + ramp + tail, load)
+            found = self._measure(wave, change, output, up, start, start + ramp + tail, load)
             if found:
-                known = self.tail[output]
-                known[0] = max(known[0], 2 * found.slew if load <= 1e-15 else 0)
-                known[1] = max(known[1], 3 * found.slew / load if load > 1e-15 else 0)
+                base, rate = self._tail.get(output, Tail())
+                if load > 1e-15:
+                    self._tail[output] = Tail(base, max(rate, 3 * found.slew / load))
+                else:
+                    self._tail[output] = Tail(max(base, 2 * found.slew), rate)
                 return found
             tail *= 2
+        pin = self.machine.inputs[change.pin]
         raise SimulationError(
             f"{self.cell.name}: {output} does not reach its level after {pin} changes", self.simulator.last
         )
 
-    def _measure(self, wave, pin, rising, output, up, start, stop, load):
-        """Edge, or None when the output has not arrived within 2 % of the supply."""
-        c, volts = self.conditions, self.volts
+    def _measure(
+        self, wave: Wave, change: Change, output: str, up: bool, start: float, stop: float, load: float
+    ) -> Edge | None:
+        """The Edge, None when the output has not arrived within 2 % of the supply."""
+        c, volts, pin = self.conditions, self.volts, self.machine.inputs[change.pin]
         if abs(wave.at(output, stop) - up * volts) > 0.02 * volts:
             return None
         first, last = (c.lower, c.upper) if up else (c.upper, c.lower)
-        times = [wave.cross(output, level * volts, up, start) for level in (c.middle, first, last)]
-        here = wave.cross(pin, c.middle * volts, rising, start)
-        if None in times:
+        middle, begin, end = (wave.cross(output, level * volts, up, start) for level in (c.middle, first, last))
+        here = wave.cross(pin, c.middle * volts, bool(change.after.inputs[change.pin]), start)
+        if middle is None or begin is None or end is None or here is None:
             return None
         charge = sum(self.moved(wave, rail, start, stop) for rail in self.supplies)
-        return Edge(
-            times[0] - here,
-            times[2] - times[1],
-            charge * volts - load * volts**2 / 2,
-            self.moved(wave, pin, start, stop),
-        )
+        energy = charge * volts - load * volts**2 / 2
+        return Edge(middle - here, end - begin, energy, self.moved(wave, pin, start, stop))
 
-    def moved(self, wave, source, start, stop):
-        """Charge through ``source`` beyond what leaks before and after."""
+    def moved(self, wave: Wave, source: str, start: float, stop: float) -> float:
+        """Charge (C) through ``source`` beyond the leakage before and after."""
         before, after = (float(wave.current[source][i]) for i in (0, -1))
         if abs(after) > 1e-9:  # not at rest yet, no leakage
             after = before

@@ -7,31 +7,29 @@ up to 50 % or 100 %, with other slews or loads, within 6 % to 20 %.
 
 import numpy as np
 
+from cells.characterize.bench import Bench, spread
+from cells.netlist.states import Change
+
 END = 0.9  # of the ramp, up to which charge counts
 
 
-def capacitance(bench, pin):
-    """(rise, fall) in F of the input ``pin`` at the middle slew: the mean over states.
+def capacitance(bench: Bench, pin: str) -> tuple[float, float]:
+    """F of the input ``pin`` for a rising and a falling edge at the middle slew: the mean over states.
 
-    States in which an output follows, where there are any, at most Conditions.states of them for each direction.
+    At most Conditions.states of the states in which an output follows, of all states where there is none.
     """
-    return tuple(float(np.mean([_one(bench, change) for change in _changes(bench, pin, level)])) for level in (1, 0))
+    rise, fall = (float(np.mean([_one(bench, change) for change in _changes(bench, pin, level)])) for level in (1, 0))
+    return rise, fall
 
 
-def _changes(bench, pin, level):
-    machine, found = bench.machine, {}
-    for change in sorted(machine.changes, key=lambda c: len(c.before.path)):
-        if machine.inputs[change.pin] == pin and change.after.inputs[change.pin] == level:
-            found.setdefault((change.before.inputs, change.before.outputs), change)
-    changes = list(found.values())
+def _changes(bench: Bench, pin: str, level: int) -> list[Change]:
+    changes = bench.machine.toggles(pin, level)
     changes = [c for c in changes if c.before.outputs != c.after.outputs] or changes
-    few = min(len(changes), bench.conditions.states)
-    return [changes[round(i)] for i in np.linspace(0, len(changes) - 1, few)]
+    return spread(changes, bench.conditions.states)
 
 
-def _one(bench, change):
-    c = bench.conditions
-    ramp = c.ramp(c.slews[len(c.slews) // 2])
+def _one(bench: Bench, change: Change) -> float:
+    ramp = bench.conditions.ramp(bench.conditions.middle_slew)
     edges = {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]}
     wave, start = bench.run(change.before, edges, ramp, ramp / 50, bench.middle)
     return abs(wave.charge(bench.machine.inputs[change.pin], start, start + END * ramp)) / (END * bench.volts)

@@ -1,4 +1,4 @@
-"""Under which conditions tables are made, and how Liberty measures: one record for all that decides a result."""
+"""The conditions of a characterization: every parameter that decides a result."""
 
 from dataclasses import dataclass, field
 
@@ -13,9 +13,9 @@ class Conditions:
 
     lower, upper, middle: of slews and delays, SkyWater's 20 %, 80 %, 50 % without derating. slews: the input slews of a
     table, shortest first. loads: points of its load axis. least_load: its first. longest_slew: at the output, where
-    the load axis ends. constraint_slews: of setup and hold tables. degrade: by how much the clock-to-output delay may
-    grow at the least setup or hold time. states: in how many states at most something is measured to choose one. bend:
-    by how much a value between two points may be wrong before a point is added; extra: points added at most.
+    the load axis ends. constraint_slews: of setup and hold tables. degrade: share by which the clock-to-output delay
+    may grow at the least setup or hold time. states: most states that are tried to choose one. bend: error of an
+    interpolated value from which a point is added; extra: most points that are added.
     """
 
     corner: Corner
@@ -23,18 +23,18 @@ class Conditions:
     lower: float = 0.2
     upper: float = 0.8
     middle: float = 0.5
-    slews: tuple = (0.01e-9, 0.0230506e-9, 0.0531329e-9, 0.122474e-9, 0.282311e-9, 0.650743e-9, 1.5e-9)
+    slews: tuple[float, ...] = (0.01e-9, 0.0230506e-9, 0.0531329e-9, 0.122474e-9, 0.282311e-9, 0.650743e-9, 1.5e-9)
     loads: int = 7
     least_load: float = 0.5e-15
     longest_slew: float = 1.5e-9
-    constraint_slews: tuple = (0.01e-9, 0.5e-9, 1.5e-9)
+    constraint_slews: tuple[float, ...] = (0.01e-9, 0.5e-9, 1.5e-9)
     degrade: float = 0.1
     states: int = 4
     bend: float = 0.015
     extra: int = 6
     settings: Settings = field(default_factory=lambda: Settings(reltol=1e-4, method="gear", steps=50))
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 0 < self.lower < self.middle < self.upper < 1:
             raise ParameterError("thresholds = lower, middle, upper: must rise between 0 and 1")
         for name in ("slews", "constraint_slews"):
@@ -48,6 +48,11 @@ class Conditions:
         if not 0 < self.degrade < 1:
             raise ParameterError(f"degrade = {self.degrade}: must be between 0 and 1")
 
-    def ramp(self, slew):
+    @property
+    def middle_slew(self) -> float:
+        """The slew in the middle of the table's axis."""
+        return self.slews[len(self.slews) // 2]
+
+    def ramp(self, slew: float) -> float:
         """Length in s of the whole ramp, 0 to 100 %, whose slew is ``slew`` s."""
         return slew / (self.upper - self.lower)

@@ -1,78 +1,87 @@
 """Setup, hold, recovery, removal and the shortest pulses, by bisection.
 
 A constraint is kept while the output ends where it should and, if it moves, takes at most Conditions.degrade longer
-than without any pressure. Near the edge a flip-flop hangs between its levels for as long as one likes: a run that
-has not settled by its end, or not finished by its time-out, does not keep the constraint.
+than without any pressure. Near the edge a flip-flop can be metastable for any time: a run that has not settled by its
+end, or not finished by its timeout, does not keep the constraint.
 
-The output carries the load at two thirds of its axis: with it SkyWater's setup and hold times come out within 15 ps;
+The output carries the load at two thirds of its axis: with it SkyWater's setup and hold times are met within 15 ps;
 with the least load those of a rising output are 20 to 50 ps longer, for its delay may grow by less.
 """
 
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
-from cells.characterize.scenario import Scenarios
+from cells.characterize.bench import Bench
+from cells.characterize.measured import Constraint
+from cells.characterize.scenario import Scenario, Scenarios
+from cells.characterize.tries import Tries
+from cells.netlist.states import Output, State
 from cells.spice.engine import SimulationError
 
 RESOLUTION = 2e-12  # s, of a bisection
 RELTOL = 1e-3  # moves a setup time by less than 1 ps, and takes half the time of 1e-4
 NEAR = 16e-12  # s, first step away from a guess
 PATIENCE = 5.0  # s of run time for one run of a search
-FAR = 1.0  # share of the settling time in which a constraint lies, beyond the ramps
+FAR = 1.0  # share of the settling time in which a constraint is searched, beyond the ramps
 
 
-def constraints(bench, tried):
-    """Every constraint of a cell with storage: list of dict(pin, related, type, slews, rise, fall)."""
-    cell, found = bench.cell, []
-    scenarios, storage = Scenarios(cell), cell.storage
+class Event(NamedTuple):
+    """Input number ``pin`` goes to ``level``: when (s) its 50 % point is after the clock's, with which slew (s)."""
+
+    pin: int
+    when: float
+    level: int
+    slew: float
+
+
+def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
+    """Every constraint of a cell with storage."""
+    scenarios = Scenarios(bench.cell)
+    storage, slews = scenarios.storage, bench.conditions.constraint_slews
+    found: list[Constraint] = []
     edge = "rising" if bool(storage.active) != (storage.kind == "latch") else "falling"
+
+    def searched(pin: str, kind: str, rise: Sequence[Scenario], fall: Sequence[Scenario]) -> None:
+        constraint: Constraint = {"pin": pin, "related": storage.clock, "type": kind, "slews": slews}
+        if rise:
+            constraint["rise"] = tried(f"{pin} rise: {kind}", _longest, bench, rise)
+        if fall:
+            constraint["fall"] = tried(f"{pin} fall: {kind}", _longest, bench, fall)
+        found.append(constraint)
+
     for pin in storage.data_pins:
-        for kind, scenario in (("setup", scenarios.setup), ("hold", scenarios.hold)):
-            by_edge = {name: scenario(pin, level) for level, name in ((1, "rise"), (0, "fall"))}
-            found.append(_searched(bench, tried, pin, storage.clock, f"{kind}_{edge}", by_edge))
-    for pin, level in filter(None, (storage.clear, storage.preset)):
+        searched(pin, f"setup_{edge}", scenarios.setup(pin, 1), scenarios.setup(pin, 0))
+        searched(pin, f"hold_{edge}", scenarios.hold(pin, 1), scenarios.hold(pin, 0))
+    for pin, level in storage.asynchronous:
         for kind, early in (("recovery", True), ("removal", False)):
-            by_edge = {"fall" if level else "rise": scenarios.release(pin, early)}
-            found.append(_searched(bench, tried, pin, storage.clock, f"{kind}_{edge}", by_edge))
-    pulses = {(pin, level) for pin, level in filter(None, (storage.clear, storage.preset))}
+            release = scenarios.release(pin, early)
+            searched(pin, f"{kind}_{edge}", [] if level else release, release if level else [])
+    pulses = set(storage.asynchronous)
     pulses |= {(storage.clock, level) for level in ((0, 1) if storage.kind != "latch" else (storage.active,))}
     for pin in sorted({pin for pin, _ in pulses}):
-        widths = {
-            ("fall", "rise")[level]: tried(f"{pin}: pulse to {level}", _widths, bench, scenarios, pin, level)
-            for other, level in sorted(pulses)
-            if other == pin
-        }
-        found.append(
-            {
-                "pin": pin,
-                "related": pin,
-                "type": "min_pulse_width",
-                "slews": bench.conditions.constraint_slews,
-                **widths,
-            }
-        )
+        widths: Constraint = {"pin": pin, "related": pin, "type": "min_pulse_width", "slews": slews}
+        if (pin, 0) in pulses:
+            widths["fall"] = tried(f"{pin}: pulse to 0", _widths, bench, scenarios, pin, 0)
+        if (pin, 1) in pulses:
+            widths["rise"] = tried(f"{pin}: pulse to 1", _widths, bench, scenarios, pin, 1)
+        found.append(widths)
     return [f for f in found if f.get("rise") is not None or f.get("fall") is not None]
 
 
-def _searched(bench, tried, pin, related, kind, by_edge):
-    found = {"pin": pin, "related": related, "type": kind, "slews": bench.conditions.constraint_slews}
-    for name, scenarios in by_edge.items():
-        if scenarios:
-            found[name] = tried(f"{pin} {name}: {kind}", _longest, bench, scenarios)
-    return found
-
-
-def _longest(bench, scenarios):
-    """What every one of ``scenarios`` needs: the longest time for each pair of slews."""
+def _longest(bench: Bench, scenarios: Iterable[Scenario]) -> list[list[float]]:
+    """The longest time that one of ``scenarios`` needs, for each pair of slews."""
     return np.max([_times(bench, scenario) for scenario in scenarios], axis=0).tolist()
 
 
-def _times(bench, scenario):
-    """(slews of the clock, slews of the data) of least times between the two edges, s."""
-    slews, table = bench.conditions.constraint_slews, []
+def _times(bench: Bench, scenario: Scenario) -> list[list[float]]:
+    """Least times (s) between the two edges: (slews of the clock, slews of the data)."""
+    slews = bench.conditions.constraint_slews
+    table: list[list[float]] = []
     for i, clock in enumerate(slews):
-        row = []
+        row: list[float] = []
         for j, data in enumerate(slews):
             guess = (table[i - 1][j] + (row[j - 1] - table[i - 1][j - 1] if j else 0)) if i else None
             row.append(_time(bench, scenario, clock, data, guess))
@@ -80,29 +89,30 @@ def _times(bench, scenario):
     return table
 
 
-def _time(bench, scenario, clock_slew, data_slew, guess):
+def _time(bench: Bench, scenario: Scenario, clock_slew: float, data_slew: float, guess: float | None) -> float:
     """Least time from data to clock (setup, recovery) or from clock to data (hold, removal), between 50 % points."""
     ramps = bench.conditions.ramp(clock_slew) + bench.conditions.ramp(data_slew)
     far = FAR * bench.settling + ramps
     sign = -1 if scenario.early else 1
 
-    def run(offset):
+    def run(offset: float) -> float | None:
         events = [
-            (scenario.clock, 0.0, scenario.clock_to, clock_slew),
-            (scenario.data, sign * offset, scenario.data_to, data_slew),
+            Event(scenario.clock, 0.0, scenario.clock_to, clock_slew),
+            Event(scenario.data, sign * offset, scenario.data_to, data_slew),
         ]
         return outcome(bench, scenario.start, events, far, scenario.trigger, scenario.expected)
 
     return bisect(run, far, scenario.moves, bench.conditions.degrade, guess=guess)
 
 
-def _widths(bench, scenarios, pin, level):
+def _widths(bench: Bench, scenarios: Scenarios, pin: str, level: int) -> list[float] | None:
     """Shortest pulse in s for every slew, between 50 % points: a ramp at least, and what the slower level needs."""
-    found = [_shortest(bench, scenarios, pin, level, *case) for case in scenarios.pulses(pin, level)]
+    cases = scenarios.pulses(pin, level)
+    found = [_shortest(bench, scenarios, pin, level, state, expected) for state, expected in cases]
     return np.max(found, axis=0).tolist() if found else None
 
 
-def _shortest(bench, scenarios, pin, level, state, expected):
+def _shortest(bench: Bench, scenarios: Scenarios, pin: str, level: int, state: State, expected: Output) -> list[float]:
     number = bench.machine.inputs.index(pin)
     widths = []
     for slew in bench.conditions.constraint_slews:
@@ -110,22 +120,30 @@ def _shortest(bench, scenarios, pin, level, state, expected):
         far = FAR * bench.settling + 2 * ramp
         moved_first = scenarios.after[state, number].outputs[0] == expected
 
-        def run(width, slew=slew, far=far, first=moved_first):
-            events = [(number, 0.0, level, slew), (number, width, 1 - level, slew)]
+        def run(width: float, slew: float = slew, far: float = far, first: bool = moved_first) -> float | None:
+            events = [Event(number, 0.0, level, slew), Event(number, width, 1 - level, slew)]
             return outcome(bench, state, events, far, number, expected, edge=level if first else 1 - level)
 
         widths.append(bisect(run, far, True, bench.conditions.degrade, low=ramp))
     return widths
 
 
-def outcome(bench, state, events, far, trigger, expected, edge=None):
+def outcome(
+    bench: Bench,
+    state: State,
+    events: Sequence[Event],
+    far: float,
+    trigger: int,
+    expected: Output,
+    edge: int | None = None,
+) -> float | None:
     """Delay of the first output in s, 0.0 when it stays as it should, None when it does not end as expected.
 
-    events: (input number, time of its 50 % point after the clock's, level, slew). edge: of the trigger, else its last.
+    edge: level that the trigger (an input number) goes to, that of its first event by default.
     """
-    c, volts = bench.conditions, bench.volts
-    edges = {}
-    far += max(c.ramp(slew) for *_, slew in events) / 2
+    c, volts, high = bench.conditions, bench.volts, int(expected)
+    edges: dict[int, list[tuple[float, float, int]]] = {}
+    far += max(c.ramp(event.slew) for event in events) / 2
     for pin, when, level, slew in events:
         ramp = c.ramp(slew)
         edges.setdefault(pin, []).append((far + when - ramp / 2, ramp, level))
@@ -146,29 +164,37 @@ def outcome(bench, state, events, far, trigger, expected, edge=None):
     except SimulationError:
         return None
     stop = start + after
-    if abs(wave.at(output, stop) - expected * volts) > c.lower * volts:
+    if abs(wave.at(output, stop) - high * volts) > c.lower * volts:
         return None
     if state.outputs[0] == expected:
-        calm = np.abs(wave.voltage[output][wave.time > start] - expected * volts)
+        calm = np.abs(wave.voltage[output][wave.time > start] - high * volts)
         return 0.0 if calm.max() < c.middle * volts else None
-    level = edge if edge is not None else events[[e[0] for e in events].index(trigger)][2]
+    level = edge if edge is not None else next(e.level for e in events if e.pin == trigger)
     here = wave.cross(bench.machine.inputs[trigger], c.middle * volts, bool(level), start)
-    there = wave.cross(output, c.middle * volts, bool(expected), start)
+    there = wave.cross(output, c.middle * volts, bool(high), start)
     return None if here is None or there is None else there - here
 
 
-def bisect(run, far, moves, degrade, low=None, guess=None, resolution=RESOLUTION):
+def bisect(
+    run: Callable[[float], float | None],
+    far: float,
+    moves: bool,
+    degrade: float,
+    low: float | None = None,
+    guess: float | None = None,
+    resolution: float = RESOLUTION,
+) -> float:
     """Least x in [low, far] from which on ``run(x)`` is a delay within ``degrade`` of that at ``far``.
 
-    low: -far when not given. resolution: of x. guess: where it may lie, which saves runs. Raises SimulationError when
-    even ``far`` does not do.
+    low: -far by default. resolution: of x. guess: of the result, which saves runs. Raises SimulationError when ``run``
+    fails at ``far``.
     """
     easy = run(far)
     if easy is None:
         raise SimulationError("the constraint is not kept even far from the clock's edge", "")
     limit = easy + degrade * abs(easy) if moves else 0.0
 
-    def kept(x):
+    def kept(x: float) -> bool:
         delay = run(x)
         return delay is not None and delay <= limit
 
@@ -182,8 +208,8 @@ def bisect(run, far, moves, degrade, low=None, guess=None, resolution=RESOLUTION
     return high
 
 
-def _bracket(kept, low, high, guess):
-    """(not kept, kept) around ``guess``, found in steps that grow."""
+def _bracket(kept: Callable[[float], bool], low: float, high: float, guess: float | None) -> tuple[float, float]:
+    """Two points around ``guess``, the constraint not kept at the first, found in steps that grow."""
     if guess is None:
         return low, high
     guess, step = min(max(guess, low), high), NEAR

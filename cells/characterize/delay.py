@@ -1,27 +1,31 @@
 """Delay, slew and energy tables of an arc, and the load that an output may drive."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 
+from cells.characterize.bench import Bench, spread
+from cells.characterize.conditions import Conditions
 from cells.characterize.table import Table
+from cells.netlist.function import Arc
+from cells.netlist.states import Change
 
 FIELDS = ("delay", "slew", "energy")
 
 
-def slowest(bench, arc, load):
+def slowest(bench: Bench, arc: Arc, load: float) -> Change:
     """The change of ``arc`` with the longest delay at the middle slew and ``load`` F.
 
-    Liberty without conditions has one table for an arc: the slowest state stands for all. At most
-    ``Conditions.states`` states are tried, spread over those there are.
+    Liberty without conditions has one table for an arc: that of the slowest state. At most ``Conditions.states`` states
+    are tried, spread over all.
     """
-    changes = arc.changes
-    if len(changes) == 1:
-        return changes[0]
-    few = [changes[round(i)] for i in np.linspace(0, len(changes) - 1, min(len(changes), bench.conditions.states))]
-    slew = bench.conditions.slews[len(bench.conditions.slews) // 2]
-    return max(few, key=lambda change: bench.edge(change, arc.output, slew, load).delay)
+    few, slew = spread(arc.changes, bench.conditions.states), bench.conditions.middle_slew
+    return few[0] if len(few) == 1 else max(few, key=lambda c: bench.edge(c, arc.output, slew, load).delay)
 
 
-def table(bench, change, output, loads, slews=None):
+def table(
+    bench: Bench, change: Change, output: str, loads: Sequence[float], slews: Sequence[float] | None = None
+) -> Table:
     """Table of delay, slew and energy of ``output`` when ``change`` happens."""
     slews = slews or bench.conditions.slews
     edges = [[bench.edge(change, output, slew, load) for load in loads] for slew in slews]
@@ -29,28 +33,27 @@ def table(bench, change, output, loads, slews=None):
     return Table(tuple(slews), tuple(loads), values)
 
 
-def largest_load(bench, changes, output):
+def largest_load(bench: Bench, changes: Iterable[Change], output: str) -> float:
     """F at which the slew of ``output`` reaches Conditions.longest_slew, for the slower of ``changes``.
 
     Secant steps on an almost straight line, to 0.1 %.
     """
-    c = bench.conditions
-    return min(_largest(bench, change, output, c.slews[-1], c.longest_slew) for change in changes)
+    return min(_largest(bench, change, output) for change in changes)
 
 
-def _largest(bench, change, output, slew, wanted):
-    loads = [50e-15, 100e-15]
-    slews = [bench.edge(change, output, slew, load).slew for load in loads]
+def _largest(bench: Bench, change: Change, output: str) -> float:
+    c, loads = bench.conditions, [50e-15, 100e-15]
+    slews = [bench.edge(change, output, c.slews[-1], load).slew for load in loads]
     for _ in range(8):
         rate = (slews[-1] - slews[-2]) / (loads[-1] - loads[-2])
-        load = max(loads[-1] + (wanted - slews[-1]) / rate, loads[-1] / 10, 1e-15)
+        load = max(loads[-1] + (c.longest_slew - slews[-1]) / rate, loads[-1] / 10, 1e-15)
         if abs(load - loads[-1]) < 1e-3 * load:
             return load
         loads.append(load)
-        slews.append(bench.edge(change, output, slew, load).slew)
+        slews.append(bench.edge(change, output, c.slews[-1], load).slew)
     return loads[-1]
 
 
-def load_axis(conditions, largest):
+def load_axis(conditions: Conditions, largest: float) -> tuple[float, ...]:
     """Loads from the least to ``largest`` F, each the same factor above the one before."""
     return tuple(float(x) for x in np.geomspace(conditions.least_load, largest, conditions.loads))

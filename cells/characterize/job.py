@@ -1,39 +1,41 @@
-"""The characterization of one cell as a job: apart from where cells come from, so that it is kept when that changes."""
+"""The characterization of one cell as a job, kept when only the sources of cells change."""
 
 import importlib
 import json
 from dataclasses import asdict, dataclass
+from types import ModuleType
 
-from base import jobs
+from base.jobs import Job
 from base.sources import code
 from base.tools import finish
+from cells.characterize.cell import characterize
+from cells.characterize.conditions import Conditions
+from cells.characterize.measured import Measured
 from cells.netlist.check import check
-from cells.netlist.function import understand
+from cells.netlist.function import Cell, understand
 from cells.netlist.spice import parse
-
-from .cell import characterize
 
 
 @dataclass(frozen=True)
 class Source:
-    """name: short ('nand2_1'). netlist: SPICE text; area: um2, or None where no layout says it."""
+    """A cell: its short name ('nand2_1'), SPICE text, and area in um2 (None without a layout)."""
 
     name: str
     netlist: str
     area: float | None
 
 
-def cell_of(source, process):
-    """Cell of a Source, checked. Raises ParameterError."""
+def cell_of(source: Source, process: ModuleType) -> Cell:
+    """The cell of a Source, checked. Raises ParameterError."""
     netlist = parse(source.netlist, origin=source.name)
     check(netlist, process.POLARITY, process.SUPPLIES)
     return understand(netlist, process.POLARITY, process.SUPPLIES)
 
 
-def job(source, conditions, process):
-    """The job that characterizes ``source``; another netlist, corner, setting, model, ngspice or code is another."""
+def job(source: Source, conditions: Conditions, process: ModuleType) -> Job:
+    """The job that characterizes ``source``; its inputs are netlist, conditions, ngspice and code, models too."""
     name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
-    return jobs.Job(
+    return Job(
         name,
         _measure,
         (source, conditions, process.__name__),
@@ -46,6 +48,6 @@ def job(source, conditions, process):
     )
 
 
-def _measure(source, conditions, process):
+def _measure(source: Source, conditions: Conditions, process: str) -> Measured:
     module = importlib.import_module(process)
     return characterize(cell_of(source, module), module, conditions)

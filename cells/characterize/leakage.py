@@ -1,10 +1,13 @@
-"""What a cell draws in every state while nothing moves."""
+"""Leakage power in every state."""
+
+from cells.characterize.bench import Bench
+from cells.netlist.states import Output
 
 HOLD = 50e-6  # s, in which floating nodes between stacked transistors find their level
 
 
-def leakage(bench):
-    """[(inputs, outputs, W)] for every pair of input and output levels, inputs in the order of the machine's pins."""
+def leakage(bench: Bench) -> list[tuple[list[int], list[Output], float]]:
+    """(inputs, outputs, W) of every pair of input and output levels, in the order of the machine's pins."""
     machine, found = bench.machine, {}
     for state in sorted(machine.states, key=lambda s: len(s.path)):
         if (state.inputs, state.outputs) in found:

@@ -1,44 +1,30 @@
 """Energy of an input's edge that moves no output."""
 
-import numpy as np
-
-from cells.characterize.bench import REST
+from cells.characterize.bench import REST, Bench, spread
+from cells.netlist.states import Change
 
 MOST = 8  # states that are tried
 
 
-def quiet_energy(bench, pin):
-    """{'rise': (slews,) J, 'fall': ...} from the supply when ``pin`` toggles and every output stays, or None.
+def quiet_energy(bench: Bench, pin: str) -> dict[str, list[float]] | None:
+    """J from the supply for each slew when ``pin`` has an edge ('rise', 'fall') and every output stays.
 
-    Of the states in which that happens the one that takes least at the middle slew: what moves inside the cell in
-    the others belongs to the edge that brings it to an output. SkyWater's figures are of that state, too.
+    None where no state has such an edge. Of these states the one that takes least at the middle slew counts: what moves
+    inside the cell in the others belongs to the edge that brings it to an output. SkyWater's figures are of that state,
+    too.
     """
-    slews, found = bench.conditions.slews, {}
+    found = {}
     for level, name in ((1, "rise"), (0, "fall")):
-        changes = _quiet_changes(bench.machine, pin, level)
+        changes = bench.machine.toggles(pin, level, lambda change: change.before.kept == change.after.kept)
         if not changes:
             return None
-        few = min(len(changes), MOST)
-        chosen = [changes[round(i)] for i in np.linspace(0, len(changes) - 1, few)]
-        least = min(chosen, key=lambda change: _energy(bench, change, slews[len(slews) // 2]))
-        found[name] = np.array([_energy(bench, least, slew) for slew in slews])
+        chosen = spread(changes, MOST)
+        least = min(chosen, key=lambda change: _energy(bench, change, bench.conditions.middle_slew))
+        found[name] = [_energy(bench, least, slew) for slew in bench.conditions.slews]
     return found
 
 
-def _quiet_changes(machine, pin, level):
-    """Changes of ``pin`` to ``level`` that move no output, driven or not, one for every pair of inputs and outputs."""
-    found = {}
-    for change in sorted(machine.changes, key=lambda c: len(c.before.path)):
-        if (
-            machine.inputs[change.pin] == pin
-            and change.after.inputs[change.pin] == level
-            and change.before.kept == change.after.kept
-        ):
-            found.setdefault((change.before.inputs, change.before.outputs), change)
-    return list(found.values())
-
-
-def _energy(bench, change, slew):
+def _energy(bench: Bench, change: Change, slew: float) -> float:
     ramp = bench.conditions.ramp(slew)
     after = ramp + bench.settling
     loads = dict.fromkeys(bench.machine.outputs, bench.conditions.least_load)

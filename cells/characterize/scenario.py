@@ -1,17 +1,18 @@
-"""In which states a constraint is measured: found from the cell's states, not typed."""
+"""The states in which a constraint is measured, found from the cell's states."""
 
 from dataclasses import dataclass
 
-from cells.netlist.states import State
+from cells.netlist.function import Cell
+from cells.netlist.states import Output, State
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """``data`` and ``clock`` (input numbers) toggle in ``start``, in an order that the constraint says.
+    """Inputs ``data`` and ``clock`` (numbers) toggle in ``start``, in an order that the constraint gives.
 
     data_to, clock_to: their levels afterwards. expected: level of the first output at the end, if the constraint is
-    kept; moves: whether it differs from ``start``'s. early: kept while data comes early enough (else late enough).
-    trigger: input number from which the output's delay counts.
+    kept; moves: whether it differs from that in ``start``. early: kept while data comes early enough (else late
+    enough). trigger: input number from which the output's delay counts.
     """
 
     start: State
@@ -19,27 +20,26 @@ class Scenario:
     data_to: int
     clock: int
     clock_to: int
-    expected: int
+    expected: Output
     moves: bool
     early: bool
     trigger: int
 
 
 class Scenarios:
-    """Of ``cell`` (Cell with storage)."""
+    """The scenarios of a cell with storage."""
 
-    def __init__(self, cell):
+    def __init__(self, cell: Cell) -> None:
+        if cell.storage is None:
+            raise ValueError(f"cell = {cell.name}: must have storage")
         self.machine, self.storage = cell.machine, cell.storage
         self.clock = self.machine.inputs.index(self.storage.clock)
         self.after = {(c.before, c.pin): c.after for c in self.machine.changes}
-        self.idle = {
-            self.machine.inputs.index(p): 1 - level
-            for p, level in filter(None, (self.storage.clear, self.storage.preset))
-        }
+        self.idle = {self.machine.inputs.index(pin): 1 - level for pin, level in self.storage.asynchronous}
         self.states = sorted(self.machine.states, key=lambda s: len(s.path))
 
-    def _quiet(self, clock_level, but=None):
-        """States with the clock at a level and set and reset idle (all but input number ``but``)."""
+    def _quiet(self, clock_level: int, but: int | None = None) -> list[State]:
+        """States with the clock at a level, and set and reset idle (all but input number ``but``)."""
         return [
             s
             for s in self.states
@@ -47,74 +47,51 @@ class Scenarios:
             and all(s.inputs[p] == level for p, level in self.idle.items() if p != but)
         ]
 
-    def setup(self, pin, to):
-        """Scenarios of ``pin`` (name) going ``to`` 0 or 1 before the clock's edge: one for each level that it can bring
+    def setup(self, pin: str, to: int) -> list[Scenario]:
+        """Scenarios of ``pin`` going ``to`` 0 or 1 before the clock's edge, one for each level that it can bring.
 
-        (a scan enable either, data one).
+        A scan enable can bring either, data one.
         """
         return self._data(pin, to, early=True)
 
-    def hold(self, pin, to):
+    def hold(self, pin: str, to: int) -> list[Scenario]:
         """Scenarios of ``pin`` going ``to`` 0 or 1 after the clock's edge: one for each level that must stay."""
         return self._data(pin, to, early=False)
 
-    def _data(self, pin, to, early):
-        data, active = self.machine.inputs.index(pin), self.storage.active
-        latch = self.storage.kind == "latch"
-        clock_to = 1 - active if latch else active
-        found = {}
-        for s in self._quiet(1 - clock_to):
+    def _data(self, pin: str, to: int, early: bool) -> list[Scenario]:
+        found: dict[Output, list[Scenario]] = {}
+        for scenario in self._scenarios(self.machine.inputs.index(pin), to, early):
+            found.setdefault(scenario.expected, []).append(scenario)
+        return [next((f for f in same if f.moves), same[0]) for _, same in sorted(found.items())]
+
+    def release(self, pin: str, early: bool) -> list[Scenario]:
+        """The first scenario of set or reset ``pin`` let go before (recovery) or after (removal) the clock's edge."""
+        data = self.machine.inputs.index(pin)
+        return self._scenarios(data, self.idle[data], early)[:1]
+
+    def _scenarios(self, data: int, to: int, early: bool) -> list[Scenario]:
+        """Scenarios of input number ``data`` going ``to`` a level, of every state in which the order counts."""
+        active, latch, asynchronous = self.storage.active, self.storage.kind == "latch", data in self.idle
+        clock_to, found = 1 - active if latch else active, []
+        for s in self._quiet(1 - clock_to, but=data):
             moved = self.after.get((s, data))
             if s.inputs[data] == to or moved is None:
                 continue
             kept, taken = self.after.get((s, self.clock)), self.after.get((moved, self.clock))
-            if kept is None or taken is None or kept.outputs[0] == taken.outputs[0]:
-                continue
-            expected = (taken if early else kept).outputs[0]
-            trigger = data if latch else self.clock
-            found.setdefault(expected, []).append(
-                Scenario(s, data, to, self.clock, clock_to, expected, expected != s.outputs[0], early, trigger)
-            )
-        return [next((f for f in same if f.moves), same[0]) for _, same in sorted(found.items())]
-
-    def release(self, pin, early):
-        """Scenario of an asynchronous ``pin`` let go before (recovery) or after (removal) the clock's edge: a list of
-
-        one, or none.
-        """
-        data, active = self.machine.inputs.index(pin), self.storage.active
-        latch = self.storage.kind == "latch"
-        clock_to = 1 - active if latch else active
-        for s in self._quiet(1 - clock_to, but=data):
-            moved = self.after.get((s, data))
-            if s.inputs[data] == self.idle[data] or moved is None:
-                continue
-            kept, taken = self.after.get((s, self.clock)), self.after.get((moved, self.clock))
             if kept is None or taken is None:
                 continue
-            kept = self.after.get((kept, data), kept)
-            if kept.outputs[0] == taken.outputs[0]:
-                continue
-            expected = (taken if early else kept).outputs[0]
-            return [
-                Scenario(
-                    s,
-                    data,
-                    self.idle[data],
-                    self.clock,
-                    clock_to,
-                    expected,
-                    expected != s.outputs[0],
-                    early,
-                    data if latch else self.clock,
-                )
-            ]
-        return []
+            if asynchronous:
+                kept = self.after.get((kept, data), kept)
+            if kept.outputs[0] != taken.outputs[0]:
+                expected = (taken if early else kept).outputs[0]
+                moves, trigger = expected != s.outputs[0], data if latch else self.clock
+                found.append(Scenario(s, data, to, self.clock, clock_to, expected, moves, early, trigger))
+        return found
 
-    def pulses(self, pin, level):
-        """[(state, expected output)], one for each level that a pulse to ``level`` on ``pin`` (clock, set or reset) can
+    def pulses(self, pin: str, level: int) -> list[tuple[State, Output]]:
+        """States and expected outputs, one for each level that a pulse to ``level`` on ``pin`` can move the output to.
 
-        move the output to.
+        pin: clock, set or reset.
         """
         number = self.machine.inputs.index(pin)
         states = (
@@ -122,12 +99,10 @@ class Scenarios:
             if number == self.clock
             else [s for s in self.states if all(s.inputs[p] == v for p, v in self.idle.items())]
         )
-        found = {}
+        found: dict[Output, State] = {}
         for s in states:
             first = self.after.get((s, number))
             last = first and self.after.get((first, number))
-            if s.inputs[number] == level or last is None:
-                continue
-            if last.outputs[0] != s.outputs[0]:
+            if s.inputs[number] != level and last and last.outputs[0] != s.outputs[0]:
                 found.setdefault(last.outputs[0], s)
         return [(state, expected) for expected, state in sorted(found.items())]

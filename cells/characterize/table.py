@@ -3,23 +3,24 @@
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 
 @dataclass(frozen=True)
 class Table:
-    """slews: (rows,) s; loads: (columns,) F; values: name -> (rows, columns) in SI units."""
+    """Quantities by name, each (slews, loads) in SI units."""
 
-    slews: tuple
-    loads: tuple
-    values: dict
+    slews: tuple[float, ...]
+    loads: tuple[float, ...]
+    values: dict[str, npt.NDArray[np.float64]]
 
-    def at(self, name, slew, load):
+    def at(self, name: str, slew: float, load: float) -> float:
         """Value by bilinear interpolation, and extrapolation outside, as timing analysis does it."""
         return bilinear(self.slews, self.loads, self.values[name], slew, load)
 
 
-def bilinear(rows, columns, values, row, column):
-    """Value at (row, column) of ``values`` ((rows, columns)) with axes that rise; linear beyond the ends."""
+def bilinear(rows: npt.ArrayLike, columns: npt.ArrayLike, values: npt.ArrayLike, row: float, column: float) -> float:
+    """Value at (row, column) of ``values`` (rows, columns) with axes that rise; linear beyond the ends."""
     rows, columns, values = (np.asarray(a, dtype=float) for a in (rows, columns, values))
     i = int(np.clip(np.searchsorted(rows, row) - 1, 0, len(rows) - 2))
     j = int(np.clip(np.searchsorted(columns, column) - 1, 0, len(columns) - 2))

@@ -1,25 +1,33 @@
-"""A tri-state output let go: how long it still drives, and what its pin then weighs.
+"""A tri-state output let go: how long it still drives, and its pin's capacitance then.
 
-A capacitor as load does not show when an output is let go. Here a source holds the output at half the supply and the
-current that it takes from the cell is watched: the output counts as let go when LEFT of that current is left. So the
-time does not depend on the load; its table has the same value for every one.
+A capacitor as load does not show when an output is let go. Here a source holds the output at half the supply: the
+output counts as let go when the source takes only LEFT of the current from the cell. So the time does not depend on the
+load; its table has the same value for every one.
 """
+
+from collections.abc import Mapping, Sequence
+from types import ModuleType, TracebackType
+from typing import Self
 
 import numpy as np
 
-from cells.characterize.bench import DOUBLINGS, REST
+from cells.characterize.bench import DOUBLINGS, REST, Bench
+from cells.characterize.capacitance import END
+from cells.characterize.measured import ArcTables, arc_tables
+from cells.netlist.function import Arc
+from cells.netlist.states import Change, Vector
 from cells.spice.circuit import circuit
-from cells.spice.engine import SimulationError, Simulator
+from cells.spice.engine import Points, SimulationError, Simulator
+from cells.spice.wave import Wave
 
 LEFT = 0.1  # of the current that the output drives at half the supply
 HELD = 0.5  # of the supply, at which the output is held
-END = 0.9  # of a ramp at the output, over which charge counts as for inputs
 
 
 class Held:
-    """A context manager: the cell of ``bench`` with a source at ``output`` (a name) in place of a load."""
+    """A context manager around the cell of ``bench`` with a source at ``output`` in place of a load."""
 
-    def __init__(self, bench, output, process):
+    def __init__(self, bench: Bench, output: str, process: ModuleType) -> None:
         self.bench, self.output = bench, output
         c, machine = bench.conditions, bench.machine
         others = [o for o in machine.outputs if o != output]
@@ -32,23 +40,23 @@ class Held:
             c.settings,
         )
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         self.simulator.__enter__()
         return self
 
-    def __exit__(self, *error):
-        self.simulator.__exit__(*error)
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        self.simulator.__exit__(kind, error, at)
 
-    def run(self, inputs, moves, after):
-        """Wave of ``after`` s from REST on. inputs: levels; moves: pin -> (ramp in s, V from, V to), the output too."""
-        volts = self.bench.volts
-        stimulus = {pin: [(0.0, level * volts)] for pin, level in zip(self.bench.machine.inputs, inputs, strict=True)}
+    def run(self, inputs: Vector, moves: Mapping[str, tuple[float, float, float]], after: float) -> Wave:
+        """Wave of ``after`` s from REST on. inputs: levels; moves: ramp (s), V before and V after of pins."""
+        pins, volts = zip(self.bench.machine.inputs, inputs, strict=True), self.bench.volts
+        stimulus: dict[str, Points] = {pin: [(0.0, level * volts)] for pin, level in pins}
         for pin, (ramp, low, high) in moves.items():
             stimulus[pin] = [(0.0, low), (REST, low), (REST + ramp, high)]
         return self.simulator.transient(stimulus, {}, REST + after, after / self.bench.conditions.settings.steps)
 
-    def let_go(self, change, slew):
-        """Seconds from the middle of the edge of ``change`` until LEFT of the output's current is left."""
+    def let_go(self, change: Change, slew: float) -> float:
+        """Seconds from the middle of the edge of ``change`` until the output's current is LEFT of what it was."""
         bench, c = self.bench, self.bench.conditions
         ramp, level, pin = c.ramp(slew), HELD * bench.volts, bench.machine.inputs[change.pin]
         first, last = (state.inputs[change.pin] * bench.volts for state in (change.before, change.after))
@@ -66,34 +74,28 @@ class Held:
             f"{bench.cell.name}: {self.output} drives on after {pin} has changed", self.simulator.last
         )
 
-    def capacitance(self):
-        """(rise, fall) in F of the output while nothing drives it: the mean over the states in which that is so."""
+    def capacitance(self) -> tuple[float, float]:
+        """F of the floating output for a rising and a falling ramp: the mean over the states in which it floats."""
         bench, c = self.bench, self.bench.conditions
-        number, ramp = bench.machine.outputs.index(self.output), c.ramp(c.slews[len(c.slews) // 2])
+        number, ramp = bench.machine.outputs.index(self.output), c.ramp(c.middle_slew)
         states = sorted({s.inputs for s in bench.machine.states if s.outputs[number] == "Z"})[: c.states]
 
-        def one(inputs, low, high):
+        def one(inputs: Vector, low: float, high: float) -> float:
             wave = self.run(inputs, {self.output: (ramp, low, high)}, ramp)
             return abs(wave.charge(self.output, REST, REST + END * ramp)) / (END * bench.volts)
 
-        return tuple(
-            float(np.mean([one(inputs, *ends) for inputs in states]))
-            for ends in ((0.0, bench.volts), (bench.volts, 0.0))
+        rise, fall = (
+            float(np.mean([one(inputs, low, bench.volts - low) for inputs in states])) for low in (0.0, bench.volts)
         )
+        return rise, fall
 
 
-def disable(held, arc, slews, loads):
-    """Tables of an arc that lets an output go, as `cell._arc` gives others': of the slowest of its states; it ends in
+def disable(held: Held, arc: Arc, slews: Sequence[float], loads: Sequence[float]) -> ArcTables:
+    """The tables of an arc that lets an output go, in the slowest of its states.
 
-    no edge of the output, so that the slew is 0 (OpenSTA warns where there is none).
+    No edge of the output ends it: its slew is 0 (OpenSTA warns where there is none).
     """
-    middle = slews[len(slews) // 2]
-    few = arc.changes[: held.bench.conditions.states]
+    few, middle = arc.changes[: held.bench.conditions.states], slews[len(slews) // 2]
     change = few[0] if len(few) == 1 else max(few, key=lambda change: held.let_go(change, middle))
-    return {
-        "slews": slews,
-        "loads": loads,
-        "state": list(change.before.inputs),
-        "delay": [[held.let_go(change, slew)] * len(loads) for slew in slews],
-        "slew": np.zeros((len(slews), len(loads))).tolist(),
-    }
+    delays = [[held.let_go(change, slew)] * len(loads) for slew in slews]
+    return arc_tables(arc, slews, loads, change.before, delays, [[0.0] * len(loads) for _ in slews])

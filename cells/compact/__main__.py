@@ -7,8 +7,8 @@ from pathlib import Path
 
 from base.files import check_folder
 from base.tools import ToolError
-from cells.compact.library import written
 from cells.compact.make import NoLayout
+from cells.compact.write import written
 from models.parameters import ParameterError
 
 

@@ -5,7 +5,6 @@ Both by the same Yosys script from Liberty files without delays: the mapper look
 
 import argparse
 import json
-import re
 import sys
 import tempfile
 from collections import Counter
@@ -13,6 +12,7 @@ from pathlib import Path
 
 from base.files import insert
 from base.jobs import Job, run
+from base.liberty.read import areas
 from base.tools import ToolError
 from base.tools import run as run_tool
 from models.parameters import ParameterError
@@ -32,7 +32,7 @@ def mapped(verilog, top, liberty):
         )
         run_tool(["yosys", "-q", "-p", script])
         cells = json.loads(report.read_text())["design"]["num_cells_by_type"]
-    area = _areas(Path(liberty))
+    area = areas(Path(liberty))
     if left := sorted(cells.keys() - area.keys()):
         raise ToolError(f"yosys: {top}: left {', '.join(left)} that {liberty} does not have")
     return {"um2": sum(area[cell] * number for cell, number in cells.items()), "cells": cells}
@@ -95,7 +95,7 @@ def _blocks(found, total):
 
 def _cells(found, k, liberty, most=10):
     """The cells that the area of all blocks goes to, in library ``k`` of 0 and 1."""
-    area, count = _areas(liberty), Counter()
+    area, count = areas(liberty), Counter()
     for pair in found.values():
         count.update(pair[k]["cells"])
     total = sum(count[cell] * area[cell] for cell in count)
@@ -106,10 +106,6 @@ def _cells(found, k, liberty, most=10):
             f"{count[cell] * area[cell] / total:.1%} |"
         )
     return "\n".join(lines)
-
-
-def _areas(liberty):
-    return {name: float(area) for name, area in re.findall(r"cell\((\w+)\) \{\s*area : ([\d.]+);", liberty.read_text())}
 
 
 if __name__ == "__main__":

@@ -1,12 +1,8 @@
 """The library: every cell of the catalogue made once and kept, and as PDKMaster's objects for its exporters."""
 
-import shutil
 from pathlib import Path
 
-from base.cache import digest
-from base.files import staged
 from base.jobs import Job, run
-from base.sources import code
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.make import make, recipe
@@ -14,7 +10,6 @@ from cells.compact.ties import diode, ties
 
 NAME = "StdCellLib"
 FOLDER = Path("build/cells/compact")
-SITE = "compact"
 
 
 def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
@@ -44,34 +39,6 @@ def library(canvas=None, store=FOLDER / "drawn", workers=-1):
 
     canvas = canvas or Canvas()
     return to_pdkmaster(NAME, canvas, drawn(canvas, store, workers))
-
-
-def pins(schematic):
-    """Port -> cells.lef.PinKind."""
-    from cells.lef import PinKind
-
-    found = {pin: PinKind("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
-    found |= {pin: PinKind("OUTPUT") for pin in schematic.outputs}
-    return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
-
-
-def written(folder=FOLDER, canvas=None):
-    """The library's GDS; written into ``folder`` with all other files unless they are there and of this content."""
-    from cells.compact.write import write
-
-    canvas = canvas or Canvas()
-    folder = Path(folder)
-    stamp = digest(code(__name__), canvas)
-    mark = folder / "content"
-    if not (mark.exists() and mark.read_text() == stamp):
-        made = library(canvas, folder / "drawn")
-        with staged(folder) as part:
-            write(made, canvas, part)
-            for path in part.iterdir():
-                if path.is_dir():
-                    shutil.rmtree(folder / path.name, ignore_errors=True)
-        mark.write_text(stamp)
-    return folder / "compact.gds"
 
 
 def schematic_spice(schematic, canvas):

@@ -1,13 +1,20 @@
 """The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, decks, and what Coriolis loads."""
 
 import json
+import shutil
+from pathlib import Path
 
+from base.cache import digest
+from base.files import staged
 from base.gds import write_gds
 from base.lef.write import library as lef_library
+from base.sources import code
+from cells.compact.canvas import Canvas
 from cells.compact.liberty import liberty
-from cells.compact.library import NAME, SITE, pins
+from cells.compact.library import FOLDER, NAME, library
+from cells.compact.transistors import Schematic
 from cells.compact.verilog import verilog
-from cells.lef import abstract
+from cells.lef import PinKind, abstract
 from platforms.extraction import extraction_platform
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
@@ -31,9 +38,26 @@ def fix(library):
                 Horizontal.create(net, layer, (box.getYMin() + box.getYMax()) // 2, box.getYMax() - box.getYMin(),
                                   box.getXMin(), box.getXMax())
 '''
+SITE = "compact"
 OUTPUTS = ("q", "nq", "zero", "one", "sum", "carry")
 BOUNDARY = (235, 4)
 NPC = (95, 20)  # nitride cut over the gates' contacts: a mask that PDKMaster's technology leaves out
+
+
+def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
+    """The library's GDS in ``folder``; all files are written there unless they are of this code and ``canvas``."""
+    canvas, folder = canvas or Canvas(), Path(folder)
+    stamp = digest(code(__name__), canvas)
+    mark = folder / "content"
+    if not (mark.exists() and mark.read_text() == stamp):
+        drawn = library(canvas, folder / "drawn")
+        with staged(folder) as part:
+            write(drawn, canvas, part)
+            for path in part.iterdir():
+                if path.is_dir():
+                    shutil.rmtree(folder / path.name, ignore_errors=True)
+        mark.write_text(stamp)
+    return folder / "compact.gds"
 
 
 def write(library, canvas, folder):
@@ -80,8 +104,14 @@ def _spice(cells):
 
 
 def _lef(cells, canvas, gds):
-    macros = (abstract(gds, cell.name, extraction_platform("sky130"), pins(cell.schematic), SITE) for cell in cells)
+    macros = (abstract(gds, cell.name, extraction_platform("sky130"), _pins(cell.schematic), SITE) for cell in cells)
     return lef_library(SITE, canvas.site, canvas.height, macros)
+
+
+def _pins(schematic: Schematic) -> dict[str, PinKind]:
+    found = {pin: PinKind("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
+    found |= {pin: PinKind("OUTPUT") for pin in schematic.outputs}
+    return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
 
 
 def _decks(folder):

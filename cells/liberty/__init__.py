@@ -1,0 +1,1 @@
+"""Liberty libraries from measured cells: built, checked, read by tools, compared."""

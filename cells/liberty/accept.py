@@ -1,4 +1,4 @@
-"""Do the tools that a library is for read it without a word?"""
+"""Whether the tools that a library is for read it without a warning."""
 
 import shutil
 import tempfile
@@ -10,22 +10,22 @@ SILENT, MISSING = "without a warning", "not installed"
 GOOD = (SILENT, MISSING)
 
 
-def readers(path):
-    """{tool: SILENT, MISSING, or what it said} of Yosys and OpenSTA reading the Liberty file ``path``."""
+def readers(path: str | Path) -> dict[str, str]:
+    """What Yosys and OpenSTA print when they read the Liberty file ``path``: SILENT, MISSING, or their output."""
     path = Path(path).absolute()
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"
         script.write_text(f"read_liberty {{{path}}}\nexit\n")
         commands = {
             "yosys": ["yosys", "-q", "-p", f"read_liberty {path}"],
-            "opensta": ["sta", "-no_splash", "-exit", script],
+            "opensta": ["sta", "-no_splash", "-exit", str(script)],
         }
-        return {tool: _said(command) for tool, command in commands.items()}
+        return {tool: _output(command) for tool, command in commands.items()}
 
 
-def _said(command):
+def _output(command: list[str]) -> str:
     if not shutil.which(command[0]):
         return MISSING
     done = finish(command)
-    said = (done.stdout + done.stderr).strip()
-    return said[-500:] if said else SILENT if done.returncode == 0 else f"status {done.returncode}"
+    output = (done.stdout + done.stderr).strip()
+    return output[-500:] if output else SILENT if done.returncode == 0 else f"status {done.returncode}"

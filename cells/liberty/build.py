@@ -1,18 +1,45 @@
 """Liberty from what the characterizer measured: ns, pF, pJ, nW, as SkyWater's libraries have it."""
 
+from collections.abc import Iterable, Mapping, Sequence
+from types import ModuleType
+from typing import NamedTuple
+
 import numpy as np
+import numpy.typing as npt
 
-from base.liberty.group import Group
+from base.liberty.group import Group, Value
+from cells.characterize.conditions import Conditions
+from cells.characterize.measured import ArcTables, Constraint, Measured
+from cells.netlist.function import Cell, PinLevel, Storage
+from cells.netlist.states import Machine, Output
 
+Floats = npt.NDArray[np.float64]
 NS, PF, PJ, NW = 1e9, 1e12, 1e12, 1e9
-TABLES = {"delay": "cell_{}", "slew": "{}_transition"}
 
 
-def library(name, conditions, cells, process, constants=None):
-    """Group 'library'. cells: [(Cell, measured dict, area in um2 or None)]; process: module with SUPPLIES.
+class Entry(NamedTuple):
+    """A cell with what was measured of it; area: um2, None without a layout."""
 
-    constants: cell -> ({pin: level}, um2), cells that hold a constant.
-    """
+    cell: Cell
+    measured: Measured
+    area: float | None
+
+
+class Constant(NamedTuple):
+    """A cell that holds constants: level of each pin, area in um2."""
+
+    levels: dict[str, int]
+    area: float
+
+
+def library(
+    name: str,
+    conditions: Conditions,
+    cells: Sequence[Entry],
+    process: ModuleType,
+    constants: Mapping[str, Constant] | None = None,
+) -> Group:
+    """The library of ``cells`` and of those that hold a constant. process: a module like platforms.sky130.models."""
     corner = conditions.corner
     lib = Group(
         "library",
@@ -48,9 +75,10 @@ def library(name, conditions, cells, process, constants=None):
         "default_output_pin_cap": 0.0,
         "default_leakage_power_density": 0.0,
     }
-    for rail, level in process.SUPPLIES.items():
-        if any(rail in cell.machine.netlist.ports for cell, _, _ in cells):
-            lib.attributes.setdefault("voltage_map", []).append((rail, level * corner.supply))
+    ports = {port for entry in cells for port in entry.cell.machine.netlist.ports}
+    lib.attributes["voltage_map"] = [
+        (rail, level * corner.supply) for rail, level in process.SUPPLIES.items() if rail in ports
+    ]
     lib.add(
         "operating_conditions",
         corner.name,
@@ -59,26 +87,25 @@ def library(name, conditions, cells, process, constants=None):
         voltage=corner.supply,
         tree_type="balanced_tree",
     )
-    _templates(lib, conditions, {_size(arc) for _, measured, _ in cells for arc in measured["arcs"]})
-    for cell, measured, area in cells:
-        lib.groups.append(_cell(cell, measured, area, process))
-    for cell, (pins, area) in (constants or {}).items():
-        group = lib.add("cell", cell, area=area, cell_leakage_power=0.0)
-        for pin, level in pins.items():
+    _templates(lib, conditions, {_size(arc) for entry in cells for arc in entry.measured["arcs"]})
+    lib.groups += [_cell(entry, process) for entry in cells]
+    for cell, constant in (constants or {}).items():
+        group = lib.add("cell", cell, area=constant.area, cell_leakage_power=0.0)
+        for pin, level in constant.levels.items():
             group.add("pin", pin, direction="output", function=str(level))
     return lib
 
 
-def _size(arc):
-    """'9_7': slews and loads of an arc's tables. ABC wants a template of just that size for every table."""
+def _size(arc: ArcTables) -> str:
+    """The size of an arc's tables ('9_7': slews, loads). ABC expects a template of this size for every table."""
     return f"{len(arc['slews'])}_{len(arc['loads'])}"
 
 
-def _templates(lib, c, sizes):
+def _templates(lib: Group, c: Conditions, sizes: Iterable[str]) -> None:
     slews, constraint = NS * np.array(c.slews), NS * np.array(c.constraint_slews)
     for size in sorted(sizes):
         rows, columns = map(int, size.split("_"))
-        axes = {
+        axes: dict[str, Value] = {
             "index_1": NS * np.geomspace(c.slews[0], c.slews[-1], rows),
             "index_2": PF * np.geomspace(c.least_load, 100 * c.least_load, columns),
         }
@@ -108,18 +135,20 @@ def _templates(lib, c, sizes):
     lib.add("lu_table_template", "width", variable_1="related_pin_transition", index_1=constraint)
 
 
-def _cell(cell, measured, area, process):
+def _cell(entry: Entry, process: ModuleType) -> Group:
+    cell, measured = entry.cell, entry.measured
     machine = cell.machine
     group = Group("cell", (cell.name,))
-    if area is not None:
-        group.attributes["area"] = float(area)
+    if entry.area is not None:
+        group.attributes["area"] = float(entry.area)
     _leakage(group, machine, measured["leakage"])
     for rail, level in process.SUPPLIES.items():
         if rail in machine.netlist.ports:
             well = rail in process.WELLS
             kind = ("nwell" if level else "pwell") if well else "primary_power" if level else "primary_ground"
             group.add("pg_pin", rail, pg_type=kind, voltage_name=rail)
-    _storage(group, cell)
+    if cell.storage:
+        _storage(group, cell.storage)
     for pin in machine.inputs:
         _input(group, cell, measured, pin)
     for output in machine.outputs:
@@ -127,7 +156,7 @@ def _cell(cell, measured, area, process):
     return group
 
 
-def _leakage(group, machine, states):
+def _leakage(group: Group, machine: Machine, states: Sequence[tuple[list[int], list[Output], float]]) -> None:
     if not states:
         return
     by_inputs = {}
@@ -142,39 +171,39 @@ def _leakage(group, machine, states):
     group.attributes["cell_leakage_power"] = NW * float(np.mean([watts for _, _, watts in states]))
 
 
-def _when(names, levels):
+def _when(names: Iterable[str], levels: Iterable[Output]) -> str:
     return "&".join(("" if level else "!") + name for name, level in zip(names, levels, strict=True))
 
 
-def _storage(group, cell):
-    s = cell.storage
-    if s is None:
-        return
-    clock = s.clock if s.active else f"!{s.clock}"
-    if s.kind == "ff":
-        inside = {"clocked_on": clock, "next_state": s.data}
-    elif s.kind == "latch":
-        inside = {"enable": clock, "data_in": s.data}
+def _storage(group: Group, storage: Storage) -> None:
+    if storage.kind == "gate":
+        group.attributes["clock_gating_integrated_cell"] = _gating(storage)
+    group.add("ff" if storage.kind == "ff" else "latch", "IQ", "IQ_N", **storage_attributes(storage))
+
+
+def storage_attributes(storage: Storage) -> dict[str, str]:
+    """The attributes of a cell's group ff, or latch."""
+    if storage.kind == "ff":
+        inside = {"clocked_on": storage.clocked_on, "next_state": storage.data}
+    elif storage.kind == "latch":
+        inside = {"enable": storage.clocked_on, "data_in": storage.data}
     else:
-        group.attributes["clock_gating_integrated_cell"] = _gating(s)
-        inside = {"enable": f"!{s.clock}" if s.active else s.clock, "data_in": s.data}
-    for name, hit in (("clear", s.clear), ("preset", s.preset)):
-        if hit:
-            inside[name] = hit[0] if hit[1] else f"!{hit[0]}"
-    if s.both is not None:
+        inside = {"enable": PinLevel(storage.clock, 1 - storage.active).active, "data_in": storage.data}
+    inside |= {name: pin.active for name, pin in (("clear", storage.clear), ("preset", storage.preset)) if pin}
+    if storage.both is not None:
         inside |= {
-            "clear_preset_var1": "HL"[1 - s.both] if s.both in (0, 1) else "X",
-            "clear_preset_var2": "L" if s.both else "H",
+            "clear_preset_var1": "HL"[1 - storage.both] if storage.both in (0, 1) else "X",
+            "clear_preset_var2": "L" if storage.both else "H",
         }
-    group.add("ff" if s.kind == "ff" else "latch", "IQ", "IQ_N", **inside)
+    return inside
 
 
-def _gating(storage):
+def _gating(storage: Storage) -> str:
     edge = "posedge" if storage.active else "negedge"
     return f"latch_{edge}" + ("_precontrol" if len(storage.data_pins) > 1 else "")
 
 
-def _input(group, cell, measured, name):
+def _input(group: Group, cell: Cell, measured: Measured, name: str) -> None:
     rise_fall = measured["capacitance"].get(name)
     pin = group.add("pin", name, direction="input")
     storage = cell.storage
@@ -192,7 +221,7 @@ def _input(group, cell, measured, name):
     _rails(pin, cell)
     energy = measured["quiet_energy"].get(name)
     if energy:
-        power = pin.add("internal_power", related_pg_pin=pin.attributes["related_power_pin"])
+        power = pin.add("internal_power", related_pg_pin=pin.text("related_power_pin"))
         for edge in ("rise", "fall"):
             power.add(
                 f"{edge}_power", "quiet", index_1=NS * np.array(measured["slews"]), values=PJ * np.array(energy[edge])
@@ -202,7 +231,7 @@ def _input(group, cell, measured, name):
             _constraint(pin, constraint)
 
 
-def _capacitance(pin, rise_fall):
+def _capacitance(pin: Group, rise_fall: tuple[float, float] | None) -> None:
     if rise_fall:
         pin.attributes |= {
             "capacitance": PF * sum(rise_fall) / 2,
@@ -211,19 +240,21 @@ def _capacitance(pin, rise_fall):
         }
 
 
-def _rails(pin, cell):
+def _rails(pin: Group, cell: Cell) -> None:
     ports = cell.machine.netlist.ports
     for name, candidates in (("related_power_pin", ("VPWR", "vdd")), ("related_ground_pin", ("VGND", "vss"))):
-        pin.attributes |= {name: rail for rail in candidates if rail in ports}
+        for rail in candidates:
+            if rail in ports:
+                pin.attributes[name] = rail
 
 
-def _constraint(pin, found):
+def _constraint(pin: Group, found: Constraint) -> None:
     timing = pin.add("timing", related_pin=found["related"], timing_type=found["type"])
     for edge in ("rise", "fall"):
         values = found.get(edge)
         if values is None:
             continue
-        axes = {"index_1": NS * np.array(found["slews"])}
+        axes: dict[str, Value] = {"index_1": NS * np.array(found["slews"])}
         if np.ndim(values) == 2:
             axes["index_2"] = NS * np.array(found["slews"])
         timing.add(
@@ -234,10 +265,10 @@ def _constraint(pin, found):
         )
 
 
-def _output(group, cell, measured, name):
+def _output(group: Group, cell: Cell, measured: Measured, name: str) -> None:
     pin = group.add("pin", name, direction="output", function=cell.functions[name])
-    if cell.three_state[name]:
-        pin.attributes["three_state"] = cell.three_state[name]
+    if three_state := cell.three_state[name]:
+        pin.attributes["three_state"] = three_state
         _capacitance(pin, measured["capacitance"].get(name))
     if cell.storage and cell.storage.kind == "gate":
         pin.attributes["clock_gate_out_pin"] = True
@@ -252,23 +283,24 @@ def _output(group, cell, measured, name):
     for (related, kind, sense), edges in sorted(arcs.items()):
         timing = pin.add("timing", related_pin=related, timing_sense=sense, timing_type=kind)
         for edge, arc in sorted(edges.items()):
-            for field, table in TABLES.items():
-                _table(timing, table.format(edge), "delay", arc, NS * np.array(arc[field]))
+            _table(timing, f"cell_{edge}", "delay", arc, NS * np.array(arc["delay"]))
+            _table(timing, f"{edge}_transition", "delay", arc, NS * np.array(arc["slew"]))
     powered = [arc for arc in measured["arcs"] if arc["output"] == name and "energy" in arc]
     for related in sorted({arc["pin"] for arc in powered}):
         _power(pin, related, [arc for arc in powered if arc["pin"] == related])
 
 
-def _power(pin, related, arcs):
-    """Energy by output edge: of the arcs that cause it, the mean."""
-    power = pin.add("internal_power", related_pin=related, related_pg_pin=pin.attributes["related_power_pin"])
+def _power(pin: Group, related: str, arcs: Sequence[ArcTables]) -> None:
+    """Add the energy by output edge: the mean of the arcs that cause it."""
+    power = pin.add("internal_power", related_pin=related, related_pg_pin=pin.text("related_power_pin"))
     for edge in ("fall", "rise"):
-        same = [a for a in arcs if a["edge"] == edge]
+        same = [arc for arc in arcs if arc["edge"] == edge]
         if same:
-            _table(power, f"{edge}_power", "power", same[0], PJ * np.mean([a["energy"] for a in same], axis=0))
+            energy = np.mean([arc["energy"] for arc in same if "energy" in arc], axis=0)
+            _table(power, f"{edge}_power", "power", same[0], PJ * energy)
 
 
-def _table(group, kind, template, arc, values):
+def _table(group: Group, kind: str, template: str, arc: ArcTables, values: Floats) -> None:
     group.add(
         kind,
         f"{template}_{_size(arc)}",

@@ -1,9 +1,12 @@
-"""Two Liberty descriptions of one cell, table by table; what only one of them has is told by name."""
+"""Two Liberty descriptions of one cell, table by table; what only one of them has is reported by name."""
 
 import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from base.liberty.group import Group
 from cells.characterize.table import bilinear
@@ -17,41 +20,35 @@ KINDS = {
     "fall_power": "energy",
 }
 CONSTRAINTS = {
-    "setup_rising": "setup",
-    "setup_falling": "setup",
-    "hold_rising": "hold",
-    "hold_falling": "hold",
-    "recovery_rising": "recovery",
-    "recovery_falling": "recovery",
-    "removal_rising": "removal",
-    "removal_falling": "removal",
+    **{f"{kind}_{edge}": kind for kind in ("setup", "hold", "recovery", "removal") for edge in ("rising", "falling")},
     "min_pulse_width": "width",
 }
+Floats = npt.NDArray[np.float64]
 
 
-# What makes two groups mean the same, the narrowest first: characterizers differ in whether a release is a 'preset' or
-# belongs to 'clear', and in the sense of an edge that each has alone.
+# Attributes by which two groups are the same, the narrowest first: characterizers differ in whether a release is a
+# 'preset' or belongs to 'clear', and in the sense of an edge that only one of them has.
 KEYS = (("related_pin", "timing_type", "timing_sense"), ("related_pin", "timing_type"), ("related_pin",))
 
 
 @dataclass(frozen=True)
 class Difference:
-    """One table of ``cell``. kind: delay, slew, energy, capacitance, leakage, setup, hold, ...; what: where it stands.
+    """One table of ``cell``: ours and theirs at their points (ns, pJ, pF, nW), NaN where one has no such table.
 
-    ours, theirs: arrays of one shape at their points (ns, pJ, pF, nW), NaN where one of the two has no such table.
+    kind: delay, slew, energy, capacitance, leakage, setup, hold, ...; what: pin, related pin and table.
     """
 
     cell: str
     kind: str
     what: str
-    ours: np.ndarray
-    theirs: np.ndarray
+    ours: Floats
+    theirs: Floats
 
     @property
-    def relative(self):
-        """Error of every entry in shares of theirs, of energies in shares of the mean of |theirs| where that is more;
+    def relative(self) -> Floats:
+        """Relative error of every entry, of energies relative to the mean of |theirs| where that is more.
 
-        0 where both are 0 (the slew of an output let go), NaN where theirs alone is.
+        0 where both are 0 (the slew of an output let go), NaN where only theirs is.
         """
         scale, error = np.abs(self.theirs), self.ours - self.theirs
         if self.kind == "energy":
@@ -59,8 +56,8 @@ class Difference:
         return np.where(scale > 0, error / np.where(scale > 0, scale, 1.0), np.where(error == 0, 0.0, np.nan))
 
 
-def library(tree, known):
-    """Differences of every cell of ``tree`` (Group library) that ``known`` (short name -> Group) has: list."""
+def library(tree: Group, known: Mapping[str, Group]) -> list[Difference]:
+    """Differences of every cell of the library ``tree`` that is in ``known``, by short name."""
     found = []
     for cell in tree.all("cell"):
         name = cell.name.split("__")[-1]
@@ -69,90 +66,65 @@ def library(tree, known):
     return found
 
 
-def differences(name, ours, theirs):
-    """Differences of one cell: list. A table that one of the two lacks has NaN there."""
-    found = [
-        Difference(
-            name,
-            "leakage",
-            "mean",
-            np.array([ours.attributes.get("cell_leakage_power", np.nan)]),
-            np.array([theirs.attributes.get("cell_leakage_power", np.nan)]),
-        )
-    ]
+def differences(name: str, ours: Group, theirs: Group) -> list[Difference]:
+    """Differences of one cell."""
+
+    def number(kind: str, what: str, own: float, other: float) -> Difference:
+        return Difference(name, kind, what, np.array([own]), np.array([other]))
+
+    found = [number("leakage", "mean", *(cell.number("cell_leakage_power") for cell in (ours, theirs)))]
     found += [
-        Difference(
-            name,
-            "leakage by state",
-            state.attributes["when"],
-            np.array([_leakage(ours, state)]),
-            np.array([state.attributes["value"]]),
-        )
+        number("leakage by state", state.text("when"), _leakage(ours, state), state.number("value"))
         for state in theirs.all("leakage_power")
         if "when" in state.attributes
     ]
     for pin in theirs.all("pin"):
         own, used = ours.one("pin", pin.name) or Group("pin", (pin.name,)), set()
-        for attribute in ("rise_capacitance", "fall_capacitance"):
-            if attribute in pin.attributes:
-                found.append(
-                    Difference(
-                        name,
-                        "capacitance",
-                        f"{pin.name} {attribute}",
-                        np.array([own.attributes.get(attribute, np.nan)]),
-                        np.array([pin.attributes[attribute]]),
-                    )
-                )
+        found += [
+            number("capacitance", f"{pin.name} {attribute}", own.number(attribute), pin.number(attribute))
+            for attribute in ("rise_capacitance", "fall_capacitance")
+            if attribute in pin.attributes
+        ]
         for kind in ("timing", "internal_power"):
             for group in pin.all(kind):
                 found += _tables(name, pin, own, group, used)
-            found += [
-                Difference(
-                    name,
-                    _kind(group, table),
-                    _what(pin, group, table),
-                    table.array("values"),
-                    np.full(np.shape(table.array("values")), np.nan),
-                )
-                for group in own.all(kind)
-                for table in group.groups
-                if id(table) not in used
-            ]
+            for group in own.all(kind):
+                for table in group.groups:
+                    if id(table) not in used:
+                        values, table_kind = table.array("values"), _kind(group, table) or table.kind
+                        alone = np.full(values.shape, np.nan)
+                        found.append(Difference(name, table_kind, _what(pin, group, table), values, alone))
     return found
 
 
-def _kind(group, table):
-    return CONSTRAINTS.get(group.attributes.get("timing_type")) or KINDS.get(table.kind)
+def _kind(group: Group, table: Group) -> str | None:
+    return CONSTRAINTS.get(group.text("timing_type")) or KINDS.get(table.kind)
 
 
-def _what(pin, group, table):
+def _what(pin: Group, group: Group, table: Group) -> str:
     """'Y A positive_unate cell_rise', 'D setup_rising rise_constraint': unique in a cell without conditions."""
-    at = group.attributes
-    words = (
-        [at["timing_type"]]
-        if _kind(group, table) in CONSTRAINTS.values()
-        else [at.get("related_pin"), at.get("timing_type"), at.get("timing_sense"), at.get("when")]
-    )
+    constraint = _kind(group, table) in CONSTRAINTS.values()
+    names = ["timing_type"] if constraint else ["related_pin", "timing_type", "timing_sense", "when"]
+    words = [group.text(name) for name in names]
     return " ".join([pin.name, *(w for w in words if w and w != "combinational"), table.kind])
 
 
-def _leakage(ours, state):
-    """nW: mean over our states in which the condition of ``state`` holds, as far as both name the same pins."""
-    wanted, values = _literals(state.attributes["when"]), []
+def _leakage(ours: Group, state: Group) -> float:
+    """The mean (nW) over our states in which the condition of ``state`` holds, for the pins that both name."""
+    wanted, values = _literals(state.text("when")), []
     for own in ours.all("leakage_power"):
-        literals = _literals(own.attributes["when"])
+        literals = _literals(own.text("when"))
         if all(literals.get(pin, level) == level for pin, level in wanted.items()):
-            values.append(own.attributes["value"])
-    return np.mean(values) if values else np.nan
+            values.append(own.number("value"))
+    return float(np.mean(values)) if values else np.nan
 
 
-def _literals(product):
-    """{pin: level} of a product like 'CLK&D&!Q'."""
+def _literals(product: str) -> dict[str, bool]:
+    """The pins of a product like 'CLK&D&!Q', and whether each must be high."""
     return {pin: not inverted for inverted, pin in re.findall(r"(!?)\s*(\w+)", product)}
 
 
-def _tables(name, pin, own, group, used):
+def _tables(name: str, pin: Group, own: Group, group: Group, used: set[int]) -> Iterator[Difference]:
     for table in group.groups:
         kind = _kind(group, table)
         if kind is None:
@@ -169,18 +141,19 @@ def _tables(name, pin, own, group, used):
         )
 
 
-def _same(own, group, table, kind):
-    """Our table that means what ``table`` (its kind) of ``group`` does, or None."""
+def _same(own: Group, group: Group, table: str, kind: str) -> Group | None:
+    """Our table that corresponds to ``table`` (its kind) of ``group``, or None."""
     for keys in KEYS[:2] if kind in CONSTRAINTS.values() else KEYS:
         wanted = {k: group.attributes[k] for k in keys if k in group.attributes}
         for mine in own.all(group.kind, **wanted):
-            if mine.one(table) and _kind(mine, mine.one(table)) == kind:
-                return mine.one(table)
+            found = mine.one(table)
+            if found and _kind(mine, found) == kind:
+                return found
     return None
 
 
-def _at(mine, theirs):
-    """Table ``mine`` at the points of ``theirs``, bilinear; at its own first point where theirs is one number."""
+def _at(mine: Group, theirs: Group) -> Floats:
+    """Table ``mine`` at the points of ``theirs``, bilinear; its first value where theirs is one number."""
     if "index_1" not in theirs.attributes:
         return np.full(theirs.array("values").shape, mine.array("values").flat[0])
     rows = theirs.array("index_1")
@@ -191,12 +164,13 @@ def _at(mine, theirs):
     return np.array([[bilinear(*axes, row, column) for column in columns] for row in rows])
 
 
-def summary(found):
-    """{'error': kind -> median and 95th percentile of the absolute error, ...} over all entries; 'only_theirs' and
+def summary(found: Sequence[Difference]) -> dict[str, Any]:
+    """Absolute errors over all entries, and the tables that only one has, by name: what summary.json holds.
 
-    'only_ours': the tables that the other does not have, by name. Relative errors in per cent; constraints in ps.
+    'error': by kind its unit ('%', of constraints 'ps'), number of entries, of missing ones, median, 95th percentile
+    (p95) and worst. 'only_theirs', 'only_ours': names.
     """
-    out = {}
+    out: dict[str, dict[str, Any]] = {}
     both = [d for d in found if not np.isnan(d.theirs).all()]
     for kind in dict.fromkeys(d.kind for d in both):
         same = [d for d in both if d.kind == kind]
@@ -204,13 +178,13 @@ def summary(found):
             errors, unit = np.concatenate([np.ravel(d.ours - d.theirs) * 1e3 for d in same]), "ps"
         else:
             errors, unit = np.concatenate([np.ravel(d.relative) * 100 for d in same]), "%"
-        there = np.abs(errors[np.isfinite(errors)])
-        out[kind] = {"unit": unit, "entries": int(errors.size), "missing": int(errors.size - there.size)}
-        if there.size:
+        finite = np.abs(errors[np.isfinite(errors)])
+        out[kind] = {"unit": unit, "entries": int(errors.size), "missing": int(errors.size - finite.size)}
+        if finite.size:
             out[kind] |= {
-                "median": round(float(np.median(there)), 3),
-                "p95": round(float(np.percentile(there, 95)), 3),
-                "worst": round(float(there.max()), 3),
+                "median": round(float(np.median(finite)), 3),
+                "p95": round(float(np.percentile(finite, 95)), 3),
+                "worst": round(float(finite.max()), 3),
             }
     return {
         "error": out,

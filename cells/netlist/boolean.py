@@ -1,29 +1,28 @@
 """Truth tables as short sums of products, in Liberty's notation (Quine and McCluskey)."""
 
+from collections.abc import Iterable, Sequence
 from itertools import combinations
 
+Implicant = tuple[int, int]  # value, and mask of the variables that do not matter
 
-def expression(names, ones, free=()):
-    """A minimal sum of products: '(A & !B) | C', '1' or '0'.
 
-    names: variables, most significant first. ones: the minterms (ints) where it is true; free: where it may be either.
+def expression(names: Sequence[str], ones: Iterable[int], free: Iterable[int] = ()) -> str:
+    """Return a minimal sum of products: '(A & !B) | C', '1' or '0'.
+
+    names: variables, most significant first. ones: the minterms where it is true; free: where it may be either.
     """
     ones, free = set(ones), set(free)
     if not ones:
         return "0"
     if len(ones | free) == 1 << len(names):
         return "1"
-    terms = [_product(names, *term) for term in _cover(_primes(ones | free), ones)]
-    return terms[0] if len(terms) == 1 else " | ".join(t if _single(t) else f"({t})" for t in terms)
+    terms = [_product(names, value, mask) for value, mask in _cover(_primes(ones | free), ones)]
+    return terms[0] if len(terms) == 1 else " | ".join(f"({t})" if "&" in t else t for t in terms)
 
 
-def _single(term):
-    return "&" not in term
-
-
-def _primes(minterms):
-    """Prime implicants: set of (value, mask of variables that do not matter)."""
-    terms, primes = {(m, 0) for m in minterms}, set()
+def _primes(minterms: set[int]) -> set[Implicant]:
+    terms: set[Implicant] = {(m, 0) for m in minterms}
+    primes: set[Implicant] = set()
     while terms:
         merged, used = set(), set()
         for a, b in combinations(terms, 2):
@@ -36,8 +35,8 @@ def _primes(minterms):
     return primes
 
 
-def _cover(primes, ones):
-    """Few primes that cover ``ones``: the essential ones, then always the one that covers most."""
+def _cover(primes: set[Implicant], ones: set[int]) -> list[Implicant]:
+    """Choose few primes that cover ``ones``: the essential ones, then always the one that covers most."""
     covers = {p: {m for m in ones if m & ~p[1] == p[0]} for p in sorted(primes)}
     chosen, left = [], set(ones)
     for m in sorted(ones):
@@ -52,7 +51,7 @@ def _cover(primes, ones):
     return sorted(chosen, key=lambda p: (-p[0], p[1]))
 
 
-def _product(names, value, mask):
+def _product(names: Sequence[str], value: int, mask: int) -> str:
     last = len(names) - 1
     return " & ".join(
         ("" if value >> (last - i) & 1 else "!") + name for i, name in enumerate(names) if not mask >> (last - i) & 1

@@ -1,37 +1,74 @@
-"""What a cell is: its functions, its storage, and the arcs of its timing, all read off its states."""
+"""Functions, storage and timing arcs of a cell, found from its states."""
 
+import re
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, NoReturn
 
 from cells.netlist.boolean import expression
-from cells.netlist.states import Machine
+from cells.netlist.spice import Netlist
+from cells.netlist.states import Change, Machine, Output, State
 from models.parameters import ParameterError
 
-LEVEL = {0: "fall", 1: "rise"}
+EDGES = "fall", "rise"  # to level 0, to level 1
+TypeOf = Callable[[str, str, Output, Output], str | None]  # (pin, its edge, output before, after) -> timing_type
+
+
+class PinLevel(NamedTuple):
+    """A pin and the level at which it is active."""
+
+    pin: str
+    level: int
+
+    @property
+    def active(self) -> str:
+        """When it is active, in Liberty's notation: 'R' or '!R'."""
+        return self.pin if self.level else f"!{self.pin}"
+
+
+class Forcing(NamedTuple):
+    """An input (its number) that at ``level`` forces the first output to ``value``."""
+
+    pin: int
+    level: int
+    value: int
 
 
 @dataclass(frozen=True)
 class Storage:
-    """kind: ff, latch or gate (a latch before an AND: clock gating). clock: pin; active: its level after the active
+    """The storage of a flip-flop, latch or clock gate.
 
-    edge (latch: while transparent). data: expression stored; clear, preset: (pin, active level) or None;
-    both: level of Q while both are active, None where it cannot be.
+    kind: 'ff', 'latch' or 'gate' (clock gating: a latch before an AND). clock: pin; active: its level after the active
+    edge (latch: while transparent). data: expression stored, of ``data_pins``. both: level of Q while clear and preset
+    are active, None where they cannot be.
     """
 
     kind: str
     clock: str
     active: int
     data: str
-    data_pins: tuple
-    clear: tuple | None = None
-    preset: tuple | None = None
+    data_pins: tuple[str, ...]
+    clear: PinLevel | None = None
+    preset: PinLevel | None = None
     both: int | None = None
+
+    @property
+    def asynchronous(self) -> list[PinLevel]:
+        """Clear and preset, those that it has."""
+        return [pin for pin in (self.clear, self.preset) if pin]
+
+    @property
+    def clocked_on(self) -> str:
+        """The clock's active edge or level in Liberty's notation: 'C' or '!C'."""
+        return PinLevel(self.clock, self.active).active
 
 
 @dataclass(frozen=True)
 class Arc:
-    """``pin`` makes ``output`` go to ``edge`` (rise or fall), from the other level or high impedance; or lets it go,
+    """A timing arc: an edge of ``pin`` causes one of ``output``.
 
-    from low (rise) or high (fall). pin_edge: rise or fall. type: Liberty's timing_type. changes: every way in which it
+    edge: rise or fall of the output, from the other level or high impedance; where the output is let go (type
+    three_state_disable), rise from low and fall from high. type: Liberty's timing_type. changes: every way in which it
     happens, shortest path first.
     """
 
@@ -40,11 +77,11 @@ class Arc:
     output: str
     edge: str
     type: str
-    changes: tuple
+    changes: tuple[Change, ...]
 
     @property
-    def sense(self):
-        """Liberty's timing_sense of this edge alone; of tri-states it tells which edge of the pin it is."""
+    def sense(self) -> str:
+        """Liberty's timing_sense of this edge alone; of tri-states it is that of the pin's edge."""
         if self.type in ("rising_edge", "falling_edge"):
             return "non_unate"
         if self.type.startswith("three_state"):
@@ -54,21 +91,25 @@ class Arc:
 
 @dataclass(frozen=True)
 class Cell:
-    """machine: Machine; functions: output -> expression; three_state: output -> expression or None; storage, arcs."""
+    """A cell as Liberty describes it.
+
+    functions: expression of every output; three_state: when it has high impedance, None where it never has.
+    """
 
     machine: Machine
-    functions: dict
-    three_state: dict
+    functions: dict[str, str]
+    three_state: dict[str, str | None]
     storage: Storage | None
-    arcs: tuple
+    arcs: tuple[Arc, ...]
 
     @property
-    def name(self):
+    def name(self) -> str:
+        """The subcircuit's name."""
         return self.machine.netlist.name
 
 
-def understand(netlist, polarity, rails):
-    """Cell of a Netlist. Raises ParameterError when it is no cell that Liberty can describe."""
+def understand(netlist: Netlist, polarity: Mapping[str, str], rails: Mapping[str, int]) -> Cell:
+    """The Cell of a netlist. Raises ParameterError when Liberty cannot describe it."""
     machine = Machine(netlist, polarity, rails)
     if not machine.sequential:
         functions, three_state = _combinational(machine)
@@ -80,11 +121,11 @@ def understand(netlist, polarity, rails):
     )
 
 
-def _code(bits):
+def _code(bits: Iterable[int | str]) -> int:
     return int("".join(map(str, bits)), 2) if bits else 0
 
 
-def _combinational(machine):
+def _combinational(machine: Machine) -> tuple[dict[str, str], dict[str, str | None]]:
     functions, three_state = {}, {}
     for k, output in enumerate(machine.outputs):
         ones = {_code(s.inputs) for s in machine.states if s.outputs[k] == 1}
@@ -94,28 +135,27 @@ def _combinational(machine):
     return functions, three_state
 
 
-def _fail(machine, why):
+def _fail(machine: Machine, why: str) -> NoReturn:
     raise ParameterError(f"netlist = {machine.netlist.name}: {why}")
 
 
-def _storage(machine):
+def _storage(machine: Machine) -> Storage:
     found = _gating(machine)
     if found:
         return found
-    asyncs, states = [], machine.states
-    while hit := _constant(machine, states, {pin for pin, _, _ in asyncs}):
-        asyncs.append(hit)
-        states = [s for s in states if s.inputs[hit[0]] != hit[1]]
-    idle = {pin: 1 - level for pin, level, _ in asyncs}
+    forcings, states = [], machine.states
+    while hit := _constant(machine, states, {forcing.pin for forcing in forcings}):
+        forcings.append(hit)
+        states = [s for s in states if s.inputs[hit.pin] != hit.level]
+    idle = {forcing.pin: 1 - forcing.level for forcing in forcings}
     quiet = [c for c in machine.changes if all(s.inputs[p] == v for s in (c.before, c.after) for p, v in idle.items())]
     moving = [c for c in quiet if c.before.outputs[0] != c.after.outputs[0]]
     pins = {c.pin for c in moving}
     others = tuple(i for i in range(len(machine.inputs)) if i not in idle)
-    named = {value: (machine.inputs[pin], level) for pin, level, value in asyncs}
-    both = asyncs[0][2] if len(asyncs) == 2 else None
-    if len(asyncs) > 2 or len(named) < len(asyncs):
+    named = {value: PinLevel(machine.inputs[pin], level) for pin, level, value in forcings}
+    both = forcings[0].value if len(forcings) == 2 else None
+    if len(forcings) > 2 or len(named) < len(forcings):
         _fail(machine, "has more than one set or reset pin")
-    common = dict(clear=named.get(0), preset=named.get(1), both=both)
     for clock in sorted(pins):
         edges = {c.after.inputs[clock] for c in moving if c.pin == clock}
         if len(edges) != 1:
@@ -129,12 +169,12 @@ def _storage(machine):
             else:
                 samples = [(s, s) for s in states if s.inputs[clock] == active]
             text, used = _stored(machine, samples, data, with_state=kind == "ff")
-            return Storage(kind, machine.inputs[clock], active, text, used, **common)
-    return _fail(machine, "stores a value, but is neither flip-flop, latch nor clock gate")
+            return Storage(kind, machine.inputs[clock], active, text, used, named.get(0), named.get(1), both)
+    _fail(machine, "stores a value, but is neither flip-flop, latch nor clock gate")
 
 
-def _gating(machine):
-    """Storage of a clock gate: with the clock at one level the output rests, at the other only the clock moves it."""
+def _gating(machine: Machine) -> Storage | None:
+    """Storage of a clock gate: at one level of the clock the output rests, at the other only the clock moves it."""
     if len(machine.outputs) != 1:
         return None
     for clock in range(len(machine.inputs)):
@@ -155,34 +195,36 @@ def _gating(machine):
     return None
 
 
-def _constant(machine, states, known):
-    """(pin number, level, value) of an input that forces the first output, or None."""
+def _constant(machine: Machine, states: Sequence[State], known: Container[int]) -> Forcing | None:
+    """An input that forces the first output in ``states``, beyond the ``known`` ones."""
     for pin in range(len(machine.inputs)):
         for level in (0, 1):
             values = {s.outputs[0] for s in states if s.inputs[pin] == level}
             if pin not in known and len(values) == 1 and len({s.outputs[0] for s in states}) == 2:
-                return pin, level, values.pop()
+                return Forcing(pin, level, int(values.pop()))
     return None
 
 
-def _stored(machine, samples, data, with_state):
-    """(expression, pins it needs) of the value stored, from pairs (state before, state after)."""
+def _stored(
+    machine: Machine, samples: Iterable[tuple[State, State]], data: Sequence[int], with_state: bool
+) -> tuple[str, tuple[str, ...]]:
+    """The value stored as an expression, and the pins in it, from pairs (state before, state after)."""
     names = [machine.inputs[i] for i in data] + ["IQ"] * with_state
-    table = {}
+    table: dict[tuple[Output, ...], set[Output]] = {}
     for before, after in samples:
-        row = tuple(before.inputs[i] for i in data) + ((before.outputs[0],) if with_state else ())
+        row = (*(before.inputs[i] for i in data), *before.outputs[: int(with_state)])
         table.setdefault(row, set()).add(after.outputs[0])
     if any(len(values) > 1 for values in table.values()):
         _fail(machine, "stores a value that its inputs before the clock edge do not decide")
     ones = {_code(row) for row, values in table.items() if values == {1}}
     free = set(range(1 << len(names))) - {_code(row) for row in table}
     text = expression(names, ones, free)
-    words = set(text.replace("(", " ").replace(")", " ").replace("!", " ").split())
+    words = set(re.findall(r"\w+", text))
     return text, tuple(name for name in names if name in words and name != "IQ")
 
 
-def _output_function(machine, storage, k):
-    """IQ, IQ_N, or of a clock gate the AND with its clock."""
+def _output_function(machine: Machine, storage: Storage, k: int) -> str:
+    """The function of output number ``k``: IQ, IQ_N, or of a clock gate the AND with its clock."""
     if storage.kind == "gate":
         return f"({storage.clock} & IQ)" if storage.active else f"(!{storage.clock} | !IQ)"
     if k == 0:
@@ -192,44 +234,47 @@ def _output_function(machine, storage, k):
         return "IQ_N"
     if pairs == {(0, 0), (1, 1)}:
         return "IQ"
-    return _fail(machine, f"output {machine.outputs[k]} is neither the stored value nor its inverse")
+    _fail(machine, f"output {machine.outputs[k]} is neither the stored value nor its inverse")
 
 
-def _both_active(machine, storage, state):
-    pins = [p for p in (storage.clear, storage.preset) if p]
+def _both_active(machine: Machine, storage: Storage, state: State) -> bool:
+    pins = storage.asynchronous
     return len(pins) == 2 and all(state.inputs[machine.inputs.index(pin)] == level for pin, level in pins)
 
 
-def _combinational_type(pin, pin_edge, before, after):
+def _combinational_type(pin: str, pin_edge: str, before: Output, after: Output) -> str:
     return "three_state_disable" if after == "Z" else "three_state_enable" if before == "Z" else "combinational"
 
 
-def _sequential_type(storage):
-    def kind(pin, pin_edge, before, after):
-        if any(hit and pin == hit[0] for hit in (storage.clear, storage.preset)):
+def _sequential_type(storage: Storage) -> TypeOf:
+    def kind(pin: str, pin_edge: str, before: Output, after: Output) -> str | None:
+        if any(pin == hit.pin for hit in storage.asynchronous):
             return "preset" if after else "clear"  # Liberty's words for an output that rises, or falls
         if storage.kind == "gate":
             return "combinational" if pin == storage.clock else None
         if pin == storage.clock:
-            return ("rising_edge" if storage.active else "falling_edge") if pin_edge == LEVEL[storage.active] else None
+            return ("rising_edge" if storage.active else "falling_edge") if pin_edge == EDGES[storage.active] else None
         return "combinational" if storage.kind == "latch" else None
 
     return kind
 
 
-def _arcs(machine, kind):
+def _arcs(machine: Machine, kind: TypeOf) -> list[Arc]:
     """Arcs by (pin, edge, output, edge), the changes of each with distinct inputs, shortest path first."""
     groups = {}
     for change in sorted(machine.changes, key=lambda c: len(c.before.path)):
-        pin, pin_edge = machine.inputs[change.pin], LEVEL[change.after.inputs[change.pin]]
+        pin, pin_edge = machine.inputs[change.pin], EDGES[change.after.inputs[change.pin]]
         for k, output in enumerate(machine.outputs):
             before, after = change.before.outputs[k], change.after.outputs[k]
             if before == after:
                 continue
             type_ = kind(pin, pin_edge, before, after)
-            to = 1 - before if after == "Z" else after
+            to = 1 - int(before) if after == "Z" else int(after)
             if type_ is None or change.before.kept[k] != 1 - to:
                 continue
-            same = groups.setdefault((pin, pin_edge, output, LEVEL[to], type_), {})
+            same = groups.setdefault((pin, pin_edge, output, EDGES[to], type_), {})
             same.setdefault((change.before.inputs, change.before.outputs), change)
-    return [Arc(*key, tuple(changes.values())) for key, changes in sorted(groups.items())]
+    return [
+        Arc(pin, pin_edge, output, edge, type_, tuple(changes.values()))
+        for (pin, pin_edge, output, edge, type_), changes in sorted(groups.items())
+    ]

@@ -1,4 +1,4 @@
-"""A SPICE subcircuit of transistors, capacitors and resistors, read into plain records."""
+"""Reader of SPICE subcircuits of transistors, capacitors and resistors."""
 
 import re
 from dataclasses import dataclass, field
@@ -11,9 +11,10 @@ _SCALE = {"t": 1e12, "g": 1e9, "meg": 1e6, "k": 1e3, "m": 1e-3, "u": 1e-6, "n": 
 
 @dataclass(frozen=True)
 class Transistor:
-    """name, model: as in the netlist; size: the instance's parameters (w, l, as, ad, ps, pd, sa, sb, ...) as written,
+    """A MOS transistor.
 
-    in the unit of the model set (um where it scales by 1u).
+    size: the instance's parameters (w, l, as, ad, ps, pd, sa, sb, ...) as written, in the unit of the model set (um
+    where it scales by 1u).
     """
 
     name: str
@@ -22,7 +23,7 @@ class Transistor:
     gate: str
     source: str
     bulk: str
-    size: dict
+    size: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -37,27 +38,24 @@ class Passive:
 
 @dataclass
 class Netlist:
-    """A subcircuit. ports: in order."""
+    """A subcircuit."""
 
     name: str
-    ports: tuple
-    transistors: list = field(default_factory=list)
-    capacitors: list = field(default_factory=list)
-    resistors: list = field(default_factory=list)
+    ports: tuple[str, ...]
+    transistors: list[Transistor] = field(default_factory=list)
+    capacitors: list[Passive] = field(default_factory=list)
+    resistors: list[Passive] = field(default_factory=list)
 
     @property
-    def nodes(self):
+    def nodes(self) -> list[str]:
         """Every node, ports first, in the order of appearance."""
-        found = dict.fromkeys(self.ports)
-        for t in self.transistors:
-            found.update(dict.fromkeys((t.drain, t.gate, t.source, t.bulk)))
-        for p in (*self.capacitors, *self.resistors):
-            found.update(dict.fromkeys((p.a, p.b)))
-        return list(found)
+        transistors = (node for t in self.transistors for node in (t.drain, t.gate, t.source, t.bulk))
+        passives = (node for p in (*self.capacitors, *self.resistors) for node in (p.a, p.b))
+        return list(dict.fromkeys((*self.ports, *transistors, *passives)))
 
 
-def number(text):
-    """'650000u', '1e+06u', '0.42', '10meg' -> float. Raises ParameterError."""
+def number(text: str) -> float:
+    """The value of '650000u', '1e+06u', '0.42' or '10meg'. Raises ParameterError."""
     match = re.fullmatch(r"([-+]?[0-9.]+(?:e[-+]?[0-9]+)?)([a-z]*)", text.strip("'{}\"").lower())
     if not match:
         raise ParameterError(f"netlist = {text!r}: must be a number")
@@ -66,13 +64,13 @@ def number(text):
     return float(match[1]) * _SCALE[prefix]
 
 
-def read(path, cell=None):
-    """The subcircuit ``cell`` (None: the only or first one) of a SPICE file: Netlist."""
+def read(path: str | Path, cell: str | None = None) -> Netlist:
+    """The subcircuit ``cell`` of a SPICE file, the first one by default."""
     return parse(source(path), cell, str(path))
 
 
-def parse(text, cell=None, origin="netlist"):
-    """As `read`, of a text. Raises ParameterError naming the line that is not understood."""
+def parse(text: str, cell: str | None = None, origin: str = "netlist") -> Netlist:
+    """As `read`, of a text; ``origin`` names it in errors. Raises ParameterError with the line that is wrong."""
     found = _subcircuits(text, origin)
     if cell is None:
         return next(iter(found.values()))
@@ -81,12 +79,12 @@ def parse(text, cell=None, origin="netlist"):
     return found[cell]
 
 
-def read_all(path):
-    """Every subcircuit of a SPICE file: name -> Netlist."""
+def read_all(path: str | Path) -> dict[str, Netlist]:
+    """Every subcircuit of a SPICE file, by name."""
     return _subcircuits(source(path), str(path))
 
 
-def subcircuit(text, name):
+def subcircuit(text: str, name: str) -> str:
     """The lines of subcircuit ``name`` in a SPICE text, its .subckt and .ends included."""
     lines = _joined(text)
     first = next(i for i, line in enumerate(lines) if line.lower().startswith(".subckt") and line.split()[1] == name)
@@ -94,13 +92,14 @@ def subcircuit(text, name):
     return "\n".join([*lines[first : last + 1], ""])
 
 
-def source(path):
-    """Text of a SPICE file; bytes that are no text are kept as marks, for the parser to stumble over."""
+def source(path: str | Path) -> str:
+    """The text of a SPICE file; bytes that are no text become marks, which the parser refuses."""
     return Path(path).read_text(errors="replace")
 
 
-def _subcircuits(text, origin):
-    found, current, spelled = {}, None, {}
+def _subcircuits(text: str, origin: str) -> dict[str, Netlist]:
+    found: dict[str, Netlist] = {}
+    current, spelled = None, {}
     for line in _joined(text):
         words = re.sub(r"\s*=\s*", "=", line).split()
         card = words[0].lower()
@@ -121,13 +120,13 @@ def _subcircuits(text, origin):
     return found
 
 
-def _node(name, spelled):
-    """SPICE knows no case: a node is called as where it stands first."""
+def _node(name: str, spelled: dict[str, str]) -> str:
+    """The node's name as first written: SPICE is case-insensitive."""
     return spelled.setdefault(name.lower(), name)
 
 
-def _joined(text):
-    """Lines with their '+' continuations, without comments and empty ones."""
+def _joined(text: str) -> list[str]:
+    """The lines with their '+' continuations, without comments and empty ones."""
     lines = []
     for line in text.splitlines():
         line = re.split(r"(?:^|\s)\$|;", line)[0].strip()
@@ -140,7 +139,7 @@ def _joined(text):
     return lines
 
 
-def _element(netlist, words, line, origin, spelled):
+def _element(netlist: Netlist, words: list[str], line: str, origin: str, spelled: dict[str, str]) -> None:
     name, kind = words[0], words[0][0].lower()
     if kind in "xm":
         nodes = [w for w in words[1:] if "=" not in w and w != "/"]
@@ -151,13 +150,15 @@ def _element(netlist, words, line, origin, spelled):
         many = size.pop("m", 1)
         if many < 1 or many != int(many):
             raise ParameterError(f"netlist = {origin}: {line!r} must have a whole number m of 1 or more")
-        ends = [_node(node, spelled) for node in nodes[:4]]
+        drain, gate, source, bulk = (_node(node, spelled) for node in nodes[:4])
         netlist.transistors += [
-            Transistor(f"{name}_m{k}" if k else name, nodes[4].lower(), *ends, size) for k in range(int(many))
+            Transistor(f"{name}_m{k}" if k else name, nodes[4].lower(), drain, gate, source, bulk, size)
+            for k in range(int(many))
         ]
     elif kind in "cr" and len(words) >= 4:
+        a, b = (_node(node, spelled) for node in words[1:3])
         (netlist.capacitors if kind == "c" else netlist.resistors).append(
-            Passive(name, *(_node(node, spelled) for node in words[1:3]), number(words[3].split("=")[-1]))
+            Passive(name, a, b, number(words[3].split("=")[-1]))
         )
     else:
         raise ParameterError(f"netlist = {origin}: {line!r} is no transistor, capacitor or resistor")

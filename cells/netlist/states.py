@@ -1,26 +1,33 @@
-"""Every settled state that a cell can be in, how to get there, and what toggling an input does."""
+"""Every settled state of a cell, the inputs that lead to it, and what toggling an input does."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import product
+from typing import Literal
 
-from cells.netlist.switch import Switches, floating
+from cells.netlist.spice import Netlist
+from cells.netlist.switch import Levels, Switches, floating, joined
 from models.parameters import ParameterError
 
+Vector = tuple[int, ...]  # levels of the inputs
+Output = int | Literal["Z"]
 LIMIT = 20000  # states, more than any cell of a library has
 
 
 @dataclass(frozen=True)
 class State:
-    """inputs, outputs: levels in the order of the machine's pins ('Z' for high impedance); kept: the outputs' charge;
+    """A settled state.
 
-    nodes: (node, level) of every node inside that is known.
-    path: input vectors that lead here from an unknown state, this state's own last; one alone where the inputs say all.
+    inputs, outputs: levels in the order of the machine's pins ('Z' for high impedance). kept: levels of the outputs'
+    nodes, of one that floats its charge. nodes: (node, level) of every node inside that is known. path: input vectors
+    that lead here from an unknown state, this state's own last; this one alone where the inputs decide everything.
     """
 
-    inputs: tuple
-    outputs: tuple
-    kept: tuple
-    nodes: tuple
-    path: tuple
+    inputs: Vector
+    outputs: tuple[Output, ...]
+    kept: tuple[int | None, ...]
+    nodes: tuple[tuple[str, int], ...]
+    path: tuple[Vector, ...]
 
 
 @dataclass(frozen=True)
@@ -33,37 +40,29 @@ class Change:
 
 
 class Machine:
-    """A cell as its settled states. inputs, outputs: signal ports; states, changes: lists.
+    """A cell as its settled states and the changes between them.
 
-    sequential: the outputs are not decided by the inputs alone. Raises ParameterError when an output stays unknown.
+    inputs, outputs: signal ports. sequential: the inputs alone do not decide the outputs. Raises ParameterError when an
+    output stays unknown.
     """
 
-    def __init__(self, netlist, polarity, rails):
+    def __init__(self, netlist: Netlist, polarity: Mapping[str, str], rails: Mapping[str, int]) -> None:
         self.netlist = netlist
         self.switches = Switches(netlist, polarity, rails)
         self.inputs, self.outputs = directions(netlist, rails)
         if not self.outputs:
             raise ParameterError(f"netlist = {netlist.name}: has no output, a port that it drives to both levels")
         self._explore()
-        seen = {}
-        for state in self.states:
-            seen.setdefault(state.inputs, set()).add(state.outputs)
-        self.sequential = any(len(found) > 1 for found in seen.values())
+        seen = {(state.inputs, state.outputs) for state in self.states}
+        self.sequential = len(seen) > len({inputs for inputs, _ in seen})
 
-    def _explore(self):
-        """Breadth first from the unknown state: the shortest path to every state is found."""
+    def _explore(self) -> None:
+        """Find every state by its shortest path: breadth first from the unknown state."""
         n = len(self.inputs)
-        queue, found, blind = [], {}, set()
-        for code in range(1 << n):
-            vector = tuple(code >> (n - 1 - i) & 1 for i in range(n))
-            queue.append(
-                (
-                    self.switches.settle(self.switches.unknown(), dict(zip(self.inputs, vector, strict=True))),
-                    vector,
-                    (vector,),
-                )
-            )
-        raw_changes = []
+        vectors = list(product((0, 1), repeat=n))
+        queue = [(self._settled(self.switches.unknown(), vector), vector, (vector,)) for vector in vectors]
+        found: dict[tuple, State] = {}
+        blind, raw_changes = set(), []
         while queue:
             later = []
             for nodes, vector, path in queue:
@@ -76,14 +75,14 @@ class Machine:
                 else:
                     kept = tuple(nodes[self.switches.root[pin]] for pin in self.outputs)
                     inside = tuple(
-                        (node, nodes[node])
+                        (node, level)
                         for node in self.switches.inner
-                        if node not in self.netlist.ports and nodes[node] is not None
+                        if node not in self.netlist.ports and (level := nodes[node]) is not None
                     )
                     found[key] = State(vector, known, kept, inside, path)
                 for pin in range(n):
                     after = tuple(v ^ (i == pin) for i, v in enumerate(vector))
-                    settled = self.switches.settle(nodes, dict(zip(self.inputs, after, strict=True)))
+                    settled = self._settled(nodes, after)
                     later.append((settled, after, (*path, after)))
                     raw_changes.append((key, pin, (after, tuple(settled[x] for x in self.switches.inner))))
             queue = later
@@ -91,16 +90,28 @@ class Machine:
                 raise ParameterError(f"netlist = {self.netlist.name}: has more than {LIMIT} states")
         self.states = list(found.values())
         self.changes = [Change(found[a], pin, found[b]) for a, pin, b in raw_changes if a in found and b in found]
-        vectors = {s.inputs for s in self.states}
-        if len(vectors) < 1 << n:
-            missing = next(
-                v for c in range(1 << n) if (v := tuple(c >> (n - 1 - i) & 1 for i in range(n))) not in vectors
-            )
-            values = " ".join(f"{p}={v}" for p, v in zip(self.inputs, missing, strict=True))
-            raise ParameterError(f"netlist = {self.netlist.name}: an output is never known at {values}")
+        known = {s.inputs for s in self.states}
+        for vector in vectors:
+            if vector not in known:
+                values = " ".join(f"{p}={v}" for p, v in zip(self.inputs, vector, strict=True))
+                raise ParameterError(f"netlist = {self.netlist.name}: an output is never known at {values}")
 
-    def _outputs(self, nodes):
-        values = []
+    def toggles(self, pin: str, level: int, keep: Callable[[Change], bool] = lambda change: True) -> list[Change]:
+        """Changes of input ``pin`` to ``level``, shortest path first, of those to ``keep``.
+
+        One for each pair of inputs and outputs before it.
+        """
+        number, found = self.inputs.index(pin), {}
+        for change in sorted(self.changes, key=lambda c: len(c.before.path)):
+            if change.pin == number and change.after.inputs[number] == level and keep(change):
+                found.setdefault((change.before.inputs, change.before.outputs), change)
+        return list(found.values())
+
+    def _settled(self, nodes: Levels, vector: Vector) -> Levels:
+        return self.switches.settle(nodes, dict(zip(self.inputs, vector, strict=True)))
+
+    def _outputs(self, nodes: Levels) -> tuple[Output, ...] | None:
+        values: list[Output] = []
         for pin in self.outputs:
             if floating(self.switches, nodes, pin):
                 values.append("Z")
@@ -111,26 +122,16 @@ class Machine:
         return tuple(values)
 
 
-def directions(netlist, rails):
-    """(inputs, outputs) of a netlist: ports that drive gates only, and ports on a drain or source of which one at
-
-    least is driven from a rail by the cell itself.
-    """
-    drains = {n for t in netlist.transistors for n in (t.drain, t.source)}
-    gates = {t.gate for t in netlist.transistors}
-    signals = [p for p in netlist.ports if p not in rails]
-    joined = Switches(netlist, {t.model: "n" for t in netlist.transistors}, rails).root
-    drains, gates = {joined[n] for n in drains}, {joined[n] for n in gates}
-    inputs, outputs = [], []
-    for port in signals:
-        on_drain = joined[port] in drains
-        is_output = on_drain and _complementary(netlist, joined, port, rails)
-        (outputs if is_output else inputs).append(port)
-    return tuple(inputs), tuple(outputs)
+def directions(netlist: Netlist, rails: Mapping[str, int]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The inputs and the outputs of a netlist: an output is a port that the cell drives from both rails."""
+    root = joined(netlist)
+    signals = [port for port in netlist.ports if port not in rails]
+    outputs = [port for port in signals if _complementary(netlist, root, port, rails)]
+    return tuple(port for port in signals if port not in outputs), tuple(outputs)
 
 
-def _complementary(netlist, root, port, rails):
-    """Whether ``port`` is reached from both rails through transistors, without passing another port."""
+def _complementary(netlist: Netlist, root: Mapping[str, str], port: str, rails: Mapping[str, int]) -> bool:
+    """Whether transistors join ``port`` to both rails without passing another port."""
     ends = {root[p] for p in netlist.ports} - {root[port]}
     reached, queue, levels = {root[port]}, [root[port]], set()
     levels_of = {root[n]: level for n, level in rails.items() if n in root}

@@ -1,50 +1,68 @@
-"""Transistors as switches: which value every node takes, step after step of unit delay.
+"""Switch-level simulation: the level of every node, in steps of unit delay.
 
-Ternary (0, 1, None for unknown), with charge kept on nodes that nothing drives, and with a fight decided for the side
-whose path has the lower resistance by FIGHT (a keeper loses against a driver). [Bryant1984]
+Ternary (0, 1, None for unknown). A node that nothing drives keeps its charge; a fight is decided for the side whose
+path has the lower resistance by FIGHT (a keeper loses against a driver). [Bryant1984]
 """
 
 import heapq
 import math
+from collections.abc import Mapping
+from typing import NamedTuple
 
+from cells.netlist.spice import Netlist
+
+Levels = dict[str, int | None]  # node -> 0, 1, or None for unknown
 FIGHT = 2.5  # ratio of resistances from which a path wins
 SLOW_P = 2.5  # a p transistor's resistance to that of an n transistor of the same size
 STEPS = 200  # of unit delay, after which what still changes is unknown
 
 
-class Switches:
-    """netlist: Netlist; polarity: model name -> 'n' or 'p'; rails: node -> 0 or 1."""
+class Switch(NamedTuple):
+    """A transistor seen from one end. on: the level of ``gate`` that switches it on; resistance: relative."""
 
-    def __init__(self, netlist, polarity, rails):
-        root = _joined(netlist)
+    other_end: str
+    gate: str
+    on: int
+    resistance: float
+
+
+class Switches:
+    """The transistors of a netlist as switches.
+
+    polarity: 'n' or 'p' of each model. rails: supply nodes and their levels. root: each node's representative (nodes
+    that resistors join are one); inner: representatives that are no rails; edges: the switches at each.
+    """
+
+    def __init__(self, netlist: Netlist, polarity: Mapping[str, str], rails: Mapping[str, int]) -> None:
+        root = joined(netlist)
         self.rails = {root[n]: level for n, level in rails.items() if n in root}
         self.root = root
         self.inner = sorted(set(root.values()) - set(self.rails))
-        self.edges = {}  # node -> [(neighbour, gate, level that switches on, resistance)]
+        self.edges: dict[str, list[Switch]] = {}
         for t in netlist.transistors:
             on = 1 if polarity[t.model] == "n" else 0
             resistance = t.size["l"] / t.size["w"] * (1 if on else SLOW_P)
             a, b, gate = root[t.drain], root[t.source], root[t.gate]
             if a != b:
-                self.edges.setdefault(a, []).append((b, gate, on, resistance))
-                self.edges.setdefault(b, []).append((a, gate, on, resistance))
+                self.edges.setdefault(a, []).append(Switch(b, gate, on, resistance))
+                self.edges.setdefault(b, []).append(Switch(a, gate, on, resistance))
 
-    def unknown(self):
-        """The state in which no node is known: node -> None."""
+    def unknown(self) -> Levels:
+        """The state in which no node is known."""
         return dict.fromkeys(self.inner)
 
-    def settle(self, state, inputs):
-        """State after ``inputs`` (port -> 0 or 1) are applied to ``state``: node -> 0, 1 or None."""
-        forced = {**self.rails, **{self.root[pin]: level for pin, level in inputs.items()}}
+    def settle(self, state: Levels, inputs: Mapping[str, int]) -> Levels:
+        """The state that follows when ``inputs`` (port -> 0 or 1) are applied to ``state``."""
+        forced: Levels = {**self.rails, **{self.root[pin]: level for pin, level in inputs.items()}}
+        previous: Levels = {}
         state = {**state, **forced}
-        for _ in range(STEPS):
-            after = self._step(state, forced)
-            if after == state:
+        for _ in range(STEPS + 1):
+            if state == previous:
                 return state
-            previous, state = state, after
+            previous, state = state, self._step(state, forced)
         return {n: v if v == previous[n] else None for n, v in state.items()}
 
-    def _step(self, state, forced):
+    def _step(self, state: Levels, forced: Levels) -> Levels:
         sure, maybe = (
             {level: self._distance(state, forced, level, doubt) for level in (0, 1)} for doubt in (False, True)
         )
@@ -64,11 +82,8 @@ class Switches:
                 after[node] = None
         return after
 
-    def _distance(self, state, forced, level, doubt):
-        """Resistance from every node to the nearest source of ``level``: dict. doubt: unknown gates conduct, too, and
-
-        unknown sources count.
-        """
+    def _distance(self, state: Levels, forced: Levels, level: int, doubt: bool) -> dict[str, float]:
+        """Resistance from every node to the nearest source of ``level``; with ``doubt`` unknown gates conduct."""
         best = {n: 0.0 for n, v in forced.items() if v == level}
         queue = [(0.0, n) for n in best]
         while queue:
@@ -85,8 +100,8 @@ class Switches:
         return best
 
 
-def floating(switches, state, node):
-    """Whether ``node`` is driven by nothing in ``state`` (high impedance): no path to a rail conducts."""
+def floating(switches: Switches, state: Levels, node: str) -> bool:
+    """Whether ``node`` has high impedance in ``state``: no path to a rail conducts."""
     reached, queue = {switches.root[node]}, [switches.root[node]]
     while queue:
         for neighbour, gate, on, _ in switches.edges.get(queue.pop(), ()):
@@ -98,17 +113,17 @@ def floating(switches, state, node):
     return True
 
 
-def _joined(netlist):
-    """node -> its representative: nodes that resistors join are one."""
+def joined(netlist: Netlist) -> dict[str, str]:
+    """Each node's representative: nodes that resistors join are one."""
     root = {n: n for n in netlist.nodes}
 
-    def find(n):
+    def find(n: str) -> str:
         while root[n] != n:
             n = root[n]
         return n
 
     order = {n: i for i, n in enumerate(netlist.nodes)}
     for r in netlist.resistors:
-        a, b = sorted((find(r.a), find(r.b)), key=order.get)  # ports come first and stay
+        a, b = sorted((find(r.a), find(r.b)), key=order.__getitem__)  # ports come first and stay
         root[b] = a
     return {n: find(n) for n in root}

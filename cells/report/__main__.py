@@ -3,17 +3,17 @@
 import argparse
 import json
 import sys
-import time
 from pathlib import Path
 
 from base.files import staged
-from base.liberty import read
+from base.liberty.read import read
 from base.page import render
 from base.tools import ToolError
-from cells import run, sources
+from cells import sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
 from cells.liberty import compare, reference
+from cells.library import characterize_library
 from cells.report import curve, pictures, separate
 from cells.spice.engine import SimulationError
 from models.parameters import ParameterError
@@ -75,10 +75,8 @@ def against(conditions, options):
     names = sorted(set(known) & set(sources.names("sky130_hd")))
     if not names:
         raise ParameterError(f"reference = {options.reference}: has no cell of sky130_hd")
-    run.run(
-        "sky130_hd", conditions, names, "extracted", options.out / "libraries", None, options.workers, time.monotonic()
-    )
-    tree = read.read(options.out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
+    characterize_library("sky130_hd", conditions, names, "extracted", options.out / "libraries", None, options.workers)
+    tree = read(options.out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
     differences = compare.library(tree, known)
     told = compare.summary(differences)
     kinds = told["error"]

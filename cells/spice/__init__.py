@@ -1,0 +1,1 @@
+"""ngspice as a process, and what its transients show."""

@@ -1,10 +1,15 @@
 """A netlist as ngspice's subcircuit, every transistor with its diffusion and stress."""
 
+from types import ModuleType
 
-def circuit(netlist, process, models, corner, leakage=False):
-    """Lines: models of ``process`` (a module like platforms.sky130.models) in the set ``models``, the subcircuit,
+from cells.corner import Corner
+from cells.netlist.spice import Netlist
 
-    and one instance of it whose nodes have the ports' names. leakage: with the process's models for leakage.
+
+def circuit(netlist: Netlist, process: ModuleType, models: str, corner: Corner, leakage: bool = False) -> list[str]:
+    """The lines of a deck: models, the subcircuit, and one instance of it whose nodes have the ports' names.
+
+    process: a module like platforms.sky130.models. models: its set of models; with ``leakage`` those for leakage.
     """
     used = {(t.model, t.size["w"], t.size["l"]) for t in netlist.transistors}
     lines = [*process.cards(models, corner.process, used, leakage), f".subckt {netlist.name} {' '.join(netlist.ports)}"]

@@ -1,10 +1,11 @@
 """ngspice as a process that loads the models once and then runs one transient after another.
 
 `ngspice -p` reads commands from a pipe; sources and loads change by `alter`, results come back in its binary file.
-A run that hangs is killed by its time-out, a failed one is repeated with the stated settings of `Settings.retries` in a
-new process, and what fails with all of them is an error with the deck that shows it.
+A run that hangs is killed at its timeout, a failed one is repeated with `Settings.retries` in a new process, and what
+fails with all of them is an error that holds the deck.
 """
 
+import contextlib
 import os
 import re
 import select
@@ -13,8 +14,11 @@ import signal
 import subprocess
 import tempfile
 import time
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 import numpy as np
 
@@ -22,7 +26,8 @@ from base.tools import ToolError
 from cells.spice.settings import Settings
 from cells.spice.wave import Wave
 
-STALLED = 50  # times its time-out, by the clock, after which a child that uses no processor is given up
+STALLED = 50  # times its timeout, by the clock, after which a child that uses no CPU is given up
+Points = Sequence[tuple[float, float]]  # (s, V) of a piecewise linear source
 _END = "@@end-of-command@@"
 _WRONG = re.compile(
     r"(?im)^.*(singular matrix|timestep too small|simulation\(s\) aborted|fatal|unknown subckt|"
@@ -31,98 +36,125 @@ _WRONG = re.compile(
 
 
 class SimulationError(RuntimeError):
-    """ngspice failed with every setting. ``deck``: a netlist of its own that shows it."""
+    """A transient that failed with every setting; ``deck``: a netlist that reproduces it."""
 
-    def __init__(self, message, deck):
+    def __init__(self, message: str, deck: str) -> None:
         super().__init__(message)
         self.deck = deck
 
 
-class Simulator:
-    """``circuit``: lines of a deck (models, subcircuit, instance) that drives each of ``inputs`` by nothing yet.
+@dataclass(frozen=True)
+class Transient:
+    """One run. stimulus: sources of the inputs; loads: F at the outputs; stop, step: s, end and longest time step.
 
-    inputs: nodes that get a source. outputs: nodes that get a load capacitor. rails: node -> volts. A context manager;
-    ``runs`` counts the transients, ``repeated`` those that needed other settings.
+    nodes: (node inside the cell, V) from which the search for the first operating point starts.
     """
 
-    def __init__(self, circuit, inputs, outputs, rails, temperature, settings=None):
+    stimulus: Mapping[str, Points]
+    loads: Mapping[str, float]
+    stop: float
+    step: float
+    nodes: tuple[tuple[str, float], ...] = ()
+
+    @property
+    def command(self) -> str:
+        """The tran command."""
+        return f"tran {self.step:.6g} {self.stop:.9g} 0 {self.step:.6g}"
+
+
+class Simulator:
+    """A context manager around one ngspice process.
+
+    circuit: lines of a deck (models, subcircuit, instance). inputs: nodes that get a source; outputs: nodes that get a
+    load capacitor; rails: supplies and their volts. runs: transients so far; repeated: those that needed a retry.
+    """
+
+    def __init__(
+        self,
+        circuit: Iterable[str],
+        inputs: Iterable[str],
+        outputs: Iterable[str],
+        rails: Mapping[str, float],
+        temperature: float,
+        settings: Settings | None = None,
+    ) -> None:
         self.circuit, self.inputs, self.outputs = list(circuit), tuple(inputs), tuple(outputs)
         self.rails, self.temperature = dict(rails), temperature
         self.settings = settings or Settings()
         self.runs = self.repeated = 0
-        self._child = self._current = None
-        self._folder = None
+        self.last = ""  # the latest run as a netlist for `ngspice -b`
+        self._child: subprocess.Popen[bytes] | None = None
+        self._current: tuple[Settings, tuple[tuple[str, float], ...]] | None = None
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         self._folder = Path(tempfile.mkdtemp(prefix="ngspice-", dir="/dev/shm" if os.path.isdir("/dev/shm") else None))
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         self._stop()
         shutil.rmtree(self._folder, ignore_errors=True)
 
-    def transient(self, stimulus, loads, stop, step, nodes=(), settings=None, retry=True):
-        """One run: Wave. stimulus: input -> [(s, V), ...]; loads: output -> F; stop: s; step: longest time step, s.
+    def transient(
+        self,
+        stimulus: Mapping[str, Points],
+        loads: Mapping[str, float],
+        stop: float,
+        step: float,
+        nodes: Iterable[tuple[str, float]] = (),
+        settings: Settings | None = None,
+        retry: bool = True,
+    ) -> Wave:
+        """Run a `Transient`; other ``nodes`` than in the run before cost a new process.
 
-        nodes: (node inside the cell, V) to start the search for the first operating point from; other nodes than in the
-        run before cost a new process. retry: whether Settings.retries are tried after a failure.
-
-        Raises SimulationError.
+        retry: whether Settings.retries are tried after a failure. Raises SimulationError.
         """
-        wanted = settings or self.settings
+        wanted, run = settings or self.settings, Transient(stimulus, loads, stop, step, tuple(nodes))
         attempts = (wanted, *wanted.retries) if retry else (wanted,)
         self.runs += 1
-        self._request = wanted, stimulus, loads, stop, step, nodes
+        self.last = "\n".join([*self._deck(wanted, run, run.loads), f".{run.command}", ".end", ""])
+        why = ""
         for k, attempt in enumerate(attempts):
             self.repeated += k == 1
             try:
-                return self._run(attempt, stimulus, loads, stop, step, nodes)
+                return self._run(attempt, run)
             except _Failed as error:
                 why = str(error)
                 self._stop()
         raise SimulationError(f"ngspice: {why} (attempts: {len(attempts)})", self.last)
 
-    @property
-    def last(self):
-        """The run asked for last as a netlist of its own, for `ngspice -b`."""
-        return self._deck(*self._request)
+    def _deck(self, settings: Settings, run: Transient, loads: Mapping[str, float]) -> list[str]:
+        return [
+            "* made by cells",
+            *settings.options,
+            *self.circuit,
+            f".temp {self.temperature:g}",
+            *(f"vrail{i} {node} 0 {volts:g}" for i, (node, volts) in enumerate(self.rails.items())),
+            *(f".nodeset v(xcell.{node})={volts:g}" for node, volts in run.nodes),
+            *(f"vin{i} {pin} 0 PWL({_pairs(run.stimulus[pin])})" for i, pin in enumerate(self.inputs)),
+            *(f"cload{i} {pin} 0 {loads.get(pin, 0.0):.9g}" for i, pin in enumerate(self.outputs)),
+        ]
 
-    def _deck(self, settings, stimulus, loads, stop, step, nodes):
-        lines = self._lines(settings, nodes)
-        sources = [f"vin{i} {pin} 0 PWL({_pairs(stimulus[pin])})" for i, pin in enumerate(self.inputs)]
-        capacitors = [f"cload{i} {pin} 0 {loads.get(pin, 0.0):.9g}" for i, pin in enumerate(self.outputs)]
-        return "\n".join([*lines, *sources, *capacitors, f".tran {step:.6g} {stop:.9g} 0 {step:.6g}", ".end", ""])
-
-    def _lines(self, settings, nodes):
-        rails = [f"vrail{i} {node} 0 {volts:g}" for i, (node, volts) in enumerate(self.rails.items())]
-        start = [f".nodeset v(xcell.{node})={volts:g}" for node, volts in nodes]
-        return ["* made by cells", *settings.options, *self.circuit, f".temp {self.temperature:g}", *rails, *start]
-
-    def _run(self, settings, stimulus, loads, stop, step, nodes):
-        self._start(settings, stimulus, tuple(nodes))
+    def _run(self, settings: Settings, run: Transient) -> Wave:
+        child = self._started(settings, run)
         file = self._folder / "wave.raw"
         file.unlink(missing_ok=True)
-        # All in one go: on a busy machine every answer that is waited for costs a turn of the scheduler.
-        lines = [f"alter @vin{i}[pwl] = [ {_pairs(stimulus[pin])} ]" for i, pin in enumerate(self.inputs)]
-        lines += [f"alter cload{i} = {max(loads.get(pin, 0.0), 1e-21):.9g}" for i, pin in enumerate(self.outputs)]
-        lines += [f"tran {step:.6g} {stop:.9g} 0 {step:.6g}", f"write {file}", "destroy all"]
-        said = self._command("\n".join(lines), settings.timeout)
-        if not file.exists():
-            raise _Failed(_first_error(said))
-        wave = self._read(file)
-        if wave.time[-1] < stop * (1 - 1e-6):
-            raise _Failed(_first_error(said))
+        # All in one write: on a busy machine every answer that is waited for costs a turn of the scheduler.
+        lines = [f"alter @vin{i}[pwl] = [ {_pairs(run.stimulus[pin])} ]" for i, pin in enumerate(self.inputs)]
+        lines += [f"alter cload{i} = {max(run.loads.get(pin, 0.0), 1e-21):.9g}" for i, pin in enumerate(self.outputs)]
+        output = _command(child, "\n".join([*lines, run.command, f"write {file}", "destroy all"]), settings.timeout)
+        wave = self._read(file) if file.exists() else None
+        if wave is None or wave.time[-1] < run.stop * (1 - 1e-6):
+            raise _Failed(_first_error(output))
         return wave
 
-    def _start(self, settings, stimulus, nodes):
-        wanted = replace(settings, timeout=1.0), nodes
+    def _started(self, settings: Settings, run: Transient) -> subprocess.Popen[bytes]:
+        """The process with the models, these settings and nodes loaded."""
+        wanted = replace(settings, timeout=1.0), run.nodes
         if self._child is not None and self._current == wanted:
-            return
+            return self._child
         self._stop()
-        sources = [f"vin{i} {pin} 0 PWL({_pairs(stimulus[pin])})" for i, pin in enumerate(self.inputs)]
-        capacitors = [f"cload{i} {pin} 0 1f" for i, pin in enumerate(self.outputs)]
         file = self._folder / "deck.sp"
-        file.write_text("\n".join([*self._lines(settings, nodes), *sources, *capacitors, ".end", ""]))
+        file.write_text("\n".join([*self._deck(settings, run, dict.fromkeys(self.outputs, 1e-15)), ".end", ""]))
         try:
             self._child = subprocess.Popen(
                 ["ngspice", "-p", file],
@@ -143,38 +175,13 @@ class Simulator:
             *(f"i(vin{i})" for i in range(len(self.inputs))),
             *(f"i(vrail{i})" for i in range(len(self.rails))),
         ]
-        said = self._command("set filetype=binary\nsave " + " ".join(saved), 60 + settings.timeout)
-        if wrong := _WRONG.search(said):
+        command = "set filetype=binary\nsave " + " ".join(saved)
+        if wrong := _WRONG.search(_command(self._child, command, 60 + settings.timeout)):
             raise _Failed(wrong[0].strip())
+        return self._child
 
-    def _command(self, text, timeout):
-        """What ngspice prints in answer. Raises _Failed when it ends, or has not answered in ``timeout`` s of its own.
-
-        Its processor's time counts, not the clock's: on a busy machine a run is slow for no fault of its own.
-        """
-        pipe, started = self._child.stdout.fileno(), _seconds(self._child.pid)
-        latest = time.monotonic() + STALLED * timeout
-        try:
-            self._child.stdin.write(f"{text}\necho {_END}\n".encode())
-            self._child.stdin.flush()
-        except BrokenPipeError:
-            raise _Failed("ngspice ended") from None
-        said = b""
-        while _END.encode() not in said:
-            ready = select.select([pipe], [], [], min(timeout, 0.5))[0]
-            if _seconds(self._child.pid) - started > timeout or time.monotonic() > latest:
-                raise _Failed("no answer within the time-out")
-            if not ready:
-                continue
-            part = os.read(pipe, 65536)
-            if not part:
-                raise _Failed(_first_error(said.decode(errors="replace")) if said else "ngspice ended")
-            said += part
-        return said.decode(errors="replace")
-
-    def _read(self, file):
-        data = file.read_bytes()
-        head, _, body = data.partition(b"Binary:\n")
+    def _read(self, file: Path) -> Wave:
+        head, _, body = file.read_bytes().partition(b"Binary:\n")
         names = re.findall(rb"^\t\d+\t(\S+)\t", head, re.M)
         table = np.frombuffer(body).reshape(-1, len(names)).T
         column = {name.decode(): row for name, row in zip(names, table, strict=True)}
@@ -183,15 +190,11 @@ class Simulator:
         current |= {n: -column[f"i(vrail{i})"] for i, n in enumerate(self.rails)}
         return Wave(column["time"], voltage, current)
 
-    def _stop(self):
+    def _stop(self) -> None:
         if self._child is None:
             return
-        with self._child:
-            try:
-                os.killpg(self._child.pid, signal.SIGKILL)
-            except ProcessLookupError:
-                pass
-            self._child.wait()
+        with self._child, contextlib.suppress(ProcessLookupError):
+            os.killpg(self._child.pid, signal.SIGKILL)
         self._child = None
 
 
@@ -199,8 +202,34 @@ class _Failed(Exception):
     """One attempt did not succeed."""
 
 
-def _seconds(pid):
-    """Processor's seconds that a process has used; the clock's where the system does not say (no /proc)."""
+def _command(child: subprocess.Popen[bytes], text: str, timeout: float) -> str:
+    """What ngspice prints in answer. Raises _Failed when it ends, or uses ``timeout`` s of CPU without an answer.
+
+    CPU time counts, not the clock's: on a busy machine a run is slow through no fault of its own.
+    """
+    assert child.stdin and child.stdout
+    started, latest = _cpu_seconds(child.pid), time.monotonic() + STALLED * timeout
+    try:
+        child.stdin.write(f"{text}\necho {_END}\n".encode())
+        child.stdin.flush()
+    except BrokenPipeError:
+        raise _Failed("ngspice ended") from None
+    output = b""
+    while _END.encode() not in output:
+        ready = select.select([child.stdout], [], [], min(timeout, 0.5))[0]
+        if _cpu_seconds(child.pid) - started > timeout or time.monotonic() > latest:
+            raise _Failed("no answer within the timeout")
+        if not ready:
+            continue
+        part = os.read(child.stdout.fileno(), 65536)
+        if not part:
+            raise _Failed(_first_error(output.decode(errors="replace")) if output else "ngspice ended")
+        output += part
+    return output.decode(errors="replace")
+
+
+def _cpu_seconds(pid: int) -> float:
+    """CPU seconds that a process has used; the clock's seconds where the system has no /proc."""
     try:
         fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
     except OSError:
@@ -208,10 +237,10 @@ def _seconds(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def _pairs(points):
+def _pairs(points: Points) -> str:
     return " ".join(f"{t:.9g} {v:.9g}" for t, v in points)
 
 
-def _first_error(said):
-    found = _WRONG.search(said)
+def _first_error(output: str) -> str:
+    found = _WRONG.search(output)
     return found[0].strip() if found else "the transient did not reach its end"

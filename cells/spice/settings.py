@@ -1,4 +1,4 @@
-"""How exactly ngspice solves, and what is tried when it does not."""
+"""Tolerances of ngspice, and what is tried when it fails."""
 
 from dataclasses import dataclass, replace
 
@@ -7,9 +7,10 @@ from models.parameters import ParameterError
 
 @dataclass(frozen=True)
 class Settings:
-    """reltol, trtol: ngspice's tolerances of the solution and of the time step. steps: time points that a ramp at the
+    """How exactly ngspice solves.
 
-    cell's input is cut into at least. timeout: processor's seconds a transient may take. method: trap or gear.
+    reltol, trtol: its tolerances of the solution and of the time step. steps: fewest time points of a transient.
+    timeout: CPU seconds that a transient may take. method: trap or gear.
     """
 
     reltol: float = 1e-3
@@ -18,7 +19,7 @@ class Settings:
     timeout: float = 20.0
     method: str = "trap"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not 1e-8 <= self.reltol <= 0.1:
             raise ParameterError(f"reltol = {self.reltol}: must be 1e-8 to 0.1")
         if not 0.1 <= self.trtol <= 100:
@@ -31,16 +32,16 @@ class Settings:
             raise ParameterError(f"method = {self.method!r}: must be trap or gear")
 
     @property
-    def options(self):
-        """Lines .option of a deck; gmin and abstol lie under the leakage of one transistor (0.1 pA)."""
+    def options(self) -> list[str]:
+        """The .option lines of a deck; gmin and abstol are below the leakage of one transistor (0.1 pA)."""
         return [
             f".option reltol={self.reltol:g} trtol={self.trtol:g} method={self.method} gmin=1e-15 abstol=1e-15",
             ".option chgtol=1e-17 itl1=300 itl2=200 itl4=100",
         ]
 
     @property
-    def retries(self):
-        """Settings to try after these, in order: Gear's method, then Gear's with looser tolerances and more time."""
+    def retries(self) -> "tuple[Settings, ...]":
+        """What to try after these, in order: Gear's method, then also looser tolerances and more time."""
         return (
             replace(self, method="gear"),
             replace(self, method="gear", reltol=max(self.reltol, 1e-3), trtol=7.0, timeout=3 * self.timeout),

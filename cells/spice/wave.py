@@ -1,20 +1,23 @@
-"""What a transient shows: crossings, transition times, charges."""
+"""Crossings, transition times and charges of a transient."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
+
+Samples = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Wave:
-    """time: (points,) s, rising. voltage: node -> (points,) V. current: source -> (points,) A, into the cell."""
+    """A transient, as arrays of one value a point: s (rising), V of nodes, A of sources, into the cell."""
 
-    time: np.ndarray
-    voltage: dict
-    current: dict
+    time: Samples
+    voltage: dict[str, Samples]
+    current: dict[str, Samples]
 
-    def cross(self, node, level, rising, after=0.0):
-        """Time at which ``node`` last crosses ``level`` volts upwards (or downwards) after ``after`` s, or None."""
+    def cross(self, node: str, level: float, rising: bool, after: float = 0.0) -> float | None:
+        """The last time after ``after`` s at which ``node`` crosses ``level`` volts upwards (or downwards), or None."""
         v = self.voltage[node] - level
         if not rising:
             v = -v
@@ -24,13 +27,12 @@ class Wave:
         i = hits[-1]
         return float(self.time[i] + (self.time[i + 1] - self.time[i]) * v[i] / (v[i] - v[i + 1]))
 
-    def at(self, node, when):
+    def at(self, node: str, when: float) -> float:
         """Volts of ``node`` at ``when`` s, linear between points."""
         return float(np.interp(when, self.time, self.voltage[node]))
 
-    def charge(self, source, start, stop):
+    def charge(self, source: str, start: float, stop: float) -> float:
         """Coulombs through ``source`` from ``start`` to ``stop`` s, by the trapezoidal rule."""
-        i, t = self.current[source], self.time
-        inside = (t > start) & (t < stop)
-        times = np.r_[start, t[inside], stop]
-        return float(np.trapezoid(np.interp(times, t, i), times))
+        inside = (self.time > start) & (self.time < stop)
+        times = np.r_[start, self.time[inside], stop]
+        return float(np.trapezoid(np.interp(times, self.time, self.current[source]), times))

@@ -1,0 +1,125 @@
+"""A library characterized at a corner: jobs, files, summary."""
+
+import json
+import shutil
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from tqdm import tqdm
+
+from base import jobs
+from base.files import staged
+from base.liberty.group import Group
+from base.liberty.write import text
+from cells import sources
+from cells.characterize.conditions import Conditions
+from cells.characterize.job import cell_of, job
+from cells.characterize.measured import Measured
+from cells.liberty import accept, build, compare, reference
+from cells.liberty.check import problems
+from cells.netlist.function import Cell
+from cells.spice.circuit import circuit
+from models.parameters import ParameterError
+
+
+def characterize_library(
+    library: str,
+    conditions: Conditions,
+    wanted: Sequence[str] | None,
+    netlist: str,
+    out: Path,
+    against: Path | None,
+    workers: int,
+) -> dict[str, Any]:
+    """Write <out>/<library>/<corner>.lib, <library>.lef, <library>.v and summary.json; returns the summary.
+
+    summary.json: that of this corner, and under 'corners' that of every corner whose .lib is in the folder; LEF and
+    Verilog have the cells of all of them. wanted: names of cells, None for all. netlist: one of sources.NETLISTS.
+    against: folder of SkyWater's tables. workers: processes, -1 for all cores.
+    """
+    started, process, corner = time.monotonic(), sources.process(library), conditions.corner.name
+    if unknown := sorted(set(wanted or ()) - set(sources.names(library))):
+        raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
+    known = reference.folder(against) if against else None
+    names = sorted(wanted or sources.names(library))
+    found = [sources.source(library, name, netlist) for name in tqdm(names, "netlists", disable=None)]
+    cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
+    for cell in cells:
+        _has_models(cell, process, conditions)
+    title = sources.title(library)
+    folder = out / title
+    longest_first = sorted(found, key=lambda source: -len(source.netlist))
+    results = jobs.run(
+        [job(source, conditions, process) for source in longest_first], folder / "jobs", f"{title} {corner}", workers
+    )
+    by_name = {source.name: result for source, result in zip(longest_first, results, strict=True)}
+    measured: list[Measured] = [by_name[name] for name in names]
+    entries = [build.Entry(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)]
+    constants = {} if wanted else sources.constants(library)
+    tree = build.library(f"{title}__{corner}", conditions, entries, process, constants)
+    with staged(folder) as part:
+        (part / f"{corner}.lib").write_text(text(tree))
+        summary = _summary(measured, tree) | (compare.summary(compare.library(tree, known)) if known else {})
+        summary |= {
+            "wall_s": round(time.monotonic() - started, 1),
+            "names": names,
+            "left_out": {} if wanted else sources.left_out(library),
+            "read_by": accept.readers(part / f"{corner}.lib"),
+        }
+        summary["problems"] += [
+            f"{tool}: {output}" for tool, output in summary["read_by"].items() if output not in accept.GOOD
+        ]
+        corners = _corners(folder) | {corner: dict(summary)}
+        for suffix, content in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
+            (part / f"{title}.{suffix}").write_text(content)
+        (part / "summary.json").write_text(
+            json.dumps({"corner": corner, **summary, "corners": corners}, indent=1) + "\n"
+        )
+    _keep_failed(folder / "failed" / corner, measured)
+    return summary
+
+
+def _keep_failed(folder: Path, measured: Sequence[Measured]) -> None:
+    """Write the netlists of the simulations that failed in place of those of an earlier run."""
+    shutil.rmtree(folder, ignore_errors=True)
+    for measure in measured:
+        for k, failure in enumerate(measure["failed"]):
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / f"{measure['name']}.{k}.sp").write_text(
+                f"* {failure['what']}: {failure['why']}\n{failure['deck']}"
+            )
+
+
+def _has_models(cell: Cell, process: ModuleType, conditions: Conditions) -> None:
+    """Raise ParameterError, before anything runs, when no model covers the size of a transistor of ``cell``."""
+    try:
+        circuit(cell.machine.netlist, process, conditions.models, conditions.corner)
+    except ParameterError as error:
+        raise ParameterError(f"netlist = {cell.name}: {error}") from None
+
+
+def _corners(folder: Path) -> dict[str, dict[str, Any]]:
+    """Summaries of the corners of earlier runs whose library is still in the folder."""
+    try:
+        known = json.loads((folder / "summary.json").read_text()).get("corners", {})
+    except (OSError, ValueError):
+        return {}
+    return {name: summary for name, summary in known.items() if (folder / f"{name}.lib").exists()}
+
+
+def _summary(measured: Sequence[Measured], tree: Group) -> dict[str, Any]:
+    return {
+        "cells": len(measured),
+        "arcs": sum(len(m["arcs"]) for m in measured),
+        "constraints": sum(len(m["constraints"]) for m in measured),
+        "simulations": sum(m["simulations"] for m in measured),
+        "repeated": sum(m["repeated"] for m in measured),
+        "failed": [f"{m['name']}: {f['what']}: {f['why']}" for m in measured for f in m["failed"]],
+        "problems": problems(tree),
+        "cpu_s": round(sum(m["cpu_s"] for m in measured), 1),
+        "cell_s": {m["name"]: m["wall_s"] for m in measured},
+        "cell_cpu_s": {m["name"]: m["cpu_s"] for m in measured},
+    }
