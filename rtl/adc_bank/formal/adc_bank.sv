@@ -1,6 +1,6 @@
-// AdcBank with two lanes: every step's messages leave in order, each once, with the codes of what its lanes sampled,
-// whatever `rdy` and the values are. A lane is followed as in rtl/edge_adc/formal/lane.sv; a step that waits is kept
-// in a queue of two, with the lanes whose results have not left.
+// AdcBank with two lanes: every step's messages are sent in order, each once, with the codes of the values that its
+// lanes sampled, for any `rdy` and any values. A lane is tracked as in rtl/edge_adc/formal/lane.sv; steps that wait are
+// in a queue of two, with the lanes whose results are not sent.
 
 module AdcBankProof (
   input clk, input reset, input [26:0] step__msg, input step__val, input scan__rdy, input [1:0] mode,
@@ -49,7 +49,7 @@ module AdcBankProof (
               .state(state1), .comparator(comparator[1]), .due(due1), .due_code(result1[7:0]),
               .due_converted(result1[8]), .holds(holds1));
 
-  // Steps that are inside: kind, row, lanes whose results are due; a step without lanes sends nothing and is not kept
+  // Steps inside: kind, row, lanes whose results are due; a step without lanes sends nothing and is not kept
   reg [1:0] inside = 0;
   reg [13:0] front, behind;
   wire [1:0] front_kind = front[13:12], front_lanes = front[1:0];

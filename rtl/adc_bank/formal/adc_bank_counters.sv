@@ -1,5 +1,5 @@
-// The counters of AdcBank with all its lanes: `made` and `left_out` count the results that leave, by whether they were
-// converted, from one FRAME to the next, in all 32 bits.
+// The counters of AdcBank with all its lanes: `made` and `left_out` count the results that are sent, converted and not,
+// from one FRAME to the next, in all 32 bits.
 
 module AdcBankCounters (
   input clk, input reset, input [`STEP_BITS - 1:0] step__msg, input step__val, input scan__rdy, input [1:0] mode,

@@ -1,8 +1,8 @@
 // AmpCtrl for every configuration and every pattern of start, reset and hold_free; the inputs are free in every cycle.
 //
-// Coming back to idle is shown by a rank, a number that is 0 in idle, never grows while a row is under way, and falls
-// in every cycle but those of the guard before `read` in which hold_free is low. So a row ends after finitely many
-// cycles in which hold_free is high, whatever the configuration.
+// The return to idle is proven by a rank: a number that is 0 in idle, never increases during a row, and decreases in
+// every cycle except those of the guard before `read` in which hold_free is low. So a row ends after finitely many
+// cycles in which hold_free is high, for every configuration.
 
 module AmpCtrlProof (
   input clk, input reset, input start, input four_tap, input hold_free,
@@ -31,7 +31,7 @@ module AmpCtrlProof (
   wire [15:0] count = \dut.count ;
   wire [7:0] resets = \dut.resets ;
 
-  // What the last accepted start asked for
+  // The configuration at the last accepted start
   reg four;
   reg [15:0] d_reset, d_int, d_cm, d_settle, d_read, d_guard;
   reg [7:0] d_n_cm;
@@ -45,7 +45,7 @@ module AmpCtrlProof (
     end
   end
 
-  // The cycle before
+  // The previous cycle
   reg first = 1;
   reg was_reset, was_accept, was_zero, was_free, was_busy, was_read, was_ref;
   reg [3:0] was;
@@ -56,7 +56,7 @@ module AmpCtrlProof (
     was_busy <= busy; was <= phases; was_rank <= rank; was_ref <= ref_ctl;
   end
 
-  // Cycles of the present phase or pause so far, and integrations and common-mode resets of this tap
+  // Cycles of the current phase or pause so far, and integrations and common-mode resets of this tap
   reg [17:0] length;
   reg [8:0] integrations, cm_resets;
   wire begins = phases != was || (ref_ctl != was_ref);
@@ -69,7 +69,7 @@ module AmpCtrlProof (
     cm_resets <= reset || pixel_reset ? 0 : cm_resets_now;
   end
 
-  // The rank: taps, common-mode resets, phases and cycles still to come, the weightiest first
+  // The rank: taps, common-mode resets, phases and cycles left, the most significant first
   reg [3:0] place;
   always @* begin
     case (state)
@@ -100,15 +100,15 @@ module AmpCtrlProof (
     if (!first && was_reset)
       p_reset: assert ({phases, shutter, ref_ctl, sample, tap, busy, done, cfg_err} == 0);
     if (!first && !was_reset) begin
-      // Phases never overlap: of two, one has ended and a cycle with none lies between
+      // Phases never overlap: of two, one has ended and a cycle with none is between
       p_exclusive: assert ((phases & (phases - 1)) == 0);
       p_apart: assert (was == 0 || phases == 0 || phases == was);
-      // Everything rests when no row is under way
+      // All outputs are low when no row is in progress
       p_rest: assert (busy || {phases, shutter, ref_ctl, sample, tap} == 0);
-      // It comes back to idle
+      // It returns to idle
       p_progress: assert (!was_busy || (was_free ? rank < was_rank : rank <= was_rank));
       p_done: assert (done == (was_busy && !busy));
-      // A start moves it, unless a duration is zero
+      // A start begins a row, unless a duration is zero
       p_start: assert (!was_accept || (was_zero ? !busy && cfg_err : busy && !cfg_err));
       p_still: assert (was_busy || was_accept || !busy);
       // The sample-and-hold is overwritten only when it is free

@@ -1,5 +1,5 @@
-// The blocks of docs/chip.md are joined as it says: every bit of every wire between them, upper bits of counters and
-// addresses too, which a frame of a small array never sets.
+// The blocks are connected as in docs/chip.md: every bit of every wire between them, including the upper bits of
+// counters and addresses, which a frame of a small array never sets.
 
 module AspChipWires (
   input clk, input reset, input sclk, input csn, input mosi, input link_rdy, input [`LANES - 1:0] comparator
@@ -13,7 +13,7 @@ module AspChipWires (
   wire [`LANES - 1:0] en;
   AspChip dut (.*);
 
-  // Of RegFile: in the order of the register map, trims in the lowest bits
+  // RegFile's bits: in the order of the register map, trims in the lowest bits
   localparam TRIMS = 384, CONFIGURATION = TRIMS + 199;
   (* hierconn *) wire [CONFIGURATION - 1:0] \dut.regs.cfg ;
   (* hierconn *) wire [63:0] \dut.regs.cycles , \dut.regs.conversions_made , \dut.regs.conversions_left_out ;

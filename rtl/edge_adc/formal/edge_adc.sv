@@ -18,7 +18,7 @@ module EdgeAdcProof (
   reg first = 1, was_reset, was_free, was_go, was_val, was_rdy, was_unsigned;
   reg [8:0] was_result;
   reg [6:0] was_threshold;
-  reg [3:0] age;      // cycles behind the last go in which its result could leave
+  reg [3:0] age;      // cycles after the last go in which its result could be sent
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_free <= free; was_go <= go; was_val <= out__val; was_rdy <= out__rdy;
     was_result <= {converted, out__msg}; was_unsigned <= unsigned_; was_threshold <= threshold;

@@ -1,7 +1,7 @@
-// What a lane must send, kept beside it: the ideal comparator's answer to its DAC, and the codes that are due.
+// The reference of a lane: the ideal comparator's decision for its DAC code, and the codes to be sent.
 //
-// `value` is what stands at the lane's input: the sample-and-hold takes it with `go`. It is an integer in LSB beyond
-// the range of both codes, so that clipping is met, and its comparator is the one of docs/chip.md: high when value >=
+// `value` is at the lane's input: the sample-and-hold samples it with `go`. It is an integer in LSB, with values beyond
+// the range of both codes to include clipping. The comparator is the one of docs/chip.md: high when value >=
 // level(dac).
 
 module Lane (
@@ -15,7 +15,7 @@ module Lane (
   wire signed [9:0] level = unsigned_ ? {2'b0, dac} : {2'b0, dac} - 10'sd128;
   assign comparator = held >= level;
 
-  // The README's result of a value: clipped, zero in the window, and whether that took a search
+  // The result of a value by the README: clipped, zero in the window, and whether it needs a search
   function [8:0] result(input signed [9:0] value);
     reg signed [9:0] clipped;
     begin
@@ -26,7 +26,7 @@ module Lane (
     end
   endfunction
 
-  // At most two are due: one at `out`, one that converts or waits; the elder first
+  // At most two results are due: one at `out`, one that converts or waits; the older first
   reg [8:0] elder, younger;
   wire take = val && rdy;
   assign {due_converted, due_code} = elder;

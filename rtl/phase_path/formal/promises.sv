@@ -1,5 +1,5 @@
-// What PhasePath's neighbours promise: `on` stands from reset on (the register file writes no mode while the chip is
-// busy); a step is four taps of as many samples each, at most one a lane, and nothing else comes in its middle.
+// Assumptions about PhasePath's neighbours: `on` is constant from reset on (the register file writes no mode while the
+// chip is busy); a step is four taps of as many samples each, at most one a lane, and no other message is within it.
 
 module PhasePathPromises #(parameter LANES = 8) (
   input clk, input reset, input on, input recv__val, input recv__rdy, input [11:0] recv__msg, output promised

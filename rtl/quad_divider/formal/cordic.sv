@@ -1,5 +1,5 @@
-// CORDIC: every request gets one response, its own, and it is the golden model's (models/digital/cordic.py), which
-// turns here beside it in the README's formats with the model's table of angles. `request` and `floor` are any
+// CORDIC: every request gets one response, its own, equal to that of the golden model (models/digital/cordic.py),
+// which runs here in parallel in the README's formats with the model's table of angles. `request` and `floor` are any
 // request, fixed.
 
 module CordicProof (
@@ -35,7 +35,7 @@ module CordicProof (
   reg [8 + F:0] x;
   reg signed [9 + F:0] y;
   reg signed [6 + F:0] z;
-  wire [3:0] i = age;             // the next turn is by atan(2^-i)
+  wire [3:0] i = age;             // the next rotation is by atan(2^-i)
   wire signed [9 + F:0] y_shifted = y >>> i;
   wire [8 + F:0] x_shifted = x >> i;
   wire [6 + F:0] angle = cordic_angle(i - 1);
@@ -59,7 +59,7 @@ module CordicProof (
     end
   end
 
-  // z to the nearest integer, ties to the even one
+  // z rounded to the nearest integer, ties to even
   wire [7:0] whole = {z[6 + F], z[6 + F:F]};
   wire [F - 1:0] fraction = z[F - 1:0];
   wire [7:0] index = whole + (fraction > 1 << F - 1 || fraction == 1 << F - 1 && whole[0]);

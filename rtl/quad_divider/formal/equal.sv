@@ -1,5 +1,5 @@
-// The three dividers side by side: the same request gives the same response. Each may answer in its own time; what the
-// first one said is kept until the others have.
+// The three dividers in parallel: the same request gives the same response. Their latencies differ; the first response
+// is kept until the others are ready.
 
 module EqualProof (input clk, input reset);
   (* anyconst *) wire [17:0] request;

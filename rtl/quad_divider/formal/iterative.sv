@@ -1,7 +1,7 @@
 // An iterative divider (`DUT, `DIGITS digits): every request gets one response, its own, and it is the specified one.
 //
-// `request` and `floor` are any request, fixed: what is shown for it is shown for all. The invariant behind it is that
-// the state is that of the long division of its operands after as many bits.
+// `request` and `floor` are any request, fixed: the proof for it holds for all. The invariant is that the
+// state equals that of the long division of its operands after as many bits.
 
 module IterativeProof (
   input clk, input reset, input [17:0] recv__msg, input recv__val, input send__rdy, input [7:0] noise_floor
@@ -18,7 +18,7 @@ module IterativeProof (
   (* anyconst *) wire [17:0] request;
   (* anyconst *) wire [7:0] floor;
 
-  // A request is awaited, it is the one, and for how many cycles
+  // A request is in progress, it is the fixed one, and for how many cycles
   reg pending = 0, mine;
   reg [4:0] age;
   reg first = 1, was_reset, was_val, was_rdy;
@@ -44,7 +44,7 @@ module IterativeProof (
   wire [2:0] octant; wire amp_valid; wire [8:0] divisor, rest; wire [7:0] quotient;
   assign {octant, amp_valid, divisor, rest, quotient} = \dut.dpath.state ;
   wire [3:0] bits_made = \dut.ctrl.done ? 8 : 8 / `DIGITS * \dut.dpath.count ;
-  // A constant too, so that no step of the induction has to find again that the division by hand is what it was
+  // A constant too, so that no induction step has to find again that the long division is unchanged
   (* anyconst *) wire [152:0] by_hand;
   wire [152:0] states;
   LongDivision long_division (.larger(larger), .smaller(smaller), .states(states));
@@ -59,7 +59,7 @@ module IterativeProof (
       p_ratio: assert (!(send__val && mine) || send_ratio == (origin ? 8'd0 : ratio));
       p_flags: assert (!(send__val && mine) || flags_ok);
       p_phase: assert (!(send__val && mine) || phase_ok);
-      // Nothing is made up, nothing is dropped, and no second request is taken before the first is answered
+      // No response without a request, none lost, and no second request is taken before the first response
       p_one: assert (!send__val || pending);
       p_room: assert (!recv__rdy || !pending);
       p_latency: assert (!pending || send__val == (age >= `DIGITS + 1));

@@ -1,5 +1,5 @@
-// The state of a division by hand after 0 to 8 bits, 17 bits each, the first lowest: the rest, and
-// the quotient so far. That it is right is proven by multiplying back (p_defined).
+// The state of a long division after 0 to 8 bits, 17 bits each, the first lowest: the rest, and
+// the quotient so far. The proof p_defined checks it by multiplication.
 
 module LongDivision (input [8:0] larger, input [8:0] smaller, output [152:0] states);
   assign states[16:0] = {smaller, 8'b0};

@@ -1,6 +1,6 @@
-// The pipelined divider: requests move from stage to stage only together, so responses leave in their order; each is
-// the specified one. `request` and `floor` are any request, fixed; `mine` marks the stage that holds one of them,
-// `watch`ed at random.
+// The pipelined divider: requests move from stage to stage only together, so responses are sent in order; each is the
+// specified one. `request` and `floor` are any request, fixed; `mine` marks the stage that holds one of them,
+// chosen at random by `watch`.
 
 module PipelinedProof (
   input clk, input reset, input [17:0] recv__msg, input recv__val, input send__rdy, input [7:0] noise_floor,
@@ -38,7 +38,7 @@ module PipelinedProof (
   (* anyconst *) wire [17:0] request;
   (* anyconst *) wire [7:0] floor;
 
-  // Where requests are, by the contract alone: all move when the last result is taken or is none
+  // The stages of requests, from the contract only: all move when the last result is taken or is none
   reg [8:0] awaited, mine;
   reg first = 1, was_reset, was_val, was_rdy;
   reg [28:0] was_msg;
@@ -59,7 +59,7 @@ module PipelinedProof (
   QuadSpec spec (.x(request[17:9]), .y(request[8:0]), .noise_floor(floor), .msg(send__msg), .octant_ok(octant_ok),
                  .ratio(send_ratio), .flags_ok(flags_ok), .phase_ok(phase_ok), .octant_spec(octant_spec),
                  .larger(larger), .smaller(smaller));
-  // A constant too, so that no step of the induction has to find again that the division by hand is what it was
+  // A constant too, so that no induction step has to find again that the long division is unchanged
   (* anyconst *) wire [152:0] by_hand;
   wire [152:0] states;
   LongDivision long_division (.larger(larger), .smaller(smaller), .states(states));
@@ -85,7 +85,7 @@ module PipelinedProof (
       p_ratio: assert (!mine[8] || send_ratio == (origin ? 8'd0 : ratio));
       p_flags: assert (!mine[8] || flags_ok);
       p_phase: assert (!mine[8] || phase_ok);
-      // A response nine moves behind its request, none without one, none lost
+      // A response nine moves after its request, none without one, none lost
       p_in_step: assert (send__val == awaited[8]);
       p_room: assert (recv__rdy == (!awaited[8] || send__rdy));
       p_stable: assert (was_reset || !was_val || was_rdy || send__val && send__msg == was_msg);

@@ -1,5 +1,5 @@
-// What a response must be, written from the README, not from the RTL: octants by comparing, the phase by the
-// golden model's table `phase_of_ratio` (verif/formal/tables.py). The ratio is the wrapper's part.
+// The specified response, written from the README, not from the RTL: octants by comparison, the phase by the
+// golden model's table `phase_of_ratio` (verif/formal/tables.py). The wrapper specifies the ratio.
 
 module QuadSpec (
   input [8:0] x, input [8:0] y, input [7:0] noise_floor, input [28:0] msg,

@@ -1,4 +1,4 @@
-// The division by hand, which the dividers are compared with, is what the README defines, for every pair of operands.
+// The long division, which the dividers are compared with, is the README's definition, for every pair of operands.
 
 module ReferenceProof (input [8:0] x, input [8:0] y);
   wire [9:0] ax = x[8] ? {1'b0, ~x} + 1 : x, ay = y[8] ? {1'b0, ~y} + 1 : y;
@@ -7,7 +7,7 @@ module ReferenceProof (input [8:0] x, input [8:0] y);
   LongDivision long_division (.larger(larger), .smaller(smaller), .states(by_hand));
   wire [7:0] ratio = by_hand[143:136];
 
-  // Zero-extended: eighteen bits hold every product
+  // Zero-extended: eighteen bits are enough for every product
   wire [17:0] product = {10'b0, ratio} * {9'b0, larger};
   wire [17:0] wanted = {1'b0, smaller, 8'b0};
   always @* begin

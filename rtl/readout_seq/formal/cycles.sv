@@ -1,6 +1,6 @@
-// `cycles` counts the cycles in which `busy` is high, from 0 in a frame's first one, and stands behind its end; every
-// bit of it, which no simulation lives to see. Amplifiers that refuse are left to the tests: a frame that is given up
-// needs the invariants of readout_seq.sv.
+// `cycles` counts the cycles in which `busy` is high, from 0 in a frame's first one, and is stable after its end: all
+// 64 bits, which no simulation reaches. The tests cover amplifiers that refuse: an aborted frame needs the invariants
+// of readout_seq.sv.
 
 module ReadoutSeqCycles (
   input clk, input reset, input start, input amp_done, input amp_err, input bank_idle, input step__rdy,

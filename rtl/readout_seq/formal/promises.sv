@@ -1,5 +1,5 @@
-// What ReadoutSeq's neighbours promise (docs/chip.md): the register file writes no configuration while the chip is busy
-// (its proof of p_write). And AmpCtrl looks at amp_row only while ReadoutSeq is busy.
+// Assumptions about ReadoutSeq's neighbours (docs/chip.md): the register file writes no configuration while the chip is
+// busy (its proof of p_write). AmpCtrl uses amp_row only while ReadoutSeq is busy.
 
 module ReadoutSeqPromises (
   input clk, input reset, input busy, input [1:0] mode, input [23:0] mask, input [7:0] row0, input [7:0] row1,

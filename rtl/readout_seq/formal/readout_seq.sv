@@ -1,9 +1,9 @@
-// ReadoutSeq hands on exactly the steps of docs/chip.md (Scan order), each once and in that order, for every window,
-// mask, decimation, mode and overlap, and whatever the amplifiers, the bank and `rdy` do.
+// ReadoutSeq sends exactly the steps of docs/chip.md (Scan order), each once and in that order, for every window,
+// mask, decimation, mode and overlap, and for any behaviour of the amplifiers, the bank and `rdy`.
 //
-// Order: the steps of a frame ascend strictly in (row, k, group, sub), and each is one that the document wants.
-// Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is wanted, it has been sent when
-// END is offered. The document's words stand in `column_ok`, `row_ok` and `lanes_of`, and nowhere else.
+// Order: the steps of a frame ascend strictly in (row, k, group, sub), and the document requires each.
+// Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is required, it has been
+// sent when END is offered. Only `column_ok`, `row_ok` and `lanes_of` state the document's rules.
 
 module ReadoutSeqProof (
   input clk, input reset, input start, input amp_done, input amp_err, input bank_idle, input step__rdy,
@@ -50,7 +50,7 @@ module ReadoutSeqProof (
   endfunction
   wire wanted = row_ok(p_row) && column_ok(p_row[1:0], p_k) && lanes_of(p_group, p_k) != 0 && p_sub <= subs;
 
-  // The frame so far: what has been sent, whether the fixed step is among it, what came last
+  // The frame so far: what has been sent, whether the fixed step is among it, the last message
   reg first = 1, was_busy, was_reset, was_val, was_rdy, was_start_ok, was_start_bad;
   reg [24 + `LANES:0] was_msg;
   reg seen, framed, rows_sent, sampled;
@@ -107,7 +107,7 @@ module ReadoutSeqProof (
     else begin
       // RegFile locks the configuration while a frame runs
       assume (!(busy || was_start) || choice == was_choice);
-      // AmpCtrl reads a row only while the sample-and-holds are free (p_hold there), and they are until it is done
+      // AmpCtrl reads a row only while the sample-and-holds are free (p_hold there), which they are until it is done
       assume (!amp_done || hold_free);
     end
     if (!first && !was_reset) begin
@@ -119,7 +119,7 @@ module ReadoutSeqProof (
       p_row_first: assert (!sampling || rows_sent && row == last[22:13]);
       p_frame: assert (!(step__val && kind == FRAME) || !framed);
       p_end: assert (!(step__val && kind == END) || rows_sent && sampled);
-      // An offer stands: its kind, a ROW's row, all of a SAMPLE
+      // An offer is stable: its kind, a ROW's row, all of a SAMPLE
       p_stable: assert (!was_val || was_rdy || step__val && ((step__msg ^ was_msg) & used) == 0);
       p_start: assert (!was_start_ok || busy);
       p_refuse: assert (!was_start_bad || !busy && cfg_err);
@@ -149,7 +149,7 @@ module ReadoutSeqProof (
       inv_sampled: assert (!busy || sampled == (rows_sent && (state == WAIT || state == DRAIN || state == 7
               || state == 5
                                                 || state == 6 && last[12:0] != 0) ) || state == 6);
-      // Where the steps are in their row
+      // The position of the steps in their row
       inv_column: assert (!walking || column_ok(current[1:0], k) && left == (columns & ~((6'd2 << k) - 6'd1)));
       inv_last_tile: assert (!walking || last_tile == bound - ((bound - col0) & stride_mask));
       inv_group: assert (!walking || group >= (col0 >> `SHIFT) && group <= (last_tile >> `SHIFT)
@@ -164,7 +164,7 @@ module ReadoutSeqProof (
                                                       : state == DRAIN || state == 7 ? p_row <= current
                                                       : !rows_sent ? 1'b0
                                                       : state == 5 || !hold_free ? p_row < current : p_row <= current));
-      // No wanted row lies between two that follow each other
+      // No wanted row is between two consecutive ones
       inv_first_row: assert (!(busy && wanted && !landed) || p_row >= amp_row);
       inv_first_landed: assert (!(busy && wanted && landed && !rows_sent) || p_row >= current);
       inv_next_landed: assert (!(busy && wanted && rows_sent && !hold_free && (state == WAIT || state == 5))

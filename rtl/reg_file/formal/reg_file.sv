@@ -1,8 +1,8 @@
-// RegFile from its pins: what SPI transfers write, they write, and nothing else ever changes.
+// RegFile from its pins: SPI transfers write the bits that they address, and no other bit changes.
 //
 // `bit_of` is any bit of the configuration, fixed; `bit_address`, `bit_place`, `bit_writable` and `bit_reset` come
-// from the register map (verif/formal/tables.py). Bytes are put together here anew from the pins, two flip-flops late,
-// as the README says of the oversampled SPI; whatever the pins do, so also transfers that are cut short.
+// from the register map (verif/formal/tables.py). Bytes are assembled here from the pins, two flip-flops later (README,
+// oversampled SPI), for any behaviour of the pins: transfers that are cut short too.
 
 module RegFileProof (
   input clk, input reset, input sclk, input csn, input mosi, input [3:0] status, input loop__rdy,
@@ -78,7 +78,7 @@ module RegFileProof (
   wire looped = was_write && was_address == `LOOP && !was_loop;
   wire [3:0] cleared = started ? 4'b0111 : was_write && was_address == `STATUS ? was_octet[4:1] : 4'b0;
 
-  // What a read fetches: the fixed bit, the status, a byte of a counter
+  // The data of a read: the fixed bit, the status, a byte of a counter
   reg was_fetch;
   reg [63:0] was_snapshot, was_cycles;
   always @(posedge clk) begin

@@ -1,6 +1,6 @@
-// ByteQueue: bytes leave in the order in which they came, each once, whatever `rdy` does.
+// ByteQueue: bytes are sent in the order in which they are put, each once, for any `rdy`.
 //
-// `watch`, free in every cycle, chooses a byte to follow on its way in: how many are ahead of it, and what it is.
+// `watch`, free in every cycle, chooses a byte to track when it is put: its value, and how many are ahead of it.
 
 module ByteQueueProof (input clk, input reset, input put, input [7:0] octet, input send__rdy, input watch);
   wire ready, last, send__val;

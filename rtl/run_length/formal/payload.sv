@@ -1,8 +1,8 @@
 // PayloadPacker, for rows of any length and any pattern of `rdy`.
 //
-// Tokens: the model decoder beside the packer reads each token as it is made, with any bits behind it (`tail`), and
-// finds the samples that went in since the token before, and the token's length. Bytes: any bit of any token, chosen
-// by `watch` and `which`, leaves at its place, and every byte is full but for zeros at the end of the row. Together: a
+// Tokens: the model decoder beside the packer reads each token when it is coded, with any bits after it (`tail`), and
+// finds the samples since the previous token, and the token's length. Bytes: any bit of any token, chosen by `watch`
+// and `which`, is sent at its place, and every byte is full except for zeros at the end of the row. Together: a
 // row's bytes, decoded, are its samples.
 
 module PayloadProof (
@@ -38,7 +38,7 @@ module PayloadProof (
                         .zeros_only(zeros_only), .zeros(zeros), .value(value), .length(decoded_length), .k_next(k_next),
                         .r2_next(r2_next), .credit_next(credit_next), .valid(valid));
 
-  // Samples since the last token: zeros, then perhaps the one that is taken now; one inside the threshold is a zero
+  // Samples since the last token: zeros, then the one that is taken now, if any; one inside the threshold is a zero
   reg [7:0] run = 0;
   wire signed [8:0] signed_code = {code[7], code};
   wire [8:0] magnitude = signed_code < 0 ? -signed_code : signed_code;
@@ -46,7 +46,7 @@ module PayloadProof (
   wire [7:0] sample = is_zero ? 0 : code;
   wire makes = push && coded && length != 0;
 
-  // Bits inside, the bit that is followed and how many are before it
+  // Bits inside, the tracked bit and how many are before it
   reg [5:0] inside = 0, before;
   reg following = 0, followed, ended, fresh;  // the row has ended; has begun without a sample so far
   wire take = val && rdy;
@@ -69,7 +69,7 @@ module PayloadProof (
     end else begin
       ended <= flush || ended && !restart;
       fresh <= restart || fresh && !push && !flush;
-      // A row ends with a bit for the zeros that no token has told, then zeros up to a whole byte
+      // A row ends with a bit for the zeros that no token has coded, then zeros up to a full byte
       inside <= flush ? ((left + open + 6'd7) & 6'h38) : push ? left + length : left;
       if (following) begin
         if (take) before <= before - 8;
@@ -82,8 +82,8 @@ module PayloadProof (
 
   always @* begin
     if (first) assume (reset);
-    // RunLengthCtrl: one thing at a time, samples and ends of rows only while there is room, a row begins when all has
-    // left
+    // RunLengthCtrl: one action at a time, samples and ends of rows only while there is room, a row begins when all
+    // bytes are sent
     assume (push + flush + restart <= 1 && (ready || !push && !flush) && (inside == 0 || !restart) && !(ended
             && (push || flush)));
     if (!first && !was_reset) assume (coded == was_coded && threshold == was_threshold || ended || fresh);

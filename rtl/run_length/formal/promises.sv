@@ -1,5 +1,5 @@
-// What RunLength's neighbours promise: the configuration stands from FRAME until frame_sync falls, the counts from END
-// (README.md). Any message may come at any time.
+// Assumptions about RunLength's neighbours: the configuration is constant from FRAME until frame_sync falls, the counts
+// from END (README.md). Any message may arrive at any time.
 
 module RunLengthPromises (
   input clk, input reset, input recv__val, input recv__rdy, input [11:0] recv__msg, input frame_sync, input [1:0] mode,

@@ -1,8 +1,7 @@
-// RunLength and the model decoder: a frame of one short row comes back as it went in, for all codes, thresholds and
-// row indices. The samples are `SAMPLES; the decoder keeps the bytes behind the header and takes a token a cycle.
+// RunLength and the model decoder: a frame of one short row is decoded to its samples, for all codes, thresholds and
+// row indices. The row has `SAMPLES samples; the decoder keeps the bytes after the header and decodes a token a cycle.
 //
-// The messages come and the bytes leave without waiting: what waiting does is the part of the unbounded proofs
-// (payload, byte_queue, stream).
+// Messages and bytes do not wait here: the unbounded proofs (payload, byte_queue, stream) cover stalls.
 
 module RowProof (input clk, input reset, input [7:0] codes_in);
   (* anyconst *) wire [8 * `SAMPLES - 1:0] codes;
@@ -10,7 +9,7 @@ module RowProof (input clk, input reset, input [7:0] codes_in);
   (* anyconst *) wire [9:0] index;
   localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, HEADER = 26, TAKEN = 3 * `SAMPLES + 4;
 
-  // The messages in turn: FRAME, ROW, the samples, END
+  // The messages in order: FRAME, ROW, the samples, END
   reg [3:0] turn = 0;
   wire recv__rdy, send__val, frame_sync;
   wire [7:0] send__msg;
@@ -23,7 +22,7 @@ module RowProof (input clk, input reset, input [7:0] codes_in);
                  .threshold(threshold), .mode(2'd0), .phase(1'b0), .row0(8'd0), .row1(8'd0), .col0(8'd0), .col1(8'd0),
                  .decimation(2'd0), .mask(24'd1), .frame_number(16'd0), .made(32'd0), .left_out(32'd0));
 
-  // The bytes behind the header, the first on top
+  // The bytes after the header, the first on top
   reg [5:0] came = 0;
   reg [8 * TAKEN - 1:0] bytes;
   wire [5:0] place = came - HEADER;
@@ -66,7 +65,7 @@ module RowProof (input clk, input reset, input [7:0] codes_in);
     end
   end
 
-  // What went in: a code inside the threshold is a zero
+  // The expected samples: a code inside the threshold is a zero
   reg [8 * `SAMPLES - 1:0] sent;
   integer i;
   reg signed [8:0] code;

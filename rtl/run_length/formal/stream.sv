@@ -1,6 +1,6 @@
-// RunLength puts the bytes of docs/stream.md into its queue, frame after frame of any length, whatever waits: header,
-// each row's payload as the packer gives it and its mark, trailer. The packer's part is `payload`, the queue's
-// `byte_queue`; what these assume of the control is asserted here (p_packer, p_queue).
+// RunLength puts the bytes of docs/stream.md into its queue, frame after frame of any length, with any stalls: header,
+// each row's payload from the packer and its mark, trailer. `payload` proves the packer, `byte_queue` the queue; their
+// assumptions about the control are asserted here (p_packer, p_queue).
 
 module StreamProof (
   input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
@@ -41,7 +41,7 @@ module StreamProof (
   wire due = \dut.packer.val ;
   wire push = \dut.packer.push , flush = \dut.packer.flush , restart = \dut.packer.restart ;
 
-  // The document: CRC-16/IBM-3740 and CRC-32 of IEEE 802.3, a byte further
+  // The document: CRC-16/IBM-3740 and CRC-32 of IEEE 802.3, after one more byte
   function [15:0] crc16(input [15:0] crc, input [7:0] octet);
     integer i;
     begin
@@ -57,7 +57,7 @@ module StreamProof (
     end
   endfunction
 
-  // The frame: which part is due, which byte of it, the checks so far
+  // The frame: the current part, the byte in it, the checks so far
   reg [2:0] part;
   reg [4:0] n;
   reg open, ending;
@@ -98,7 +98,7 @@ module StreamProof (
         if (!open) short_crc <= 16'hFFFF;
       end
       if (put) begin
-        // The header's CRC-32 and the last one are of no check; the marks neither of the CRC-16
+        // The header's CRC-32 and the last one are in no check; the marks are not in the CRC-16
         if (!(part == HEADER && n >= 22) && !(part == TRAILER && n >= 10)) long_crc <= crc32(long_crc, octet);
         if (payload || part == TRAILER && n < 8) short_crc <= crc16(short_crc, octet);
         if (!payload) begin

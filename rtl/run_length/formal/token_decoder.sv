@@ -1,5 +1,5 @@
-// The model decoder, a token at a time, from docs/stream.md (Payload): what the bits at the front of `window` say,
-// given the decoder's state, and the state behind them.
+// The model decoder, a token at a time, from docs/stream.md (Payload): the meaning of the bits at the front of `window`
+// in the decoder's state, and the state after them.
 
 module TokenDecoder (
   input [23:0] window, input [2:0] k, input [3:0] r2, input [7:0] credit, input [6:0] threshold,
