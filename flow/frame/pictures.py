@@ -1,73 +1,84 @@
-"""Arrays -> pictures that a person looks at. Every function returns a Pillow image."""
+"""Arrays to pictures for the eye, as Pillow images."""
+
+from collections.abc import Sequence
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+import numpy.typing as npt
+from PIL import Image as pillow
+from PIL import ImageDraw, ImageFont
+from PIL.Image import Image, Resampling
+
+from models.parameters import TileParameters
+
+Values = npt.NDArray[np.floating]
 
 INK, PAPER, MUTED = (24, 28, 36), (255, 255, 255), (110, 118, 132)
 COLD, WARM = np.array([33, 102, 172]), np.array([178, 24, 43])
 CONVERTED, ZERO, UNREAD = (250, 204, 92), (44, 52, 66), (205, 210, 218)
 
 
-def gray(values, low=0.0, high=1.0, gamma=2.2):
-    """Linear values (rows, cols) -> 8-bit gray, display gamma applied; ``low`` is black, ``high`` white."""
+def gray(values: Values, low: float = 0.0, high: float = 1.0, gamma: float = 2.2) -> Image:
+    """8-bit gray of linear values (rows, cols), display gamma applied; ``low`` is black, ``high`` white."""
     span = max(high - low, np.finfo(float).tiny)
     unit = np.clip((np.asarray(values, float) - low) / span, 0, 1)
-    return Image.fromarray(np.round(255 * unit ** (1 / gamma)).astype(np.uint8), "L")
+    return pillow.fromarray(np.round(255 * unit ** (1 / gamma)).astype(np.uint8), "L")
 
 
-def signed(values, scale):
-    """Signed values (rows, cols) -> blue (-scale) .. white (0) .. red (+scale)."""
+def signed(values: Values, scale: float) -> Image:
+    """Signed values (rows, cols) as blue (-scale) .. white (0) .. red (+scale)."""
     unit = np.clip(np.asarray(values, float) / max(scale, np.finfo(float).tiny), -1, 1)[..., None]
     # The square root lifts small responses, of which there are most.
     weight = np.sqrt(np.abs(unit))
     rgb = 255 * (1 - weight) + np.where(unit < 0, COLD, WARM) * weight
-    return Image.fromarray(np.round(rgb).astype(np.uint8), "RGB")
+    return pillow.fromarray(np.round(rgb).astype(np.uint8), "RGB")
 
 
-def phase_wheel(phase, strength):
+def phase_wheel(phase: Values, strength: Values) -> Image:
     """Phase (rad) as hue, ``strength`` 0..1 as brightness."""
     hue = np.round(np.mod(phase, 2 * np.pi) / (2 * np.pi) * 255).astype(np.uint8)
     value = np.round(255 * np.clip(strength, 0, 1)).astype(np.uint8)
-    return Image.fromarray(np.stack([hue, np.full_like(hue, 190), value], -1), "HSV").convert("RGB")
+    return pillow.fromarray(np.stack([hue, np.full_like(hue, 190), value], -1), "HSV").convert("RGB")
 
 
-def decisions(read, converted):
+def decisions(read: npt.NDArray[np.bool_], converted: npt.NDArray[np.bool_]) -> Image:
     """Which samples were converted (yellow), judged zero (dark) or not read (light): bool arrays (rows, cols)."""
     rgb = np.where(read[..., None], np.where(converted[..., None], CONVERTED, ZERO), UNREAD)
-    return Image.fromarray(rgb.astype(np.uint8), "RGB")
+    return pillow.fromarray(rgb.astype(np.uint8), "RGB")
 
 
-def enlarge(image, width):
+def enlarge(image: Image, width: int) -> Image:
     """Whole-number enlargement to at least ``width`` pixels, so that pixels stay square and sharp."""
     factor = max(1, -(-width // image.width))
-    return image.resize((image.width * factor, image.height * factor), Image.Resampling.NEAREST)
+    return image.resize((image.width * factor, image.height * factor), Resampling.NEAREST)
 
 
-def contact_sheet(images, labels, columns, cell=120, aspect=1.0):
+def contact_sheet(
+    images: Sequence[Image], labels: Sequence[str], columns: int, cell: int = 120, aspect: float = 1.0
+) -> Image:
     """Images of one size in a labelled grid, ``cell`` pixels wide. aspect: width over height of one of their pixels."""
     font = ImageFont.load_default(13)
     width, height = images[0].size
     size = (cell, max(1, round(cell * height / (width * aspect))))
     gap, caption = 8, 18
     rows = -(-len(images) // columns)
-    sheet = Image.new("RGB", (columns * (size[0] + gap) + gap, rows * (size[1] + caption + gap) + gap), PAPER)
+    sheet = pillow.new("RGB", (columns * (size[0] + gap) + gap, rows * (size[1] + caption + gap) + gap), PAPER)
     draw = ImageDraw.Draw(sheet)
     for i, (image, label) in enumerate(zip(images, labels, strict=True)):
         x = gap + i % columns * (size[0] + gap)
         y = gap + i // columns * (size[1] + caption + gap)
-        sheet.paste(image.convert("RGB").resize(size, Image.Resampling.NEAREST), (x, y))
+        sheet.paste(image.convert("RGB").resize(size, Resampling.NEAREST), (x, y))
         draw.text((x, y + size[1] + 1), label, fill=INK, font=font)
     return sheet
 
 
-def edge_sheet(edges, tile, scale):
+def edge_sheet(edges: Values, tile: TileParameters, scale: float) -> Image:
     """The 24 edge images (n_types, tile_rows, tile_cols) as a contact sheet, one row a beta."""
     images = [signed(edge, scale) for edge in edges]
     labels = [f"{t.beta:g}, {t.gamma_deg:g}°{' sin' if t.alpha else ' cos'}" for t in tile.types]
     return contact_sheet(images, labels, columns=max(1, len(images) // 3), aspect=tile.cols / tile.rows)
 
 
-def view_sheet(light_field, cell=96):
+def view_sheet(light_field: Values, cell: int = 96) -> Image:
     """The views l[v, u, y, x] in their order, dark to bright by the field's own maximum."""
     high = float(light_field.max()) or 1.0
     v, u = light_field.shape[:2]
@@ -75,7 +86,7 @@ def view_sheet(light_field, cell=96):
     return contact_sheet(images, [f"v{j - v // 2:+d} u{i - u // 2:+d}" for j in range(v) for i in range(u)], u, cell)
 
 
-def overview(named, cell=288):
-    """The run's pictures side by side: list of (name, caption, image) to one image."""
-    square = [image.convert("RGB").resize((cell, cell), Image.Resampling.LANCZOS) for _, _, image in named]
-    return contact_sheet(square, [name for name, _, _ in named], len(named), cell)
+def overview(named: Sequence[tuple[str, Image]], cell: int = 288) -> Image:
+    """The run's pictures side by side, each with its name."""
+    square = [image.convert("RGB").resize((cell, cell), Resampling.LANCZOS) for _, image in named]
+    return contact_sheet(square, [name for name, _ in named], len(named), cell)

@@ -2,52 +2,75 @@
 
 import base64
 import io
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from markupsafe import Markup
+from PIL.Image import Image
 
 from base import page
 
 
-def inline(image):
-    """A Pillow image as a data URL."""
-    out = io.BytesIO()
-    image.save(out, "PNG")
-    return "data:image/png;base64," + base64.b64encode(out.getvalue()).decode()
+class Picture(NamedTuple):
+    """A picture of the page. name: of its file, without a suffix. title: of its section, '' for none."""
+
+    name: str
+    title: str
+    caption: str
+    image: Image
+
+    @property
+    def src(self) -> str:
+        """The picture as a data URL."""
+        out = io.BytesIO()
+        self.image.save(out, "PNG")
+        return "data:image/png;base64," + base64.b64encode(out.getvalue()).decode()
 
 
-def headline(s):
-    """The figures to see first: list of dicts label, value, kind."""
+class Tile(NamedTuple):
+    """A figure at the top of the page. kind: 'good', 'bad' or ''."""
+
+    value: str
+    label: str
+    kind: str = ""
+
+
+def headline(s: dict[str, Any]) -> list[Tile]:
+    """The figures of the summary ``s`` to see first."""
     right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
-    psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.1f} dB"
-    tiles = [
-        (
+    return [
+        Tile(
             "byte for byte" if right else f"{s['stream_mismatches']} bytes differ",
             "chip against golden model",
             "good" if right else "bad",
         ),
-        (f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes", ""),
-        (psnr, "decoded samples against the analog values", ""),
-        (f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out", ""),
-        (f"{1e3 * s['frame_s_at_clock']:.1f} ms", f"a frame, {s['cycles']:,} cycles", ""),
-        (f"{s['energy_uj']['total']:.1f} uJ", "a frame", ""),
+        Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
+        Tile(
+            "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.1f} dB", "decoded samples against the analog values"
+        ),
+        Tile(f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out"),
+        Tile(f"{1e3 * s['frame_s_at_clock']:.1f} ms", f"a frame, {s['cycles']:,} cycles"),
+        Tile(f"{s['energy_uj']['total']:.1f} uJ", "a frame"),
     ]
-    return [{"value": value, "label": label, "kind": kind} for value, label, kind in tiles]
 
 
-def render(summary, pictures, chip, sheets, where, errors):
-    """HTML text.
-
-    pictures: list of (caption, image). sheets: list of (title, caption, image).
-    chip, where, errors: SVG text, and lists of it.
-    """
+def render(
+    summary: dict[str, Any],
+    pictures: Sequence[Picture],
+    chip: str,
+    sheets: Sequence[Picture],
+    where: Sequence[str],
+    errors: Sequence[str],
+) -> str:
+    """The page as HTML. chip, where, errors: SVG texts of the chip, of where cycles went, of error against time."""
     return page.render(
         Path(__file__).with_name("report.html"),
         s=summary,
         tiles=headline(summary),
         chip=Markup(chip),
-        pictures=[{"caption": caption, "src": inline(image)} for caption, image in pictures],
-        sheets=[{"title": title, "caption": caption, "src": inline(image)} for title, caption, image in sheets],
-        where=[Markup(c) for c in where],
-        errors=[Markup(c) for c in errors],
+        pictures=pictures,
+        sheets=sheets,
+        where=[Markup(svg) for svg in where],
+        errors=[Markup(svg) for svg in errors],
     )

@@ -1,7 +1,9 @@
-"""What a user asks for in one run, validated before anything is computed."""
+"""The parameters of one run, validated before anything is computed."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from models.parameters import (
     ALL_TYPES,
@@ -33,10 +35,10 @@ class FrameRequest:
     focus: float | None = None
     noise: float = 1.0
     seed: int = 1
-    waves: tuple | None = None
+    waves: tuple[int, int] | None = None
     out: Path | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         self.sensor.check_window(self.frame.window)
         check_real("noise", self.noise, 0, 100)
         check_int("seed", self.seed, 0, 2**32 - 1)
@@ -48,19 +50,31 @@ class FrameRequest:
             )
 
     @property
-    def name(self):
+    def name(self) -> str:
         """Name of the scene without folder and suffix."""
         return Path(self.scene).stem
 
     @property
-    def folder(self):
+    def folder(self) -> Path:
+        """Folder for the results."""
         return Path(self.out) if self.out else Path("build/sim") / self.name
 
 
-def request(rows=384, cols=384, lanes=8, window=None, mask=ALL_TYPES, **rest):
-    """A FrameRequest for an array of ``rows`` x ``cols``; ``window``: function of the full window, or None."""
+def request(
+    rows: int = 384,
+    cols: int = 384,
+    lanes: int = 8,
+    window: Callable[[Window], Window] | None = None,
+    mask: int = ALL_TYPES,
+    **rest: Any,
+) -> FrameRequest:
+    """A FrameRequest for an array of ``rows`` x ``cols`` pixels.
+
+    window: the window to read, from the full one (all of it). rest: fields of FrameRequest and FrameParameters. Raises
+    ParameterError.
+    """
     sensor = SensorParameters(array=ArrayParameters(rows=rows, cols=cols), chip=ChipParameters(lanes=lanes))
-    full: Window = sensor.full_window
+    full = sensor.full_window
     own = {
         name: rest.pop(name) for name in ("scene", "depth", "focus", "noise", "seed", "waves", "out") if name in rest
     }

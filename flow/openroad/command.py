@@ -14,7 +14,7 @@ from flow.layout.design import DESIGNS, flat_design
 from platforms.openroad import openroad_platform
 
 from .merge import merge
-from .metrics import broken, summarize
+from .results import broken, summarize
 from .stages import INSTALL, missing_tools, pdk_root, stages
 from .stages import run as run_stages
 from .write import write

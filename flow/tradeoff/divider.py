@@ -1,33 +1,41 @@
 """The quadrature divider: variants at 4 to 16 fraction bits and CORDIC at 4 to 16 iterations. Worst and RMS phase
 error over all 2^18 inputs against latency, cycles of a time-of-flight frame at one result a pixel, and simulation time."""
 
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.figure import Figure
+
 from base.charts import curves
-from flow.simulate.divider.exhaustive import measure as exhaustive
+from flow.simulate.divider import exhaustive
 from models.parameters import DIVIDERS, SensorParameters
 
 
-def points(quick):
+def points(quick: bool) -> list[tuple[str, int]]:
+    """Variant and width: fraction bits, of CORDIC iterations."""
     return [(variant, width) for variant in DIVIDERS for width in ((4, 8) if quick else range(4, 17))]
 
 
-def measure(point):
+def measure(point: tuple[str, int]) -> dict[str, Any]:
+    """Error, cycles and simulation time of one divider over all inputs."""
     variant, width = point
-    found = exhaustive(variant, n_frac=8 if variant == "cordic" else width, iterations=width)
+    found = exhaustive.measure(exhaustive.Divider(variant, 8 if variant == "cordic" else width, width))
     pixels = SensorParameters().array.rows * SensorParameters().array.cols
     return {
         "variant": variant,
         "width": width,
-        "latency": found["latency"],
-        "interval": found["interval"],
-        "worst_lsb": found["worst"],
-        "rms_lsb": found["rms"],
-        "cycles_a_frame": pixels * found["interval"],
-        "simulation_s": found["seconds"],
-        "mismatches": found["mismatches"],
+        "latency": found.latency,
+        "interval": found.interval,
+        "worst_lsb": found.worst,
+        "rms_lsb": found.rms,
+        "cycles_a_frame": pixels * found.interval,
+        "simulation_s": found.seconds,
+        "mismatches": found.mismatches,
     }
 
 
-def plot(rows):
+def plot(rows: Sequence[dict[str, Any]]) -> Figure:
+    """Worst error against latency."""
     return curves(
         {v: [(r["latency"], r["worst_lsb"], str(r["width"])) for r in rows if r["variant"] == v] for v in DIVIDERS},
         "latency (cycles)",

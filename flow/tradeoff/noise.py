@@ -1,23 +1,29 @@
 """Noise on the default scene, through the chip's Verilog: PSNR of the decoded differences against the analog values
 of a noiseless exposure, and what the noise costs in conversions, bytes and cycles."""
 
+from collections.abc import Sequence
+from typing import Any
+
+from matplotlib.figure import Figure
+
 from base.charts import curves
-from flow.frame import hardware, job
+from flow.frame import job
+from flow.frame.figures import summarize
 from flow.frame.request import request
-from flow.frame.summary import summarize
 
 LEVELS = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 
 
-def points(quick):
+def points(quick: bool) -> list[tuple[float, int]]:
+    """Noise, in units of the physical one, and rows of the array."""
     return [(level, 48 if quick else 384) for level in (LEVELS[::4] if quick else LEVELS)]
 
 
-def measure(point):
+def measure(point: tuple[float, int]) -> dict[str, Any]:
+    """Quality and cost of a frame with this noise."""
     level, size = point
     asked = request(rows=size, cols=size, noise=level)
-    scene, todo = job.see(asked)
-    result = job.read_out(asked, job.expose(asked, scene, todo), hardware.program(asked.sensor, todo.taps))
+    result = job.simulate_frame(asked)
     summary = summarize(result)
     return {
         "noise": level,
@@ -31,7 +37,8 @@ def measure(point):
     }
 
 
-def plot(rows):
+def plot(rows: Sequence[dict[str, Any]]) -> Figure:
+    """PSNR against noise."""
     return curves(
         {"decoded differences": [(r["noise"], r["psnr_edges_db"], f"{r['bytes']:,} B") for r in rows]},
         "noise (times physical)",

@@ -1,31 +1,37 @@
 """float32 against float64 in the capture of the default scene: largest relative error, codes that change and time."""
 
+from collections.abc import Sequence
 from functools import cache
 from time import perf_counter
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+from matplotlib.figure import Figure
 
 from base.charts import curves
 from models.afe import FrontEnd, trim_codes
 from models.capture import CaptureOperator
 from models.parameters import ArrayParameters, SensorParameters
 from models.pixel import optical_gains
-from models.scene import Sampling, load
+from models.scene import Sampling, Scene, load
 
 REPEATS = 9
 
 
-def points(quick):
+def points(quick: bool) -> list[tuple[str, int]]:
+    """Type of the captured light field, and rows of the array."""
     return [(dtype, size) for size in ((48,) if quick else (96, 192, 384, 768)) for dtype in ("float64", "float32")]
 
 
 @cache
-def _scene(size):
+def _scene(size: int) -> tuple[SensorParameters, Scene]:
+    """Sensor and default scene of ``size`` x ``size`` pixels."""
     sensor = SensorParameters(array=ArrayParameters(rows=size, cols=size))
     return sensor, load("motorcycle", Sampling(size, size))
 
 
-def _codes(pair, sensor):
+def _codes(pair: npt.NDArray[np.floating], sensor: SensorParameters) -> npt.NDArray[np.integer]:
     """Codes of a noiseless edge frame of photocurrents (2, rows, cols) at half a full well for white."""
     trims = trim_codes(optical_gains(sensor.tile, sensor.optics))
     front_end = FrontEnd(sensor.electrical.difference_gain, tuple(trims.tolist()))
@@ -33,15 +39,16 @@ def _codes(pair, sensor):
     return front_end.convert(samples, "edge", 0).codes
 
 
-def measure(point):
+def measure(point: tuple[str, int]) -> dict[str, Any]:
+    """Error, changed codes and time of a capture in this precision."""
     dtype, size = point
     sensor, scene = _scene(size)
     best = CaptureOperator(sensor, "float64").forward(scene.full_light_field.astype("float64"))
     operator, field = CaptureOperator(sensor, dtype), scene.full_light_field.astype(dtype)
-    times = []
+    pair, times = operator.forward(field), []
     for _ in range(REPEATS):
         start = perf_counter()
-        pair = operator.forward(field)
+        operator.forward(field)
         times.append(perf_counter() - start)
     error = float(np.abs(pair - best).max() / best.max())
     changed = int((_codes(pair, sensor) != _codes(best, sensor)).sum())
@@ -55,7 +62,8 @@ def measure(point):
     }
 
 
-def plot(rows):
+def plot(rows: Sequence[dict[str, Any]]) -> Figure:
+    """Largest error against time of a capture."""
     # The reference itself has no error; it is drawn at float64's own rounding.
     floor = float(np.finfo(np.float64).eps)
     return curves(

@@ -1,29 +1,38 @@
 """The threshold of edge-only conversion on the default scene, through the chip's Verilog: PSNR of the decoded
 differences and of the image rebuilt from them against conversions, bytes, cycles, energy and simulation time."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
 
 from base.charts import curves
 from flow.frame import hardware, job
-from flow.frame.request import request
-from flow.frame.summary import summarize
+from flow.frame.figures import summarize
+from flow.frame.request import FrameRequest, request
+from flow.frame.result import Exposed
 
 THRESHOLDS = (0, 1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 127)
 
 
-def points(quick):
+def points(quick: bool) -> list[tuple[int, int]]:
+    """Threshold, and rows of the array."""
     return [(t, 48 if quick else 384) for t in (THRESHOLDS[1:12:5] if quick else THRESHOLDS)]
 
 
 @cache
-def _exposure(size):
+def _exposure(size: int) -> tuple[FrameRequest, Exposed, Path]:
+    """Request, exposure and simulator of the default scene."""
     asked = request(rows=size, cols=size)
     scene, todo = job.see(asked)
     return asked, job.expose(asked, scene, todo), hardware.program(asked.sensor, todo.taps)
 
 
-def measure(point):
+def measure(point: tuple[int, int]) -> dict[str, Any]:
+    """Quality and cost of a frame at this threshold."""
     threshold, size = point
     asked, exposed, program = _exposure(size)
     asked = replace(asked, frame=replace(asked.frame, threshold=threshold))
@@ -43,7 +52,8 @@ def measure(point):
     }
 
 
-def plot(rows):
+def plot(rows: Sequence[dict[str, Any]]) -> Figure:
+    """PSNR against bytes."""
     return curves(
         {
             "decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],

@@ -1,7 +1,11 @@
 """Views and angular nodes of the capture model: photocurrents of the 48 diodes against an adaptive quadrature of Eq. 3.3,
 for uniform light and for light that ripples with angle, against the time to compute the weights."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
+
+from matplotlib.figure import Figure
 
 from base.charts import curves
 from models.parameters import SensorParameters
@@ -10,10 +14,11 @@ from models.pixel import Ripple, exact, sampling_error
 VIEWS = (1, 3, 5, 7, 9, 15)
 NODES = (1, 2, 3, 4, 6, 8, 12)
 LIGHTS = {"uniform": Ripple(0.0), "one ripple": Ripple()}
-_references = {}
+_references: dict[str, Any] = {}
 
 
-def points(quick):
+def points(quick: bool) -> list[tuple[str, int, int]]:
+    """Light, views along an axis, and angular nodes a view."""
     return [
         (light, views, nodes)
         for light in LIGHTS
@@ -22,7 +27,8 @@ def points(quick):
     ]
 
 
-def measure(point):
+def measure(point: tuple[str, int, int]) -> dict[str, Any]:
+    """Error of the photocurrents and time of the weights."""
     light, views, nodes = point
     sensor = SensorParameters()
     if light not in _references:
@@ -39,7 +45,8 @@ def measure(point):
     }
 
 
-def plot(rows):
+def plot(rows: Sequence[dict[str, Any]]) -> Figure:
+    """Worst error against time."""
     return curves(
         {
             f"{light}, {v} x {v} views": [

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from base.tools import ToolError, finish
-from flow.frame.hardware import build_of
+from flow.simulate.build import Build
 from flow.simulate.verilator import bare_program
 from models.chip import golden_frame
 from models.digital.host import command, frame_writes, write_transfers
@@ -45,7 +45,7 @@ def golden(name):
 @cache
 def program():
     """The chip in Verilator: path of an executable."""
-    return bare_program(build_of(SENSOR), main=HERE / "main.cpp")
+    return bare_program(Build.of(SENSOR), main=HERE / "main.cpp")
 
 
 @cache

@@ -5,9 +5,7 @@ from pathlib import Path
 
 from base.tools import ToolError
 from flow.simulate.divider import exhaustive, simulator
-from models.digital.phase import divide
 from models.parameters import SensorParameters
-from rtl.quad_divider import ratio_bits
 from rtl.replay import load, tests_of
 from verif.coverage.program import compile_program
 from verif.formal import design, manifest
@@ -106,15 +104,14 @@ def divides_right(verilog, head, number):
     """True if mutant ``number`` of a divider gives the golden response for all 2^18 inputs."""
     n_frac = head.arguments[0] if head.cls != "Cordic" else SensorParameters().chip.n_frac
     iterations = head.arguments[0] if head.cls == "Cordic" else SensorParameters().chip.cordic_iterations
-    config = VARIANTS[head.cls], n_frac, iterations
+    divider = exhaustive.Divider(VARIANTS[head.cls], n_frac, iterations)
     bench = simulator.program(one_mutant(verilog, head.cls, number), head.cls)
     x, y = exhaustive.every_input()
-    expected = divide(*config, x, y, 0)
     try:
-        responses, _ = simulator.simulate(bench, exhaustive.pack(x, y))
+        mismatches, _, _ = exhaustive.compare(bench, x, y, divider)
     except ToolError:  # it answers what nobody asked
         return False
-    return not exhaustive.count_mismatches(exhaustive.unpack(responses, ratio_bits(*config[:2])), expected)
+    return not mismatches
 
 
 def one_mutant(verilog, top, number):

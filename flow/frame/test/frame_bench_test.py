@@ -5,6 +5,7 @@ import subprocess
 
 from flow.frame import hardware, job
 from flow.frame.request import request
+from flow.simulate.build import Build
 from flow.simulate.frame import host_script
 from flow.simulate.verilator import bare_program
 from models.digital.host import command, frame_writes, write_transfers
@@ -31,7 +32,7 @@ def test_default_frame(benchmark, tmp_path):
     script = tmp_path / "script"
     pattern = FrameParameters(asked.frame.window, test_pattern=True)
     script.write_bytes(host_script(write_transfers(frame_writes(pattern)) + [command("start")], []))
-    alone = bare_program(hardware.build_of(asked.sensor))
+    alone = bare_program(Build.of(asked.sensor))
 
     def bare():
         found = json.loads(subprocess.run([alone, f"+script={script}"], capture_output=True, check=True).stdout)

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from flow.frame import hardware
 from flow.frame.request import request
+from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
 from models.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
@@ -104,6 +105,6 @@ def test_icarus_sends_the_same_bytes(programs, tmp_path):
         pytest.skip("Icarus Verilog is not installed: make tools")
     asked = asked_of("odd", threshold=9)
     front_end, samples = front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 2)
-    program = icarus_program(hardware.build_of(asked.sensor, TAPS), tmp_path)
+    program = icarus_program(Build.of(asked.sensor, TAPS), tmp_path)
     chip = check(program, asked, front_end, samples)
     assert chip.status["cycles"] == check(programs["odd"], asked, front_end, samples).status["cycles"]

@@ -1,9 +1,11 @@
 """Whole frames through the chip's netlist in Icarus, which knows X: every byte must be the golden chip's."""
 
 import tempfile
+from pathlib import Path
 
 from base.steps import Step
 from flow.simulate import icarus
+from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
 
 MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip's divider makes phases
@@ -21,7 +23,7 @@ class GateFrames(Step):
     tools = ("iverilog",)
 
     def run(self, inputs, outputs):
-        from flow.frame.hardware import build_of, simulate
+        from flow.frame.hardware import simulate
         from models.chip import front_end_of, golden_frame
         from models.parameters import FrameParameters, SensorParameters, Window
 
@@ -29,7 +31,7 @@ class GateFrames(Step):
         front_end, samples = front_end_of(sensor, [7] * 24), exposure(sensor)
         lines, cycles, sent = [], 0, 0
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-            program = icarus_program(build_of(sensor, TAPS), folder, [inputs["verilog"], inputs["cells"]])
+            program = icarus_program(Build.of(sensor, TAPS), Path(folder), [inputs["verilog"], inputs["cells"]])
             for mode, phase in MODES:
                 frame = FrameParameters(Window(3, 4, 5, 8), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)

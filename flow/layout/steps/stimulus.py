@@ -11,6 +11,7 @@ from base.paths import ROOT
 from base.steps import Step, StepError
 from base.tools import ToolError, finish, run
 from flow.simulate import icarus
+from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
 from rtl.verilog import export_verilog
 
@@ -88,7 +89,7 @@ class Stimulus(Step):
 
 def in_frame(parameters, folder, trace):
     """Record the first instance of the block in the chip in ``folder`` through a frame, to the file ``trace``: head."""
-    from flow.frame.hardware import build_of, simulate
+    from flow.frame.hardware import simulate
     from flow.frame.job import expose, see
     from flow.frame.request import request
     from models.chip import golden_frame
@@ -116,7 +117,7 @@ def in_frame(parameters, folder, trace):
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     scene, todo = see(asked)
     exposed = expose(asked, scene, todo)
-    program = icarus_program(build_of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
+    program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
     seen = simulate(
         program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=(f"+tap={folder / 'tap.trace'}",)
     )

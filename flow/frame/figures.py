@@ -1,27 +1,32 @@
-"""The figures of one run: what summary.json holds, each from what was measured or counted in this run."""
+"""The figures of one run: what summary.json holds, each measured or counted in this run."""
 
 import sys
 from importlib.metadata import version
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from flow.simulate.verilator import verilator_version
-from models.parameters import EnergyParameters
+from base.verilator import verilator_version
+from models.parameters import EnergyParameters, FrameParameters
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+
+from .result import FrameResult
 
 PEAK = 255.0  # span of the 8-bit codes
 
 
-def mismatches(first, second):
-    """How many bytes differ, a missing byte counting as one: int."""
+def mismatches(first: bytes, second: bytes) -> int:
+    """How many bytes differ, a missing byte counting as one."""
     a, b = (np.frombuffer(x, np.uint8) for x in (first, second))
     common = min(a.size, b.size)
     return int((a[:common] != b[:common]).sum()) + abs(a.size - b.size)
 
 
-def ideal_samples(ideal, frame):
-    """What a perfect chip would send, in codes, float64 (rows, cols, subs): the analog values, or of the
-    four taps their phase (256 = a turn) and amplitude.
+def ideal_samples(ideal: npt.NDArray[np.float64], frame: FrameParameters) -> npt.NDArray[np.float64]:
+    """What a perfect chip would send, in codes, (rows, cols, subs).
+
+    The analog values, or, of the four taps, their phase (256 = a turn) and amplitude.
     """
     if not frame.phase:
         return ideal
@@ -30,9 +35,15 @@ def ideal_samples(ideal, frame):
     return np.stack([phase, np.maximum(np.abs(x), np.abs(y))], -1)
 
 
-def decoding_error(samples, ideal, read, frame):
-    """Decoded less ideal for every sample read, in codes: float64 (n, subs). A phase's error is the way round,
-    and nothing where the chip said that it is not valid (amplitude 0).
+def decoding_error(
+    samples: npt.NDArray[np.integer],
+    ideal: npt.NDArray[np.float64],
+    read: npt.NDArray[np.bool_],
+    frame: FrameParameters,
+) -> npt.NDArray[np.float64]:
+    """Decoded less ideal for every sample read, in codes, (n, subs).
+
+    The error of a phase is the short way round, and 0 where the chip marks it as not valid (amplitude 0).
     """
     error = samples[read] - ideal_samples(ideal, frame)[read]
     if frame.phase:
@@ -41,13 +52,13 @@ def decoding_error(samples, ideal, read, frame):
     return error
 
 
-def psnr(error):
+def psnr(error: npt.NDArray[np.float64]) -> float | None:
     """10 log10(255^2 / mean square) in dB, or None where there is no error at all (JSON has no infinity)."""
     mean_square = float(np.mean(np.square(error))) if error.size else 0.0
     return 10 * float(np.log10(PEAK**2 / mean_square)) if mean_square else None
 
 
-def energy_of(result):
+def energy_of(result: FrameResult) -> dict[str, float]:
     """Energy of the frame by part, in uJ, and ``total``."""
     frame, sensor, golden = result.request.frame, result.request.sensor, result.golden
     taps = 4 if frame.mode == "tof" else 1
@@ -62,8 +73,8 @@ def energy_of(result):
     return {**micro, "total": sum(micro.values())}
 
 
-def summarize(result):
-    """summary.json as a dict, without `wall_s`.
+def summarize(result: FrameResult) -> dict[str, Any]:
+    """Figures for summary.json, without `wall_s`.
 
     stream_mismatches: bytes that differ between the chip's stream and the golden encoder's.
     decoded_mismatches: decoded samples that differ from the golden codes, bad rows' among them.

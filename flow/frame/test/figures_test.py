@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from flow.frame.summary import decoding_error, ideal_samples, mismatches, psnr
+from flow.frame.figures import decoding_error, ideal_samples, mismatches, psnr
 from models.parameters import FrameParameters, Window
 
 ONE = Window(0, 0, 0, 0)

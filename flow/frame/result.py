@@ -1,0 +1,58 @@
+"""What one run of the main job holds: its exposure, the chip's frame and the golden one."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from models.afe import FrontEnd
+from models.chip import GoldenFrame
+from models.digital.stream.frame import DecodedFrame
+from models.plan import Plan
+from models.reconstruct import rebuild
+from models.reconstruct.rebuild import Rebuilt
+from models.scene import Scene
+
+from .hardware import HardwareFrame
+from .request import FrameRequest
+
+
+@dataclass(frozen=True, eq=False)
+class Exposed:
+    """One exposure of a scene.
+
+    samples: (taps, rows, cols, 2), what the front end samples. ideal: (rows, cols, subs), the values ahead of the
+    converters, in LSB, of the same exposure without noise.
+    """
+
+    scene: Scene
+    plan: Plan
+    front_end: FrontEnd
+    samples: npt.NDArray[np.float64]
+    ideal: npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class FrameResult:
+    """Everything one run knows, for the figures, the pictures and the report."""
+
+    request: FrameRequest
+    exposed: Exposed
+    program: Path
+    golden: GoldenFrame
+    chip: HardwareFrame
+    decoded: DecodedFrame
+
+    @cached_property
+    def rebuilt(self) -> Rebuilt:
+        """The 2-D image rebuilt from the decoded edges alone."""
+        return rebuild(
+            self.decoded.samples[..., 0],
+            self.decoded.read,
+            self.exposed.scene,
+            self.request.sensor,
+            self.exposed.front_end.trim,
+            self.request.frame.timing,
+        )

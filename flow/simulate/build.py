@@ -1,0 +1,47 @@
+"""What a simulator of the frame bench is elaborated for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from models.parameters import SensorParameters
+from rtl.verilog import export_verilog
+
+
+@dataclass(frozen=True)
+class Build:
+    """The chip's constants and the size of the front end's memory.
+
+    taps: sub-frames of a frame, 1 or 4. waves: whether the program can write a VCD.
+    """
+
+    rows: int
+    cols: int
+    lanes: int
+    divider: str
+    n_frac: int
+    iterations: int
+    tile_rows: int
+    tile_cols: int
+    taps: int
+    waves: bool
+
+    @classmethod
+    def of(cls, sensor: SensorParameters, taps: int = 1, waves: bool = False) -> "Build":
+        """The Build of a sensor."""
+        array, chip, tile = sensor.array, sensor.chip, sensor.tile
+        iterations = chip.cordic_iterations
+        sizes = array.rows, array.cols, chip.lanes, chip.divider, chip.n_frac, iterations, tile.rows, tile.cols
+        return cls(*sizes, taps, waves)
+
+    def parameters(self, option: str) -> list[str]:
+        """Each parameter of the module Bench as ``option``NAME=value."""
+        names = "rows", "cols", "lanes", "tile_rows", "tile_cols", "taps"
+        return [f"{option}{name.upper()}={getattr(self, name)}" for name in names]
+
+    def chip_verilog(self, folder: Path) -> Path:
+        """Export the chip into ``folder``; returns AspChip.v. Raises ToolError."""
+        names = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
+        options: Sequence[str] = [f"--{name.replace('_', '-')}={getattr(self, name)}" for name in names]
+        (path,) = export_verilog(folder, ["AspChip"], options)
+        return path
