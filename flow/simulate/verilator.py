@@ -43,21 +43,14 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
 def bare_program(
     build: Build, note: Callable[[str], None] = lambda text: None, main: Path = FRAME / "bare.cpp"
 ) -> Path:
-    """Path of the chip alone with ``main`` around it: by default a bare clock loop, for `make bench`. Raises ToolError."""
+    """Path of the chip alone with ``main`` around it: by default a clock loop, for `make bench`. Raises ToolError."""
     return _cached(build, "AspChip", [], [], main, note)
 
 
 def _cached(
-    build: Build,
-    top: str,
-    options: Sequence[str],
-    sources: Sequence[Path],
-    main: Path,
-    note: Callable[[str], None],
+    build: Build, top: str, options: Sequence[str], sources: Sequence[Path], main: Path, note: Callable[[str], None]
 ) -> Path:
     key = digest(code(__name__), *sources, main, build, top, options, verilator_version())
-
-    def make(work: Path) -> None:
 
     def make(work: Path) -> None:
         note("exporting the chip's Verilog")
