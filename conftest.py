@@ -1,7 +1,7 @@
-"""Tests that are slow run with --all. The Icarus level of the blocks' tests runs on netlists on demand; where Icarus
+"""Options of the tests: slow ones, netlists in place of the translated Verilog, and tests skipped for lack of a tool.
 
-is missing it is skipped with the reason. A property fails with the first input that breaks it, at once;
---hypothesis-profile=smallest looks for the smallest one, which takes minutes where a simulator has to run.
+A property fails immediately with the first input that breaks it. --hypothesis-profile=smallest looks for the smallest
+one, which takes minutes with a simulator.
 """
 
 import importlib.util
@@ -36,7 +36,7 @@ collect_ignore = [] if importlib.util.find_spec("klayout") else list(LAYOUTS)
 
 
 def pytest_addoption(parser):
-    parser.addoption("--all", action="store_true", help="run the tests marked slow, too (make verify)")
+    parser.addoption("--all", action="store_true", help="also run the tests marked slow (make verify)")
     parser.addoption(
         "--complete", action="store_true", help="fail where a test is skipped for want of a tool or package"
     )
@@ -46,13 +46,13 @@ def pytest_addoption(parser):
         action="append",
         default=[],
         metavar="NAME=FILE[:MODULE]",
-        help="this Verilog in place of what the tests build as NAME (rtl/<block>/test): AmpCtrl=gates.v",
+        help="Verilog in place of what the tests build as NAME (rtl/harness/README.md): AmpCtrl=gates.v",
     )
     group.addoption(
         "--netlist-in",
         choices=("icarus", "verilator"),
         default="icarus",
-        help="simulator of the netlists; Verilator knows no X (%(default)s)",
+        help="simulator of the netlists; Verilator is two-valued, without X (%(default)s)",
     )
     group.addoption(
         "--cells", action="append", default=[], type=Path, metavar="FILE", help="models of the netlists' cells"
@@ -96,7 +96,7 @@ def pytest_collection_modifyitems(config, items):
 
 
 def pytest_sessionfinish(session):
-    """Fail for a netlist that no test took (in one process: workers share the tests) and for a gap with --complete."""
+    """Fail for a netlist that no test used (in one process: workers share the tests), and with --complete for a gap."""
     options = session.config.option
     if options.complete and not hasattr(session.config, "workerinput") and session.exitstatus == 0:
         session.exitstatus = int(bool(missing(session.config.pluginmanager.get_plugin("terminalreporter"))))
@@ -105,7 +105,7 @@ def pytest_sessionfinish(session):
     netlists = session.config.stash[NETLISTS]
     if unused := netlists.unused():
         raise pytest.UsageError(
-            f"--netlist = {', '.join(unused)}: no test built that; built were: "
+            f"--netlist = {', '.join(unused)}: no test builds that; built were: "
             f"{', '.join(sorted(netlists.built)) or 'none'}"
         )
 

@@ -16,7 +16,7 @@ from models.parameters import (
 from models.parameters.registers import register_map
 from rtl.reg_file import RegFileFL, chip_status
 
-from .golden_run import GoldenRun, resting_pins
+from .golden_run import GoldenRun, idle_pins
 from .pins import declare_pins
 
 TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
@@ -67,7 +67,7 @@ class AspChipFL(Component):
         s.byte, s.byte_val = Wire(8), Wire()
         s.run = s.job = None
         s.spent = 0
-        s.resting = resting_pins()
+        s.idle = idle_pins()
 
         def begin():
             """Start the configured frame; returns (cfg_err, amp_err)."""
@@ -100,7 +100,7 @@ class AspChipFL(Component):
             s.regs.cycles <<= s.spent
             s.regs.conversions_made <<= s.run.made if s.run else 0
             s.regs.conversions_left_out <<= s.run.left_out if s.run else 0
-            pins = s.run.pins if s.run else s.resting
+            pins = s.run.pins if s.run else s.idle
             s.dac <<= pins["dac"]
             s.hold <<= pins["hold"]
             s.unsigned_ <<= pins["unsigned_"]

@@ -12,7 +12,7 @@ from models.digital.stream import StreamHeader, encode_frame
 from models.parameters import FrameParameters, SensorParameters
 
 
-def resting_pins():
+def idle_pins():
     """The pins that a frame drives, by name, with their value before a frame: 0."""
     return dict.fromkeys(
         (
@@ -43,7 +43,7 @@ class GoldenRun:
     sensor: SensorParameters
     frame: FrameParameters
     trims: tuple
-    pins: dict = field(default_factory=resting_pins)
+    pins: dict = field(default_factory=idle_pins)
     made: int = 0
     left_out: int = 0
 

@@ -74,7 +74,7 @@ def _end(process: subprocess.Popen) -> None:
     process.stdout.close()
 
 
-class Conversation:
+class Transactor:
     """Inputs and clock edges of a component sent to its simulation; kinds: bit struct of a port, by its path."""
 
     def __init__(self, simulation: Driven, ports: Sequence[Port], kinds: Mapping[str, Any]) -> None:
@@ -146,5 +146,5 @@ def driven_level(dut: Component, simulation: Driven) -> DrivenLevel:
     ports, start = ports_of(dut), len(repr(dut)) + 1
     kinds = {repr(signal)[start:]: signal._dsl.Type for signal in port_signals(dut)}
     cls = type(f"{type(dut).__name__}Driven", (DrivenLevel,), {})  # PyMTL caches a class's blocks by the class
-    talk = Conversation(simulation, ports, kinds)
-    return cls(dut, ports, talk.evaluate, talk.clock)
+    transactor = Transactor(simulation, ports, kinds)
+    return cls(dut, ports, transactor.evaluate, transactor.clock)

@@ -12,7 +12,7 @@ CYCLES = 4  # compared after the reset
 BEFORE = 60  # with random inputs, ahead of it
 
 
-def shown_after_reset(sim: Any, before: int = BEFORE) -> list[dict[str, int]]:
+def outputs_after_reset(sim: Any, before: int = BEFORE) -> list[dict[str, int]]:
     """Outputs in each of the CYCLES after a reset with inputs 0, by path; a message counts while it is valid.
 
     sim: of rtl.harness.testbench.build. before: cycles of random inputs ahead of the reset, 0 for a level that checks

@@ -15,7 +15,7 @@ from models.digital.scan import Scan
 from models.parameters import MODES, ConverterParameters, FrameParameters, Window
 from rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
 from rtl.harness.afe_fl import AfeFL
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
 
@@ -266,8 +266,8 @@ class TestAdcBankRTL(TestAdcBankCL):
     cls = AdcBank
 
     def test_outputs_after_a_reset(self):
-        golden = shown_after_reset(build(AdcBankFL(LANES)), before=0)
-        assert shown_after_reset(build(self.cls(LANES), self.verilog, f"AdcBank{LANES}")) == golden
+        golden = outputs_after_reset(build(AdcBankFL(LANES)), before=0)
+        assert outputs_after_reset(build(self.cls(LANES), self.verilog, f"AdcBank{LANES}")) == golden
 
 
 class TestAdcBankVerilog(TestAdcBankRTL):

@@ -10,7 +10,7 @@ from models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
 from models.parameters import AmpTiming
 from rtl.amp_ctrl import AmpCtrl, AmpCtrlFL
 from rtl.amp_ctrl.ports import DURATIONS
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 
 # A test that several levels inherit runs on each of them, as intended.
@@ -165,7 +165,7 @@ class TestAmpCtrlRTL(TestAmpCtrlFL):
     level = AmpCtrl
 
     def test_outputs_after_a_reset(self, sim):
-        assert shown_after_reset(sim) == shown_after_reset(build(AmpCtrlFL()), before=0)
+        assert outputs_after_reset(sim) == outputs_after_reset(build(AmpCtrlFL()), before=0)
 
 
 class TestAmpCtrlVerilog(TestAmpCtrlRTL):

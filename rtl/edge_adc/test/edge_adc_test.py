@@ -11,7 +11,7 @@ from models.afe import Converter
 from models.digital.sar import convert
 from models.parameters import ConverterParameters
 from rtl.edge_adc import EdgeAdc, EdgeAdcCL, EdgeAdcFL
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 
 ROUGH = Converter.draw(ConverterParameters(inl=2, dnl=0.5, offset=2, noise=1.5, ktc=1, seed=3), 1)
@@ -197,8 +197,8 @@ class TestEdgeAdcRTL(TestEdgeAdcCL):
     cls = EdgeAdc
 
     def test_outputs_after_a_reset(self):
-        golden = shown_after_reset(simulator(EdgeAdcFL, False), before=0)
-        assert shown_after_reset(simulator(self.cls, self.verilog)) == golden
+        golden = outputs_after_reset(simulator(EdgeAdcFL, False), before=0)
+        assert outputs_after_reset(simulator(self.cls, self.verilog)) == golden
 
 
 class TestEdgeAdcVerilog(TestEdgeAdcRTL):

@@ -30,7 +30,7 @@ class Counter(Component):
                 s.value <<= s.value + s.step
 
 
-class Careless(Component):
+class WithoutReset(Component):
     """A register without a reset."""
 
     def construct(s):
@@ -42,7 +42,7 @@ class Careless(Component):
                 s.value <<= s.step
 
 
-class Around(Component):
+class Harness(Component):
     """A harness whose counter's step depends on an input and on its own count."""
 
     def construct(s, dut):
@@ -75,7 +75,7 @@ def test_equals_pymtl_in_every_cycle():
 
 
 def test_in_a_harness():
-    runs = [seen(build(Around(Counter()), level), STEPS) for level in LEVELS]
+    runs = [seen(build(Harness(Counter()), level), STEPS) for level in LEVELS]
     assert runs[0] == runs[1] and any(value == 5 for value, _ in runs[0])
 
 
@@ -89,7 +89,7 @@ def test_an_output_follows_an_input_within_the_cycle():
 
 def test_x_must_not_leave_reset():
     with pytest.raises(AssertionError, match="cycle 1: value = xxxx"):
-        build(Careless(), "icarus")
+        build(WithoutReset(), "icarus")
 
 
 def test_a_simulation_that_ends_early_is_an_error(tmp_path):

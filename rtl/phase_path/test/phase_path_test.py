@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from models.digital.phase import phase_samples
 from models.parameters import ChipParameters
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.phase_path import PhasePath, PhasePathCL, PhasePathFL
@@ -170,8 +170,8 @@ class TestPhasePathRTL(TestPhasePathCL):
     cls = PhasePath
 
     def test_outputs_after_a_reset(self):
-        golden = shown_after_reset(simulator(PhasePathCL, False, self.chip), before=0)
-        assert shown_after_reset(simulator(self.cls, self.verilog, self.chip)) == golden
+        golden = outputs_after_reset(simulator(PhasePathCL, False, self.chip), before=0)
+        assert outputs_after_reset(simulator(self.cls, self.verilog, self.chip)) == golden
 
 
 class TestPhasePathVerilog(TestPhasePathRTL):

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from models.parameters import DIVIDERS, ParameterError
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.messages import DivReq
 from rtl.quad_divider import QuadDividerCL, QuadDividerFL, quad_divider, timing
@@ -195,8 +195,8 @@ class TestRTL(TestCL):
 
     def test_outputs_after_a_reset(self):
         for config in self.configs:
-            golden = shown_after_reset(simulator(QuadDividerFL, False, config), before=0)
-            assert shown_after_reset(simulator(type(self).component, self.verilog, config)) == golden, config
+            golden = outputs_after_reset(simulator(QuadDividerFL, False, config), before=0)
+            assert outputs_after_reset(simulator(type(self).component, self.verilog, config)) == golden, config
 
 
 class TestVerilog(TestRTL):

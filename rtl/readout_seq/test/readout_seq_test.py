@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from models.digital.amp_ctrl import row_cycles
 from models.parameters import AmpTiming, ParameterError
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
 
@@ -317,8 +317,8 @@ class TestReadoutSeqRTL(TestReadoutSeqCL):
 
     def test_outputs_after_a_reset(self):
         for size in self.sizes:
-            golden = shown_after_reset(simulator(ReadoutSeqFL, size, False), before=0)
-            assert shown_after_reset(simulator(self.cls, size, self.verilog)) == golden, size
+            golden = outputs_after_reset(simulator(ReadoutSeqFL, size, False), before=0)
+            assert outputs_after_reset(simulator(self.cls, size, self.verilog)) == golden, size
 
 
 class TestReadoutSeqVerilog(TestReadoutSeqRTL):

@@ -9,7 +9,7 @@ from models.digital.host import command, decode_status, frame_writes, read_trans
 from models.digital.registers import ADDRESS_MAX, RegisterBank
 from models.parameters import MODES, AmpTiming, FrameParameters, Window
 from models.parameters.registers import register_map
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.reg_file import RegFile, RegFileFL, chip_config
 
@@ -348,8 +348,8 @@ class TestRTL(TestFL):
     component = RegFile
 
     def test_outputs_after_a_reset(self):
-        golden = shown_after_reset(build(RegFileFL(LAST_ROW, LAST_COL)), before=0)
-        assert shown_after_reset(self.bench().sim) == golden
+        golden = outputs_after_reset(build(RegFileFL(LAST_ROW, LAST_COL)), before=0)
+        assert outputs_after_reset(self.bench().sim) == golden
 
 
 class TestVerilog(TestRTL):

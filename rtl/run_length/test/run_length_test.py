@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from models.digital.stream import StreamHeader, decode_stream, encode_frame
 from models.digital.stream.test.frames import samples_of
 from models.parameters import MODES, FrameParameters, Window
-from rtl.harness.reset import shown_after_reset
+from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
 from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
@@ -288,8 +288,8 @@ class TestRunLength(TestRunLengthCL):
     cls = RunLength
 
     def test_outputs_after_a_reset(self):
-        golden = shown_after_reset(simulator(RunLengthFL, False), before=0)
-        assert shown_after_reset(simulator(self.cls, self.verilog)) == golden
+        golden = outputs_after_reset(simulator(RunLengthFL, False), before=0)
+        assert outputs_after_reset(simulator(self.cls, self.verilog)) == golden
 
     def test_all_bits_of_the_header(self):
         """Any values at the ports of the header; the other levels accept valid frames only."""
