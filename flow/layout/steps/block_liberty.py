@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from base.liberty.group import Group
+from base.liberty.read import read
+from base.liberty.write import text
 from base.steps import Step, StepError
 from base.tools import run
 
@@ -94,16 +97,12 @@ def _wrapper(netlist):
 
 def liberty(netlist, clock, found, corner, source, area):
     """Text of the Liberty file. found: Boundary; source: the cells' Liberty, whose units and thresholds it has."""
-    from base.liberty.group import Group
-    from base.liberty.read import read
-    from base.liberty.write import text
-
     cells = read(source)
     library = Group(
         "library",
         (f"{netlist.name}__{corner}",),
         {name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
-        | {"voltage_map": list(zip(SUPPLIES, (cells.attributes["nom_voltage"], 0.0), strict=True))},
+        | {"voltage_map": list(zip(SUPPLIES, (cells.number("nom_voltage"), 0.0), strict=True))},
     )
     if conditions := cells.one("operating_conditions"):
         library.groups.append(conditions)
@@ -161,7 +160,7 @@ def liberty(netlist, clock, found, corner, source, area):
             else:
                 pin.attributes["max_capacitance"] = LOADS[-1]
                 _delays(pin, net, clock, found)
-    return text(library) + "\n"
+    return text(library)
 
 
 def _constraints(pin, net, clock, found):

@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import dataclass, field
 
+from base.liberty.read import read
 from base.steps import Step
 from models.parameters import check_real
 
@@ -62,8 +63,6 @@ class Power(Step):
         self.inputs = self.inputs | {"liberty": f"timing.{corner}", "activity": f"gate_delays_{corner}.activity"}
 
     def run(self, inputs, outputs):
-        from base.liberty.read import read
-
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])
         cells, activity = Cells(read(inputs["liberty"])), json.loads(inputs["activity"].read_text())
         found = powers(

@@ -1,8 +1,8 @@
 """Verilog -> a netlist of the library's cells, registers with the names that they have in the Verilog."""
 
-import re
 from dataclasses import dataclass, field
 
+from base.liberty.read import areas
 from base.steps import Step
 from base.tools import run
 from models.parameters import check_int, check_real
@@ -104,8 +104,8 @@ class Synthesis(Step):
             netlist = buffer_fan_out(netlist, pins(netlist.ports), BUFFER, p.fan_out)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
-        areas = dict(re.findall(r"cell\((\w+)\) \{ area : ([\d.]+)", inputs["liberty"].read_text()))
-        area = sum(float(areas[i.cell]) for i in netlist.instances if i.cell not in p.macros)
+        um2 = areas(inputs["liberty"])
+        area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
         for name in ("json", "registers"):
             files[name].unlink()
         return {

@@ -1,12 +1,19 @@
 """The library's cells measured at the process's corners: delays, slews, energies, setup and hold as Liberty."""
 
 import json
-import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from base import jobs
+from base.liberty.read import read
+from base.liberty.write import text
 from base.steps import Step, StepError
-from platforms.extraction import device_models, extraction_platform
+from platforms.extraction import ExtractionPlatform, device_models, extraction_platform
+
+if TYPE_CHECKING:
+    from cells.characterize.job import Source
 
 NS = 1e-9
 
@@ -26,7 +33,7 @@ class TimingParameters:
 
 
 class Timing(Step):
-    """Each cell with its stray capacitances in ngspice, as in `make cells`; a cell measured once is kept by itself."""
+    """Each cell with its parasitics in ngspice, as in `make cells`; a cell measured once is kept by itself."""
 
     name = "timing"
     inputs = {"gds": "library.gds", "areas": "library.areas", "functions": "library.liberty"}
@@ -40,7 +47,6 @@ class Timing(Step):
         self.outputs = {corner: f"{corner}.lib" for corner in parameters.corners}
 
     def run(self, inputs, outputs):
-        from base.liberty import write
         from cells.characterize.conditions import Conditions
         from cells.characterize.job import cell_of, job
         from cells.corner import Corner
@@ -78,11 +84,11 @@ class Timing(Step):
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
         cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
         constants = {
-            name: ({pin: int(level)}, areas[name])
-            for name, pin, level in re.findall(
-                r'cell\((\w+)\) \{[^\n]*\n +pin\((\w+)\) \{ direction : output; function : "([01])"',
-                inputs["functions"].read_text(),
+            cell.name: build.Constant(
+                {pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name]
             )
+            for cell in read(inputs["functions"]).all("cell")
+            if not cell.all("pin", direction="input")
         }
         for condition in conditions:
             corner = condition.corner.name
@@ -90,22 +96,22 @@ class Timing(Step):
                 f"{p.pdk}__{corner}",
                 condition,
                 [
-                    (cell, measured[source.name, corner], source.area)
+                    build.Entry(cell, measured[source.name, corner], source.area)
                     for cell, source in zip(cells, sources, strict=True)
                 ],
                 models,
                 constants,
             )
-            outputs[corner].write_text(write.text(tree) + "\n")
+            outputs[corner].write_text(text(tree))
         return {"cells": len(cells), "simulations": sum(made["simulations"] for made in measured.values()), "failed": 0}
 
 
-def found(inputs, tech):
-    """cells.characterize.job.Source of every cell with an input that the library's functions name."""
+def found(inputs: Mapping[str, Path], tech: ExtractionPlatform) -> "list[Source]":
+    """The Source of every cell with an input in the Liberty file of functions."""
     from cells.characterize.job import Source
     from cells.extract import extract
 
     areas = json.loads(inputs["areas"].read_text())
-    groups = re.split(r"(?m)^ cell\(", inputs["functions"].read_text())[1:]
-    names = [group[: group.index(")")] for group in groups if "direction : input" in group]
+    cells = read(inputs["functions"]).all("cell")
+    names = [cell.name for cell in cells if cell.all("pin", direction="input")]
     return [Source(name, extract(inputs["gds"], name, tech), areas[name]) for name in names]

@@ -1,17 +1,33 @@
-"""A Liberty file with areas and functions only: no figure of time in it.
+"""A Liberty file of areas and functions alone, without delays.
 
 The functions are those of the transistors as laid out, not those that names promise: c4m-flexcell 0.4.7's nexor2_x0
 is an exclusive or.
 """
 
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, NamedTuple
+
+from base.liberty.functional import add_cell, library
+from base.liberty.write import text
+
+if TYPE_CHECKING:
+    from cells.netlist.function import Storage
+    from platforms.extraction import ExtractionPlatform
+
 CONSTANTS = {"zero": "0", "one": "1"}
 
 
-def functions(gds, names, models, tech):
-    """What the cells ``names`` in ``gds`` do: dict cell -> (dict output -> expression, Storage or None).
+class Function(NamedTuple):
+    """What a cell does: the expression of every output, and its storage."""
 
-    models: see `device_models`; tech: ExtractionPlatform. Cells without an output are left out.
-    """
+    outputs: dict[str, str]
+    storage: "Storage | None"
+
+
+def functions(gds: Path, names: Iterable[str], models: ModuleType, tech: "ExtractionPlatform") -> dict[str, Function]:
+    """The functions of the cells ``names`` in ``gds``; cells without an output are left out. models: `device_models`."""
     from cells.extract import extract
     from cells.netlist.function import understand
     from cells.netlist.spice import parse
@@ -21,39 +37,19 @@ def functions(gds, names, models, tech):
         netlist = parse(extract(gds, name, tech, capacitors=False, resistors=False), origin=name)
         constant = {pin: CONSTANTS[pin] for pin in netlist.ports if pin in CONSTANTS}
         if constant:
-            found[name] = constant, None
+            found[name] = Function(constant, None)
             continue
         cell = understand(netlist, models.POLARITY, models.SUPPLIES)
         if cell.functions:
-            found[name] = cell.functions, cell.storage
+            found[name] = Function(cell.functions, cell.storage)
     return found
 
 
-def liberty(cells, ports, areas):
-    """Text of the Liberty file. cells: as from `functions`; ports: dict cell -> its pins, supplies left out; areas:
-    dict cell -> um2."""
-    lines = ["library(cells) {", " delay_model : table_lookup;"]
-    for cell, (outputs, storage) in cells.items():
-        lines.append(f" cell({cell}) {{ area : {areas[cell]};")
-        if storage:
-            lines.append(_flip_flop(storage))
-        lines += [
-            f'  pin({pin}) {{ direction : output; function : "{outputs[pin]}"; }}'
-            if pin in outputs
-            else f"  pin({pin}) {{ direction : input; }}"
-            for pin in ports[cell]
-        ]
-        lines.append(" }")
-    return "\n".join([*lines, "}", ""])
+def liberty(cells: Mapping[str, Function], ports: Mapping[str, Iterable[str]], areas: Mapping[str, float]) -> str:
+    """Text of the Liberty file of combinational cells and flip-flops. ports: pins without supplies; areas: um2."""
+    from cells.liberty.build import storage_attributes
 
-
-def _flip_flop(storage):
-    """Its Liberty group. storage: cells.netlist.function.Storage of kind 'ff'."""
-    clock = storage.clock if storage.active else f"!{storage.clock}"
-    forced = "".join(
-        f' {name} : "{pin if level else "!" + pin}";'
-        for name, value in (("clear", storage.clear), ("preset", storage.preset))
-        if value
-        for pin, level in [value]
-    )
-    return f'  ff(IQ,IQN) {{ clocked_on : "{clock}"; next_state : "{storage.data}";{forced} }}'
+    made = library("cells")
+    for name, (outputs, storage) in cells.items():
+        add_cell(made, name, areas[name], ports[name], outputs, storage and storage_attributes(storage))
+    return text(made)
