@@ -4,9 +4,10 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
 from pathlib import Path
 
-from base.files import check_folder
+from base.files import atomic, check_folder
 from models.digital.stream import decode_file
 from models.digital.stream.frame import DecodedFrame
+from models.parameters import TileParameters
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -21,11 +22,23 @@ def run(options: Namespace) -> int:
     """Decode the file and print a line for each frame; 1 where a frame is incomplete."""
     out = options.out or options.file.with_suffix(".npz")
     check_folder("out", out.parent)
-    frames = decode_file(options.file, out)
+    frames = decode_to(options.file, out)
     for frame in frames:
         print(describe(frame))
     print(f"written: {out}")
     return 0 if all(frame.complete for frame in frames) else 1
+
+
+def decode_to(path: Path, out: Path, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:
+    """Decode the stream in ``path`` and write each frame: ``out`` = x.npz, then x-1.npz, x-2.npz, each atomically.
+
+    Raises StreamError where there is no frame, OSError.
+    """
+    frames = decode_file(path, tile)
+    for i, frame in enumerate(frames):
+        with atomic(out.with_name(f"{out.stem}-{i}{out.suffix}") if i else out) as part:
+            frame.save(part)
+    return frames
 
 
 def describe(frame: DecodedFrame) -> str:

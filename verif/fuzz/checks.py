@@ -9,7 +9,7 @@ import numpy as np
 
 from base.command import main
 from flow import decode
-from models.digital.stream import StreamError, decode_file, decode_stream
+from models.digital.stream import StreamError, decode_stream
 from models.parameters import TileParameters
 
 
@@ -70,16 +70,16 @@ def _check_survived(case, frames):
 
 
 def check_file(case, frames):
-    """The same Case through a file, `decode_file` and the command: the same answer, one line an error."""
+    """The same Case through a file, `decode_to` and the command: the same answer, one line an error."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         source, out = Path(folder) / "stream.bin", Path(folder) / "decoded.npz"
         source.write_bytes(case.data)
         try:
-            again = decode_file(source, out, case.tile)
+            again = decode.decode_to(source, out, case.tile)
         except StreamError as error:
-            demand(not frames and str(source) in str(error), f"decode_file refuses what decode_stream reads: {error}")
+            demand(not frames and str(source) in str(error), f"decode_to refuses what decode_stream reads: {error}")
         else:
-            demand(len(again) == len(frames), "decode_file and decode_stream differ")
+            demand(len(again) == len(frames), "decode_to and decode_stream differ")
             names = [out.name] + [f"decoded-{i}.npz" for i in range(1, len(frames))]
             demand(sorted(p.name for p in Path(folder).glob("*.npz")) == sorted(names), "files are missing")
             for name, frame in zip(names, frames, strict=True):

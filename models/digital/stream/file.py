@@ -1,4 +1,4 @@
-"""From a stream in a file to arrays in files."""
+"""A stream in a file."""
 
 from pathlib import Path
 
@@ -9,17 +9,13 @@ from .frame import DecodedFrame
 from .header import StreamError
 
 
-def decode_file(
-    path: str | Path, out: str | Path | None = None, tile: TileParameters = TileParameters()
-) -> list[DecodedFrame]:
+def decode_file(path: str | Path, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:
     """Decode a file.
 
     Parameters
     ----------
     path : path
         The stream.
-    out : path, optional
-        npz file to write; with several frames their number precedes the suffix: x.npz, x-1.npz, x-2.npz.
     tile : TileParameters
         The sensor's tile.
 
@@ -33,15 +29,10 @@ def decode_file(
     StreamError
         If there is no frame; the message names the file.
     OSError
-        If a file cannot be read or written.
+        If the file cannot be read.
     """
     with open(path, "rb") as file:
         try:
-            frames = decode_stream(file.read(), tile)
+            return decode_stream(file.read(), tile)
         except StreamError as error:
             raise StreamError(f"file = {path}: {error}") from None
-    if out is not None:
-        out = Path(out)
-        for i, frame in enumerate(frames):
-            frame.save(out.with_name(f"{out.stem}-{i}{out.suffix}") if i else out)
-    return frames

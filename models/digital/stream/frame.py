@@ -2,8 +2,6 @@
 
 import dataclasses
 import json
-import os
-import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -66,28 +64,20 @@ class DecodedFrame:
         Parameters
         ----------
         path : path
-            The file; the write is atomic.
+            The file.
 
         Raises
         ------
         OSError
             If it cannot be written.
         """
-        path = Path(path)
-        handle, part = tempfile.mkstemp(prefix=".part-", suffix=".npz", dir=path.parent)
-        try:
-            with os.fdopen(handle, "wb") as out:
-                np.savez_compressed(
-                    out,
-                    samples=self.samples,
-                    read=self.read,
-                    header=json.dumps(dataclasses.asdict(self.header)),
-                    bad_rows=np.array(self.bad_rows, np.int32),
-                    made=-1 if self.made is None else self.made,
-                    left_out=-1 if self.left_out is None else self.left_out,
-                )
-            os.chmod(part, 0o644)
-            os.replace(part, path)
-        except BaseException:
-            os.unlink(part)
-            raise
+        with open(path, "wb") as file:
+            np.savez_compressed(
+                file,
+                samples=self.samples,
+                read=self.read,
+                header=json.dumps(dataclasses.asdict(self.header)),
+                bad_rows=np.array(self.bad_rows, np.int32),
+                made=-1 if self.made is None else self.made,
+                left_out=-1 if self.left_out is None else self.left_out,
+            )
