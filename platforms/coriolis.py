@@ -1,10 +1,11 @@
 """What the layout flow (Coriolis, KLayout and the steps of flow.layout) needs of a process: one object a process."""
 
 from dataclasses import dataclass
+from importlib import import_module
 from typing import Any
 
 from .layers import GdsLayer, Layer, Via
-from .load import module
+from .processes import package
 
 
 @dataclass(frozen=True)
@@ -67,9 +68,9 @@ class CoriolisPlatform:
 
 def coriolis_platform(pdk: str) -> CoriolisPlatform:
     """The process ``pdk`` for the layout flow. Raises ParameterError."""
-    return module(pdk, "coriolis").PLATFORM
+    return import_module(f"platforms.{package(pdk)}.coriolis").PLATFORM
 
 
 def standard_cells(pdk: str) -> Any:
     """The PDKMaster library of the cells of ``pdk``, all layouts drawn. Raises ParameterError."""
-    return module(pdk, "coriolis").library()
+    return import_module(f"platforms.{package(pdk)}.coriolis").library()

@@ -1,9 +1,10 @@
 """What a whole die needs of a process beyond the blocks' metals: the thick metal above them."""
 
 from dataclasses import dataclass
+from importlib import import_module
 
 from .layers import Layer, Via
-from .load import module
+from .processes import package
 
 PROCESSES = ("sky130",)
 
@@ -18,4 +19,4 @@ class TopMetal:
 
 def top_metal(pdk: str) -> TopMetal:
     """The top metal of ``pdk``. Raises ParameterError for a process without one."""
-    return module(pdk, "die", PROCESSES, " for a whole die").TOP
+    return import_module(f"platforms.{package(pdk, PROCESSES, ' for a whole die')}.layers").TOP

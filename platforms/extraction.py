@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from importlib import import_module
 from types import ModuleType
 
 from .layers import Crossing, GdsLayer, Layer, Via
-from .load import module
+from .processes import package
 
 
 @dataclass(frozen=True)
@@ -37,9 +38,9 @@ class ExtractionPlatform:
 
 def extraction_platform(pdk: str) -> ExtractionPlatform:
     """The process ``pdk`` for extraction. Raises ParameterError."""
-    return module(pdk, "extraction").PLATFORM
+    return import_module(f"platforms.{package(pdk)}.extraction").PLATFORM
 
 
 def device_models(pdk: str) -> ModuleType:
     """Module with the device models (POLARITY, SUPPLIES, ...) of ``pdk``, for `cells`. Raises ParameterError."""
-    return module(pdk, "models")
+    return import_module(f"platforms.{package(pdk)}.models")

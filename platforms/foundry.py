@@ -3,11 +3,12 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 from models.parameters import ParameterError
 
-from .load import module
+from .processes import package
 
 PROCESSES = ("sky130",)
 
@@ -28,7 +29,7 @@ class FoundryChecks:
 
 def foundry_checks(pdk: str) -> FoundryChecks | None:
     """The foundry's checks of a process; None for one without."""
-    return module(pdk, "foundry").CHECKS if pdk in PROCESSES else None
+    return import_module(f"platforms.{package(pdk)}.foundry").CHECKS if pdk in PROCESSES else None
 
 
 def installed(pdk: str, environment: Mapping[str, str] = os.environ) -> dict[str, Path]:

@@ -4,9 +4,10 @@ Paths are those of a PDK as open_pdks installs it (ciel, volare), relative to PD
 """
 
 from dataclasses import dataclass
+from importlib import import_module
 
 from .layers import GdsLayer
-from .load import module
+from .processes import package
 
 PROCESSES = ("sky130",)
 CORNERS = ("slow", "typical", "fast")
@@ -77,4 +78,4 @@ class OpenRoadPlatform:
 
 def openroad_platform(pdk: str) -> OpenRoadPlatform:
     """The process ``pdk`` for OpenROAD. Raises ParameterError."""
-    return module(pdk, "openroad", PROCESSES, " with BACKEND=openroad").PLATFORM
+    return import_module(f"platforms.{package(pdk, PROCESSES, ' with BACKEND=openroad')}.openroad").PLATFORM

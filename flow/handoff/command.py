@@ -8,7 +8,7 @@ from base.files import check_folder, staged
 from base.paths import ROOT
 from flow.layout.design import DESIGNS, design, folder_name
 from models.parameters import check_choice
-from platforms.load import PROCESSES
+from platforms.processes import PROCESSES
 
 from .archive import archive, sha256
 from .contents import Broken, contents, manifest, waived

@@ -8,7 +8,7 @@ from base.paths import ROOT
 from base.progress import Steps
 from models.parameters import ParameterError, check_choice
 from platforms.foundry import installed
-from platforms.load import PROCESSES
+from platforms.processes import PROCESSES
 
 from .block import lay_out
 from .chain import all_steps

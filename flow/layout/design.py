@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from models.parameters import ParameterError, check_real
-from platforms.load import PROCESSES
+from platforms.processes import PROCESSES
 
 
 @dataclass(frozen=True)

