@@ -8,7 +8,7 @@ import json
 import os
 import warnings
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +24,7 @@ from .sources import code
 
 @dataclass(frozen=True)
 class Job:
-    """One call: ``call(*arguments)`` returns what JSON can hold.
+    """One call: ``call(*arguments)`` returns JSON or dataclasses (which `base.records.from_json` reads back).
 
     name: unique among the jobs of a run, a file name. inputs: paths (their content counts), texts and numbers that
     decide the result beside the code of ``call``, which is found by itself.
@@ -84,4 +84,5 @@ def _backend(workers: int) -> Iterator[None]:
 
 
 def _keep(job: Job, file: Path) -> None:
-    write(file, json.dumps(job.call(*job.arguments), indent=1, allow_nan=False) + "\n")
+    result = json.dumps(job.call(*job.arguments), indent=1, allow_nan=False, default=asdict)
+    write(file, result + "\n")

@@ -1,14 +1,157 @@
-"""What every step of `make verify` leaves behind: build/verify/<step>.json, a dict by block."""
+"""The results of every step of `make verify`: build/verify/<step>.json, one BlockResults per block."""
 
 import json
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 
 from base.files import staged
 from base.paths import ROOT
 
 OUT = ROOT / "build" / "verify"
+COVERAGE = "line", "toggle", "branch", "fsm", "functional"
+PROVEN = "proven"
 
 
-def write_step(step, by_block, out=None):
-    """Write the results of ``step`` (a dict by block that JSON can hold) into folder ``out``, or OUT."""
-    with staged(out or OUT) as part:
-        (part / f"{step}.json").write_text(json.dumps(by_block, indent=1, allow_nan=False) + "\n")
+@dataclass
+class Tests:
+    """Counts of tests. levels: passed tests by level (FL, CL, RTL, Verilator, Icarus)."""
+
+    __test__ = False  # not a test class
+    passed: int = 0
+    failed: int = 0
+    skipped: int = 0
+    seconds: float = 0.0
+    levels: dict[str, int] = field(default_factory=dict)
+
+    def add(self, other: "Tests") -> None:
+        """Add the counts of ``other``."""
+        for level, count in other.levels.items():
+            self.levels[level] = self.levels.get(level, 0) + count
+        for name in ("passed", "failed", "skipped", "seconds"):
+            setattr(self, name, getattr(self, name) + getattr(other, name))
+
+
+@dataclass(frozen=True)
+class Property:
+    """One property by one engine. depth: steps, or 'unbounded'. twin_fails: its broken design violates it."""
+
+    name: str
+    engine: str
+    depth: int | str
+    result: str
+    twin_fails: bool
+    wall_s: float
+
+    @property
+    def good(self) -> bool:
+        """Whether it is proven and its twin fails."""
+        return self.result == PROVEN and self.twin_fails
+
+
+@dataclass(frozen=True)
+class Mutants:
+    """Counts of mutants. equivalent: no input distinguishes them from the original."""
+
+    made: int = 0
+    equivalent: int = 0
+    killed: int = 0
+    survived: int = 0
+
+    @property
+    def killable(self) -> int:
+        """Mutants that some input distinguishes from the original."""
+        return self.made - self.equivalent
+
+    @property
+    def score(self) -> float:
+        """Share of the killable mutants that a test kills, in %."""
+        return 100.0 * self.killed / self.killable if self.killable else 100.0
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault at the pins, by its test, and the test's outcome."""
+
+    fault: str
+    result: str
+
+
+@dataclass(frozen=True)
+class Fuzz:
+    """Fuzzed inputs. files: those tried through files, too. seconds_max: the slowest. kinds: inputs by kind."""
+
+    inputs: int
+    failures: int
+    seed: int
+    files: int = 0
+    seconds_max: float = 0.0
+    kinds: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Every byte of a frame changed, ``tried`` times in all, with ``around`` it other bytes or none.
+
+    recovered: changes that lose nothing. row_lost: those that lose one row. failed: those that lose more, the first ten
+    in failures.
+    """
+
+    frame: str
+    around: str
+    bytes: int
+    tried: int
+    recovered: int
+    row_lost: int
+    failures: list[str]
+    failed: int
+
+
+@dataclass(frozen=True)
+class Resync:
+    """The sums of all sweeps."""
+
+    tried: int
+    failures: int
+    recovered: int
+    frames: list[Sweep]
+
+
+@dataclass
+class BlockResults:
+    """What a step, or all of them, found for a block. coverage: % by kind of COVERAGE, None where nothing was measured.
+
+    excluded: coverage points left out. benches: cocotb tests by simulator. open_points: what is not as required, one
+    line each.
+    """
+
+    tests: Tests = field(default_factory=Tests)
+    proofs: list[Property] = field(default_factory=list)
+    coverage: dict[str, float | None] = field(default_factory=lambda: dict.fromkeys(COVERAGE))
+    excluded: int = 0
+    mutants: Mutants | None = None
+    simulators: list[str] = field(default_factory=list)
+    benches: dict[str, Tests] = field(default_factory=dict)
+    faults: list[Fault] = field(default_factory=list)
+    fuzz: Fuzz | None = None
+    resync: Resync | None = None
+    open_points: list[str] = field(default_factory=list)
+
+    def add(self, other: "BlockResults") -> None:
+        """Add the results of another step."""
+        self.tests.add(other.tests)
+        self.proofs += other.proofs
+        self.coverage |= {kind: value for kind, value in other.coverage.items() if value is not None}
+        self.excluded += other.excluded
+        self.mutants = other.mutants or self.mutants
+        self.simulators += [name for name in other.simulators if name not in self.simulators]
+        self.benches |= other.benches
+        self.faults += other.faults
+        self.fuzz = other.fuzz or self.fuzz
+        self.resync = other.resync or self.resync
+        self.open_points += other.open_points
+
+
+def write_step(step: str, by_block: dict[str, BlockResults], out: Path = OUT) -> None:
+    """Write <step>.json into folder ``out``."""
+    with staged(out) as part:
+        (part / f"{step}.json").write_text(json.dumps(by_block, indent=1, allow_nan=False, default=asdict) + "\n")

@@ -1,76 +1,89 @@
-"""`python -m verif.bench`: every cocotb bench in Icarus and in Verilator, and one frame in these and in PyMTL."""
+"""Every cocotb bench in Icarus and in Verilator, and one frame in these and in PyMTL: build/verify/bench.json."""
 
 import argparse
 import sys
 import tempfile
-from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from base.jobs import Job, run
+from base.records import from_json
 from models.parameters import ParameterError
 from rtl.harness.icarus import MISSING, installed
-from verif.results import OUT, write_step
+from verif.results import OUT, BlockResults, Tests, write_step
 
 from .exposure import FRAMES
-from .simulation import DESIGNS, SIMULATORS, BenchError, simulate
+from .simulation import DESIGNS, SIMULATORS, BenchError, BenchTest, simulate
 
 CHIP, SHOWN = "AspChip", "edge"
 SAME = "the same bytes in PyMTL, Icarus and Verilator"
+NAMES = {"pymtl": "PyMTL3", "verilator": "Verilator", "icarus": "Icarus"}
 
 
-def bench(block, simulator, seed):
-    """Run a block's bench: {"tests": [[name, failure or None]], "stream": hex of the chip's shown frame, or None}."""
+@dataclass(frozen=True)
+class BenchRun:
+    """The tests of a block's bench in a simulator. stream: bytes of the chip's shown frame in hexadecimal."""
+
+    tests: list[BenchTest]
+    stream: str | None
+
+
+def bench(block: str, simulator: str, seed: int) -> BenchRun:
+    """Run a block's bench; what cannot be built or run is a failed test."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         stream = Path(folder) / "stream"
         try:
             tests = simulate(DESIGNS[block], simulator, seed, {"BENCH_STREAM": str(stream), "BENCH_FRAME": SHOWN})
         except BenchError as error:
-            tests = [("build and run", str(error))]
-        return {"tests": tests, "stream": stream.read_bytes().hex() if stream.exists() else None}
+            tests = [BenchTest("build and run", str(error))]
+        return BenchRun(tests, stream.read_bytes().hex() if stream.exists() else None)
 
 
-def in_pymtl():
-    """The shown frame in PyMTL, as `bench`."""
+def in_pymtl() -> BenchRun:
+    """Run the shown frame in PyMTL."""
     from .pymtl_frame import pymtl_stream
 
-    return {"tests": [], "stream": pymtl_stream(FRAMES[SHOWN]).hex()}
+    return BenchRun([], pymtl_stream(FRAMES[SHOWN]).hex())
 
 
-def jobs_of(blocks, simulators, seed):
-    """dict Job -> (block, simulator)."""
+def jobs_of(blocks: Sequence[str], simulators: Iterable[str], seed: int) -> dict[tuple[str, str], Job]:
+    """Return the jobs by (block, simulator)."""
     jobs = {
-        Job(f"{block}.{simulator}", bench, (block, simulator, seed), (seed,)): (block, simulator)
+        (block, simulator): Job(f"{block}.{simulator}", bench, (block, simulator, seed), (seed,))
         for block in blocks
         for simulator in simulators
     }
     if CHIP in blocks:
-        jobs[Job(f"{CHIP}.pymtl", in_pymtl)] = CHIP, "pymtl"
+        jobs[CHIP, "pymtl"] = Job(f"{CHIP}.pymtl", in_pymtl)
     return jobs
 
 
-def summary(results):
-    """(the step's part of the final summary by block, failures: texts). results: dict (block, simulator) -> `bench`."""
-    by_block, failures = {}, []
-    for (block, simulator), result in results.items():
-        here = by_block.setdefault(block, {"tests": Counter(passed=0, failed=0), "simulators": {}, "open_points": []})
-        failed = [(test, why) for test, why in result["tests"] if why]
-        counts = {"passed": len(result["tests"]) - len(failed), "failed": len(failed)}
-        if result["tests"]:
-            here["simulators"][simulator] = counts
-            here["tests"].update(counts)
-        failures += [f"{block} in {simulator}: {test}: {why}" for test, why in failed]
-    streams = {simulator: result["stream"] for (block, simulator), result in results.items() if block == CHIP}
+def summary(runs: Mapping[tuple[str, str], BenchRun]) -> dict[str, BlockResults]:
+    """Return the results by block; every failure is an open point. runs: by (block, simulator)."""
+    by_block: dict[str, BlockResults] = {}
+    for (block, simulator), ran in runs.items():
+        here = by_block.setdefault(block, BlockResults())
+        failed = [test for test in ran.tests if test.failure]
+        if ran.tests:
+            tests = here.benches[NAMES[simulator]] = Tests(len(ran.tests) - len(failed), len(failed))
+            here.simulators.append(NAMES[simulator])
+            here.tests.add(tests)
+        here.open_points += [f"{block} in {simulator}: {test.name}: {test.failure}" for test in failed]
+    streams = {simulator: ran.stream for (block, simulator), ran in runs.items() if block == CHIP}
     if streams:
         same = len(set(streams.values())) == 1 and None not in streams.values()
-        by_block[CHIP]["tests"]["passed" if same else "failed"] += 1
+        by_block[CHIP].tests.add(Tests(int(same), int(not same)))
         if not same:
-            failures.append(f"{CHIP}: {SAME}: {', '.join(f'{name} {str(s)[:60]}' for name, s in streams.items())}")
-    return by_block, failures
+            found = ", ".join(f"{name} {str(stream)[:60]}" for name, stream in streams.items())
+            by_block[CHIP].open_points.append(f"{CHIP}: {SAME}: {found}")
+    return by_block
 
 
-def arguments():
+def arguments() -> argparse.ArgumentParser:
+    """Return the command line."""
     parser = argparse.ArgumentParser(prog="python -m verif.bench", description=__doc__)
-    parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: every one")
+    parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: all")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
     parser.add_argument("--seed", type=int, default=1, help="of the tests' random numbers (%(default)s)")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")
@@ -78,7 +91,8 @@ def arguments():
     return parser
 
 
-def main(argv=None):
+def main(argv: Sequence[str] | None = None) -> int:
+    """Return 0, 1 when a test failed, 2 where nothing could be run."""
     options = arguments().parse_args(argv)
     simulators = options.simulator or list(SIMULATORS)
     try:
@@ -86,20 +100,20 @@ def main(argv=None):
             raise BenchError(MISSING)
         jobs = jobs_of(options.block or list(DESIGNS), simulators, options.seed)
         store = options.out / "bench"
-        results = dict(zip(jobs.values(), run(jobs, store, "benches", options.workers)))
-        by_block, failures = summary(results)
+        runs = from_json(list[BenchRun], run(list(jobs.values()), store, "benches", options.workers))
+        by_block = summary(dict(zip(jobs, runs, strict=True)))
         write_step("bench", by_block, options.out)
     except (ParameterError, BenchError, OSError) as error:
         print(f"verif.bench: {error}", file=sys.stderr)
         return 2
-    for job, key in jobs.items():
-        if any(why for _, why in results[key]["tests"]):
-            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)  # what failed is tried again
+    for job, ran in zip(jobs.values(), runs, strict=True):
+        if any(test.failure for test in ran.tests):
+            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)  # failures are tried again
     for block, here in by_block.items():
-        print(f"{block}: {here['tests']['passed']} passed, {here['tests']['failed']} failed")
-    for failure in failures:
-        print(failure, file=sys.stderr)
-    return 1 if failures else 0
+        print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed")
+        for point in here.open_points:
+            print(point, file=sys.stderr)
+    return int(any(here.open_points for here in by_block.values()))
 
 
 if __name__ == "__main__":

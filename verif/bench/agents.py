@@ -1,34 +1,52 @@
-"""What surrounds a design in cocotb: cycles, streams' sources and sinks, an SPI host, a comparison.
+"""The agents of the cocotb benches: stream drivers and monitors, an SPI host, a scoreboard, and their clock.
 
-Agents are called twice a cycle: `drive` ahead of it, with registers settled after the clock edge; `sample` in it, with
-everything settled ahead of the next edge. So a bench is the same in every simulator, whatever its scheduling.
+Agents are called twice a cycle: `drive` after the clock edge, with registers settled; `sample` before the next edge,
+with everything settled. So a bench is the same in every simulator, whatever its scheduling.
 """
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, Protocol
 
 from cocotb.triggers import Timer
 
 HALF = 5  # ns of half a clock
 
 
-def known(handle):
-    """Value of a signal: int. AssertionError where a bit of it is X or Z."""
+def known(handle: Any) -> int:
+    """Return the value of a signal. Raises AssertionError where a bit is X or Z."""
     value = handle.value
     assert value.is_resolvable, f"{handle._name} = {value}: X or Z"
     return int(value)
 
 
 class Stopped(Exception):
-    """The cycle at which a bench was to stop."""
+    """A bench reaches the cycle at which it stops."""
+
+
+class Agent(Protocol):
+    """What drives or watches pins of the design."""
+
+    def rest(self) -> None:
+        """Drive the pins as in reset and start again."""
+
+    def drive(self) -> None:
+        """Drive the pins after a clock edge."""
+
+    def sample(self) -> None:
+        """Look at the pins before the next clock edge."""
 
 
 class Bench:
     """A design and its agents, in the order in which they are called. stop: cycle that raises Stopped, or None."""
 
-    def __init__(self, dut, *agents):
-        self.dut, self.agents, self.cycles, self.stop = dut, list(agents), 0, None
+    def __init__(self, dut: Any, *agents: Agent) -> None:
+        self.dut, self.agents, self.cycles = dut, list(agents), 0
+        self.stop: int | None = None
         dut.clk.value = 0
         dut.reset.value = 1
 
-    async def cycle(self):
+    async def cycle(self) -> None:
+        """Run one clock cycle. Raises Stopped."""
         if self.cycles == self.stop:
             raise Stopped
         self.dut.clk.value = 0
@@ -41,8 +59,8 @@ class Bench:
         self.dut.clk.value = 1
         await Timer(HALF, "ns")
 
-    async def reset(self, cycles=2):
-        """A reset as long as ``cycles``; agents rest in it and begin anew."""
+    async def reset(self, cycles: int = 2) -> None:
+        """Reset for ``cycles``; agents start again."""
         self.dut.reset.value = 1
         for agent in self.agents:
             agent.rest()
@@ -53,8 +71,8 @@ class Bench:
             await Timer(HALF, "ns")
         self.dut.reset.value = 0
 
-    async def until(self, done, limit):
-        """Cycles until ``done()``; AssertionError after ``limit`` of them."""
+    async def until(self, done: Callable[[], object], limit: int) -> None:
+        """Run cycles until ``done()``. Raises AssertionError after ``limit`` of them."""
         for _ in range(limit):
             if done():
                 return
@@ -65,58 +83,65 @@ class Bench:
 class Stream:
     """The signals of a val/rdy stream of ``dut``: recv__val, recv__rdy and recv__msg, or what ``parts`` names."""
 
-    def __init__(self, dut, name, parts=("__val", "__rdy", "__msg")):
+    def __init__(self, dut: Any, name: str, parts: Sequence[str] = ("__val", "__rdy", "__msg")) -> None:
         self.val, self.rdy, self.msg = (getattr(dut, f"{name}{part}") for part in parts)
 
 
 class Driver:
     """Offers ``items`` (ints), in a share ``pace`` of the cycles; what is offered stays until it is taken."""
 
-    def __init__(self, stream, random, items=(), pace=1.0):
+    def __init__(self, stream: Stream, random: Any, items: Iterable[int] = (), pace: float = 1.0) -> None:
         self.stream, self.random, self.items, self.pace = stream, random, list(items), pace
         self.rest()
 
-    def rest(self):
+    def rest(self) -> None:
+        """Drive the pins as in reset and start again."""
         self.sent, self.offered = 0, False
         self.stream.val.value = 0
         self.stream.msg.value = 0
 
-    def drive(self):
+    def drive(self) -> None:
+        """Drive the pins after a clock edge."""
         self.offered = self.sent < len(self.items) and (self.offered or self.random.random() < self.pace)
         self.stream.val.value = int(self.offered)
-        # an idle stream's msg says nothing, so it may say anything
+        # the msg of an idle stream is random
         self.stream.msg.value = self.items[self.sent] if self.offered else self.random.getrandbits(len(self.stream.msg))
 
-    def sample(self):
+    def sample(self) -> None:
+        """Look at the pins before the next clock edge."""
         if known(self.stream.rdy) and self.offered:
             self.sent += 1
             self.offered = False
 
     @property
-    def done(self):
+    def done(self) -> bool:
+        """Whether every item is taken."""
         return self.sent == len(self.items)
 
 
 class Monitor:
-    """Takes what a stream offers, in a share ``pace`` of the cycles: `items`. An offer must stand until it is taken."""
+    """Takes ``items`` from a stream in a share ``pace`` of the cycles. An offer must not change until it is taken."""
 
-    def __init__(self, stream, random, pace=1.0):
+    def __init__(self, stream: Stream, random: Any, pace: float = 1.0) -> None:
         self.stream, self.random, self.pace = stream, random, pace
         self.rest()
 
-    def rest(self):
-        self.items, self.standing, self.ready, self.quiet = [], None, False, 0
+    def rest(self) -> None:
+        """Drive the pins as in reset and start again."""
+        self.items, self.held, self.ready, self.quiet = [], None, False, 0
         self.stream.rdy.value = 0
 
-    def drive(self):
+    def drive(self) -> None:
+        """Drive the pins after a clock edge."""
         self.ready = self.random.random() < self.pace
         self.stream.rdy.value = int(self.ready)
 
-    def sample(self):
+    def sample(self) -> None:
+        """Look at the pins before the next clock edge."""
         offer = known(self.stream.msg) if known(self.stream.val) else None
-        assert self.standing in (None, offer), f"an offer of {self.standing} became {offer}"
+        assert self.held in (None, offer), f"an offer of {self.held} became {offer}"
         self.quiet = 0 if offer is not None else self.quiet + 1
-        self.standing = None if self.ready else offer
+        self.held = None if self.ready else offer
         if self.ready and offer is not None:
             self.items.append(offer)
 
@@ -124,23 +149,25 @@ class Monitor:
 class Spi:
     """An SPI host, mode 0; half: cycles of half an SPI clock, at least 4."""
 
-    def __init__(self, bench, half=4):
+    def __init__(self, bench: Bench, half: int = 4) -> None:
         self.bench, self.dut, self.half = bench, bench.dut, half
         self.rest()
 
-    def rest(self):
+    def rest(self) -> None:
+        """Drive the pins as in reset and start again."""
         self.dut.csn.value, self.dut.sclk.value, self.dut.mosi.value = 1, 0, 0
 
-    def drive(self):
-        """Its pins move in `transfer`."""
+    def drive(self) -> None:
+        """Do nothing: the pins move in `transfer`."""
 
     sample = drive
 
-    async def wait(self, cycles):
+    async def wait(self, cycles: int) -> None:
+        """Run ``cycles`` of the bench."""
         for _ in range(cycles):
             await self.bench.cycle()
 
-    async def transfer(self, data):
+    async def transfer(self, data: bytes) -> bytes:
         """Send ``data``; returns as many bytes from miso."""
         dut, received = self.dut, []
         dut.csn.value = 0
@@ -158,8 +185,8 @@ class Spi:
         return bytes(sum(bit << 7 - i for i, bit in enumerate(received[n : n + 8])) for n in range(0, len(received), 8))
 
 
-def check(got, expected):
-    """The golden scoreboard: AssertionError that names the first item that differs."""
+def check(got: Iterable[object], expected: Iterable[object]) -> None:
+    """Compare with the golden items. Raises AssertionError with the first one that differs."""
     got, expected = list(got), list(expected)
     for number, (item, want) in enumerate(zip(got, expected)):
         assert item == want, f"item {number} of {len(expected)}: expected {want}, got {item}"

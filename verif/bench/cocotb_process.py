@@ -1,4 +1,4 @@
-"""A bench's own process, for `verif.bench.simulation`: cocotb's runner builds the simulation and runs its tests."""
+"""The process of a bench, for `verif.bench.simulation`: cocotb's runner builds the simulation and runs its tests."""
 
 import sys
 from pathlib import Path
@@ -8,13 +8,13 @@ from cocotb_tools.runner import get_runner
 from .simulation import BUILD_ARGS, TOP
 
 
-def main(simulator, module, folder, results, seed, tests, *rest):
-    """tests: names, comma-separated, or '' for all. rest: Verilog files, '--' and plusargs.
+def main(simulator: str, module: str, folder: str, results: str, seed: str, tests: str, *rest: str) -> None:
+    """Build unless a complete build is kept, and run ``tests`` (names, comma-separated, or '' for all).
 
-    A build is kept: it is marked when it is whole.
+    rest: Verilog files, '--' and plusargs.
     """
-    cut = rest.index("--")
-    files, plusargs = rest[:cut], rest[cut + 1 :]
+    split = rest.index("--")
+    files, plusargs = rest[:split], rest[split + 1 :]
     runner, built = get_runner(simulator), Path(folder) / "built"
     if not built.exists():
         runner.build(

@@ -1,6 +1,10 @@
-"""What the benches of the whole chip show it: a small array before an imperfect front end."""
+"""The exposure in the benches of the whole chip: a small array and an imperfect front end."""
+
+from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from models.afe import write_converter, write_samples
 from models.chip import front_end_of
@@ -25,22 +29,23 @@ TRIMS = tuple((-1) ** t * (11 * t + 5) for t in range(24))
 FRONT_END = front_end_of(SENSOR, TRIMS)
 
 
-def samples(seed=1):
-    """Diode pairs, float64 (TAPS, rows, cols, 2), some equal, some differing beyond the converter's range."""
+def samples(seed: int = 1) -> npt.NDArray[np.float64]:
+    """Return diode pairs (TAPS, rows, cols, 2), some equal, some that differ by more than the converter's range."""
     rng = np.random.default_rng(seed)
     shape = TAPS, SENSOR.array.rows, SENSOR.array.cols
     common = rng.uniform(0, 128, (*shape, 1))
     return common + rng.normal(0, 20, (*shape, 2)) * (rng.random((*shape, 1)) < 0.4)
 
 
-def write(folder):
-    """The front end's files in ``folder``; returns the plusargs that name them."""
+def write(folder: Path) -> list[str]:
+    """Write the front end's files to ``folder``; returns the plusargs that name them."""
     write_samples(folder / "samples", samples())
     write_converter(folder / "converter", FRONT_END)
     return [f"+{name}={folder / name}" for name in ("samples", "converter")]
 
 
-def frame_of(window=SENSOR.full_window, mode="edge", **fields):
+def frame_of(window: Window = SENSOR.full_window, mode: str = "edge", **fields: Any) -> FrameParameters:
+    """Return a frame with short amplifier timing. fields: of FrameParameters."""
     return FrameParameters(window, mode, timing=FAST, **fields)
 
 

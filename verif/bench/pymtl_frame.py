@@ -1,8 +1,11 @@
-"""The frame of the chip's bench in PyMTL's own simulation of the RTL, with the front end in Python at its pins."""
+"""The frame of the chip's bench in PyMTL's simulation of the RTL, with the front end in Python at its pins."""
+
+from typing import Any
 
 import numpy as np
 
 from models.digital.host import frame_writes
+from models.parameters import FrameParameters
 from rtl.asp_chip.test.chip_bench import ChipBench
 from rtl.harness.testbench import build
 from rtl.tops import build_top
@@ -15,11 +18,12 @@ LAST_DECISION = 14  # the noise of a sample has this many values (pixels/README.
 class FrontEndBench(ChipBench):
     """ChipBench with the imperfect converters of pixels/afe.sv."""
 
-    def __init__(self, sim, mode):
+    def __init__(self, sim: Any, mode: str) -> None:
         self.index, self.decision = np.zeros(SENSOR.chip.lanes, int), 0
         super().__init__(sim, SENSOR.chip.lanes, held=FRONT_END.values(samples(), mode))
 
-    def sample(self):
+    def sample(self) -> None:
+        """Sample and hold each enabled lane."""
         super().sample()
         sim, self.decision = self.sim, -1
         for lane in (lane for lane in range(self.lanes) if sim.en[lane]):
@@ -27,7 +31,8 @@ class FrontEndBench(ChipBench):
             self.index[lane] = np.ravel_multi_index((int(sim.sub), int(sim.row), col), self.held.shape)
             self.taken[lane] = FRONT_END.converter.held(self.taken[lane], lane, self.index[lane])
 
-    def answers(self):
+    def answers(self) -> int:
+        """Return the comparators' outputs, one bit per lane."""
         sim, bits = self.sim, 0
         self.decision = min(self.decision + 1, LAST_DECISION)
         for lane in range(self.lanes):
@@ -43,8 +48,8 @@ class FrontEndBench(ChipBench):
         return bits
 
 
-def pymtl_stream(frame):
-    """The bytes of ``frame``, one of verif.bench.exposure.FRAMES."""
+def pymtl_stream(frame: FrameParameters) -> bytes:
+    """Return the bytes of ``frame``, one of verif.bench.exposure.FRAMES."""
     bench = FrontEndBench(build(build_top("AspChip", SENSOR)), frame.mode)
     bench.write(frame_writes(frame, TRIMS))
     bench.start()

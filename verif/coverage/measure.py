@@ -1,16 +1,18 @@
-"""One trace replayed into the Verilog of its component: what Verilator counts, registers, functional cover points."""
+"""A trace replayed into the Verilog of its component: Verilator's counts, state registers, functional cover points."""
 
 import re
 import tempfile
+from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from base.tools import ToolError
 from rtl.replay import load
 
 from .points import POINTS
 from .ports import Recorded
-from .program import compile_program
+from .program import Registers, compile_program
 
 KINDS = {"v_line": "line", "v_branch": "branch", "v_toggle": "toggle"}
 
@@ -20,8 +22,8 @@ class Point:
     """One thing that Verilator counts.
 
     kind: 'line', 'branch' or 'toggle'. module: in the Verilog. what: 'if', 'else', 'block', ... or
-    'signal[3]:0->1'. code: the text of its line. nth: of the points that are alike so far in their module. line: in
-    the Verilog. source: file, and line if known, of the Python that it comes from.
+    'signal[3]:0->1'. code: the text of its line. nth: index among identical points of the module. line: in the
+    Verilog. source: file, and line if known, of the Python that it comes from.
     """
 
     kind: str
@@ -33,14 +35,60 @@ class Point:
     source: str
 
     @property
-    def key(self):
-        """The same in the Verilog of every parameter set."""
+    def key(self) -> tuple[str, str, str, str, int]:
+        """What identifies the point in the Verilog of every parameter set."""
         return self.kind, self.module, self.what, self.code if self.kind != "toggle" else "", self.nth
 
 
-def sources_of(verilog):
-    """By line of ``verilog`` (text), counted from 1: (its module, or '', and the Python that it comes from)."""
-    module, file, source, out = "", "", "", [("", "")]
+class Place(NamedTuple):
+    """Where Verilator counts: kind and what of a Point, line and column of the Verilog."""
+
+    kind: str
+    module: str
+    line: int
+    column: int
+    what: str
+
+
+class Source(NamedTuple):
+    """What a line of Verilog belongs to: its module, or '', and the file and line of the Python, or ''."""
+
+    module: str
+    python: str
+
+
+@dataclass(frozen=True)
+class Count:
+    """How often a point was hit."""
+
+    point: Point
+    times: int
+
+
+@dataclass(frozen=True)
+class Transition:
+    """A step of state machine number ``machine`` of a plan; reset: 1 in reset. before, after: values of its state."""
+
+    machine: int
+    reset: int
+    before: int
+    after: int
+    times: int
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What one trace reaches. functional: cycles in which each functional cover point is true."""
+
+    cycles: int
+    counts: tuple[Count, ...]
+    transitions: tuple[Transition, ...]
+    functional: dict[str, int]
+
+
+def sources_of(verilog: str) -> list[Source]:
+    """Return the Source of each line of ``verilog``, line 1 at index 1."""
+    module, file, source, out = "", "", "", [Source("", "")]
     for text in verilog.splitlines():
         if found := re.match(r"\s*// At (\S+)", text):
             source = found[1]
@@ -49,35 +97,30 @@ def sources_of(verilog):
             module = found[1]
         elif text.startswith("endmodule"):
             module = ""
-        out.append((module, source if ":" in source and source.startswith(file) else file))
+        out.append(Source(module, source if ":" in source and source.startswith(file) else file))
         if re.match(r"  end$|  assign ", text):
             source = file
     return out
 
 
-def read_points(path, verilog):
-    """The counts of Verilator's file ``path`` for ``verilog`` (text): dict Point -> times.
-
-    Toggles are those behind the first cycle.
-    """
+def read_points(path: Path, verilog: str) -> dict[Point, int]:
+    """Return the counts of Verilator's file ``path`` for ``verilog``; toggles are those after the first cycle."""
     lines, where = verilog.splitlines(), sources_of(verilog)
-    rows, first = read_counts(path), read_counts(f"{path}.first")
-    found, alike = {}, {}
+    rows, first = read_counts(path), read_counts(Path(f"{path}.first"))
+    found, identical = {}, Counter()
     for place, count in sorted(rows.items()):
-        kind, module, line, _, what = place
-        code = " ".join(lines[line - 1].split())
-        same = kind, module, what, code
-        nth = alike[same] = alike.get(same, -1) + 1
-        found[Point(kind, module, what, code, nth, line, where[line][1])] = count - (
-            first[place] if kind == "toggle" else 0
-        )
+        code = " ".join(lines[place.line - 1].split())
+        same = place.kind, place.module, place.what, code
+        point = Point(*same, identical[same], place.line, where[place.line].python)
+        identical[same] += 1
+        found[point] = count - (first[place] if place.kind == "toggle" else 0)
     return found
 
 
-def read_counts(path):
-    """The rows of Verilator's file: dict (kind, module, line, column, what) -> times."""
-    rows = {}
-    for row in Path(path).read_text().splitlines():
+def read_counts(path: Path) -> Counter[Place]:
+    """Return the counts of a file that Verilator wrote."""
+    rows: Counter[Place] = Counter()
+    for row in path.read_text().splitlines():
         if not row.startswith("C "):
             continue
         text, _, count = row[3:].rpartition("' ")
@@ -85,33 +128,31 @@ def read_counts(path):
         kind, _, module = fields["page"].partition("/")
         if kind in KINDS:
             what = fields["o"].replace("___05F", "__")  # Verilator's way to write a name's two underscores
-            place = KINDS[kind], module, int(fields["l"]), int(fields["n"]), what
-            rows[place] = rows.get(place, 0) + int(count)
+            rows[Place(KINDS[kind], module, int(fields["l"]), int(fields["n"]), what)] += int(count)
     return rows
 
 
-def measure(path, folder, registers, points):
-    """Replay the trace ``path``: dict points, states, functional.
+def measure(path: Path | str, folder: str, registers: tuple[Registers, ...], points: list[str]) -> Measurement:
+    """Replay the trace ``path``.
 
-    folder: of the block, whose own modules count. registers: names of `program.header`. points: names of the
-    functional cover points of the folder to evaluate.
-    Raises ToolError where the Verilog does not do what the tests saw.
+    folder: of the block below rtl/, whose own modules count. registers: of each state machine. points: names of the
+    functional cover points of the folder to evaluate. Raises ToolError where the Verilog differs from the trace.
     """
+    path, own = Path(path), f"rtl/{folder}/"
     trace = load(path)
     verilog = trace.verilog()
     program = compile_program(verilog, trace.cls, trace.ports, registers, coverage=True)
     with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
         counts, states = Path(temporary) / "counts", Path(temporary) / "states"
-        differs = program.run(Path(path).with_suffix(".trace"), "--points", counts, "--states", states)[0]
+        differs = program.run(path.with_suffix(".trace"), "--points", counts, "--states", states)[0]
         if differs >= 0:
             raise ToolError(f"{trace.name}: the Verilog differs from {trace.test_at(differs)} in cycle {differs}")
         found = read_points(counts, verilog)
-        steps = [tuple(map(int, line.split())) for line in states.read_text().splitlines()]
-    own = f"rtl/{folder}/"
+        steps = tuple(Transition(*map(int, line.split())) for line in states.read_text().splitlines())
     ports = Recorded(trace)
-    return {
-        "cycles": trace.cycles,
-        "points": [[*vars(p).values(), n] for p, n in found.items() if p.source.startswith(own)],
-        "states": steps,
-        "functional": {name: int(POINTS[folder][name](ports).sum()) for name in points},
-    }
+    return Measurement(
+        trace.cycles,
+        tuple(Count(point, times) for point, times in found.items() if point.source.startswith(own)),
+        steps,
+        {name: int(POINTS[folder][name](ports).sum()) for name in points},
+    )

@@ -1,6 +1,7 @@
-"""Verilog and the ports of a trace as a compiled program that replays the trace: verilated, cached by content."""
+"""Programs that replay traces: Verilog compiled by Verilator with the ports of a trace, kept by content."""
 
 import shutil
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from base.cache import cached, digest
 from base.sources import code
 from base.tools import run
 from base.verilator import verilator_folder
-from rtl.harness.ports import places, split, total_width, validity
+from rtl.harness.ports import Port, places, split, total_width, validity
 from verif.results import ROOT
 
 CACHE = ROOT / "build" / "replay"
@@ -29,51 +30,50 @@ VERILATE = (
 COVERAGE = ("--coverage-line", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
-SECONDS = 900  # a tool that takes longer hangs
+SECONDS = 900  # limit of a tool
+
+# Of a state machine: (name below the top, as in 'control.state'; bits), the highest bits first
+Registers = tuple[tuple[str, int], ...]
 
 
-def tool(command, seconds=SECONDS, cwd=None):
-    """Output of a command that knows where Verilator is. Raises ToolError, ToolTimeout."""
+def tool(command: Sequence[str | Path], seconds: float = SECONDS, cwd: Path | str | None = None) -> str:
+    """Run a command with VERILATOR_ROOT set; returns its output. Raises ToolError, ToolTimeout."""
     return run(command, {"VERILATOR_ROOT": str(verilator_folder())}, cwd, seconds)
 
 
-def _cxx_name(verilog):
-    """Verilator's name of a Verilog identifier."""
+def _cxx_name(verilog: str) -> str:
+    """Return Verilator's name of a Verilog identifier."""
     return verilog.replace("__", "___05F")
 
 
-def _assign(port, low):
+def _assign(port: Port, low: int) -> str:
     name = _cxx_name(port.name)
     if port.width > 64:
         return f"set_wide(top.{name}, from, {low}, {port.width});"
     return f"top.{name} = bits(from, {low}, {port.width});"
 
 
-def _same(port, low):
+def _same(port: Port, low: int) -> str:
     name = _cxx_name(port.name)
     if port.width > 64:
         return f"same_wide(top.{name}, want, {low}, {port.width})"
     return f"top.{name} == bits(want, {low}, {port.width})"
 
 
-def _put(port, low):
+def _put(port: Port, low: int) -> str:
     return f"put{'_wide' if port.width > 64 else ''}(to, top.{_cxx_name(port.name)}, {low}, {port.width});"
 
 
-def _joined(top, machine):
-    """The registers of one state machine as one number: a C++ expression."""
+def _joined(top: str, machine: Registers) -> str:
+    """Join the registers of one state machine as one number: a C++ expression."""
     value = "std::uint64_t{0}"
     for name, width in machine:
         value = f"({value} << {width} | top.rootp->{_cxx_name(top)}__DOT__{_cxx_name(name).replace('.', '__DOT__')})"
     return value
 
 
-def header(top, ports, registers=(), mutant=False):
-    """ports.h for module ``top``: C++ text.
-
-    registers: a tuple a state machine, of pairs (hierarchical name below the top, 'control.state'; bits), the highest
-    first. mutant: the top has an input `mutant`.
-    """
+def header(top: str, ports: Sequence[Port], registers: Sequence[Registers] = (), mutant: bool = False) -> str:
+    """Return ports.h (C++) for ``top``. registers: by machine. mutant: the top has an input `mutant`."""
     inputs, outputs = split(ports)
     where, valid = places(outputs), validity(ports)
     checks = []
@@ -85,7 +85,8 @@ def header(top, ports, registers=(), mutant=False):
     states = [f"    case {i}: return {_joined(top, machine)};" for i, machine in enumerate(registers)]
     return "\n".join(
         [
-            f"constexpr int IN_BITS = {total_width(inputs)}, OUT_BITS = {total_width(outputs)}, STATES = {len(states)};",
+            f"constexpr int IN_BITS = {total_width(inputs)}, OUT_BITS = {total_width(outputs)};",
+            f"constexpr int STATES = {len(states)};",
             "static void drive(VDut& top, const Words& from) {",
             *(f"  {_assign(port, low)}" for port, low in places(inputs).items()),
             "}",
@@ -110,24 +111,34 @@ def header(top, ports, registers=(), mutant=False):
 
 @dataclass(frozen=True)
 class Program:
-    """folder: with `replay`, the program, and `dut.v`, its Verilog."""
+    """A compiled module. folder: of the executable `replay` and of `dut.v`, its Verilog."""
 
     folder: Path
 
-    def run(self, trace, *options):
-        """Replay the file ``trace``: dict run number -> first cycle that differs, -1 for none. Raises ToolError."""
+    def run(self, trace: Path, *options: str | Path) -> dict[int, int]:
+        """Replay the file ``trace``; returns run number -> first cycle that differs, -1 for none. Raises ToolError."""
         out = tool([self.folder / "replay", trace, *options])
         return {int(number): int(cycle) for number, cycle in (line.split() for line in out.splitlines())}
 
 
-def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=False):
-    """The Program of module ``top`` of ``verilog`` (text), compiled once for the same content. Raises ToolError."""
+def compile_program(
+    verilog: str,
+    top: str,
+    ports: Sequence[Port],
+    registers: Sequence[Registers] = (),
+    coverage: bool = False,
+    mutant: bool = False,
+) -> Program:
+    """Return the Program of module ``top`` of ``verilog``, compiled once for the same content. Raises ToolError.
+
+    registers, mutant: see `header`. coverage: the program counts points (Verilator's --coverage).
+    """
     verilator = verilator_folder() / "bin" / "verilator_bin"
     flags = (*VERILATE, *(COVERAGE if coverage else ("-O3",)))
     lines = header(top, ports, registers, mutant)
     version = tool([verilator, "--version"])
 
-    def make(folder):
+    def make(folder: Path) -> None:
         runtime = _runtime(version)
         source, public, model = folder / "dut.v", folder / "public.vlt", folder / "model"
         source.write_text(verilog)
@@ -159,12 +170,12 @@ def compile_program(verilog, top, ports, registers=(), coverage=False, mutant=Fa
     return Program(cached(CACHE / f"{top}-{content}", make))
 
 
-def _runtime(version):
-    """Folder with the object files of Verilator's run time, and verilated_cov.h as it should be."""
+def _runtime(version: str) -> Path:
+    """Return the folder of the object files of Verilator's run time and of a corrected verilated_cov.h."""
     include = verilator_folder() / "include"
 
-    def make(folder):
-        # Verilator 5.48 counts toggles of a vector's lower words for its higher ones, too, beyond 64 bits
+    def make(folder: Path) -> None:
+        # Verilator 5.48 also counts toggles of lower words for the higher ones in vectors of more than 64 bits
         text = (include / "verilated_cov.h").read_text()
         (folder / "verilated_cov.h").write_text(
             text.replace("j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;")

@@ -1,9 +1,11 @@
-"""Test plans: verif/<folder>.testplan.yaml, each promise of a block's README with its cover points and tests."""
+"""Test plans, verif/<folder>.testplan.yaml: each promise of a block's README with its cover points and tests."""
 
 import ast
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -12,80 +14,87 @@ from rtl.tops import TOPS, build_top
 from verif.results import ROOT
 
 from .points import POINTS
+from .program import Registers
 
 KINDS = "line", "branch", "toggle"
 
 
 @dataclass(frozen=True)
 class Promise:
-    """promise: what a README says. cover: functional cover points that show that it was tried. tests: that check it."""
+    """What a README promises. cover: functional cover points that show that it is tried. tests: those that check it."""
 
     promise: str
-    cover: tuple
-    tests: tuple
+    cover: tuple[str, ...]
+    tests: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Machine:
-    """A state machine. registers: pairs (hierarchical name, bits) that hold its state, the highest bits first.
-    states: dict name -> value. transitions: pairs of names, outside reset. blocks: that have it, default all.
+    """A state machine.
+
+    registers: those that hold its state. states: name -> value. transitions: pairs of names, outside reset. blocks:
+    that have it, default all.
     """
 
-    registers: tuple
-    states: dict
-    transitions: tuple
-    blocks: tuple = ()
+    registers: Registers
+    states: dict[str, int]
+    transitions: tuple[tuple[str, str], ...]
+    blocks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Exclusion:
-    """Points that need not be hit. kind: of KINDS. at: each 'Module.signal', 'Module.signal[7:4]', or 'Module: text of
-    the line'. what: the arm or edge ('else', '0->1') if not all. reason: why. blocks: that it holds for, default all.
+    """Points that need not be hit.
+
+    kind: of KINDS. at: each 'Module.signal', 'Module.signal[7:4]', or 'Module: text of the line'. what: the arm or edge
+    ('else', '0->1') if not all. blocks: that it holds for, default all.
     """
 
     kind: str
-    at: tuple
+    at: tuple[str, ...]
     reason: str
     what: str = ""
-    blocks: tuple = ()
+    blocks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class TestPlan:
-    """blocks: of rtl.tops, one folder's. See the other classes here."""
+    """The test plan of the blocks (of rtl.tops) in a folder of rtl/."""
 
     __test__ = False  # not a test class
     folder: str
-    blocks: tuple
-    promises: tuple
-    machines: tuple
-    exclusions: tuple
+    blocks: tuple[str, ...]
+    promises: tuple[Promise, ...]
+    machines: tuple[Machine, ...]
+    exclusions: tuple[Exclusion, ...]
 
-    def machines_of(self, block):
+    def machines_of(self, block: str) -> list[Machine]:
+        """Return the state machines of a block."""
         return [machine for machine in self.machines if block in (machine.blocks or self.blocks)]
 
-    def exclusions_of(self, block):
+    def exclusions_of(self, block: str) -> list[Exclusion]:
+        """Return the exclusions that hold for a block."""
         return [exclusion for exclusion in self.exclusions if block in (exclusion.blocks or self.blocks)]
 
     @property
-    def cover(self):
+    def cover(self) -> list[str]:
         """Names of the functional cover points, ascending."""
         return sorted({name for promise in self.promises for name in promise.cover})
 
 
 @cache
-def folder_of(block):
-    """Folder of a block of rtl.tops below rtl/."""
+def folder_of(block: str) -> str:
+    """Return the folder of a block of rtl.tops below rtl/."""
     return type(build_top(block, SensorParameters())).__module__.split(".")[1]
 
 
-def plan_file(folder):
+def plan_file(folder: str) -> Path:
+    """Return the test plan of a folder of rtl/."""
     return ROOT / "verif" / f"{folder}.testplan.yaml"
 
 
-def load_plan(path):
-    """The TestPlan of a file, checked. Raises ParameterError that names the field."""
-    path = Path(path)
+def load_plan(path: Path) -> TestPlan:
+    """Return the TestPlan of a file, checked. Raises ParameterError that names the field."""
     try:
         raw = yaml.safe_load(path.read_text())
     except (OSError, yaml.YAMLError) as error:
@@ -109,7 +118,7 @@ def load_plan(path):
     return plan
 
 
-def _keys(field, entry, allowed, needed):
+def _keys(field: str, entry: object, allowed: Collection[str], needed: Iterable[str]) -> dict[str, Any]:
     if not isinstance(entry, dict):
         raise ParameterError(f"{field} = {entry!r}: must be a mapping of {', '.join(sorted(allowed))}")
     for key in entry:
@@ -119,17 +128,17 @@ def _keys(field, entry, allowed, needed):
             )
     for key in needed:
         if not entry.get(key):
-            raise ParameterError(f"{field}.{key} = {entry.get(key)!r}: must be there and not empty")
-
-
-def _entry(field, entry, kind):
-    """The values of a mapping for the dataclass ``kind``."""
-    names = {f.name for f in fields(kind)}
-    _keys(field, entry, names, {f.name for f in fields(kind) if f.default is f.default_factory})
+            raise ParameterError(f"{field}.{key} = {entry.get(key)!r}: must be given and not empty")
     return entry
 
 
-def _texts(field, value):
+def _entry(field: str, entry: object, kind: type[Promise | Machine | Exclusion]) -> dict[str, Any]:
+    """Return the mapping ``entry``, whose keys must be the fields of ``kind``."""
+    required = {f.name for f in fields(kind) if f.default is f.default_factory}
+    return _keys(field, entry, {f.name for f in fields(kind)}, required)
+
+
+def _texts(field: str, value: object) -> tuple[str, ...]:
     if not isinstance(value, list) or not all(isinstance(text, str) and text for text in value):
         raise ParameterError(f"{field} = {value!r}: must be a list of texts")
     if len(set(value)) != len(value):
@@ -137,14 +146,14 @@ def _texts(field, value):
     return tuple(value)
 
 
-def _promise(field, entry):
-    _entry(field, entry, Promise)
+def _promise(field: str, entry: object) -> Promise:
+    entry = _entry(field, entry, Promise)
     return Promise(
         str(entry["promise"]), _texts(f"{field}.cover", entry["cover"]), _texts(f"{field}.tests", entry["tests"])
     )
 
 
-def _blocks(field, entry, blocks):
+def _blocks(field: str, entry: dict[str, Any], blocks: Sequence[str]) -> tuple[str, ...]:
     named = _texts(f"{field}.blocks", entry.get("blocks", []))
     for block in named:
         if block not in blocks:
@@ -152,8 +161,8 @@ def _blocks(field, entry, blocks):
     return named
 
 
-def _machine(field, entry, blocks):
-    _entry(field, entry, Machine)
+def _machine(field: str, entry: object, blocks: Sequence[str]) -> Machine:
+    entry = _entry(field, entry, Machine)
     states = entry["states"]
     if not isinstance(states, dict) or len(set(states.values())) != len(states):
         raise ParameterError(f"{field}.states = {states!r}: must map names to different numbers")
@@ -169,8 +178,8 @@ def _machine(field, entry, blocks):
     return Machine(tuple(registers.items()), states, tuple(steps), _blocks(field, entry, blocks))
 
 
-def _exclusion(field, entry, blocks):
-    _entry(field, entry, Exclusion)
+def _exclusion(field: str, entry: object, blocks: Sequence[str]) -> Exclusion:
+    entry = _entry(field, entry, Exclusion)
     if entry["kind"] not in KINDS:
         raise ParameterError(f"{field}.kind = {entry['kind']!r}: must be one of {', '.join(KINDS)}")
     return Exclusion(
@@ -183,12 +192,12 @@ def _exclusion(field, entry, blocks):
 
 
 @cache
-def tests_in(folder):
-    """Names of the test functions in the files of ``folder``, methods too: frozenset."""
+def tests_in(folder: str) -> frozenset[str]:
+    """Return the names of the test functions in the files of ``folder``, methods too."""
     return frozenset(name for path in sorted((ROOT / folder).glob("*_test.py")) for name in _tests_of(path))
 
 
-def _tests_of(path):
+def _tests_of(path: Path) -> set[str]:
     return {
         node.name
         for node in ast.walk(ast.parse(path.read_text()))
@@ -196,24 +205,18 @@ def _tests_of(path):
     }
 
 
-def _check_tests(name, plan):
-    """A test is a function's name in rtl/<folder>/test, or 'path/to/file_test.py::function'."""
+def _check_tests(name: str, plan: TestPlan) -> None:
+    """Check that every test exists: a function's name in rtl/<folder>/test, or 'path/to/file_test.py::function'."""
     for i, promise in enumerate(plan.promises):
         for test in promise.tests:
             file, _, function = test.rpartition("::")
-            there = (
-                tests_in(f"rtl/{plan.folder}/test")
-                if not file
-                else _tests_of(ROOT / file)
-                if (ROOT / file).is_file()
-                else ()
-            )
-            if function not in there:
+            path, own = ROOT / file, tests_in(f"rtl/{plan.folder}/test")
+            if function not in (own if not file else _tests_of(path) if path.is_file() else ()):
                 raise ParameterError(f"{name}: promises[{i}].tests = {test!r}: no such test")
 
 
-def _check_cover(name, plan):
-    """Every cover point of the plan is in verif/coverage/points/<folder>.py, and the other way round."""
+def _check_cover(name: str, plan: TestPlan) -> None:
+    """Check that every cover point of the plan is in verif/coverage/points/<folder>.py, and the other way round."""
     defined = set(POINTS[plan.folder])
     for i, promise in enumerate(plan.promises):
         for point in promise.cover:

@@ -1,6 +1,8 @@
-"""The recorded traces of blocks, kept while nothing changes that decides them."""
+"""The recorded traces of blocks, kept until a file that decides them changes."""
 
+from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 from base.cache import digest
 from base.jobs import Job, run
@@ -14,12 +16,11 @@ from verif.results import OUT
 STORE = OUT / "traces"
 
 
-def recorded(blocks, store=STORE):
-    """Record the tests of ``blocks`` where that is not done: dict block -> .json paths.
+def recorded(blocks: Collection[str], store: Path = STORE) -> dict[str, list[Path]]:
+    """Return the .json files of the traces of ``blocks``, recorded where they are not kept in folder ``store``.
 
-    The first is that of the default sensor's parameters if the tests have them, else the one of most cycles.
+    The first of a block has the default sensor's parameters if a test has them, else the most cycles.
     """
-    store = Path(store)
     jobs = []
     for block in blocks:
         tests = code(tests_of(block)[1].relative_to(ROOT))
@@ -34,11 +35,11 @@ def recorded(blocks, store=STORE):
     }
 
 
-def _record(block, folder):
-    top = build_top(block, SensorParameters())
+def _record(block: str, folder: str) -> list[str]:
+    top: Any = build_top(block, SensorParameters())
     default = repr((*top._dsl.args, *top._dsl.kwargs.values()))
 
-    def rank(path):
+    def rank(path: Path | str) -> tuple[bool, int]:
         head = load(path, cycles=False)
         return repr(head.arguments) != default, -head.cycles
 

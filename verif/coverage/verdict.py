@@ -1,65 +1,78 @@
-"""What the measurements of a block's traces come to: percent after exclusions, and what is missing."""
+"""The verdict on a block: percent covered after exclusions, and what is missing."""
 
 import math
 import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
-from .measure import Point
-from .testplan import KINDS
+from .measure import Measurement, Point
+from .testplan import KINDS, Exclusion, Machine, TestPlan
 
 
 @dataclass
 class Verdict:
-    """coverage: percent by kind, None where there is nothing of the kind. missing: texts, what no test reaches.
-    errors: texts, exclusions that do not hold and transitions that no plan allows. excluded: points left out.
+    """The coverage of a block.
+
+    coverage: percent by kind, None where nothing of the kind exists. missing: what no test reaches, one line each.
+    errors: exclusions that do not hold and transitions that no plan allows. excluded: points left out.
     """
 
-    coverage: dict = field(default_factory=dict)
-    missing: list = field(default_factory=list)
-    errors: list = field(default_factory=list)
+    coverage: dict[str, float | None] = field(default_factory=dict)
+    missing: list[str] = field(default_factory=list)
+    errors: list[str] = field(default_factory=list)
     excluded: int = 0
 
     @property
-    def complete(self):
+    def complete(self) -> bool:
+        """True where nothing is missing or wrong."""
         return not self.errors and not self.missing
 
-    def count(self, kind, wanted, hit):
-        """Set the percentage of a kind; wanted, hit: collections, hit within wanted."""
+    def count(self, kind: str, wanted: Collection[object], hit: Collection[object]) -> None:
+        """Set the percentage of a kind; ``hit`` is a part of ``wanted``."""
         self.coverage[kind] = math.floor(1e4 * len(hit) / len(wanted)) / 100 if wanted else None  # 100: all of them
 
 
-def points_of(measures):
-    """Points of the first measurement, hit there or in another parameter set: dict Point -> times."""
-    hits = {}
-    for result in measures:
-        for *values, times in result["points"]:
-            key = Point(*values).key
-            hits[key] = hits.get(key, 0) + times
-    return {(point := Point(*values)): hits[point.key] for *values, _ in measures[0]["points"]}
+class Toggle(NamedTuple):
+    """A bit of a signal and its edge, '0->1' or '1->0'."""
+
+    signal: str
+    bit: int
+    edge: str
 
 
-def matches(exclusion, at, point):
-    """True if the place ``at`` of ``exclusion`` is ``point``."""
+def points_of(measures: Sequence[Measurement]) -> dict[Point, int]:
+    """Return the points of the first measurement and how often they are hit in all of them."""
+    hits = Counter()
+    for measured in measures:
+        for count in measured.counts:
+            hits[count.point.key] += count.times
+    return {count.point: hits[count.point.key] for count in measures[0].counts}
+
+
+def matches(exclusion: Exclusion, at: str, point: Point) -> bool:
+    """Return whether the place ``at`` of ``exclusion`` is ``point``."""
     if exclusion.kind != point.kind:
         return False
     if point.kind != "toggle":
         module, _, code = at.partition(": ")
         return (module, code) == (point.module, point.code) and exclusion.what in ("", point.what)
     stem, bit, edge = split_toggle(point.what)
-    name, high, low = re.fullmatch(r"(.*?)(?:\[(\d+)(?::(\d+))?\])?", at).groups()
+    ((name, high, low),) = re.findall(r"^(.*?)(?:\[(\d+)(?::(\d+))?\])?$", at)
     if name != f"{point.module}.{stem}" or exclusion.what not in ("", edge):
         return False
-    return high is None or int(low or high) <= bit <= int(high)
+    return not high or int(low or high) <= bit <= int(high)
 
 
-def split_toggle(what):
-    """('signal', 3, '0->1') of 'signal[3]:0->1'."""
-    stem, bit, edge = re.fullmatch(r"(.*?)(?:\[(\d+)\])?:(.*)", what).groups()
-    return stem, int(bit or 0), edge
+def split_toggle(what: str) -> Toggle:
+    """Return the parts of 'signal[3]:0->1'."""
+    ((signal, bit, edge),) = re.findall(r"^(.*?)(?:\[(\d+)\])?:(.*)$", what)
+    return Toggle(signal, int(bit or 0), edge)
 
 
-def told(points):
-    """What is missing of one kind: texts, the bits of a signal together."""
+def missing_lines(points: Iterable[Point]) -> list[str]:
+    """Return a line for each missing point, the bits of a signal together."""
     texts, signals = [], {}
     for point in points:
         where = f"{point.kind} {point.source} {point.module} line {point.line}"
@@ -71,9 +84,9 @@ def told(points):
     return texts + [f"{where}: {stem}[{ranges(bits)}] {edge}" for (where, stem, edge), bits in signals.items()]
 
 
-def ranges(bits):
-    """'9:7,3' of 3, 7, 8, 9."""
-    out = []
+def ranges(bits: Iterable[int]) -> str:
+    """Return '9:7,3' for 3, 7, 8, 9."""
+    out: list[list[int]] = []
     for bit in sorted(bits):
         if out and bit == out[-1][1] + 1:
             out[-1][1] = bit
@@ -82,8 +95,8 @@ def ranges(bits):
     return ",".join(f"{high}:{low}" if high > low else f"{low}" for low, high in reversed(out))
 
 
-def judge(block, plan, measures):
-    """The Verdict on ``block`` by its TestPlan. measures: of `measure.measure`, the main parameter set first."""
+def judge(block: str, plan: TestPlan, measures: Sequence[Measurement]) -> Verdict:
+    """Return the Verdict on ``block`` by its TestPlan. measures: the main parameter set first."""
     verdict, points = Verdict(), points_of(measures)
     excluded = set()
     for exclusion in plan.exclusions_of(block):
@@ -91,7 +104,7 @@ def judge(block, plan, measures):
             found = [point for point in points if matches(exclusion, at, point)]
             where = f"exclude {exclusion.kind} {at!r}{' ' + exclusion.what if exclusion.what else ''}"
             if not found:
-                verdict.errors.append(f"{where}: there is no such point")
+                verdict.errors.append(f"{where}: must match a point")
             verdict.errors += [
                 f"{where}: {point.what} of {point.source} is hit {points[point]} times"
                 for point in found
@@ -102,33 +115,31 @@ def judge(block, plan, measures):
     for kind in KINDS:
         wanted = [point for point in points if point.kind == kind and point not in excluded]
         verdict.count(kind, wanted, [point for point in wanted if points[point]])
-        verdict.missing += told([point for point in wanted if not points[point]])
+        verdict.missing += missing_lines([point for point in wanted if not points[point]])
     judge_machines(verdict, plan.machines_of(block), measures)
     wanted = plan.cover
-    hit = [name for name in wanted if any(result["functional"][name] for result in measures)]
+    hit = [name for name in wanted if any(measured.functional[name] for measured in measures)]
     verdict.count("functional", wanted, hit)
     verdict.missing += [f"functional {plan.folder}: {name}" for name in wanted if name not in hit]
     return verdict
 
 
-def judge_machines(verdict, machines, measures):
+def judge_machines(verdict: Verdict, machines: Iterable[Machine], measures: Iterable[Measurement]) -> None:
     """Add states and transitions of ``machines`` to ``verdict``."""
-    wanted, hit = [], set()
+    wanted: list[tuple[str, ...]] = []
+    hit = set()
     for number, machine in enumerate(machines):
         name = "+".join(register for register, _ in machine.registers)
         names = {value: state for state, value in machine.states.items()}
         wanted += [(name, state) for state in machine.states] + [(name, *step) for step in machine.transitions]
-        for result in measures:
-            for which, reset, before, after, _ in result["states"]:
-                if which != number:
-                    continue
-                start, end = names.get(before, before), names.get(after, after)
-                hit.add((name, end))
-                if reset or start == end:
-                    continue
-                hit.add((name, start, end))
-                if (start, end) not in machine.transitions:
-                    verdict.errors.append(f"fsm {name}: {start} > {end}: no such transition in the plan")
+        for step in (step for measured in measures for step in measured.transitions if step.machine == number):
+            start, end = (names.get(value, str(value)) for value in (step.before, step.after))
+            hit.add((name, end))
+            if step.reset or start == end:
+                continue
+            hit.add((name, start, end))
+            if (start, end) not in machine.transitions:
+                verdict.errors.append(f"fsm {name}: {start} > {end}: no such transition in the plan")
     verdict.errors = list(dict.fromkeys(verdict.errors))
     verdict.count("fsm", wanted, hit & set(wanted))
     verdict.missing += [f"fsm {what[0]}: {' > '.join(what[1:])}" for what in wanted if what not in hit]

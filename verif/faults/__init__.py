@@ -1,1 +1,1 @@
-"""Faults at the chip's pins: waveforms of any shape into its Verilog, and what came out."""
+"""Faults at the chip's pins: waveforms of any shape into its Verilog, and its outputs."""

@@ -1,16 +1,18 @@
-"""The small chip that the faults are tried on: its Verilog in Verilator, run under many waveforms at once."""
+"""The small chip of the fault tests: its Verilog in Verilator or Icarus under many waveforms."""
 
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from base.tools import ToolError, finish
 from flow.simulate.build import Build
 from flow.simulate.verilator import bare_program
-from models.chip import golden_frame
+from models.chip import GoldenFrame, golden_frame
 from models.digital.host import command, frame_writes, write_transfers
 from models.digital.pattern import PatternEnd
 from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
@@ -18,7 +20,7 @@ from models.parameters.registers import register_map
 from rtl.export import translate
 from rtl.harness.icarus import kept_program
 
-from .waveform import BUSY, Trace, reset, rest, transfer, transfers
+from .waveform import BUSY, Trace, Wave, reset, rest, transfer, transfers
 
 ROWS, COLS, LANES = 8, 13, 2
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
@@ -32,33 +34,31 @@ FRAMES = {  # test patterns: the comparators' pins rest
 }
 
 
-def frame_of(name):
+def frame_of(name: str) -> FrameParameters:
+    """Return a frame of FRAMES."""
     return FrameParameters(SENSOR.full_window, test_pattern=True, timing=FAST, **FRAMES[name])
 
 
 @cache
-def golden(name):
-    """GoldenFrame of a frame of FRAMES."""
+def golden(name: str) -> GoldenFrame:
+    """Return the golden result of a frame of FRAMES."""
     return golden_frame(None, SENSOR, frame_of(name), PatternEnd(ROWS, COLS))
 
 
 @cache
-def program():
-    """The chip in Verilator: path of an executable."""
+def program() -> Path:
+    """Return the executable of the chip in Verilator."""
     return bare_program(Build.of(SENSOR), main=HERE / "main.cpp")
 
 
 @cache
-def icarus_program():
-    """The chip in Icarus: path of what `vvp` runs. Raises IcarusError."""
+def icarus_program() -> Path:
+    """Return the program of the chip for Icarus's `vvp`. Raises IcarusError."""
     return kept_program("Wave", [HERE / "wave.sv"], "Wave", [translate("AspChip", SENSOR)])
 
 
-def run(waves, icarus=False):
-    """The chip under each of ``waves`` (uint8 arrays, see `waveform`), one after the other: list of Trace.
-
-    Raises ToolError; for an X or Z at an output of Icarus, ValueError.
-    """
+def run(waves: Sequence[Wave], icarus: bool = False) -> list[Trace]:
+    """Run the chip under each of ``waves``, one after the other. Raises ToolError; ValueError for X or Z in Icarus."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         wave, trace = Path(folder) / "wave", Path(folder) / "trace"
         wave.write_bytes(b"".join(w.tobytes() for w in waves))
@@ -75,8 +75,8 @@ def run(waves, icarus=False):
     return [Trace(w, out[end - w.size : end]) for w, end in zip(waves, ends, strict=True)]
 
 
-def _bits(text):
-    """Lines of binary digits as bytes. What is X ahead of the first reset counts as 0, later it is an error."""
+def _bits(text: str) -> npt.NDArray[np.uint8]:
+    """Return lines of binary digits as bytes. An X is 0 before the first reset and an error after it."""
     bits = np.frombuffer(text.encode(), np.uint8).reshape(-1, 8 * OUTPUTS + 1)[:, :-1]
     unknown = np.flatnonzero((bits > ord("1")).any(1))
     if unknown.size and unknown[-1] > 0:
@@ -84,38 +84,39 @@ def _bits(text):
     return np.packbits(bits == ord("1"), axis=1)
 
 
-def resets():
-    """The configuration out of reset: dict address -> byte."""
+def resets() -> dict[int, int]:
+    """Return the configuration after a reset: address -> byte."""
     window = SENSOR.full_window
     return register_map().image(register_map().configuration, {"row1": window.row1, "col1": window.col1})
 
 
 @cache
-def configured(name):
-    """Waveform from reset up to where only `start` is missing."""
+def configured(name: str) -> Wave:
+    """Return the waveform from reset to the command before `start`."""
     held = resets()
     writes = [(address, byte) for address, byte in frame_writes(frame_of(name)) if held[address] != byte]
     return np.concatenate([reset(), transfers(write_transfers(writes))])
 
 
-def start():
+def start() -> Wave:
+    """Return the transfer that starts a frame."""
     return transfer(command("start"))
 
 
 @dataclass(frozen=True, eq=False)
 class Quiet:
-    """A frame without a fault. before: waveform up to the end of `start`. length: cycles from there on while busy."""
+    """A frame without a fault. before: waveform to the end of `start`. length: busy cycles after it."""
 
-    before: np.ndarray
+    before: Wave
     length: int
     trace: Trace
 
 
 @cache
-def quiet(name):
-    """The frame ``name`` as it should be: Quiet."""
+def quiet(name: str) -> Quiet:
+    """Run frame ``name`` without a fault. Raises ToolError where it differs from the golden model."""
     before = np.concatenate([configured(name), start()])
     (trace,) = run([np.concatenate([before, rest(1000)])])
     if trace.stream != golden(name).stream:
-        raise ToolError(f"frame {name}: without a fault, other bytes leave the chip than the golden model's")
+        raise ToolError(f"frame {name}: without a fault, its bytes differ from the golden model's")
     return Quiet(before, int(np.flatnonzero(trace.flag(BUSY))[-1]) + 1 - before.size, trace)

@@ -1,9 +1,11 @@
-"""Waveforms at the chip's pins, a byte a cycle, and the trace that the chip answers with."""
+"""Waveforms at the chip's input pins, one byte per cycle, and the traces of its outputs."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.host import decode_status, status_transfers
 
@@ -15,17 +17,21 @@ VAL, SYNC, BUSY, MISO, HOLD = (1 << bit for bit in range(5))
 PIXEL_RESET, SHUTTER, REF_CTL, INTEGRATE, CM_RESET, READ, SAMPLE, TAP = (1 << bit for bit in range(8))
 
 
-def rest(cycles):
+Wave = npt.NDArray[np.uint8]  # the input pins, one byte per cycle
+
+
+def rest(cycles: int) -> Wave:
+    """Return a wave in which nothing happens and the link takes every byte."""
     return np.full(cycles, REST)
 
 
-def reset(cycles=RESET_CYCLES):
-    """Reset, then a rest in which the SPI pins' synchronisers fill."""
+def reset(cycles: int = RESET_CYCLES) -> Wave:
+    """Return a reset and a rest in which the synchronisers of the SPI pins fill."""
     return np.concatenate([np.full(cycles, REST | RESET), rest(HALF)])
 
 
-def transfer(data, bits=None):
-    """An SPI transfer, with csn high for a while behind it. bits: cut after so many, in the middle of a byte."""
+def transfer(data: Iterable[int], bits: int | None = None) -> Wave:
+    """Return an SPI transfer of ``data``, then csn high. bits: cut after so many, also within a byte."""
     sent = np.unpackbits(np.frombuffer(bytes(data), np.uint8))[:bits]
     high = np.repeat(sent * MOSI, 2 * HALF).astype(np.uint8)
     clock = np.tile(np.repeat(np.array([0, SCLK], np.uint8), HALF), sent.size)
@@ -33,36 +39,39 @@ def transfer(data, bits=None):
     return np.concatenate([lead, (high | clock | RDY).astype(np.uint8), lead, rest(2 * HALF)])
 
 
-def transfers(items):
+def transfers(items: Iterable[Iterable[int]]) -> Wave:
+    """Return SPI transfers one after the other."""
     return np.concatenate([transfer(item) for item in items])
 
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """wave: uint8 (cycles,), what went in. out: uint8 (cycles, 3): link_data, flags, phases."""
+    """The chip under a waveform. out: (cycles, 3), the outputs link_data, flags and phases."""
 
-    wave: np.ndarray
-    out: np.ndarray
+    wave: Wave
+    out: npt.NDArray[np.uint8]
 
-    def flag(self, bit):
+    def flag(self, bit: int) -> npt.NDArray[np.bool_]:
+        """Return one of the flags by cycle."""
         return self.out[:, 1] & bit != 0
 
     @cached_property
-    def taken(self):
+    def taken(self) -> npt.NDArray[np.int64]:
         """Cycles in which the link takes a byte."""
         return np.flatnonzero(self.flag(VAL) & (self.wave & RDY != 0))
 
     @property
-    def stream(self):
+    def stream(self) -> bytes:
+        """Bytes that the link takes."""
         return self.out[self.taken, 0].tobytes()
 
-    def reply(self, start, size):
-        """What came back in the transfer of ``size`` bytes that begins at cycle ``start``: bytes."""
-        at = start + 2 * HALF - 1 + 2 * HALF * np.arange(8 * size)  # ahead of each rising edge of sclk
+    def reply(self, start: int, size: int) -> bytes:
+        """Return the bytes on miso in the transfer of ``size`` bytes that begins at cycle ``start``."""
+        at = start + 2 * HALF - 1 + 2 * HALF * np.arange(8 * size)  # before each rising edge of sclk
         return np.packbits(self.flag(MISO)[at]).tobytes()
 
-    def status(self, start):
-        """What `status_wave`, begun at cycle ``start``, brought: dict, see `decode_status`."""
+    def status(self, start: int) -> dict[str, int]:
+        """Return the status that `status_wave`, begun at cycle ``start``, reads (see `decode_status`)."""
         replies = []
         for item in status_transfers():
             replies.append(self.reply(start, len(item)))
@@ -70,6 +79,6 @@ class Trace:
         return decode_status(replies)
 
 
-def status_wave():
-    """Transfers that read the status and the counters."""
+def status_wave() -> Wave:
+    """Return the transfers that read the status and the counters."""
     return transfers(status_transfers())

@@ -1,4 +1,4 @@
-"""The Verilog that is proven: as rtl.export writes it, and with a twin's bug in it."""
+"""The Verilog that is proven: the export of rtl.export, and the same with a twin's bug."""
 
 import re
 
@@ -6,25 +6,26 @@ from models.parameters import ParameterError
 from rtl.export import translate
 
 from . import tables
+from .proof import Proof
 
 
-def exported(proof):
-    """Module -> the Verilog text that holds it, without comments."""
+def exported(proof: Proof) -> dict[str, str]:
+    """Return module -> the Verilog that holds it, without comments."""
     texts = {}
     for top in dict.fromkeys(proof.modules.values()):
         texts[top] = re.sub(r"(?m)^\s*//.*\n", "", translate(top, proof.sensor_parameters))
     return {module: texts[top] for module, top in proof.modules.items()}
 
 
-def wrapper(proof):
-    """The wrapper as Yosys reads it: macros, generated tables, then the files."""
+def wrapper(proof: Proof) -> str:
+    """Return the wrapper as Yosys reads it: macros, generated tables, then the files."""
     macros = "".join(f"`define {name} {value}\n" for name, value in proof.defines.items())
-    made = "".join(tables.TABLES[name](proof) for name in proof.generated)
-    return f"{macros}{made}{proof.text}"
+    generated = "".join(tables.TABLES[name](proof) for name in proof.generated)
+    return f"{macros}{generated}{proof.text}"
 
 
-def broken(proof, texts, wrapped, label):
-    """(texts, wrapped) with the bug of property ``label``. Raises ParameterError unless it has exactly one place."""
+def broken(proof: Proof, texts: dict[str, str], wrapped: str, label: str) -> tuple[dict[str, str], str]:
+    """Return (texts, wrapped) with the bug of property ``label``. Raises ParameterError unless it has one place."""
     twin = proof.twins[label]
     places = wrapped.count(twin.find) if twin.wrapper else sum(text.count(twin.find) for text in set(texts.values()))
     if places != 1:

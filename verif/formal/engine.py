@@ -1,4 +1,4 @@
-"""Yosys and yosys-smtbmc on one wrapper: is it proven, are its covers reached, does a broken design fail?"""
+"""Yosys and yosys-smtbmc on one wrapper."""
 
 import os
 import re
@@ -7,23 +7,22 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Self
 
-from models.parameters import ParameterError
-
-LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
-
-PROVEN, FAILED, UNKNOWN = "proven", "failed", "unknown"
+PASSED, FAILED, UNKNOWN = "passed", "failed", "unknown"
 
 
 class FormalError(Exception):
-    """A tool that is missing, or that could not read a design."""
+    """A tool is missing or cannot read a design."""
 
 
 @cache
-def tool(name):
-    """Path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python. Raises FormalError."""
+def tool(name: str) -> str:
+    """Return the path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python. Raises FormalError."""
     wheel = Path(sys.executable).parent / f"yowasp-{name}"
     found = shutil.which(name) or (str(wheel) if wheel.exists() else None)
     if not found:
@@ -31,8 +30,8 @@ def tool(name):
     return found
 
 
-def tool_or_none(name):
-    """Path of a tool, or None."""
+def tool_or_none(name: str) -> str | None:
+    """Return the path of a tool, or None."""
     try:
         return tool(name)
     except FormalError:
@@ -40,29 +39,30 @@ def tool_or_none(name):
 
 
 @cache
-def version(name):
-    """What a tool calls itself: one line."""
+def version(name: str) -> str:
+    """Return the version that a tool prints, one line. Raises FormalError."""
     option = {"yosys": "-V", "z3": "--version", "boolector": "--version"}[name]
-    made = subprocess.run([tool(name), option], capture_output=True, text=True, timeout=300)
-    if made.returncode:
-        raise FormalError(f"tool = {name}: {tool(name)} {option} ended with {made.returncode}")
-    line = made.stdout.strip().splitlines()[-1]
+    result = subprocess.run([tool(name), option], capture_output=True, text=True, timeout=300)
+    if result.returncode:
+        raise FormalError(f"tool = {name}: {tool(name)} {option} ended with {result.returncode}")
+    line = result.stdout.strip().splitlines()[-1]
     wheel = " (wheel)" if Path(tool(name)).name.startswith("yowasp") else ""
     return f"{name if line[0].isdigit() else ''} {line.split('(git')[0]}".strip() + wheel
 
 
-def yosys_number():
-    """Version of Yosys: (major, minor)."""
-    return tuple(int(n) for n in re.search(r"(\d+)\.(\d+)", version("yosys")).groups())
+def yosys_number() -> tuple[int, int]:
+    """Return the version of Yosys: (major, minor)."""
+    major, minor = re.findall(r"(\d+)\.(\d+)", version("yosys"))[0]
+    return int(major), int(minor)
 
 
-def script(designs, wrapper, top, only=None):
-    """The Yosys script that makes proof.smt2 of files in the working directory.
+def script(designs: Mapping[str, str], wrapper: str, top: str, only: str | None = None) -> str:
+    """Return the Yosys script that writes proof.smt2 from files in the working directory.
 
-    designs: module -> file. only: the one assertion that stays.
+    designs: module -> file. only: the one assertion to keep.
     """
     lines = []
-    for module, file in designs.items():  # apart: files may share the names of their parts
+    for module, file in designs.items():  # each by itself: files may share names of submodules
         lines += [
             f"read_verilog -sv {file}",
             f"hierarchy -check -top {module}",
@@ -94,11 +94,20 @@ def script(designs, wrapper, top, only=None):
     return "\n".join(lines) + "\n"
 
 
-class Workplace:
-    """A temporary folder with a design and its wrapper; `check` runs yosys-smtbmc there."""
+@dataclass(frozen=True)
+class Answer:
+    """What yosys-smtbmc reports. status: 'passed', 'failed' or 'unknown'. wall_s: seconds it took."""
 
-    def __init__(self, texts, wrapper, top, only=None):
-        """texts: module -> its Verilog. wrapper: text. Raises FormalError where Yosys refuses them."""
+    status: str
+    output: str
+    wall_s: float
+
+
+class Workplace:
+    """A temporary folder with a design and its wrapper, in which `check` runs yosys-smtbmc."""
+
+    def __init__(self, texts: Mapping[str, str], wrapper: str, top: str, only: str | None = None) -> None:
+        """Write the files and run Yosys. texts: module -> its Verilog. Raises FormalError where Yosys refuses them."""
         self.folder = tempfile.TemporaryDirectory(prefix="talbot-formal-")
         self.path = Path(self.folder.name)
         for module, text in texts.items():
@@ -108,20 +117,20 @@ class Workplace:
         for name in ("boolector", "z3"):  # yosys-smtbmc looks for the bare name
             if Path(tool_or_none(name) or "").name.startswith("yowasp"):
                 (self.path / name).symlink_to(tool(name))
-        made = subprocess.run([tool("yosys"), "-q", "proof.ys"], cwd=self.path, capture_output=True, text=True)
-        if made.returncode:
-            said = [line for line in (made.stdout + made.stderr).splitlines() if "ERROR" in line]
-            raise FormalError(f"yosys = {top}: {(said or ['no message'])[-1]}")
+        result = subprocess.run([tool("yosys"), "-q", "proof.ys"], cwd=self.path, capture_output=True, text=True)
+        if result.returncode:
+            errors = [line for line in (result.stdout + result.stderr).splitlines() if "ERROR" in line]
+            raise FormalError(f"yosys = {top}: {(errors or ['no message'])[-1]}")
 
-    def __enter__(self):
+    def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.folder.cleanup()
 
-    def check(self, engine, options, timeout):
-        """(status, output, seconds) of yosys-smtbmc. status: 'passed', 'failed' or 'unknown'."""
-        version(engine)  # the wheel says something else the first time it runs
+    def check(self, engine: str, options: Iterable[str], timeout: float) -> Answer:
+        """Run yosys-smtbmc for at most ``timeout`` seconds."""
+        version(engine)  # at its first run the wheel prints other lines, too
         command = [tool("yosys-smtbmc"), "-s", engine, "--unroll", "--noprogress", *options, "proof.smt2"]
         environment = os.environ | {"PATH": f"{self.path}{os.pathsep}{os.environ['PATH']}"}
         begin = time.monotonic()
@@ -138,30 +147,10 @@ class Workplace:
             output, _ = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, 9)
-            return "unknown", process.communicate()[0] + f"no answer in {timeout} s", time.monotonic() - begin
-        said = re.findall(r"Status: (\w+)", output)
-        status = {"PASSED": "passed", "FAILED": "failed"}.get(said[-1] if said else "", "unknown")
-        if (status == "passed") != (process.returncode == 0):
-            status = "unknown"
-        return status, output, time.monotonic() - begin
-
-
-def labels(text):
-    """(properties, invariants, covers): labels of a wrapper's statements, each a list.
-
-    An assertion named inv_... only strengthens the induction: were it weak, the proof would fail, so it has no twin.
-    Raises ParameterError for an assertion or a cover point without a label, or a label that is there twice.
-    """
-    plain = re.sub(r"//.*", "", text)
-    found = LABEL.findall(plain)
-    if len(found) != len(re.findall(r"\b(?:assert|cover)\s*\(", plain)):
-        raise ParameterError("label = none: every assert and cover must have one")
-    names = [name for name, _ in found]
-    if len(set(names)) != len(names):
-        raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
-    asserts = [name for name, kind in found if kind == "assert"]
-    return (
-        [n for n in asserts if not n.startswith("inv_")],
-        [n for n in asserts if n.startswith("inv_")],
-        [name for name, kind in found if kind == "cover"],
-    )
+            output = process.communicate()[0] + f"timeout after {timeout} s"
+            return Answer(UNKNOWN, output, time.monotonic() - begin)
+        reported = re.findall(r"Status: (\w+)", output)
+        status = {"PASSED": PASSED, "FAILED": FAILED}.get(reported[-1] if reported else "", UNKNOWN)
+        if (status == PASSED) != (process.returncode == 0):
+            status = UNKNOWN
+        return Answer(status, output, time.monotonic() - begin)

@@ -1,56 +1,76 @@
 """The independent pieces of a proof, as jobs: base and step with each engine, the covers, each property's twin."""
 
 import re
+from dataclasses import dataclass
 
-from .engine import FAILED, PROVEN, UNKNOWN, Workplace, labels
+from verif.results import PROVEN
+
+from .engine import FAILED, PASSED, UNKNOWN, Workplace
+from .proof import Proof, labels
 
 
-def prove(proof, engine, texts, wrapper):
-    """Base and, for an induction, step of all properties of a wrapper: dict result, failing, wall_s, said."""
+@dataclass(frozen=True)
+class ProofResult:
+    """One engine on all properties. result: PROVEN, FAILED or UNKNOWN. failing: properties. output: its last lines."""
+
+    result: str
+    failing: list[str]
+    wall_s: float
+    output: str
+
+
+@dataclass(frozen=True)
+class CoverResult:
+    """The cover points that are reached and those that are not."""
+
+    reached: list[str]
+    missing: list[str]
+    wall_s: float
+
+
+@dataclass(frozen=True)
+class TwinResult:
+    """A broken design. fails: it violates its property. status: of the check. step: the last one checked."""
+
+    fails: bool
+    wall_s: float
+    status: str
+    step: int | None
+
+
+def prove(proof: Proof, engine: str, texts: dict[str, str], wrapper: str) -> ProofResult:
+    """Prove all properties of a wrapper by base and, for an induction, step."""
     with Workplace(texts, wrapper, proof.top) as place:
-        status, output, wall = place.check(engine, ["-t", str(proof.depth), "--presat"], proof.timeout)
-        result = {"passed": PROVEN, "failed": FAILED}.get(status, UNKNOWN)
+        answer = place.check(engine, ["-t", str(proof.depth), "--presat"], proof.timeout)
+        result, wall = {PASSED: PROVEN}.get(answer.status, answer.status), answer.wall_s
         if result == PROVEN and proof.method == "induction":
-            status, output, more = place.check(engine, ["-i", "-t", str(proof.depth)], proof.timeout)
-            wall += more
-            result = PROVEN if status == "passed" else UNKNOWN  # a failed step is no counterexample
-    failing = sorted(set(re.findall(r"Assert failed in \S+: (?:.*\()?(\w+)", output)))
-    return {
-        "result": result,
-        "failing": failing,
-        "wall_s": round(wall, 2),
-        "said": "" if result == PROVEN else _last_lines(output),
-    }
+            answer = place.check(engine, ["-i", "-t", str(proof.depth)], proof.timeout)
+            wall += answer.wall_s
+            result = PROVEN if answer.status == PASSED else UNKNOWN  # a failed step is no counterexample
+    failing = sorted(set(re.findall(r"Assert failed in \S+: (?:.*\()?(\w+)", answer.output)))
+    return ProofResult(result, failing, round(wall, 2), "" if result == PROVEN else _last_lines(answer.output))
 
 
-def cover(proof, texts, wrapper):
-    """Which cover points are reached within cover_depth: dict reached, missing, wall_s."""
-    engine = proof.engines[0]
+def cover(proof: Proof, texts: dict[str, str], wrapper: str) -> CoverResult:
+    """Find which cover points are reached within cover_depth."""
     with Workplace(texts, wrapper, proof.top) as place:
-        _, output, wall = place.check(engine, ["-c", "-t", str(proof.cover_depth)], proof.timeout)
-    reached = set(re.findall(r"Reached cover statement(?: in step \d+)? at (?:\S+: )?(\w+)", output))
-    named = labels(proof.text)[2]
-    return {
-        "reached": [n for n in named if n in reached],
-        "missing": [n for n in named if n not in reached],
-        "wall_s": round(wall, 2),
-    }
+        answer = place.check(proof.engines[0], ["-c", "-t", str(proof.cover_depth)], proof.timeout)
+    reached = set(re.findall(r"Reached cover statement(?: in step \d+)? at (?:\S+: )?(\w+)", answer.output))
+    named = labels(proof.text).covers
+    return CoverResult(
+        [n for n in named if n in reached], [n for n in named if n not in reached], round(answer.wall_s, 2)
+    )
 
 
-def twin(proof, label, texts, wrapper):
-    """Whether the broken design violates the one property: dict fails, wall_s, said."""
-    engine = proof.engines[0]
+def twin(proof: Proof, label: str, texts: dict[str, str], wrapper: str) -> TwinResult:
+    """Check whether the broken design violates property ``label``."""
     depth = proof.twins[label].depth or proof.twin_depth
     with Workplace(texts, wrapper, proof.top, only=label) as place:
-        status, output, wall = place.check(engine, ["-t", str(depth)], proof.timeout)
-    steps = re.findall(r"Checking assertions in step (\d+)", output)
-    return {
-        "fails": status == "failed" and f": {label}" in output,
-        "wall_s": round(wall, 2),
-        "status": status,
-        "step": int(steps[-1]) if steps else None,
-    }
+        answer = place.check(proof.engines[0], ["-t", str(depth)], proof.timeout)
+    steps = re.findall(r"Checking assertions in step (\d+)", answer.output)
+    fails = answer.status == FAILED and f": {label}" in answer.output
+    return TwinResult(fails, round(answer.wall_s, 2), answer.status, int(steps[-1]) if steps else None)
 
 
-def _last_lines(output, count=3):
+def _last_lines(output: str, count: int = 3) -> str:
     return " / ".join(line.strip() for line in output.strip().splitlines()[-count:])

@@ -1,4 +1,6 @@
-"""What wrappers need of the golden models, as Verilog functions: dict name -> text of a Proof."""
+"""Tables of the golden models as Verilog functions for the wrappers of proofs."""
+
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -6,9 +8,11 @@ from models.digital.divider import quad_divide
 from models.parameters.divider import cordic_angles
 from models.parameters.registers import register_map
 
+from .proof import Proof
 
-def case(name, in_bits, out_bits, values):
-    """A function that looks ``values`` (integers, by index) up."""
+
+def case(name: str, in_bits: int, out_bits: int, values: Iterable[int]) -> str:
+    """Return a Verilog function that looks ``values`` up by index."""
     lines = "".join(f"    {in_bits}'d{i}: {name} = {out_bits}'d{value};\n" for i, value in enumerate(values))
     return (
         f"function [{out_bits - 1}:0] {name}(input [{in_bits - 1}:0] at);\n  case (at)\n{lines}"
@@ -16,8 +20,8 @@ def case(name, in_bits, out_bits, values):
     )
 
 
-def phase_of_ratio(proof):
-    """phase_of_ratio(ratio): LSB from the octant's axis, by the golden divider on a vector that has the ratio."""
+def phase_of_ratio(proof: Proof) -> str:
+    """Return phase_of_ratio(ratio): LSB from the octant's axis, by the golden divider on a vector of that ratio."""
     bits = proof.sensor_parameters.chip.n_frac
     larger, smaller = np.meshgrid(np.arange(1, 256), np.arange(256), indexing="ij")
     inside = smaller < larger
@@ -28,20 +32,20 @@ def phase_of_ratio(proof):
     return case("phase_of_ratio", bits, 8, [table.get(r, 0) for r in range(1 << bits)])
 
 
-def cordic_angle(proof):
-    """cordic_angle(i): atan(2^-(i + 1)) as the golden CORDIC counts it."""
+def cordic_angle(proof: Proof) -> str:
+    """Return cordic_angle(i): atan(2^-(i + 1)) in the units of the golden CORDIC."""
     iterations = proof.sensor_parameters.chip.cordic_iterations
     return case("cordic_angle", 4, 5 + iterations, cordic_angles(iterations))
 
 
-def type_at(proof):
-    """type_at(position): pixel type at a position of the tile, row by row."""
+def type_at(proof: Proof) -> str:
+    """Return type_at(position): the pixel type at a position of the tile, row by row."""
     order = proof.sensor_parameters.tile.order
     return case("type_at", 5, 5, order)
 
 
-def registers(proof):
-    """bit_address, bit_place, bit_writable, bit_reset of each bit of the configuration's struct, and macros."""
+def registers(proof: Proof) -> str:
+    """Return bit_address, bit_place, bit_writable and bit_reset of each bit of the configuration, and macros."""
     chip, sensor = register_map(), proof.sensor_parameters
     resets = {"row1": sensor.tile_rows - 1, "col1": sensor.tile_cols - 1}
     bits = []  # from the struct's lowest bit: (address, place, writable, reset)

@@ -1,1 +1,1 @@
-"""Random and hostile inputs for what reads bytes that others wrote: the stream's decoder, the host, the registers."""
+"""Random and hostile inputs for the stream decoder, the host functions and the register model."""

@@ -1,36 +1,37 @@
-"""`python -m verif.fuzz`: a million inputs for the decoder, and every byte of real frames wrong once.
+"""A million inputs for the decoder, and every byte of real frames changed: build/verify/fuzz.json.
 
-Batches are jobs, each made from the seed alone; what was done before is kept. A failing input's bytes lie in
-build/verify/fuzz/, and --only shows what the decoder makes of one input.
+An input depends on the seed, its batch and its number alone. The bytes of a failing one are kept in build/verify/fuzz/;
+--only decodes a single input.
 """
 
 import argparse
 import sys
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
 from base.jobs import Job, run
+from base.records import from_json
 from models.parameters import ParameterError, check_int
-from verif.results import OUT, write_step
+from verif.results import OUT, BlockResults, Fuzz, Resync, Sweep, write_step
 
-from .batch import BATCH, make_input, run_batch, try_input
+from .batch import BATCH, Batch, make_input, run_batch, try_input
 from .resync import AROUND, FRAMES, sweep
 
 CHANGES = 16  # wrong values tried at each byte of a real frame
 SEED = 1
 
 
-def batches(inputs, seed, folder):
-    """Jobs for ``inputs`` inputs: list of Job."""
+def batches(inputs: int, seed: int, folder: Path) -> list[Job]:
+    """Return the jobs of ``inputs`` inputs."""
     counts = [BATCH] * (inputs // BATCH) + ([inputs % BATCH] if inputs % BATCH else [])
-    return [
-        Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, str(folder)), (count,)) for i, count in enumerate(counts)
-    ]
+    return [Job(f"batch-{seed}-{i}", run_batch, (seed, i, count, folder), (count,)) for i, count in enumerate(counts)]
 
 
-def sweeps(count, seed):
-    """Jobs of the resynchronisation: list of Job."""
+def sweeps(count: int, seed: int) -> list[Job]:
+    """Return the jobs of the resynchronisation. count: changes of each byte."""
     return [
         Job(f"resync-{name}-{around.replace(' ', '-')}", sweep, (name, around, count, seed), (count, seed))
         for name in FRAMES
@@ -38,58 +39,38 @@ def sweeps(count, seed):
     ]
 
 
-def summarize(seed, done, swept):
-    """What the batches and sweeps found, by block."""
-
-    def total(key):
-        return sum(d[key] for d in done)
-
-    kinds = {}
-    for d in done:
-        for kind, n in d["kinds"].items():
-            kinds[kind] = kinds.get(kind, 0) + n
-    failures = [(d["batch"], f) for d in done for f in d["failures"]]
-    decoder = [
-        f"batch {b}, input {f['index']} ({f['kind']}): {f['error']}" + (f": {f['file']}" if f["file"] else "")
-        for b, f in failures
-        if f["target"] == "decoder"
-    ]
-    host = [
-        f"batch {b}, input {f['index']} ({f['kind']}): {f['error']}" for b, f in failures if f["target"] != "decoder"
-    ]
-    lost = [text for s in swept for text in s["failures"]]
+def summarize(seed: int, done: Sequence[Batch], swept: Sequence[Sweep]) -> dict[str, BlockResults]:
+    """Return what the batches and sweeps found, for the blocks Decoder and Host."""
+    kinds = Counter()
+    decoder, host = [], []
+    for batch in done:
+        kinds.update(batch.kinds)
+        for f in batch.failures:
+            line = f"batch {batch.batch}, input {f.index} ({f.kind}): {f.error}" + (f": {f.file}" if f.file else "")
+            (decoder if f.target == "decoder" else host).append(line)
+    inputs, files = sum(d.inputs for d in done), sum(d.files for d in done)
+    slowest = max((d.seconds_max for d in done), default=0.0)
+    tried, failed = sum(s.tried for s in swept), sum(s.failed for s in swept)
+    lost = [line for s in swept for line in s.failures]
     return {
-        "Decoder": {
-            "fuzz": {
-                "inputs": total("inputs"),
-                "failures": len(decoder),
-                "files": total("files"),
-                "seconds_max": max((d["seconds_max"] for d in done), default=0.0),
-                "seed": seed,
-                "kinds": kinds,
-            },
-            "resync": {
-                "tried": sum(s["tried"] for s in swept),
-                "failures": sum(s["failed"] for s in swept),
-                "mended": sum(s["mended"] for s in swept),
-                "frames": swept,
-            },
-            "open_points": decoder[:10] + lost[:10],
-        },
-        "Host": {"fuzz": {"inputs": total("host"), "failures": len(host), "seed": seed}, "open_points": host[:10]},
+        "Decoder": BlockResults(
+            fuzz=Fuzz(inputs, len(decoder), seed, files, slowest, dict(kinds)),
+            resync=Resync(tried, failed, sum(s.recovered for s in swept), list(swept)),
+            open_points=decoder[:10] + lost[:10],
+        ),
+        "Host": BlockResults(fuzz=Fuzz(sum(d.host for d in done), len(host), seed), open_points=host[:10]),
     }
 
 
-def under_way(folder):
-    """Inputs that were being decoded when a process ended, by the marks that batches leave: list of text."""
+def running(folder: Path) -> list[str]:
+    """Return the inputs that were being decoded when a process ended, by the marks of the batches."""
     return [f"batch {mark.suffix[1:]}, input {mark.read_text().strip()}" for mark in sorted(folder.glob("at.*"))]
 
 
-def arguments():
+def arguments() -> argparse.ArgumentParser:
+    """Return the command line."""
     parser = argparse.ArgumentParser(
-        prog="python -m verif.fuzz",
-        description=__doc__.split("`: ")[1],
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog="python -m verif.fuzz", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--inputs", type=int, default=1_000_000, help="for the decoder; default: %(default)s")
     parser.add_argument("--seed", type=int, default=SEED, help="default: %(default)s")
@@ -99,13 +80,13 @@ def arguments():
         default=CHANGES,
         help="wrong values at each byte of the real frames, 0..255; default: %(default)s",
     )
-    parser.add_argument("--only", nargs=2, type=int, metavar=("BATCH", "INPUT"), help="one input, and what raises")
+    parser.add_argument("--only", nargs=2, type=int, metavar=("BATCH", "INPUT"), help="one input by itself")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of fuzz.json; default: build/verify")
     return parser
 
 
-def main(argv=None):
-    """Returns 0, 1 when an input failed, 2 for a wrong argument."""
+def main(argv: Sequence[str] | None = None) -> int:
+    """Return 0, 1 when an input failed, 2 for a wrong argument."""
     options = arguments().parse_args(argv)
     folder = options.out / "fuzz"
     try:
@@ -116,15 +97,16 @@ def main(argv=None):
             return show(options.seed, *options.only)
         for mark in folder.glob("at.*"):
             mark.unlink(missing_ok=True)
-        done = run(batches(options.inputs, options.seed, folder), folder, "fuzz")
-        swept = run(sweeps(options.changes, options.seed), folder, "resync") if options.changes else []
+        done = from_json(list[Batch], run(batches(options.inputs, options.seed, folder), folder, "fuzz"))
+        jobs = sweeps(options.changes, options.seed) if options.changes else []
+        swept = from_json(list[Sweep], run(jobs, folder, "resync"))
     except (ParameterError, OSError) as error:
         print(f"verif.fuzz: {error}", file=sys.stderr)
         return 2
     except TerminatedWorkerError:
         print(
-            f"verif.fuzz: a process ended (crash, or an input that takes for ever) at: "
-            f"{'; '.join(under_way(folder))}; seed {options.seed}: see --only",
+            f"verif.fuzz: a process ended (crash or timeout) at: "
+            f"{'; '.join(running(folder))}; seed {options.seed}: see --only",
             file=sys.stderr,
         )
         return 1
@@ -133,8 +115,8 @@ def main(argv=None):
     return report(found)
 
 
-def show(seed, batch, index):
-    """One input by itself: its bytes on the screen, and whatever the decoder raises."""
+def show(seed: int, batch: int, index: int) -> int:
+    """Print and decode one input by itself. Raises what the decoder raises."""
     case = make_input(seed, batch, index)
     print(f"{case.kind}, {len(case.data)} bytes, tile {case.tile.rows} x {case.tile.cols}: {case.data.hex()}")
     outcome, seconds = try_input(case, True)
@@ -142,16 +124,20 @@ def show(seed, batch, index):
     return 0
 
 
-def report(found):
-    fuzz, resync, host = found["Decoder"]["fuzz"], found["Decoder"]["resync"], found["Host"]["fuzz"]
-    slowest = 1e3 * fuzz["seconds_max"]
-    print(f"decoder: {fuzz['inputs']:,} inputs, {fuzz['failures']} failures, slowest {slowest:.0f} ms")
-    print(f"host and registers: {host['inputs']:,} inputs, {host['failures']} failures")
-    print(f"resynchronisation: {resync['tried']:,} wrong bytes, {resync['failures']} cost more than a row")
-    for block in found.values():
-        for point in block["open_points"]:
+def report(found: Mapping[str, BlockResults]) -> int:
+    """Print the figures and open points; returns the exit status."""
+    failures = 0
+    for block, entry in found.items():
+        for part in (entry.fuzz, entry.resync):
+            failures += part.failures if part else 0
+        if fuzz := entry.fuzz:
+            slowest = f", slowest {1e3 * fuzz.seconds_max:.0f} ms" if fuzz.seconds_max else ""
+            print(f"{block}: {fuzz.inputs:,} inputs, {fuzz.failures} failures{slowest}")
+        if resync := entry.resync:
+            print(f"resynchronisation: {resync.tried:,} wrong bytes, {resync.failures} lose more than a row")
+        for point in entry.open_points:
             print(f"  {point}", file=sys.stderr)
-    return int(fuzz["failures"] + host["failures"] + resync["failures"] > 0)
+    return int(failures > 0)
 
 
 if __name__ == "__main__":

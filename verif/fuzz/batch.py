@@ -1,4 +1,4 @@
-"""A batch of inputs: each made from (seed, batch, index) alone, decoded within its limits, the first bad one kept."""
+"""A batch of inputs: each from (seed, batch, index) alone, decoded within limits, the first failing one kept."""
 
 import contextlib
 import faulthandler
@@ -6,6 +6,8 @@ import os
 import resource
 import time
 from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,35 +16,61 @@ from models.digital.stream import decode_stream
 
 from .checks import check_file, check_stream
 from .host import TARGETS
-from .streams import make_case, random_frame
+from .streams import Case, Sent, make_case, random_frame
 
 BATCH = 10_000  # inputs of a batch
 POOL = 24  # good frames that a batch damages
-FILE_EVERY, HOST_EVERY = 50, 5  # every so many inputs one goes through files too; one for the host is tried
+FILE_EVERY, HOST_EVERY = 50, 5  # one input in 50 goes through files, too; after every fifth one for the host is tried
 SECONDS_MAX = 10.0  # of processor time an input
 MEMORY_MAX = 512 << 20  # bytes that an input may add to the process
-HANG_S = 120  # and a group of GROUP inputs may take no longer: the process ends with a traceback
+HANG_S = 120  # limit of a group of inputs, at which the process ends with a traceback
 GROUP = 256
 
 
-def generator(seed, batch, *index):
+@dataclass(frozen=True)
+class Failure:
+    """An input that fails. target: 'decoder' or a name of TARGETS. file: with its bytes, if kept."""
+
+    target: str
+    index: int
+    kind: str
+    file: str | None
+    error: str
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What a batch found. inputs, host, files: how many for the decoder, for the host, through files."""
+
+    batch: int
+    inputs: int
+    host: int
+    files: int
+    outcomes: dict[str, int]
+    kinds: dict[str, int]
+    seconds_max: float
+    failures: list[Failure]
+
+
+def generator(seed: int, batch: int, *index: int) -> np.random.Generator:
+    """Return the random generator of a batch or of one input."""
     return np.random.default_rng([seed, batch, *index])
 
 
-def make_pool(seed, batch):
-    """The good frames of a batch: list of Sent."""
+def make_pool(seed: int, batch: int) -> list[Sent]:
+    """Return the good frames of a batch."""
     rng = generator(seed, batch)
     return [random_frame(rng) for _ in range(POOL)]
 
 
-def make_input(seed, batch, index, pool=None):
-    """Input ``index`` of a batch: Case, the same wherever and whenever it is made."""
+def make_input(seed: int, batch: int, index: int, pool: Sequence[Sent] | None = None) -> Case:
+    """Return input ``index`` of a batch, which depends on the three numbers alone."""
     return make_case(pool or make_pool(seed, batch), generator(seed, batch, index))
 
 
 @contextlib.contextmanager
-def bounded_memory(extra):
-    """What this process may add to its address space, bytes: beyond it, MemoryError."""
+def bounded_memory(extra: int) -> Iterator[None]:
+    """Limit what this process may add to its address space, in bytes; beyond it, MemoryError is raised."""
     now = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     soft, hard = resource.getrlimit(resource.RLIMIT_AS)
     limit = now + extra if hard == resource.RLIM_INFINITY else min(now + extra, hard)
@@ -53,16 +81,16 @@ def bounded_memory(extra):
         resource.setrlimit(resource.RLIMIT_AS, (soft, hard))
 
 
-def warm_up(pool):
-    """Decode the good frames, whole and damaged: what is compiled or read at the first call is no input's memory."""
+def warm_up(pool: Iterable[Sent]) -> None:
+    """Decode the good frames, whole and damaged, so that no input is charged for what the first call compiles."""
     for sent in pool:
         for data in (sent.data, sent.data[:-20] + b"\x55" * 20):
-            with contextlib.suppress(Exception):  # the inputs will tell
+            with contextlib.suppress(Exception):  # the inputs will show it
                 decode_stream(data, sent.tile)
 
 
-def try_input(case, through_file):
-    """Decode one Case; returns ('frames' or 'refused', seconds). Raises Broken or whatever the decoder raised."""
+def try_input(case: Case, through_file: bool) -> tuple[str, float]:
+    """Decode one Case; returns ('frames' or 'refused', seconds). Raises Broken or what the decoder raises."""
     start = time.thread_time()
     frames = check_stream(case)
     spent = time.thread_time() - start
@@ -73,17 +101,16 @@ def try_input(case, through_file):
     return "frames" if frames else "refused", spent
 
 
-def run_batch(seed, batch, count, folder):
-    """Try inputs 0..count-1 of a batch: dict inputs, host, files, outcomes, kinds, seconds_max, failures.
+def run_batch(seed: int, batch: int, count: int, folder: Path) -> Batch:
+    """Try inputs 0..count-1 of a batch. The bytes of the first failure are kept as a file in ``folder``.
 
-    failures: list of {target, index, kind, error, file}, of which the first one's bytes are kept as a file in
-    ``folder``. While it runs, the input under way stands in ``folder``/at.<batch>.
+    While the batch runs, ``folder``/at.<batch> holds the index of the current input.
     """
-    folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     pool = make_pool(seed, batch)
     warm_up(pool)
-    outcomes, kinds, failures, slowest, files, host = Counter(), Counter(), [], 0.0, 0, 0
+    outcomes, kinds, slowest, files, host = Counter(), Counter(), 0.0, 0, 0
+    failures: list[Failure] = []
     names = list(TARGETS)
     with open(folder / f"at.{batch}", "wb", buffering=0) as mark, bounded_memory(MEMORY_MAX):
         for index in range(count):
@@ -105,34 +132,20 @@ def run_batch(seed, batch, count, folder):
                 try:
                     TARGETS[target](generator(seed, batch, index, 1))
                 except Exception as error:
-                    failures.append(_told(target, index, target, error, None))
+                    failures.append(_failure(target, index, target, error, None))
         faulthandler.cancel_dump_traceback_later()
     (folder / f"at.{batch}").unlink(missing_ok=True)  # a killed run's process may be at the same batch
-    return {
-        "batch": batch,
-        "inputs": count,
-        "host": host,
-        "files": files,
-        "outcomes": dict(outcomes),
-        "kinds": dict(kinds),
-        "seconds_max": slowest,
-        "failures": failures,
-    }
+    return Batch(batch, count, host, files, dict(outcomes), dict(kinds), slowest, failures)
 
 
-def _told(target, index, kind, error, file):
-    return {
-        "target": target,
-        "index": index,
-        "kind": kind,
-        "file": file and str(file),
-        "error": f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}",
-    }
+def _failure(target: str, index: int, kind: str, error: Exception, file: Path | None) -> Failure:
+    first = str(error).splitlines()[0] if str(error) else ""
+    return Failure(target, index, kind, str(file) if file else None, f"{type(error).__name__}: {first}")
 
 
-def _keep(error, case, seed, batch, index, folder):
-    """A failure's record; its bytes go into ``folder`` if there is one."""
+def _keep(error: Exception, case: Case, seed: int, batch: int, index: int, folder: Path | None) -> Failure:
+    """Return the Failure of a decoder input; its bytes go into ``folder`` if given."""
     file = folder and folder / f"failing-{seed}-{batch}-{index}.bin"
     if file:
         file.write_bytes(case.data)
-    return _told("decoder", index, case.kind, error, file)
+    return _failure("decoder", index, case.kind, error, file)

@@ -1,29 +1,33 @@
-"""What must hold of the decoder's answer to any input at all."""
+"""What must hold of the decoder's result for any input."""
 
 import contextlib
 import io
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from base.command import main
 from flow import decode
-from models.digital.stream import StreamError, decode_stream
+from models.digital.stream import DecodedFrame, StreamError, decode_stream
 from models.parameters import TileParameters
+
+from .streams import Case, Sent
 
 
 class Broken(AssertionError):
-    """An answer is not what the decoder promises; one line."""
+    """A result is not what the decoder promises; one line."""
 
 
-def demand(holds, text):
+def demand(holds: object, text: str) -> None:
+    """Raise Broken with ``text`` unless ``holds``."""
     if not holds:
         raise Broken(text)
 
 
-def check_stream(case):
-    """Decode a Case; returns its frames, [] where they are a StreamError. Raises Broken, or what the decoder raised."""
+def check_stream(case: Case) -> list[DecodedFrame]:
+    """Decode a Case; returns its frames, [] for a StreamError. Raises Broken, or what the decoder raises."""
     try:
         frames = decode_stream(case.data, case.tile)
     except StreamError as error:
@@ -36,19 +40,19 @@ def check_stream(case):
         _check_frame(frame, at, len(case.data))
         at = frame.stop
     if case.sent:
-        _check_survived(case, frames)
+        _check_survived(case, case.sent, frames)
     return frames
 
 
-def _check_frame(frame, at, size):
+def _check_frame(frame: DecodedFrame, at: int, size: int) -> None:
     header, rows = frame.header, frame.layout.rows.tolist()
-    demand(at <= frame.start < frame.stop <= size, f"bytes {frame.start}..{frame.stop} behind {at}, of {size}")
+    demand(at <= frame.start < frame.stop <= size, f"bytes {frame.start}..{frame.stop} after {at}, of {size}")
     demand(frame.samples.shape == (header.rows, header.cols, header.subs), f"samples are {frame.samples.shape}")
     demand(
         set(frame.bad_rows) <= set(rows) and frame.bad_rows == sorted(set(frame.bad_rows)),
         f"bad rows {frame.bad_rows} of {rows}",
     )
-    demand(frame.complete or frame.errors, "incomplete without a word")
+    demand(frame.complete or frame.errors, "incomplete without an error")
     unread = np.ones(header.rows, bool)
     unread[rows] = False
     unread[frame.bad_rows] = True
@@ -60,17 +64,17 @@ def _check_frame(frame, at, size):
     demand(frame.samples.min() >= low and frame.samples.max() <= high, "samples out of their range")
 
 
-def _check_survived(case, frames):
-    (frame,) = frames if len(frames) == 1 else (None,)
-    demand(frame is not None, f"{len(frames)} frames of one")
-    demand(frame.header == case.sent.header, "another header")
+def _check_survived(case: Case, sent: Sent, frames: Sequence[DecodedFrame]) -> None:
+    demand(len(frames) == 1, f"{len(frames)} frames of one")
+    frame = frames[0]
+    demand(frame.header == sent.header, "another header")
     demand(frame.complete, f"incomplete: {frame.errors}")
-    demand(np.array_equal(frame.samples, case.sent.samples), "other samples than were sent")
-    demand(bool(frame.errors) == (case.data != case.sent.data), f"errors told: {frame.errors}")
+    demand(np.array_equal(frame.samples, sent.samples), "other samples than were sent")
+    demand(bool(frame.errors) == (case.data != sent.data), f"errors reported: {frame.errors}")
 
 
-def check_file(case, frames):
-    """The same Case through a file, `decode_to` and the command: the same answer, one line an error."""
+def check_file(case: Case, frames: Sequence[DecodedFrame]) -> None:
+    """Decode a Case through a file, `decode_to` and the command: same result, one line per error. Raises Broken."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         source, out = Path(folder) / "stream.bin", Path(folder) / "decoded.npz"
         source.write_bytes(case.data)
@@ -89,11 +93,11 @@ def check_file(case, frames):
             _check_command(source, frames)
 
 
-def _check_command(source, frames):
-    said, told = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(told):
+def _check_command(source: Path, frames: Sequence[DecodedFrame]) -> None:
+    output, errors = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         status = main(decode, [str(source)])
     wanted = 2 if not frames else int(not all(frame.complete for frame in frames))
     demand(status == wanted, f"exit status {status}, not {wanted}")
-    demand(len(said.getvalue().splitlines()) == len(frames) + bool(frames), "not one line a frame")
-    demand(status != 2 or told.getvalue().count("\n") == 1, "an error of more than one line")
+    demand(len(output.getvalue().splitlines()) == len(frames) + bool(frames), "not one line per frame")
+    demand(status != 2 or errors.getvalue().count("\n") == 1, "an error of more than one line")

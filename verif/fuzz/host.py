@@ -1,4 +1,9 @@
-"""Inputs for the host's functions and the register file's golden model: replies, writes, transfers, any of them."""
+"""Random inputs for the host functions and the golden model of the register file.
+
+Each target raises Broken, or what the tried function raises, where a result is wrong.
+"""
+
+import numpy as np
 
 from models.digital.host import decode_status, frame_writes, read_transfer, status_transfers, write_transfers
 from models.digital.registers import ADDRESS_MAX, RegisterBank
@@ -10,14 +15,14 @@ from .checks import demand
 WRITE = 0x80
 
 
-def integer(rng):
-    """Small ones, edges of the fields, and what is in no field: int."""
+def integer(rng: np.random.Generator) -> int:
+    """Return a small integer, an edge of a field, or one outside of all fields."""
     edges = (-1, 0, 1, 127, 128, 254, 255, 256, 1023, 65535, 65536, 2**24 - 1, 2**24, 2**64)
     return edges[rng.integers(len(edges))] if rng.random() < 0.5 else int(rng.integers(0, 256))
 
 
-def status_replies(rng):
-    """Replies of any lengths: a status, or a ParameterError exactly where a length is wrong."""
+def status_replies(rng: np.random.Generator) -> None:
+    """Decode replies of any lengths: a status, or a ParameterError exactly where a length is wrong."""
     lengths = [len(t) for t in status_transfers()]
     if rng.random() < 0.5:
         lengths = rng.integers(0, 40, rng.integers(0, 4)).tolist()
@@ -33,8 +38,8 @@ def status_replies(rng):
     demand(status[counter.name] == int.from_bytes(replies[1][1:9], "little"), "another counter")
 
 
-def transfers_of_writes(rng):
-    """Pairs (address, byte): transfers that hold just these, or a ParameterError where one is no byte."""
+def transfers_of_writes(rng: np.random.Generator) -> None:
+    """Build transfers of pairs (address, byte): exactly these, or a ParameterError where one is no byte."""
     start, count = int(rng.integers(0, 120)), int(rng.integers(0, 40))
     writes = [((start + i) % 128, int(rng.integers(256))) for i in range(count)]
     if rng.random() < 0.3:
@@ -45,12 +50,13 @@ def transfers_of_writes(rng):
     except ParameterError:
         demand(not right, "bytes at addresses are refused")
         return
-    demand(right, f"writes = {writes}: transfers for what is no byte or address")
+    demand(right, f"writes = {writes}: transfers with no byte or address")
     sent = [((t[0] & 0x7F) + i, byte) for t in transfers for i, byte in enumerate(t[1:])]
     demand(all(t[0] & WRITE for t in transfers) and sent == writes, f"writes = {writes}: {transfers}")
 
 
-def a_read(rng):
+def a_read(rng: np.random.Generator) -> None:
+    """Build a read of any address and count: the transfer, or a ParameterError."""
     address, count = integer(rng), integer(rng)
     right = 0 <= address <= 127 and 1 <= count <= 254
     try:
@@ -61,8 +67,8 @@ def a_read(rng):
     demand(right and len(transfer) == count + 1 and transfer[0] == address, f"read of {count} at {address}")
 
 
-def a_frame(rng):
-    """Any configuration: a ParameterError, or registers that hold it after a host has written it."""
+def a_frame(rng: np.random.Generator) -> None:
+    """Write any configuration: a ParameterError, or registers that hold it."""
     low, high = trim_range()
     try:
         frame = FrameParameters(
@@ -76,7 +82,7 @@ def a_frame(rng):
             rng.random() < 0.5,
             rng.random() < 0.5,
             integer(rng) % 65536,
-            AmpTiming(*(1 + integer(rng) % 65536 for _ in range(6)), integer(rng) % 256),
+            AmpTiming(*(1 + integer(rng) % 65536 for _ in range(6)), n_cm=integer(rng) % 256),
         )
         trims = rng.integers(low - 1, high + 2, rng.integers(0, 26)).tolist()
         writes = frame_writes(frame, trims)
@@ -110,8 +116,8 @@ def a_frame(rng):
         demand(bank.value(name) == value, f"{name} = {bank.value(name)} in the registers, not {value}")
 
 
-def a_bank(rng):
-    """Any bytes at any address: only writable bits of the configuration move, and none while a frame runs."""
+def a_bank(rng: np.random.Generator) -> None:
+    """Write any bytes to any address: only writable bits of the configuration change, none while a frame runs."""
     bank, chip = RegisterBank(), register_map()
     fixed = {a: byte for a, byte in bank.bytes.items() if a not in bank.writable}
     for address, byte, busy, full in zip(
@@ -124,16 +130,16 @@ def a_bank(rng):
         bank.write(address, byte, busy, full)
         start, loop = bank.take()
         demand(not (start and busy), "a start while busy")
-        demand(loop is None or not full and loop == byte, "a loop-back byte that had no room")
+        demand(loop is None or not full and loop == byte, "a loop-back byte without room")
         moved = {a for a in before if bank.bytes[a] != before[a]}
         demand(moved <= {address} & set(bank.writable) and not (busy and moved), f"address {address}: {moved} moved")
-        demand(all(bank.bytes[a] & ~mask & 0xFF == 0 for a, mask in bank.writable.items()), "bits that no field has")
-        read = bank.read(address, int(busy), [1, 2, 3])
+        demand(all(bank.bytes[a] & ~mask & 0xFF == 0 for a, mask in bank.writable.items()), "bits of no field")
+        read = bank.read(address, busy, [1, 2, 3])
         demand(0 <= read <= 255, f"read {read}")
         if moved:
             demand(read == byte & bank.writable[address], f"address {address}: {byte} written, {read} read")
     demand(all(bank.bytes[a] == byte for a, byte in fixed.items()), "a read-only byte moved")
-    demand(bank.read(chip["id"].byte, 0, [0, 0, 0]) == chip["id"].reset, "another id")
+    demand(bank.read(chip["id"].byte, False, [0, 0, 0]) == chip["id"].reset, "another id")
 
 
 TARGETS = {

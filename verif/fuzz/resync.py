@@ -1,8 +1,10 @@
-"""Any one wrong byte of a real frame loses at most one row: tried at every position of a frame of every mode."""
+"""Resynchronisation: a wrong byte anywhere in a frame of any mode loses at most one row."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from flow.frame import job
 from flow.frame.request import request
@@ -10,23 +12,24 @@ from models.chip import golden_frame
 from models.digital.stream import decode_stream
 from models.parameters import MODES
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from verif.results import Sweep
 
 FRAMES = {**{mode: (mode, False) for mode in MODES}, "phase": ("tof", True)}
 SIZES = {"edge": (96, 144)}  # rows, cols of the array that sees the default scene
 SIZE = 24, 36  # ... in the other modes, whose rows are plain bytes
-AROUND = "alone", "between frames", "bytes behind"  # what lies around the frame
+AROUND = "alone", "between frames", "followed by bytes"
 
 
 @dataclass(frozen=True, eq=False)
 class Real:
-    """data: the frame's bytes. samples: what they say, (rows, cols, subs)."""
+    """A frame. data: its bytes. samples: their content, (rows, cols, subs)."""
 
     data: bytes
-    samples: np.ndarray
+    samples: npt.NDArray[np.int64]
 
 
-def real_frame(name, size=None):
-    """A frame of the default scene through the golden chip: Real. name: of FRAMES. size: rows, cols."""
+def real_frame(name: str, size: tuple[int, int] | None = None) -> Real:
+    """Return frame ``name`` of FRAMES of the default scene through the golden chip. size: rows, cols."""
     mode, phase = FRAMES[name]
     rows, cols = size or SIZES.get(name, SIZE)
     asked = request(rows=rows, cols=cols, mode=mode, phase=phase)
@@ -36,39 +39,36 @@ def real_frame(name, size=None):
     return Real(golden.stream, golden.sent)
 
 
-def changes(count, seed):
-    """``count`` ways to change a byte (xor, 1..255): each single bit first, then all bits, then any: list."""
+def changes(count: int, seed: Sequence[int]) -> list[int]:
+    """Return ``count`` ways to change a byte (xor, 1..255): each single bit, all bits, then random ones."""
     some = [1 << bit for bit in range(8)] + [0xFF]
     rest = [c for c in np.random.default_rng(seed).permutation(np.arange(1, 256)).tolist() if c not in some]
     return (some + rest)[:count]
 
 
-def check_position(frame, position, change, around):
-    """Decode the frame with one byte changed; returns rows lost, 0 or 1. Raises AssertionError, naming the byte."""
+def check_position(frame: Real, position: int, change: int, around: str) -> int:
+    """Decode the frame with one byte changed; returns the rows lost, 0 or 1. Raises AssertionError with the byte."""
     data = bytearray(frame.data)
     data[position] ^= change
     before = len(frame.data) if around == "between frames" else 0
-    behind = {"alone": b"", "between frames": frame.data, "bytes behind": bytes(TRAILER_BYTES + 6)}[around]
-    frames = decode_stream(frame.data[:before] + bytes(data) + behind)
+    after = {"alone": b"", "between frames": frame.data, "followed by bytes": bytes(TRAILER_BYTES + 6)}[around]
+    frames = decode_stream(frame.data[:before] + bytes(data) + after)
     where = f"byte {position} xor {change:#04x}, {around}"
     wanted = 3 if around == "between frames" else 1
     assert len(frames) == wanted, f"{where}: {len(frames)} frames, not {wanted}"
     for i, found in enumerate(frames):
         hit = found.start == before
-        assert hit or found.complete and not found.errors, f"{where}: frame {i} beside it is damaged too"
+        assert hit or found.complete and not found.errors, f"{where}: frame {i} is damaged, too"
         wrong = np.flatnonzero((found.samples != frame.samples).reshape(len(frame.samples), -1).any(1)).tolist()
-        assert set(wrong) <= set(found.bad_rows), f"{where}: rows {wrong} are wrong, {found.bad_rows} are told"
+        assert set(wrong) <= set(found.bad_rows), f"{where}: rows {wrong} are wrong, {found.bad_rows} are reported"
         assert len(found.bad_rows) <= hit, f"{where}: {len(found.bad_rows)} rows are lost: {found.bad_rows}"
     lost = sum(len(found.bad_rows) for found in frames)
-    assert lost == 0 or around == "bytes behind" and position >= HEADER_BYTES, f"{where}: a row is lost, not mended"
+    assert lost == 0 or around == "followed by bytes" and position >= HEADER_BYTES, f"{where}: a row is lost"
     return lost
 
 
-def sweep(name, around, count, seed, size=None):
-    """Every position of a frame, ``count`` changes each: dict frame, around, bytes, tried, mended, row_lost, failures.
-
-    failures: list of text, at most 10.
-    """
+def sweep(name: str, around: str, count: int, seed: int, size: tuple[int, int] | None = None) -> Sweep:
+    """Try ``count`` changes at every position of a frame."""
     frame, found, failures, tried = real_frame(name, size), [0, 0], [], 0
     for position in range(len(frame.data)):
         for change in changes(count, [seed, position]):
@@ -77,13 +77,4 @@ def sweep(name, around, count, seed, size=None):
                 found[check_position(frame, position, change, around)] += 1
             except Exception as error:
                 failures.append(f"{name}: {error}")
-    return {
-        "frame": name,
-        "around": around,
-        "bytes": len(frame.data),
-        "tried": tried,
-        "mended": found[0],
-        "row_lost": found[1],
-        "failures": failures[:10],
-        "failed": len(failures),
-    }
+    return Sweep(name, around, len(frame.data), tried, found[0], found[1], failures[:10], len(failures))

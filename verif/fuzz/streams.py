@@ -1,10 +1,13 @@
-"""Inputs for the decoder: good frames, and everything that can happen to them."""
+"""Inputs for the decoder: good frames and damaged ones."""
 
 import struct
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.stream import StreamHeader, encode_frame
 from models.parameters import LANES, MODES, FrameParameters, ParameterError, TileParameters, Window
@@ -22,13 +25,13 @@ class Sent:
 
     header: StreamHeader
     tile: TileParameters
-    samples: np.ndarray
+    samples: npt.NDArray[np.int64]
     data: bytes
 
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One input. kind: a name of KINDS. sent: the frame that must come out in spite of all, or None."""
+    """One input. kind: a name of KINDS. sent: the frame that must be decoded, or None."""
 
     kind: str
     data: bytes
@@ -36,8 +39,13 @@ class Case:
     sent: Sent | None = None
 
 
-def random_header(rng):
-    """(StreamHeader, TileParameters) of a small array of which something is read."""
+Rng = np.random.Generator
+Pool = Sequence[Sent]
+T = TypeVar("T")
+
+
+def random_header(rng: Rng) -> tuple[StreamHeader, TileParameters]:
+    """Return the header and the tile of a small array of which something is read."""
     while True:
         tile = TILES[int(rng.random() < 0.2)]
         rows, cols = int(rng.integers(1, 21)), int(rng.integers(1, 51))
@@ -62,8 +70,8 @@ def random_header(rng):
         return header, tile
 
 
-def random_frame(rng):
-    """A good frame of a small array: Sent."""
+def random_frame(rng: Rng) -> Sent:
+    """Return a good frame of a small array."""
     header, tile = random_header(rng)
     shape, layout = (header.rows, header.cols, header.subs), header.layout(tile)
     codes = rng.integers(0, 256, shape)
@@ -78,69 +86,77 @@ def random_frame(rng):
     return Sent(header, tile, samples, encode_frame(header, samples, made, left_out, tile))
 
 
-def _pick(pool, rng):
-    return pool[rng.integers(len(pool))]
+def _pick(pool: Sequence[T], rng: Rng) -> T:
+    return pool[int(rng.integers(len(pool)))]
 
 
-def _place(data, rng):
-    """A position in a frame, in its header no more often than not: a header that is lost says nothing of the rest."""
+def _place(data: bytes, rng: Rng) -> int:
+    """Return a position in a frame, in one case of five anywhere, else after the header."""
     return int(rng.integers(HEADER_BYTES if rng.random() < 0.8 else 0, len(data)))
 
 
-def _noise(rng):
-    """Random bytes, zeros or ones: at most NOISE_MAX."""
+def _noise(rng: Rng) -> bytes:
+    """Return at most NOISE_MAX random bytes, zeros or ones."""
     size = int(rng.integers(1, NOISE_MAX + 1))
     return (rng.bytes, bytes, lambda n: b"\xff" * n)[rng.integers(3)](size)
 
 
-def _wrong_byte(data, rng):
+def _wrong_byte(data: bytes, rng: Rng) -> bytes:
     out = bytearray(data)
     out[_place(data, rng)] ^= int(rng.integers(1, 256))
     return bytes(out)
 
 
-def clean(sent, pool, rng):
+def clean(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Return the frame as it is."""
     return sent.data
 
 
-def one_wrong_byte(sent, pool, rng):
+def one_wrong_byte(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Change one byte."""
     return _wrong_byte(sent.data, rng)
 
 
-def wrong_bytes(sent, pool, rng):
+def wrong_bytes(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Change 2 to 20 bytes."""
     data = sent.data
     for _ in range(rng.integers(2, 21)):
         data = _wrong_byte(data, rng)
     return data
 
 
-def cut(sent, pool, rng):
+def cut(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Cut the frame; keep the first or the last part."""
     at = _place(sent.data, rng)
     return sent.data[:at] if rng.random() < 0.7 else sent.data[at:]
 
 
-def insertion(sent, pool, rng):
+def insertion(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Insert noise."""
     at = _place(sent.data, rng)
     return sent.data[:at] + _noise(rng)[: int(rng.integers(1, NOISE_MAX))] + sent.data[at:]
 
 
-def deletion(sent, pool, rng):
+def deletion(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Delete a part."""
     first, last = sorted((_place(sent.data, rng), _place(sent.data, rng)))
     return sent.data[:first] + sent.data[last:]
 
 
-def doubled(sent, pool, rng):
+def doubled(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Repeat a part."""
     first, last = sorted((_place(sent.data, rng), _place(sent.data, rng)))
     return sent.data[:last] + sent.data[first:]
 
 
-def splice(sent, pool, rng):
+def splice(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Continue with a part of another frame."""
     other = _pick(pool, rng).data
     return sent.data[: _place(sent.data, rng)] + other[_place(other, rng) :]
 
 
-def several(sent, pool, rng):
-    """Some frames one after the other, each whole or damaged by one of the ways above, noise between."""
+def several(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Return some frames one after the other, each intact or damaged by one of the above, with noise between."""
     out = b""
     for _ in range(rng.integers(2, FRAMES_MAX + 1)):
         damage = (clean, one_wrong_byte, cut, deletion, insertion)[rng.integers(5)]
@@ -148,29 +164,30 @@ def several(sent, pool, rng):
     return out
 
 
-def hostile(sent, pool, rng):
-    """A header whose CRC-32 fits and whose fields are extreme or impossible, then anything."""
+def hostile(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Return a header with a right CRC-32 and extreme or impossible fields, then anything."""
     fields = bytearray(sent.header.to_bytes()[:FIELD_BYTES])
     for _ in range(rng.integers(1, 6)):
         at = int(rng.integers(4, FIELD_BYTES))
         if at in (9, 11) and rng.random() < 0.5:  # rows, cols
             fields[at : at + 2] = struct.pack(">H", int(rng.choice([0, 1, 63, 256, 1024, 1025, 1536, 1537, 65535])))
         else:
-            fields[at] = int(rng.choice([0, 1, 2, 0x7F, 0x80, 0xFF, rng.integers(256)]))
+            fields[at] = int(rng.choice([0, 1, 2, 0x7F, 0x80, 0xFF, int(rng.integers(256))]))
     body = _noise(rng) if rng.random() < 0.5 else _pick(pool, rng).data[HEADER_BYTES:]
     return bytes(fields) + struct.pack(">I", zlib.crc32(fields)) + body
 
 
-def noise(sent, pool, rng):
-    """No stream at all, but for a magic number here and there."""
+def noise(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Return noise with a magic number here and there."""
     return b"".join((MAGIC if rng.random() < 0.5 else b"") + _noise(rng) for _ in range(rng.integers(1, 4)))
 
 
-def nothing(sent, pool, rng):
+def nothing(sent: Sent, pool: Pool, rng: Rng) -> bytes:
+    """Return fewer bytes than a header and one more."""
     return rng.bytes(int(rng.integers(0, HEADER_BYTES + 2)))
 
 
-SURVIVED = "clean", "one wrong byte"  # of these every sample must come out
+SURVIVED = "clean", "one wrong byte"  # every sample of these must be decoded
 KINDS = {  # name: (function, share of the inputs)
     "clean": (clean, 0.03),
     "one wrong byte": (one_wrong_byte, 0.15),
@@ -188,8 +205,8 @@ KINDS = {  # name: (function, share of the inputs)
 _NAMES, _SHARES = tuple(KINDS), np.cumsum([share for _, share in KINDS.values()])
 
 
-def make_case(pool, rng):
-    """One input: Case. pool: sequence of Sent. The tile that the decoder is told is now and then another one."""
+def make_case(pool: Pool, rng: Rng) -> Case:
+    """Return one input; the decoder is sometimes given the tile of another sensor."""
     kind = _NAMES[int(np.searchsorted(_SHARES, rng.random() * _SHARES[-1]))]
     sent = _pick(pool, rng)
     right = kind in SURVIVED

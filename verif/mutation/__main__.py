@@ -1,17 +1,20 @@
-"""`python -m verif.mutation`: mutants of the RTL, and what the tests make of them: build/verify/mutation.json.
+"""Mutants of the RTL under the block's tests: build/verify/mutation.json.
 
-A seeded sample by Yosys, spread over the modules of each block, takes the block's place in its tests. A mutant with
-which they all pass is compared with the original by induction. What is left has survived: a bug of the tests. Exit
-status 1 if there is one.
+A seeded sample by Yosys, spread over the modules of each block, replaces the block in its tests. A mutant that passes
+them all is compared with the original by induction. A survivor is a bug of the tests: exit status 1.
 """
 
 import argparse
 import json
 import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 
 from base.jobs import Job, run
 from base.paths import ROOT
+from base.records import from_json
 from base.sources import code
 from base.tools import ToolError
 from models.parameters import ParameterError
@@ -20,10 +23,10 @@ from rtl.tops import TOPS
 from verif.coverage.program import compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
-from verif.results import OUT, write_step
+from verif.results import OUT, BlockResults, Mutants, write_step
 
-from .judge import EQUIVALENT, KILLED, SURVIVED, judge, try_original, try_tests
-from .mutants import generate, with_mutants
+from .judge import EQUIVALENT, KILLED, SURVIVED, Judgement, judge, try_original, try_tests
+from .mutants import Mutant, generate, with_mutants
 
 SEED = 1
 NUMBERS = {
@@ -42,21 +45,22 @@ NUMBERS = {
 }
 
 
-def plant(block, path, store, number, seed):
-    """Mutants of the trace ``path``'s component, into a folder of ``store``: (the folder, list of Mutant)."""
+def plant(block: str, path: Path, store: Path, number: int, seed: int) -> tuple[Path, list[Mutant]]:
+    """Write mutants of the component of trace ``path`` to a folder of ``store``; returns both."""
     trace = load(path, cycles=False)
     verilog = trace.verilog()
     mutants = generate(verilog, trace.cls, folder_of(block), number, seed)
     text = with_mutants(verilog, trace.cls, mutants)
-    folder = Path(store) / block
+    folder = store / block
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "mutants.v").write_text(text)
     compile_program(text, trace.cls, trace.ports, mutant=True)
     return folder, mutants
 
 
-def score(blocks, store, factor=1.0, seed=SEED):
-    """By block: (list of Mutant, list of what `try_tests` or `judge` says of each)."""
+def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: int = SEED) -> dict[str, BlockResults]:
+    """Try a sample of mutants of each block. factor: of the sample's size."""
+    blocks = list(blocks)
     traces = recorded(blocks, store.parent / "traces")
     tests, judges, whole, made = [], [], [], {}
     for block in blocks:
@@ -68,34 +72,34 @@ def score(blocks, store, factor=1.0, seed=SEED):
         for mutant in made[block]:
             name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
-            judges.append(
-                Job(name, judge, arguments, (text, ROOT / "rtl" / folder_of(block) / "formal"))
-            )  # whatever the tests are
+            formal = ROOT / "rtl" / folder_of(block) / "formal"
+            judges.append(Job(name, judge, arguments, (text, formal)))  # independent of the tests
     run(whole, store / "tests", "tests without a mutant")
-    results = run(tests, store / "tests", "mutants against the tests")
-    left = [i for i, result in enumerate(results) if result["result"] == SURVIVED]
-    for i, result in zip(left, run([judges[i] for i in left], store / "judged", "what is left"), strict=True):
-        results[i] = result
+    results = from_json(list[Judgement], run(tests, store / "tests", "mutants against the tests"))
+    left = [i for i, result in enumerate(results) if result.result == SURVIVED]
+    for i, result in zip(left, run([judges[i] for i in left], store / "judged", "undetected mutants"), strict=True):
+        results[i] = from_json(Judgement, result)
     results = iter(results)
-    return {block: (mutants, [next(results) for _ in mutants]) for block, mutants in made.items()}
+    return {block: summary(mutants, [next(results) for _ in mutants]) for block, mutants in made.items()}
 
 
-def summary(mutants, results):
-    """What a block's entry in mutation.json says."""
-    count = {name: sum(r["result"] == name for r in results) for name in (EQUIVALENT, KILLED, SURVIVED)}
-    left = [
-        f"mutant {mutant} = survived, difference {result['difference']}"
-        for mutant, result in zip(mutants, results, strict=True)
-        if result["result"] == SURVIVED
-    ]
-    return {"mutants": {"made": len(mutants), **count}, "open_points": left}
+def summary(mutants: Sequence[Mutant], judged: Sequence[Judgement]) -> BlockResults:
+    """Return the counts of a block's mutants, with the survivors as open points."""
+    count = Counter(judgement.result for judgement in judged)
+    return BlockResults(
+        mutants=Mutants(len(mutants), count[EQUIVALENT], count[KILLED], count[SURVIVED]),
+        open_points=[
+            f"mutant {mutant} = survived, difference {judgement.difference}"
+            for mutant, judgement in zip(mutants, judged, strict=True)
+            if judgement.result == SURVIVED
+        ],
+    )
 
 
-def arguments():
+def arguments() -> argparse.ArgumentParser:
+    """Return the command line."""
     parser = argparse.ArgumentParser(
-        prog="python -m verif.mutation",
-        description=__doc__.split("`: ")[1],
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        prog="python -m verif.mutation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
     parser.add_argument("--seed", type=int, default=SEED, help="of the sample (%(default)s)")
@@ -104,25 +108,24 @@ def arguments():
     return parser
 
 
-def main(argv=None):
-    """Returns 0, 1 with survivors, 2 where nothing could be measured."""
+def main(argv: Sequence[str] | None = None) -> int:
+    """Return 0, 1 with survivors, 2 where nothing could be measured."""
     options = arguments().parse_args(argv)
     try:
         if not 0 < options.factor <= 100:
             raise ParameterError(f"factor = {options.factor}: must be in 0..100")
-        scores = score(options.only or list(TOPS), options.out / "mutation", options.factor, options.seed)
+        found = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
     except (ParameterError, ToolError, RecordError, OSError) as error:
         print(f"verif.mutation: {error}", file=sys.stderr)
         return 2
-    found = {block: summary(*both) for block, both in scores.items()}
     write_step("mutation", found, options.out)
+    whole = Counter()
     for block, entry in found.items():
-        print(f"{block}: {json.dumps(entry['mutants'])}", flush=True)
-        for text in entry["open_points"]:
+        counts = asdict(entry.mutants or Mutants())
+        whole.update(counts)
+        print(f"{block}: {json.dumps(counts)}", flush=True)
+        for text in entry.open_points:
             print(f"  {text}")
-    whole = {
-        name: sum(entry["mutants"][name] for entry in found.values()) for name in ("made", EQUIVALENT, KILLED, SURVIVED)
-    }
     print(f"all, seed {options.seed}: {json.dumps(whole)}")
     return int(whole[SURVIVED] > 0)
 

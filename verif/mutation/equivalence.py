@@ -1,7 +1,8 @@
-"""Whether any input tells a mutant from the original: a miter of both, by induction and IC3 (`pdr`) of Yosys's ABC."""
+"""Equivalence of a mutant and the original: a miter of both, by induction and IC3 (`pdr`) of Yosys's ABC."""
 
 import re
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 from base.tools import ToolTimeout
@@ -11,21 +12,22 @@ from verif.results import ROOT
 
 from .mutants import BITS, yosys
 
-# Engines in turn, each with its limit in seconds: a proof that is easy, a search for a difference, a proof that is not
+# Engines in turn, each with its limit in seconds: a short proof, a search for a difference, a long proof
 ENGINES = (("scorr; dc2; scorr; pdr -T 4", 15), ("bmc3 -F 200 -T 10", 20), ("scorr; dc2; scorr; pdr -T 40", 60))
 
 EQUIVALENT, DIFFERENT, UNKNOWN = "equivalent", "different", "unknown"
 
-# The machine code of the miter: two-input gates and flip-flops that start at 0
+# The miter as an AIG: two-input gates and flip-flops that start at 0
 SCRIPT = """read_verilog -sv mutants.v miter.v; hierarchy -check -top Miter; flatten; proc; setundef -init -zero;
-opt -full; memory_map; opt; techmap; opt; async2sync; dfflegalize -cell $_DFF_P_ 0; opt_clean; setundef -undriven -zero; abc -g AND; opt_clean;
+opt -full; memory_map; opt; techmap; opt; async2sync; dfflegalize -cell $_DFF_P_ 0; opt_clean; setundef -undriven -zero;
+abc -g AND; opt_clean;
 aigmap; opt_clean; stat; write_aiger -zinit -symbols miter.aig"""
 
 
-def miter(top, ports, number):
-    """Verilog of module Miter: `bad` where an output of mutant ``number`` of ``top`` differs, behind the first reset.
+def miter(top: str, ports: Sequence[Port], number: int) -> str:
+    """Return Verilog of module Miter: `bad` where an output of mutant ``number`` of ``top`` differs after a reset.
 
-    A message counts while it is valid, and all of it while the neighbours keep their promises.
+    A message counts while it is valid, and as long as the neighbours keep their promises.
     """
     inputs, outputs = split(ports)
     contract = promises(top)
@@ -62,10 +64,10 @@ def miter(top, ports, number):
     )
 
 
-def promises(top):
-    """Verilog of module <top>Promises, '' where ``top`` has none: rtl/<block>/formal/promises.sv.
+def promises(top: str) -> str:
+    """Return module <top>Promises of rtl/<block>/formal/promises.sv, or ''.
 
-    `promised`: all that its neighbours promise has been kept so far. <port>_counts: they look at that output now.
+    Its outputs: `promised`, the neighbours have kept their promises so far; <port>_counts, they read that output now.
     """
     found = [
         text
@@ -75,9 +77,9 @@ def promises(top):
     return found[0] if found else ""
 
 
-def module_ports(verilog, module):
-    """Ports of a module that Yosys wrote, but clk and mutant: tuple of Port."""
-    text = re.search(rf"(?s)^module {module}\(.*?^endmodule", verilog, re.MULTILINE)[0]
+def module_ports(verilog: str, module: str) -> tuple[Port, ...]:
+    """Return the ports of a module that Yosys wrote, without clk and mutant."""
+    (text,) = re.findall(rf"(?s)^module {module}\(.*?^endmodule", verilog, re.MULTILINE)
     found = re.findall(r"^  (input|output) (?:\[(\d+):0\] )?(\w+) *;", text, re.MULTILINE)
     return tuple(
         Port(name.replace("__", "."), int(high or 0) + 1, way == "output")
@@ -86,23 +88,25 @@ def module_ports(verilog, module):
     )
 
 
-def the_same(verilog, module, number):
-    """True if mutant ``number`` changes nothing at the ports of its own ``module``, which is small."""
+def the_same(verilog: str, module: str, number: int) -> bool:
+    """Return whether mutant ``number`` changes nothing at the ports of its own ``module``, by the short proof."""
     return compare(verilog, module, module_ports(verilog, module), number, ENGINES[:1])[0] == EQUIVALENT
 
 
-def compare(verilog, top, ports, number, engines=ENGINES):
-    """EQUIVALENT, DIFFERENT or UNKNOWN, and the cycles to the difference found (0 for none). verilog: with mutants."""
+def compare(
+    verilog: str, top: str, ports: Sequence[Port], number: int, engines: Sequence[tuple[str, int]] = ENGINES
+) -> tuple[str, int]:
+    """Return EQUIVALENT, DIFFERENT or UNKNOWN, and the cycles to the difference (0 for none). verilog: with mutants."""
     files = yosys(SCRIPT.replace("\n", " "), {"mutants.v": verilog, "miter.v": miter(top, ports, number)})
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         (Path(folder) / "miter.aig").write_bytes(files["miter.aig"])
         for engine, seconds in engines:
             try:
-                said = tool(["yosys-abc", "-c", f"read_aiger miter.aig; strash; {engine}"], seconds, cwd=folder)
+                output = tool(["yosys-abc", "-c", f"read_aiger miter.aig; strash; {engine}"], seconds, cwd=folder)
             except ToolTimeout:
                 continue
-            if "roperty proved" in said or "Networks are equivalent" in said:
+            if "roperty proved" in output or "Networks are equivalent" in output:
                 return EQUIVALENT, 0
-            if found := re.search(r"was asserted in frame (\d+)", said):
+            if found := re.search(r"was asserted in frame (\d+)", output):
                 return DIFFERENT, int(found[1])
     return UNKNOWN, 0

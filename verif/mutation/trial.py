@@ -1,21 +1,26 @@
-"""The tests themselves on a mutant: it takes the place of the block in the test bench, and they pass or fail."""
+"""The tests on a mutant, which replaces the block in the test bench."""
 
 import contextlib
 import io
 import re
 import sys
+from collections.abc import Generator, Iterable, Sequence
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import Phase, settings
 
 from rtl.harness.driven import Driven
-from rtl.harness.ports import ports_of
+from rtl.harness.ports import Port, ports_of
 from rtl.harness.testbench import hooked
 from rtl.harness.translate import translate_component
-from rtl.replay import whole_level
+from rtl.replay import Trace, whole_level
 from rtl.replay.recorder import OneLevel
 from verif.coverage.program import compile_program
 from verif.results import ROOT
+
+from .mutants import Mutant
 
 OPTIONS = (
     "-x",
@@ -31,17 +36,18 @@ OPTIONS = (
 
 
 class Endless(AssertionError):
-    """A simulation that goes on where the block's own has long come to an end."""
+    """A simulation runs much longer than that of the original."""
 
 
 class Limited(Driven):
     """A Driven that stops after ``cycles`` clock edges."""
 
-    def __init__(self, command, ports, cycles):
+    def __init__(self, command: Sequence[str | Path], ports: Sequence[Port], cycles: int) -> None:
         super().__init__(command, ports)
         self.left = cycles
 
-    def step(self, edge, inputs):
+    def step(self, edge: bool, inputs: int) -> bytes:
+        """Step the simulation. Raises Endless after the last cycle."""
         self.left -= edge
         if self.left < 0:
             raise Endless("no end")
@@ -49,20 +55,19 @@ class Limited(Driven):
 
 
 class Trial(OneLevel):
-    """A pytest plugin: the tests of the recorded level, a mutant in place of the traced component, or of the module in
-    it that is mutated.
+    """A pytest plugin: the tests of the recorded level, with a mutant of the traced component or of a module in it.
 
-    head: Trace without its lines. verilog: text with all mutants. mutant: Mutant, or None for the original. cycles:
-    that a simulator may run. alone: the tests are the module's own, at RTL.
+    head: Trace without its lines. verilog: with all mutants. mutant: None for the original. cycles: limit of a
+    simulator. alone: the tests are the module's own, at RTL.
     """
 
-    def __init__(self, head, verilog, mutant, cycles, alone=False):
+    def __init__(self, head: Trace, verilog: str, mutant: Mutant | None, cycles: int, alone: bool = False) -> None:
         super().__init__(not alone and whole_level(head.cls) == "Verilog")
         self.head, self.verilog_text, self.mutant, self.cycles = head, verilog, mutant, cycles
         self.failed, self.took_place = "", False
 
-    def substitute(self, dut, verilog, _name):
-        """See rtl.harness.testbench.hooked."""
+    def substitute(self, dut: Any, verilog: Any, _name: Any) -> Limited | None:
+        """Return the mutant in place of ``dut``, or None (rtl.harness.testbench.hooked)."""
         name, arguments = type(dut).__name__, (*dut._dsl.args, *dut._dsl.kwargs.values())
         if name == self.head.cls:
             if verilog is not self.verilog or arguments != self.head.arguments:
@@ -75,38 +80,42 @@ class Trial(OneLevel):
         return Limited([program.folder / "replay", "--drive", str(number)], ports, self.cycles)
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtestloop(self):
+    def pytest_runtestloop(self) -> Generator[None, Any, Any]:
+        """Run the tests with the mutant in place."""
         with hooked(substitute=self.substitute):
             return (yield)
 
-    def pytest_runtest_logreport(self, report):
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Note the first test that fails."""
         if report.failed and not self.failed:
             self.failed = report.nodeid
 
 
-def same_module(head, cls, arguments):
-    """True if a component of its own is the module of that name in the traced one, parameters and all."""
+def same_module(head: Trace, cls: type, arguments: Sequence[Any]) -> bool:
+    """Return whether ``cls(*arguments)`` has the Verilog of the module of that name in the traced component."""
     name = cls.__name__
     alone, within = (
-        re.search(rf"(?s)^module {name}\b.*?^endmodule", re.sub(r"(?m)^\s*//.*\n", "", text), re.MULTILINE)
+        re.findall(rf"(?s)^module {name}\b.*?^endmodule", re.sub(r"(?m)^\s*//.*\n", "", text), re.MULTILINE)[:1]
         for text in (translate_component(cls(*arguments), name), head.verilog())
     )
-    return bool(within) and alone[0] == within[0]
+    return bool(within) and alone == within
 
 
-def attempt(head, verilog, mutant, tests, cycles, alone=False):
-    """Run ``tests`` (node ids, files or folders) on a mutant: Trial. Arguments: see there."""
+def attempt(
+    head: Trace, verilog: str, mutant: Mutant | None, tests: Iterable[str | Path], cycles: int, alone: bool = False
+) -> Trial:
+    """Run ``tests`` (node ids, files or folders) on a mutant. Other arguments: see Trial."""
     trial = Trial(head, verilog, mutant, cycles, alone)
     tests_loaded = [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]
     before_trial = {name: sys.modules.pop(name) for name in tests_loaded}  # tests keep their simulators
     settings.register_profile("trial", phases=(Phase.explicit, Phase.generate), database=None)
-    before = settings.get_current_profile_name()  # the option loads it behind conftest.py, which has its own
+    before = settings.get_current_profile_name()  # the option loads its profile after that of conftest.py
     try:
-        with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.chdir(ROOT):
+        with contextlib.redirect_stdout(io.StringIO()) as output, contextlib.chdir(ROOT):
             status = pytest.main([*OPTIONS, *map(str, tests)], [trial])
     finally:
         settings.load_profile(before)
         sys.modules.update(before_trial)
     if status not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
-        raise RuntimeError(f"pytest ended with status {status}: {said.getvalue()[-1500:]}")
+        raise RuntimeError(f"pytest ended with status {status}: {output.getvalue()[-1500:]}")
     return trial

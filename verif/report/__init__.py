@@ -1,1 +1,1 @@
-"""`make verify`: every step of the verification, its figures by block against their limits, and the page of them."""
+"""`make verify`: every step of the verification, its figures by block against their limits, and the report page."""

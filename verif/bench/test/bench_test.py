@@ -1,15 +1,17 @@
-"""The cocotb benches pass in both simulators, tell what is wrong, and never wait for ever."""
+"""The cocotb benches pass in both simulators, report what is wrong, and always end."""
 
 import json
 
 import pytest
 
+from base.records import from_json
 from models.chip import golden_frame
 from rtl.harness.icarus import MISSING, installed
 from verif.bench import simulation
-from verif.bench.__main__ import CHIP, SAME, main, summary
+from verif.bench.__main__ import CHIP, SAME, BenchRun, main, summary
 from verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
 from verif.bench.pymtl_frame import pymtl_stream
+from verif.results import BlockResults, Tests
 
 needs_icarus = pytest.mark.skipif(not installed(), reason=MISSING)
 SMALL = "raw, a window"
@@ -25,7 +27,7 @@ def streams_of(simulators, tmp_path):
             tests=["the_shown_frame"],
             environment={"BENCH_STREAM": str(file), "BENCH_FRAME": SMALL},
         )
-        assert tests == [("the_shown_frame", None)]
+        assert tests == [simulation.BenchTest("the_shown_frame", None)]
         yield file.read_bytes()
 
 
@@ -33,13 +35,9 @@ def streams_of(simulators, tmp_path):
 def test_a_bench_passes_and_counts(tmp_path, capsys):
     assert main(["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]) == 0
     by_block = json.loads((tmp_path / "bench.json").read_text())
-    assert by_block == {
-        "PhasePath": {
-            "tests": {"passed": 2, "failed": 0},
-            "open_points": [],
-            "simulators": {"icarus": {"passed": 2, "failed": 0}},
-        }
-    }
+    found = from_json(dict[str, BlockResults], by_block)
+    two = Tests(passed=2)
+    assert found == {"PhasePath": BlockResults(tests=two, benches={"Icarus": two}, simulators=["Icarus"])}
 
 
 @needs_icarus
@@ -54,7 +52,7 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
 
     monkeypatch.setattr(simulation, "sources", planted)
     arguments = ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]
-    for _ in range(2):  # a failure is not kept: it is tried again
+    for _ in range(2):  # a failure is tried again
         assert main(arguments) == 1
         assert "PhasePath in icarus: any_taps_at_any_pace: " in capsys.readouterr().err
     assert not list((tmp_path / "bench").iterdir())
@@ -77,10 +75,11 @@ def test_a_simulation_without_an_end_is_stopped(monkeypatch):
 
 
 def test_streams_that_differ_fail():
-    results = {(CHIP, name): {"tests": [], "stream": "00"} for name in ("pymtl", "icarus")}
-    assert summary(results)[1] == []
-    results[CHIP, "verilator"] = {"tests": [], "stream": None}
-    assert len(summary(results)[1]) == 1 and SAME in summary(results)[1][0]
+    runs = {(CHIP, name): BenchRun([], "00") for name in ("pymtl", "icarus")}
+    assert summary(runs)[CHIP].open_points == []
+    runs[CHIP, "verilator"] = BenchRun([], None)
+    (point,) = summary(runs)[CHIP].open_points
+    assert SAME in point
 
 
 @needs_icarus

@@ -1,6 +1,7 @@
 """Coverage counts what is reached and only that; plans and exclusions that do not hold are errors."""
 
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +13,7 @@ from rtl.edge_adc import EdgeAdc
 from rtl.harness.testbench import build, hooked
 from rtl.replay.recorder import Recorder
 from rtl.tops import TOPS
-from verif.coverage.measure import Point, measure, sources_of
+from verif.coverage.measure import Point, Transition, measure, sources_of
 from verif.coverage.ports import Recorded
 from verif.coverage.program import compile_program
 from verif.coverage.spi import transfers
@@ -101,7 +102,7 @@ def test_exclusions(result):
     hit = judge("EdgeAdc", plan(Exclusion("toggle", ("EdgeAdc.go",), "wrong")), [result])
     assert any("is hit" in text for text in hit.errors)
     nothing = judge("EdgeAdc", plan(Exclusion("line", ("EdgeAdc: no such line",), "wrong")), [result])
-    assert nothing.errors == ["exclude line 'EdgeAdc: no such line': there is no such point"]
+    assert nothing.errors == ["exclude line 'EdgeAdc: no such line': must match a point"]
 
 
 def test_bits_of_an_exclusion():
@@ -119,16 +120,16 @@ def test_bits_of_an_exclusion():
 
 
 def test_a_transition_out_of_the_plan_is_an_error(result):
-    wrong = [[0, 0, 4, 1, 7]]
-    assert judge("EdgeAdc", plan(), [result | {"states": wrong}]).errors == [
+    wrong = (Transition(0, 0, 4, 1, 7),)
+    assert judge("EdgeAdc", plan(), [replace(result, transitions=wrong)]).errors == [
         "fsm state: search > above: no such transition in the plan"
     ]
-    in_reset = [[0, 1, 4, 1, 7]]
-    assert not judge("EdgeAdc", plan(), [result | {"states": in_reset}]).errors
+    in_reset = (Transition(0, 1, 4, 1, 7),)
+    assert not judge("EdgeAdc", plan(), [replace(result, transitions=in_reset)]).errors
 
 
 def test_another_parameter_set_counts(result):
-    other = result | {"functional": {"go_from_idle": 0, "zero_by_the_window": 3}}
+    other = replace(result, functional={"go_from_idle": 0, "zero_by_the_window": 3})
     assert judge("EdgeAdc", plan(), [result, other]).coverage["functional"] == 100.0
 
 
@@ -163,7 +164,7 @@ def test_ports_by_cycle(trace):
     assert p.was(p.go)[4] == 1 and p.was(p.go)[0] == 0
     assert p.since(p.go == 1)[-1] == 30 and p.since(p.go == 2).max() == -1
     with pytest.raises(AttributeError, match="no port gone"):
-        p.gone
+        _ = p.gone
 
 
 def test_transfers_of_pins():

@@ -11,13 +11,17 @@ from models.parameters import ParameterError
 from verif.formal import __main__ as command
 from verif.formal import design, manifest
 from verif.formal.engine import FormalError, tool
-from verif.formal.prove import cover, prove, twin
+from verif.formal.proof import Twin, labels
+from verif.formal.prove import CoverResult, cover, prove, twin
 
 try:
     for name in ("yosys", "yosys-smtbmc", "boolector"):
         tool(name)
 except FormalError as missing:
     pytest.skip(str(missing), allow_module_level=True)
+
+
+NO_COVERS = CoverResult([], [], 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +41,7 @@ def changed(proof, folder, find, replace):
 
 def test_every_property_has_a_twin_that_finds_its_place():
     for proof in manifest.every():
-        assert set(manifest.labels(proof.text)[0]) == set(proof.twins), proof.name
+        assert set(labels(proof.text).properties) == set(proof.twins), proof.name
         assert all(bug.find != bug.replace for bug in proof.twins.values()), proof.name
 
 
@@ -57,40 +61,40 @@ def test_a_property_that_is_always_true_is_caught_through_its_twin(queue, tmp_pa
     proven = prove(weak, "boolector", texts, wrapper)
     bad, around = design.broken(weak, texts, wrapper, "p_order")
     caught = twin(weak, "p_order", bad, around)
-    assert proven["result"] == "proven" and not caught["fails"]
-    found = [(weak, {"boolector": proven}, {"missing": []}, {"p_order": caught})]
-    assert command.problems(found) == ["RunLength.byte_queue.p_order = passed with its bug in the design: must fail"]
+    assert proven.result == "proven" and not caught.fails
+    found = command.Outcome(weak, {"boolector": proven}, NO_COVERS, {"p_order": caught})
+    assert found.problems == ["RunLength.byte_queue.p_order = passed with its bug in the design: must fail"]
 
 
 def test_a_wrong_property_is_not_proven(queue, tmp_path):
     wrong = changed(queue, tmp_path, "assert (inside <= 2 &&", "assert (inside <= 1 &&")
     result = prove(dataclasses.replace(wrong, depth=8), "boolector", design.exported(wrong), design.wrapper(wrong))
-    assert result["result"] == "failed" and result["failing"] == ["p_room"]
+    assert result.result == "failed" and result.failing == ["p_room"]
 
 
 def test_what_only_induction_refutes_is_unknown(queue, tmp_path):
     """A step that fails is no counterexample, and no proof."""
     loose = changed(queue, tmp_path, "\\dut.count == inside && inside <= 2", "inside <= 3")
     result = prove(dataclasses.replace(loose, depth=1), "boolector", design.exported(loose), design.wrapper(loose))
-    assert result["result"] == "unknown"
-    found = [(loose, {"boolector": result}, {"missing": []}, {})]
-    assert "= unknown by boolector: must be proven" in command.problems(found)[0]
+    assert result.result == "unknown"
+    found = command.Outcome(loose, {"boolector": result}, NO_COVERS, {})
+    assert "= unknown by boolector: must be proven" in found.problems[0]
 
 
-def test_an_answer_that_does_not_come_in_time_is_unknown(queue):
+def test_a_timeout_is_unknown(queue):
     late = dataclasses.replace(queue, timeout=0.01)
-    assert prove(late, "boolector", design.exported(late), design.wrapper(late))["result"] == "unknown"
+    assert prove(late, "boolector", design.exported(late), design.wrapper(late)).result == "unknown"
 
 
 def test_assumptions_that_contradict_each_other_reach_no_cover_point(queue, tmp_path):
     vacuous = changed(queue, tmp_path, "assume (!put || ready);", "assume (!put);")
     found = cover(vacuous, design.exported(vacuous), design.wrapper(vacuous))
-    assert found["missing"] == ["c_full", "c_through"]
+    assert found.missing == ["c_full", "c_through"]
 
 
 def test_a_bug_without_its_place_and_a_property_without_a_twin_are_refused(queue, tmp_path):
     texts, wrapper = design.exported(queue), design.wrapper(queue)
-    lost = dataclasses.replace(queue, twins={"p_order": manifest.Twin("no such text", "")})
+    lost = dataclasses.replace(queue, twins={"p_order": Twin("no such text", "")})
     with pytest.raises(ParameterError, match="p_order.find = 'no such text': must occur once, occurs 0 times"):
         design.broken(lost, texts, wrapper, "p_order")
     shutil.copy(queue.wrapper, tmp_path)
@@ -110,9 +114,9 @@ def test_a_bug_without_its_place_and_a_property_without_a_twin_are_refused(queue
         ("x: assert (a); x: cover (b);", "label = x: must occur once"),
     ],
 )
-def test_labels_are_there_and_differ(text, message):
+def test_labels_are_given_and_differ(text, message):
     with pytest.raises(ParameterError, match=message):
-        manifest.labels(text)
+        labels(text)
 
 
 def test_a_block_without_proofs_and_an_unknown_one_are_refused(capsys):

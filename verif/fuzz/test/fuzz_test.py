@@ -15,9 +15,9 @@ SEED = 20
 
 def test_a_batch_of_every_kind(tmp_path):
     found = batch.run_batch(SEED, 0, 3000, tmp_path)
-    assert found["failures"] == []
-    assert set(found["kinds"]) == set(KINDS) and sum(found["outcomes"].values()) == 3000
-    assert found["outcomes"]["frames"] > 1500 and found["outcomes"]["refused"] > 100
+    assert found.failures == []
+    assert set(found.kinds) == set(KINDS) and sum(found.outcomes.values()) == 3000
+    assert found.outcomes["frames"] > 1500 and found.outcomes["refused"] > 100
     assert not list(tmp_path.iterdir())
 
 
@@ -66,10 +66,10 @@ def test_a_wrong_decoder_is_seen_and_its_input_kept(tmp_path, monkeypatch, wrong
     monkeypatch.setattr(batch, "SECONDS_MAX", 0.01 if wrong is slow else 10)
     monkeypatch.setattr(batch, "FILE_EVERY", 10**9)
     found = batch.run_batch(SEED, 0, 60, tmp_path)
-    first = found["failures"][0]
-    assert any(f["error"].startswith(error) for f in found["failures"]) and first["target"] == "decoder"
-    kept = (tmp_path / f"failing-{SEED}-0-{first['index']}.bin").read_bytes()
-    assert kept == batch.make_input(SEED, 0, first["index"]).data
+    first = found.failures[0]
+    assert any(f.error.startswith(error) for f in found.failures) and first.target == "decoder"
+    kept = (tmp_path / f"failing-{SEED}-0-{first.index}.bin").read_bytes()
+    assert kept == batch.make_input(SEED, 0, first.index).data
 
 
 @pytest.mark.parametrize("target", host.TARGETS)
@@ -83,8 +83,8 @@ def test_host_and_registers(target):
 def test_one_wrong_byte_anywhere_in_a_frame_of_every_mode(name, around):
     """Two values at every byte; `python -m verif.fuzz` tries more, and larger frames."""
     found = resync.sweep(name, around, 2, SEED, (12, 20))
-    assert found["failures"] == [] and found["tried"] == 2 * found["bytes"] > 100
-    assert bool(found["row_lost"]) == (around == "bytes behind")
+    assert found.failures == [] and found.tried == 2 * found.bytes > 100
+    assert bool(found.row_lost) == (around == "followed by bytes")
 
 
 def test_a_row_lost_in_secret_is_seen(monkeypatch):

@@ -134,14 +134,14 @@ def test_what_no_test_checks_survives(tmp_path):
 def test_judged(tmp_path):
     path, folder, mutants = planted(one_cycle(), tmp_path, "asp_chip", 8)
     results = [judge(path, folder, mutant) for mutant in mutants]
-    assert {SURVIVED} <= {r["result"] for r in results} <= {SURVIVED, EQUIVALENT}
-    assert all(r["difference"] > 0 for r in results if r["result"] == SURVIVED)
-    assert judge(path, folder, ORIGINAL)["result"] == EQUIVALENT
+    assert {SURVIVED} <= {r.result for r in results} <= {SURVIVED, EQUIVALENT}
+    assert all(r.difference > 0 for r in results if r.result == SURVIVED)
+    assert judge(path, folder, ORIGINAL).result == EQUIVALENT
     entry = summary(mutants, results)
-    count = entry["mutants"]
-    assert count["killed"] + count["equivalent"] + count["survived"] == count["made"] == len(mutants)
-    assert len(entry["open_points"]) == entry["mutants"]["survived"]
-    assert all("rtl/asp_chip/balance_rtl.py" in text for text in entry["open_points"])
+    count = entry.mutants
+    assert count.killed + count.equivalent + count.survived == count.made == len(mutants)
+    assert len(entry.open_points) == count.survived
+    assert all("rtl/asp_chip/balance_rtl.py" in text for text in entry.open_points)
 
 
 def test_a_module_has_tests_of_its_own(tmp_path):
@@ -152,7 +152,7 @@ def test_a_module_has_tests_of_its_own(tmp_path):
 
 def test_what_a_proof_notices_is_killed(tmp_path):
     path, folder, mutants = planted(recorded_cycles(), tmp_path, "edge_adc", 4)
-    assert any(judge(path, folder, m).get("by", "").startswith("proof ") for m in mutants[:2])
+    assert any(judge(path, folder, m).by.startswith("proof ") for m in mutants[:2])
 
 
 def test_one_mutant_alone(small, tmp_path):

@@ -2,6 +2,7 @@
 
 import copy
 import json
+from dataclasses import is_dataclass, replace
 
 import pytest
 
@@ -9,43 +10,32 @@ from models.parameters import ParameterError
 from rtl.tops import TOPS
 from verif.report import limits, steps
 from verif.report.__main__ import main
-from verif.report.merge import figures, score, summarize, totals
+from verif.report.merge import figures, summarize, totals
 from verif.report.page import render
 from verif.report.steps import Outcome, Step, run_step
+from verif.results import COVERAGE, BlockResults, Fuzz, Mutants, Property, Resync, Tests
 from verif.suite.blocks import BLOCKS
 
-PROOF = {
-    "name": "a.one",
-    "engine": "boolector (3.2)",
-    "depth": "unbounded",
-    "result": "proven",
-    "twin_fails": True,
-    "wall_s": 1.5,
-}
-GOOD = {
-    "tests": {"passed": 5, "failed": 0},
-    "proofs": [PROOF],
-    "coverage": dict.fromkeys(("line", "toggle", "branch", "fsm", "functional"), 100.0),
-    "mutants": {"made": 50, "equivalent": 4, "killed": 46, "survived": 0},
-    "open_points": [],
-}
+PROOF = Property("a.one", "boolector (3.2)", "unbounded", "proven", True, 1.5)
+GOOD = BlockResults(
+    tests=Tests(passed=5),
+    proofs=[PROOF],
+    coverage=dict.fromkeys(COVERAGE, 100.0),
+    mutants=Mutants(made=50, equivalent=4, killed=46, survived=0),
+)
 FUZZ = {
-    "Decoder": {
-        "fuzz": {"inputs": 10**6, "failures": 0, "seed": 1},
-        "resync": {"tried": 10**6, "failures": 0, "frames": []},
-        "open_points": [],
-    },
-    "Host": {"fuzz": {"inputs": 10**6, "failures": 0, "seed": 1}, "open_points": []},
+    "Decoder": BlockResults(fuzz=Fuzz(10**6, 0, 1), resync=Resync(10**6, 0, 0, [])),
+    "Host": BlockResults(fuzz=Fuzz(10**6, 0, 1)),
 }
 
 
 def everything():
-    """What all steps might bring when all is well."""
+    """What all steps find when all is well."""
     return summarize(
         [
             {block: copy.deepcopy(GOOD) for block in TOPS},
             copy.deepcopy(FUZZ),
-            {block: {"tests": {"passed": 3, "failed": 0}} for block in BLOCKS if block not in TOPS},
+            {block: BlockResults(tests=Tests(passed=3)) for block in BLOCKS if block not in TOPS},
         ]
     )
 
@@ -56,50 +46,48 @@ LOWEST = {
 }
 
 
-def test_what_all_steps_bring_is_merged():
-    one = {
-        "EdgeAdc": {
-            "tests": {"passed": 3, "failed": 1, "levels": {"RTL": 3}},
-            "simulators": ["Icarus"],
-            "open_points": ["a"],
-        }
-    }
-    two = {
-        "EdgeAdc": {
-            "tests": {"passed": 4, "failed": 0, "levels": {"RTL": 1, "FL": 2}},
-            "proofs": [PROOF],
-            "coverage": {"line": 99.0},
-            "simulators": ["Icarus", "Verilator"],
-            "open_points": ["b"],
-        }
-    }
-    entry = summarize([one, two])["EdgeAdc"]
-    assert entry["tests"] == {"passed": 7, "failed": 1, "levels": {"RTL": 4, "FL": 2}}
-    assert entry["coverage"] == {"line": 99.0, "toggle": None, "branch": None, "fsm": None, "functional": None}
-    assert entry["proofs"] == [PROOF] and entry["open_points"] == ["a", "b"]
-    assert entry["simulators"] == ["Icarus", "Verilator"]
+def test_the_results_of_all_steps_are_merged():
+    one = BlockResults(tests=Tests(3, 1, levels={"RTL": 3}), simulators=["Icarus"], open_points=["a"])
+    two = BlockResults(
+        tests=Tests(4, 0, levels={"RTL": 1, "FL": 2}),
+        proofs=[PROOF],
+        coverage={"line": 99.0},
+        simulators=["Icarus", "Verilator"],
+        open_points=["b"],
+    )
+    entry = summarize([{"EdgeAdc": one}, {"EdgeAdc": two}])["EdgeAdc"]
+    assert entry.tests == Tests(7, 1, levels={"RTL": 4, "FL": 2})
+    assert entry.coverage == {"line": 99.0, "toggle": None, "branch": None, "fsm": None, "functional": None}
+    assert entry.proofs == [PROOF] and entry.open_points == ["a", "b"]
+    assert entry.simulators == ["Icarus", "Verilator"]
     assert set(summarize([])) == set(BLOCKS)
 
 
 def test_simulators_that_come_with_counts():
-    one = {"EdgeAdc": {"simulators": ["PyMTL3", "Icarus"]}}
-    two = {"EdgeAdc": {"simulators": {"icarus": {"passed": 3, "failed": 0}, "verilator": {"passed": 2, "failed": 0}}}}
-    entry = summarize([one, two])["EdgeAdc"]
-    assert entry["simulators"] == ["PyMTL3", "Icarus", "Verilator"]
-    assert entry["benches"] == {"Icarus": {"passed": 3, "failed": 0}, "Verilator": {"passed": 2, "failed": 0}}
+    one = BlockResults(simulators=["PyMTL3", "Icarus"])
+    benches = {"Icarus": Tests(passed=3), "Verilator": Tests(passed=2)}
+    two = BlockResults(simulators=list(benches), benches=benches)
+    entry = summarize([{"EdgeAdc": one}, {"EdgeAdc": two}])["EdgeAdc"]
+    assert entry.simulators == ["PyMTL3", "Icarus", "Verilator"]
+    assert entry.benches == benches
 
 
 def test_nothing_falls_when_all_is_well():
     assert limits.fallen(everything(), LOWEST) == []
 
 
+def changed(part, names, value):
+    """``part`` of a result with the field or key ``names`` (outermost first) set to ``value``."""
+    if not names:
+        return value
+    name, *rest = names
+    if is_dataclass(part):
+        return replace(part, **{name: changed(getattr(part, name), rest, value)})
+    return part | {name: changed(part[name], rest, value)}
+
+
 def change(path, value):
-    summary = everything()
-    into = summary
-    for key in path[:-1]:
-        into = into[key]
-    into[path[-1]] = value
-    return summary
+    return changed(everything(), path, value)
 
 
 @pytest.mark.parametrize(
@@ -109,10 +97,10 @@ def change(path, value):
         (("Flow", "tests", "failed"), 2, "Flow.tests.failed = 2: limit at most 0"),
         (("RunLength", "coverage", "toggle"), 99.96, "RunLength.coverage.toggle = 99.96: limit at least 100"),
         (("RegFile", "coverage", "line"), None, "RegFile.coverage.line = not measured: limit at least 100"),
-        (("AmpCtrl", "proofs"), [PROOF | {"result": "unknown"}], "AmpCtrl.proofs.unproven = 1: limit at most 0"),
+        (("AmpCtrl", "proofs"), [replace(PROOF, result="unknown")], "AmpCtrl.proofs.unproven = 1: limit at most 0"),
         (
             ("AmpCtrl", "proofs"),
-            [PROOF | {"twin_fails": False}],
+            [replace(PROOF, twin_fails=False)],
             "AmpCtrl.proofs.twins_not_caught = 1: limit at most 0",
         ),
         (("Cordic", "mutants", "survived"), 1, "Cordic.mutants.survived = 1: limit at most 0"),
@@ -125,7 +113,7 @@ def test_a_figure_that_falls_is_named_with_its_limit(path, value, line):
     assert line in limits.fallen(change(path, value), LOWEST)
 
 
-def test_total_and_blocks_that_are_gone():
+def test_total_and_missing_blocks():
     summary = everything()
     assert limits.fallen(summary, {"total": {"mutants.made": {"min": 601}}}) == [
         "total.mutants.made = 600: limit at least 601"
@@ -165,10 +153,7 @@ def test_wrong_limits(tmp_path, text):
 def test_figures():
     found = figures(everything()["AmpCtrl"])
     assert (found["proofs.proven"], found["mutants.score"], found["coverage.line"]) == (1, 100.0, 100.0)
-    assert (
-        score({"made": 3, "equivalent": 3, "killed": 0}) == 100
-        and score({"made": None, "equivalent": None, "killed": None}) is None
-    )
+    assert Mutants(made=3, equivalent=3).score == 100 and figures(BlockResults())["mutants.score"] is None
 
 
 STEP = "import json, pathlib, sys\npathlib.Path({out!r}).write_text({text!r})\nsys.exit({status})\n"
@@ -183,9 +168,9 @@ STEP = "import json, pathlib, sys\npathlib.Path({out!r}).write_text({text!r})\ns
         (
             '{"AmpCtrl": {"open_points": []}}',
             1,
-            "step one = exit status 1: its results name no failed test or open point for it",
+            "step one = exit status 1: its results name no failed test or open point",
         ),
-        ('{"AmpCtrl": {"open_points": []}}', 2, "step one = exit status 2: must be 0 (see what it said)"),
+        ('{"AmpCtrl": {"open_points": []}}', 2, "step one = exit status 2: must be 0 (see its output)"),
         ("[1]", 0, "step one = no results: one.json is no dict of blocks"),
         ("{", 0, "step one = no results: one.json: "),
     ],
@@ -204,14 +189,14 @@ def test_how_a_step_may_end(tmp_path, monkeypatch, text, status, problem):
 def test_a_step_that_is_missing_keeps_no_old_results(tmp_path):
     (tmp_path / "one.json").write_text('{"AmpCtrl": {"tests": {"passed": 9, "failed": 0}}}')
     found = run_step(Step("one", "verif.nowhere", "one"), tmp_path)
-    assert found.problem == "step one = missing: there is no module verif.nowhere" and found.by_block == {}
+    assert found.problem == "step one = missing: no module verif.nowhere" and found.by_block == {}
     assert not (tmp_path / "one.json").exists()
 
 
 def test_the_page_holds_every_block_and_every_fault():
     summary, held = everything(), limits.read()
-    summary["AmpCtrl"]["open_points"] = ["<b>a point</b>"]
-    summary["EdgeAdc"]["coverage"]["line"] = 99.96
+    summary["AmpCtrl"].open_points = ["<b>a point</b>"]
+    summary["EdgeAdc"].coverage["line"] = 99.96
     step = Outcome(Step("one", "a", "what one does"), 2.5, "", {})
     page = render(summary, [step], ["step two = missing"], ["EdgeAdc.coverage.line = 99.96: limit"], held, 3.0)
     for text in (*BLOCKS, "&lt;b&gt;a point", "99.9 %", "unbounded", "what one does", "step two = missing", "a.one"):

@@ -1,12 +1,14 @@
 """The suite's counting, on small test files of its own."""
 
+from dataclasses import replace
+
 import pytest
 
 from rtl.tops import TOPS
 from verif.results import ROOT
-from verif.suite.__main__ import empty, forget, jobs, main, summarize
+from verif.suite.__main__ import forget, jobs, main, summarize
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
-from verif.suite.pytest_folder import folders, run_folder
+from verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
 FILE = """
 import pytest
@@ -35,18 +37,18 @@ def repository(tmp_path):
 
 
 def test_outcomes_of_a_folder(repository):
-    cases = run_folder("a", repository, ())["cases"]
-    assert [(c["test"], c["outcome"]) for c in cases] == [
+    cases = run_folder("a", repository, ()).cases
+    assert [(c.test, c.outcome) for c in cases] == [
         ("a/x_test.py::TestRTL::test_good", "passed"),
         ("a/x_test.py::test_bad", "failed"),
         ("a/x_test.py::test_left_out", "skipped"),
     ]
-    assert "one is not two" in cases[1]["message"] and "no tool" in cases[2]["message"]
+    assert "one is not two" in cases[1].message and "no tool" in cases[2].message
 
 
 def test_a_file_that_cannot_be_read_is_a_failure(repository):
-    cases = run_folder("b", repository, ())["cases"]
-    assert any(c["outcome"] == "failed" and "no_such_module" in c["message"] for c in cases)
+    cases = run_folder("b", repository, ()).cases
+    assert any(c.outcome == "failed" and "no_such_module" in c.message for c in cases)
 
 
 def test_every_folder_has_a_block():
@@ -80,11 +82,11 @@ def test_a_divider_counts_for_what_it_names():
 
 
 def test_counts_by_block(repository):
-    found = summarize([run_folder("a", repository, ()) | {"folder": "rtl/edge_adc/test"}])["EdgeAdc"]
-    tests = found["tests"]
-    assert (tests["passed"], tests["failed"], tests["skipped"]) == (1, 1, 1) and tests["levels"] == {"RTL": 1}
-    assert found["simulators"] == ["PyMTL3"] and len(found["open_points"]) == 2 and set(found) == set(empty())
-    assert found["open_points"][0].startswith("test a/x_test.py::test_bad = failed: ")
+    found = summarize([replace(run_folder("a", repository, ()), folder="rtl/edge_adc/test")])["EdgeAdc"]
+    tests = found.tests
+    assert (tests.passed, tests.failed, tests.skipped) == (1, 1, 1) and tests.levels == {"RTL": 1}
+    assert found.simulators == ["PyMTL3"] and len(found.open_points) == 2
+    assert found.open_points[0].startswith("test a/x_test.py::test_bad = failed: ")
 
 
 def test_failures_are_tried_again(tmp_path):
@@ -92,8 +94,8 @@ def test_failures_are_tried_again(tmp_path):
     kept = [tmp_path / f"{job.name}.{job.digest}.json" for job in planned]
     for path in kept:
         path.write_text("{}")
-    cases = [[{"outcome": "passed"}], [{"outcome": "passed"}, {"outcome": "failed"}]]
-    forget(planned, [{"cases": c} for c in cases], tmp_path)
+    passed, failed = Case("a", "passed", 0.0, ""), Case("b", "failed", 0.0, "")
+    forget(planned, [FolderRun("", 0.0, cases) for cases in ([passed], [passed, failed])], tmp_path)
     assert [path.exists() for path in kept] == [True, False]
 
 

@@ -1,0 +1,120 @@
+"""A proof: what is proven of a block, how, and the bug of each property's twin."""
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
+
+METHODS = ("induction", "bounded")
+ENGINES = ("boolector", "z3")
+LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
+
+
+@dataclass(frozen=True)
+class Twin:
+    """A deliberate bug: ``find``, which must occur once in the exported Verilog, becomes ``replace``.
+
+    wrapper: the text is in the wrapper's sources instead, for a property of the reference itself. depth: steps within
+    which the property must fail, by default the proof's twin_depth.
+    """
+
+    find: str
+    replace: str
+    depth: int | None = None
+    wrapper: bool = False
+
+
+@dataclass(frozen=True)
+class Proof:
+    """The properties of one wrapper.
+
+    name: unique. block: the top in rtl.tops that its results count for. wrapper: SystemVerilog file. top: its
+    module. modules: module under proof -> the exported top whose Verilog holds it. sensor: rows, cols, lanes,
+    divider, n_frac, iterations that differ from the default. method: 'induction' (base and step, unbounded) or
+    'bounded'. depth: steps of the base, and the largest k of the induction. cover_depth, twin_depth: steps within which
+    every cover point must be reached and every twin must fail. engines: the first also runs covers and twins. timeout:
+    s. generated: names in verif.formal.tables, text put before the wrapper. sources: files read before the wrapper.
+    defines: macros of the wrapper. why: reason for the depth. twins: property -> Twin.
+    """
+
+    name: str
+    block: str
+    wrapper: Path
+    top: str
+    modules: dict[str, str]
+    method: str
+    depth: int
+    why: str
+    twins: dict[str, Twin]
+    sensor: dict[str, Any] = field(default_factory=dict)
+    cover_depth: int = 20
+    twin_depth: int = 20
+    engines: tuple[str, ...] = ("boolector",)
+    timeout: float = 300
+    generated: tuple[str, ...] = ()
+    sources: tuple[Path, ...] = ()
+    defines: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self._check("method", self.method, METHODS)
+        for engine in self.engines:
+            self._check("engines", engine, ENGINES)
+        if not self.wrapper.is_file():
+            raise ParameterError(f"{self.name}.wrapper = {self.wrapper}: must be a file")
+
+    def _check(self, key: str, value: str, choices: Iterable[str]) -> None:
+        if value not in choices:
+            raise ParameterError(f"{self.name}.{key} = {value}: must be one of {', '.join(choices)}")
+
+    @property
+    def text(self) -> str:
+        """Text of the sources and the wrapper."""
+        return "\n".join(path.read_text() for path in (*self.sources, self.wrapper))
+
+    @property
+    def sensor_parameters(self) -> SensorParameters:
+        """Parameters that the design is exported for."""
+        given = dict(self.sensor)
+        default = SensorParameters()
+        array = ArrayParameters(given.pop("rows", default.array.rows), given.pop("cols", default.array.cols))
+        chip = ChipParameters(
+            given.pop("lanes", default.chip.lanes),
+            given.pop("divider", default.chip.divider),
+            given.pop("n_frac", default.chip.n_frac),
+            given.pop("iterations", default.chip.cordic_iterations),
+        )
+        if given:
+            raise ParameterError(f"{self.name}.sensor = {', '.join(given)}: must be parameters of the sensor")
+        return SensorParameters(array=array, chip=chip)
+
+
+@dataclass(frozen=True)
+class Labels:
+    """Labels of a wrapper's statements. invariants: assertions that only strengthen the induction, without a twin."""
+
+    properties: list[str]
+    invariants: list[str]
+    covers: list[str]
+
+
+def labels(text: str) -> Labels:
+    """Return the labels of a wrapper; an assertion named inv_... is an invariant.
+
+    Raises ParameterError for an assertion or a cover point without a label, or a label that occurs twice.
+    """
+    plain = re.sub(r"//.*", "", text)
+    found = LABEL.findall(plain)
+    if len(found) != len(re.findall(r"\b(?:assert|cover)\s*\(", plain)):
+        raise ParameterError("label = none: every assert and cover must have one")
+    names = [name for name, _ in found]
+    if len(set(names)) != len(names):
+        raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
+    asserts = [name for name, kind in found if kind == "assert"]
+    return Labels(
+        [n for n in asserts if not n.startswith("inv_")],
+        [n for n in asserts if n.startswith("inv_")],
+        [name for name, kind in found if kind == "cover"],
+    )
