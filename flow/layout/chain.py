@@ -8,22 +8,23 @@ from rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
 from .options import LEAST_UTILIZATION, Options
-from .steps.antenna import Antenna, AntennaParameters
+from .steps.antenna import Antenna
 from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from .steps.drc import Drc, DrcParameters
+from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
-from .steps.extraction import Extraction, ExtractionParameters
-from .steps.fill import Fill, FillParameters
+from .steps.extraction import Extraction
+from .steps.fill import Fill
 from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
 from .steps.gate_delays import GateDelays, GateDelaysParameters
 from .steps.gate_frames import GateFrames
 from .steps.gate_tests import GateTests, GateTestsParameters
 from .steps.ir_drop import IrDrop, IrDropParameters
-from .steps.lef import Lef, LefParameters
-from .steps.library import Library, LibraryParameters
-from .steps.lvs import Lvs, LvsParameters
+from .steps.lef import Lef
+from .steps.library import Library
+from .steps.lvs import Lvs
+from .steps.parameters import PdkParameters
 from .steps.place_route import PlaceRoute, PlaceRouteParameters
 from .steps.power import Power, PowerParameters
 from .steps.reroute import Reroute, RerouteParameters
@@ -70,7 +71,7 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
 
 def synthesis_steps(design: Design, options: Options) -> list[Step]:
     """The steps before a floorplan."""
-    library, macros, load = Library(LibraryParameters(options.pdk)), macro_modules(design), design.io.load_pf
+    library, macros, load = Library(PdkParameters(options.pdk)), macro_modules(design), design.io.load_pf
     if not options.corners:
         return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, load, macros))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
@@ -103,9 +104,9 @@ def routing_steps(design: Design, options: Options) -> list[Step]:
         Reroute(RerouteParameters(options.pdk, clock, MOST_OPEN[bool(macros)])),
         *assemble,
         StreamOut(StreamOutParameters(options.pdk, clock, bool(macros))),
-        Fill(FillParameters(options.pdk)),
-        Drc(DrcParameters(options.pdk)),
-        Antenna(AntennaParameters(options.pdk)),
+        Fill(PdkParameters(options.pdk)),
+        Drc(PdkParameters(options.pdk)),
+        Antenna(PdkParameters(options.pdk)),
     ]
 
 
@@ -117,9 +118,9 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         Equivalence(EquivalenceParameters(design.top, design.clock.port)),
         *netlist_tests(design),
         *foundry,
-        Lvs(LvsParameters(options.pdk)),
-        Lef(LefParameters(options.pdk)),
-        Extraction(ExtractionParameters(options.pdk)),
+        Lvs(PdkParameters(options.pdk)),
+        Lef(PdkParameters(options.pdk)),
+        Extraction(PdkParameters(options.pdk)),
         *timing_steps(design, options),
     ]
     if not design.macros:

@@ -14,8 +14,8 @@ from flow.layout.options import Options
 from flow.layout.report.metrics import broken
 from flow.layout.report.page import Picture, write_report
 from flow.layout.report.picture import render
-from flow.layout.steps.antenna import AntennaParameters
-from flow.layout.steps.drc import Drc, DrcParameters
+from flow.layout.steps.drc import Drc
+from flow.layout.steps.parameters import PdkParameters
 from flow.layout.steps.sta import StaParameters
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
@@ -54,7 +54,7 @@ RESULTS = {
 def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list[Step]:
     """The die's steps in order. extra: see DiePlanParameters."""
     pdk, clock, io = options.pdk, chip.clock, chip.io
-    drc = Drc(DrcParameters(pdk))
+    drc = Drc(PdkParameters(pdk))
     drc.inputs = {**drc.inputs, "gds": "die_gds.gds"}
     parasitics = DieParasiticsParameters(
         pdk,
@@ -70,7 +70,7 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         drc,
-        DieAntenna(AntennaParameters(pdk)),
+        DieAntenna(PdkParameters(pdk)),
     ]
 
 

@@ -1,19 +1,12 @@
 """Antennas of a layout, layer by layer."""
 
 import json
-from dataclasses import dataclass
 
 from base.steps import Step
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..geometry.antenna import violations
-
-
-@dataclass(frozen=True)
-class AntennaParameters:
-    """pdk: process."""
-
-    pdk: str = "sky130"
+from .parameters import PdkParameters
 
 
 class Antenna(Step):
@@ -22,7 +15,7 @@ class Antenna(Step):
     name = "antenna"
     inputs = {"gds": "fill.gds"}
     outputs = {"summary": "antenna.json"}
-    Parameters = AntennaParameters
+    Parameters = PdkParameters
     metrics = {"antenna_violations": ""}
     tools = ("python klayout",)
 

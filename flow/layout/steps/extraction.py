@@ -6,7 +6,6 @@ which is more than any single path of a branched net has.
 """
 
 import json
-from dataclasses import dataclass
 
 from base.steps import Step
 from platforms.coriolis import coriolis_platform
@@ -14,13 +13,7 @@ from platforms.coriolis import coriolis_platform
 from ..netlist.netlist import Netlist
 from ..timing import parasitics as parasitics_module
 from ..timing.parasitics import parasitics, spef
-
-
-@dataclass(frozen=True)
-class ExtractionParameters:
-    """pdk: process."""
-
-    pdk: str = "sky130"
+from .parameters import PdkParameters
 
 
 class Extraction(Step):
@@ -29,7 +22,7 @@ class Extraction(Step):
     name = "extraction"
     inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement", "liberty": "library.liberty"}
     outputs = {"spef": "wires.spef"}
-    Parameters = ExtractionParameters
+    Parameters = PdkParameters
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
     uses = (parasitics_module,)
 

@@ -10,7 +10,8 @@ from flow.layout.chain import attempts, input_files, routing_steps, synthesis_st
 from flow.layout.design import Design, divider
 from flow.layout.options import Options
 from flow.layout.search import lay_out_smallest
-from flow.layout.steps.extraction import Extraction, ExtractionParameters
+from flow.layout.steps.extraction import Extraction
+from flow.layout.steps.parameters import PdkParameters
 
 VARIANTS = ("radix2", "radix4", "pipelined", "cordic")
 WIDTHS = 4, 8, 12  # fraction bits; CORDIC has none
@@ -60,7 +61,7 @@ def variant_point(design: Design, liberty: Sequence[str], out: str, pdk: str = "
 
 
 def _signoff(design: Design, options: Options) -> list[Step]:
-    return [Extraction(ExtractionParameters(options.pdk)), *timing_steps(design, options)]
+    return [Extraction(PdkParameters(options.pdk)), *timing_steps(design, options)]
 
 
 def effort_point(
@@ -99,7 +100,7 @@ def effort_point(
     if wires["metrics"]["open_nets"]:
         return made
     broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
-    runner.run(Extraction(ExtractionParameters(pdk)))
+    runner.run(Extraction(PdkParameters(pdk)))
     slack = [
         runner.run(step)["metrics"]["wns_ns"] for step in timing_steps(design, options) if step.name.startswith("sta_")
     ]

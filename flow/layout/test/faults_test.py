@@ -6,8 +6,9 @@ from base.steps import Runner
 from flow.layout.chain import attempts, routing_steps, synthesis_steps
 from flow.layout.design import Design
 from flow.layout.options import Options
-from flow.layout.steps.drc import Drc, DrcParameters
-from flow.layout.steps.lvs import Lvs, LvsParameters
+from flow.layout.steps.drc import Drc
+from flow.layout.steps.lvs import Lvs
+from flow.layout.steps.parameters import PdkParameters
 
 from . import counter
 
@@ -38,7 +39,7 @@ def runner(tmp_path_factory):
 
 def lvs(runner, gds, folder):
     """What Lvs says of another layout in place of the design's."""
-    step = Lvs(LvsParameters())
+    step = Lvs(PdkParameters())
     inputs = {name: runner.paths[source] for name, source in step.inputs.items()} | {"gds": gds}
     return step.run(inputs, {name: folder / file for name, file in step.outputs.items()})["lvs_match"]
 
@@ -55,7 +56,7 @@ def changed(runner, folder, change):
 
 
 def test_the_layout_is_clean_and_matches(runner, tmp_path):
-    assert runner.run(Drc(DrcParameters()))["metrics"] == {"drc_violations": 0}
+    assert runner.run(Drc(PdkParameters()))["metrics"] == {"drc_violations": 0}
     assert lvs(runner, runner.paths["fill.gds"], tmp_path)
 
 
@@ -100,7 +101,7 @@ def test_wires_too_near_are_found(runner, tmp_path):
         box = next(s.bbox() for s in top.shapes(layout.layer(69, 20)).each() if s.bbox().height() > 3000)
         top.shapes(layout.layer(69, 20)).insert(box.moved(box.width() + 100, 0) & db.Box(top.bbox()))
 
-    gds, step = changed(runner, tmp_path, near), Drc(DrcParameters())
+    gds, step = changed(runner, tmp_path, near), Drc(PdkParameters())
     inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
     assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] > 0
 
@@ -117,6 +118,6 @@ def test_a_hole_that_is_too_small_is_found(runner, tmp_path):
         )
         top.shapes(layout.layer(69, 20)).insert(metal)
 
-    gds, step = changed(runner, tmp_path, ring), Drc(DrcParameters())
+    gds, step = changed(runner, tmp_path, ring), Drc(PdkParameters())
     inputs = {"gds": gds, "deck": runner.paths["library.drc"]}
     assert step.run(inputs, {n: tmp_path / f for n, f in step.outputs.items()})["drc_violations"] == 1

@@ -8,10 +8,11 @@ from flow.layout.design import DESIGNS, Design, MacroPlacement
 from flow.layout.macros import check_same, macro_files
 from flow.layout.options import Options
 from flow.layout.search import lay_out_smallest
-from flow.layout.steps.drc import Drc, DrcParameters
+from flow.layout.steps.drc import Drc
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
-from flow.layout.steps.lef import Lef, LefParameters
-from flow.layout.steps.lvs import Lvs, LvsParameters
+from flow.layout.steps.lef import Lef
+from flow.layout.steps.lvs import Lvs
+from flow.layout.steps.parameters import PdkParameters
 
 from . import counter
 
@@ -45,7 +46,7 @@ OUTER = Design("pair", "Pair", "", macros=(MacroPlacement("first", "counter", (0
 def closed(design, verilog, folder, more):
     """The Runner behind a layout of ``design`` that keeps the rules."""
     runner = Runner(folder / design.name, counter.files(design, verilog, folder) | more, shared=folder / "shared")
-    tried = lay_out_smallest(design, OPTIONS, runner, lambda design, options: [Lef(LefParameters(options.pdk))])
+    tried = lay_out_smallest(design, OPTIONS, runner, lambda design, options: [Lef(PdkParameters(options.pdk))])
     assert tried[-1].rules_broken == 0, tried
     return runner
 
@@ -62,8 +63,8 @@ def runners(tmp_path_factory):
 
 def test_it_is_clean_matches_and_is_proven(runners):
     runner = runners["pair"]
-    assert runner.run(Drc(DrcParameters()))["metrics"] == {"drc_violations": 0}
-    assert runner.run(Lvs(LvsParameters()))["metrics"]["lvs_match"]
+    assert runner.run(Drc(PdkParameters()))["metrics"] == {"drc_violations": 0}
+    assert runner.run(Lvs(PdkParameters()))["metrics"]["lvs_match"]
     proof = Equivalence(EquivalenceParameters("Pair"))
     proof.inputs = {name: ASSEMBLED.get(source, source) for name, source in proof.inputs.items()}
     assert runner.run(proof)["metrics"] == {
@@ -82,7 +83,7 @@ def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):
     block = next(i for i in layout.top_cell().each_inst() if i.cell.name == "Counter")
     block.transform(db.DTrans(0, 0.8))
     layout.write(str(tmp_path / "moved.gds"))
-    step = Lvs(LvsParameters())
+    step = Lvs(PdkParameters())
     inputs = {name: runners["pair"].paths[source] for name, source in step.inputs.items()} | {
         "gds": tmp_path / "moved.gds"
     }

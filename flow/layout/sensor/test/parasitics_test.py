@@ -9,7 +9,7 @@ from flow.layout.sensor.elmore import delays
 from flow.layout.sensor.steps.die_antenna import DieAntenna
 from flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from flow.layout.sensor.steps.die_sta import over
-from flow.layout.steps.antenna import AntennaParameters
+from flow.layout.steps.parameters import PdkParameters
 from platforms.coriolis import coriolis_platform
 
 from . import small
@@ -113,4 +113,4 @@ def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
     draw(layer, 0.7, -0.15, 300, 0.15)
     layout.write(str(tmp_path / "die.gds"))
     given = {"die_gds.gds": tmp_path / "die.gds"}
-    assert small.run(DieAntenna(AntennaParameters()), given, tmp_path) == {"antenna_violations": violations}
+    assert small.run(DieAntenna(PdkParameters()), given, tmp_path) == {"antenna_violations": violations}

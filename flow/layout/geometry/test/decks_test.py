@@ -3,8 +3,7 @@
 import pytest
 
 from base.steps import StepError
-from flow.layout.steps.drc import with_flat_spaces
-from flow.layout.steps.lvs import hierarchical
+from flow.layout.geometry.decks import hierarchical, with_flat_spaces
 
 DRC = """deep
 nwm = input(64, 20)

@@ -1,0 +1,92 @@
+"""KLayout decks: run in the application, which alone interprets them, their reports read, and PDKMaster's adapted."""
+
+import os
+import re
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from base.steps import StepError
+from base.tools import ToolError, finish
+from platforms.coriolis import CoriolisPlatform
+from platforms.layers import GdsLayer
+
+from ..netlist.netlist import SUPPLIES, Netlist
+
+
+def run_deck(
+    deck: Path, environment: Mapping[str, object], log: Path, variables: Mapping[str, object] | None = None
+) -> int:
+    """Run ``deck`` without the user's settings; its output goes to ``log``. Returns the exit status."""
+    defines = [word for name, value in (variables or {}).items() for word in ("-rd", f"{name}={value}")]
+    done = finish(
+        ["klayout", "-b", "-r", deck, *defines],
+        env={name: str(value) for name, value in environment.items()}
+        | {"HOME": os.environ.get("HOME", "/tmp"), "KLAYOUT_HOME": str(log.parent / ".klayout.log")},
+    )
+    log.write_text(done.stdout + done.stderr)
+    return done.returncode
+
+
+def violations(report: Path) -> dict[str, int]:
+    """Count the violations by rule in a report database of KLayout. Raises ToolError if it is broken."""
+    try:
+        items = ET.parse(report).getroot().iterfind("items/item")
+        return dict(Counter((item.findtext("category") or "").strip("'") for item in items))
+    except (ET.ParseError, FileNotFoundError) as error:
+        raise ToolError(f"klayout: its report is not complete ({error})") from None
+
+
+def with_flat_spaces(deck: str) -> str:
+    """The deck with the spaces of drawn layers checked last and flat.
+
+    Wells, implants and rails continue from cell to cell through whole rows; to check those cell by cell takes two
+    thirds of the deck's time, flat a tenth of that. Raises StepError when the deck has no such rules.
+    """
+    drawn = dict(re.findall(r"^(\w+) = (input\(\d+, \d+\))$", deck, re.M))
+    rules = [m for m in re.finditer(r"^(\w+)\.space\([\d.]+\)\.output\(\n(?:.*\n)*?\)\n", deck, re.M) if m[1] in drawn]
+    if not rules:
+        raise StepError("drc: the deck has no rule of a space that could be checked flat")
+    for rule in rules:
+        deck = deck.replace(rule[0], "", 1)
+    layers = dict.fromkeys(rule[1] for rule in rules)
+    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *(rule[0] for rule in rules)])
+
+
+def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
+    """Lines for a deck: the least areas of holes that ``tech`` has beyond PDKMaster's rules."""
+    for metal in tech.metals:
+        if metal.min_hole_um2:
+            yield f"{metal.name} = input({metal.layer}, {metal.datatype})"
+            yield (
+                f'{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output("{metal.name} hole", '
+                f'"{metal.name} minimum area of a hole")'
+            )
+
+
+def hierarchical(deck: str, active: GdsLayer) -> str:
+    """The LVS deck, cell by cell instead of flat. active: layer of transistors and taps.
+
+    The substrate must then be in every cell and not around all of them: it is where something active is on it, and
+    one net everywhere, as the wafer is.
+    """
+    changes = (
+        (r"^flat$", "deep"),
+        (r"^_wafer = extent.*$", f"_wafer = input{active}"),
+        (r"^connect\((substrate__\w+), _wafer\)$", r'connect_global(\1, "SUBSTRATE")'),
+    )
+    for pattern, text in changes:
+        deck, found = re.subn(pattern, text, deck, flags=re.M)
+        if found != 1:
+            raise StepError(f"lvs: the deck has {found} lines like {pattern}, one was expected")
+    return deck
+
+
+def with_ports(deck: str, netlist: Netlist) -> str:
+    """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match."""
+    if "\nalign\n" not in deck:
+        raise StepError("lvs: the deck has no 'align'")
+    names = [net for port in netlist.ports for net in port.bits()] + list(SUPPLIES)
+    lines = "".join(f'same_nets!("{netlist.name}", "{net}", "{net}")\n' for net in names)
+    return deck.replace("\nalign\n", f"\nalign\n{lines}")
