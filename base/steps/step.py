@@ -19,6 +19,7 @@ class NoParameters:
 
 
 P = TypeVar("P", bound=Any)
+Files = Mapping[str, Path]  # by the name of an input or output
 
 
 class Step(Generic[P]):
@@ -49,7 +50,7 @@ class Step(Generic[P]):
         if not isinstance(self.parameters, self.Parameters):
             raise ParameterError(f"{self.name} parameters = {parameters!r}: must be a {self.Parameters.__name__}")
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         """Write the files ``outputs`` from the files ``inputs`` (name -> path); returns metric -> value."""
         raise NotImplementedError
 

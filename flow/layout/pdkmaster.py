@@ -1,0 +1,148 @@
+"""PDKMaster's description of a process and its cells, exported for Coriolis, KLayout and simulators."""
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from base.gds import write_gds
+from base.steps import StepError
+from platforms.coriolis import CoriolisPlatform
+from platforms.layers import Layer, Via
+
+GRID_UM = 0.005  # on which pads are drawn
+DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"} | dict.fromkeys(
+    ("q", "nq", "one", "zero", "co", "s"), "out"
+)
+
+
+def layout_geometry(tech: CoriolisPlatform) -> dict[str, Any]:
+    """What of the process decides where routes are, and not how they behave: a layout is built again only for that."""
+    made = asdict(tech)
+    del made["fill"], made["rail_um"], made["corners"]
+    made["metals"] = [{"name": metal.name, "gds": metal.gds, "hole_um2": metal.min_hole_um2} for metal in tech.metals]
+    return made
+
+
+def routing_rules(tech: CoriolisPlatform, primitives: Any) -> dict[str, Any]:
+    """Rules of the metal layers and vias in PDKMaster's ``primitives``, in um: for JSON."""
+
+    def enclosure(layers: Sequence[Any], enclosures: Sequence[Any], metal: Layer) -> list[float]:
+        """By ``metal``, one of ``layers``."""
+        found = next(made for layer, made in zip(layers, enclosures, strict=True) if layer.name == metal.name)
+        return [float(found.first), float(found.second)]
+
+    metals = {metal.name: primitives[metal.name] for metal in tech.metals}
+    vias = {}
+    for level, via in enumerate(tech.vias):
+        own = primitives[via.name]
+        vias[via.name] = {
+            "below": enclosure(own.bottom, own.min_bottom_enclosure, tech.metals[level]),
+            "above": enclosure(own.top, own.min_top_enclosure, tech.metals[level + 1]),
+        }
+    return {
+        "space_um": {name: float(metal.min_space) for name, metal in metals.items()},
+        "metals": {
+            name: {"width": float(own.min_width), "space": float(own.min_space), "area": float(own.min_area or 0)}
+            for name, own in metals.items()
+        },
+        "vias": vias,
+    }
+
+
+def cell_area(cell: Any) -> float:
+    """Area of a cell, um2."""
+    box = cell.layout.boundary
+    return round((box.right - box.left) * (box.top - box.bottom), 4)
+
+
+def export_coriolis(folder: Path, description: Any, library: Any, tech: CoriolisPlatform) -> None:
+    """Write the package ``exported`` with the technology and the cells into ``folder``."""
+    from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
+
+    spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
+    export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
+    package = folder / "exported"
+    package.mkdir(parents=True)
+    (package / "__init__.py").write_text("")
+    (package / "techno.py").write_text(export())
+    (package / "StdCellLib.py").write_text(with_narrow_top(export(library), tech, description.tech.primitives))
+
+
+def with_narrow_top(text: str, tech: CoriolisPlatform, primitives: Any) -> str:
+    """The export for Coriolis with the tracks of the top layer as near as its pads may be.
+
+    PDKMaster keeps room there for vias to the layer above, of which there are none (1.48 um instead of 0.68 um in
+    SKY130). Raises StepError where the export has no such tracks.
+    """
+    below, top, via = tech.metals[-2], tech.metals[-1], tech.vias[-1]
+    pad = via.size_um + 2 * via.enclosure_um
+    begin = text.index(f"metal = tech.getLayer('{top.name}')")
+    head, gauge = text[:begin], text[begin:]
+    around, pitch = f"u({via.enclosure_um})", pad + float(primitives[top.name].min_space)
+    gauge, enclosures = re.subn(
+        r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, ({around}, {around}))", gauge, count=1
+    )
+    gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({pitch:g}), u({pad:g})", gauge, count=1)
+    head, pads = with_short_pads(head, below.name, top.name, via, float(primitives[below.name].min_area or 0))
+    if not enclosures or not tracks or not pads:
+        raise StepError(f"library: PDKMaster's export has no gauge of {top.name} that could be narrowed")
+    return head + gauge
+
+
+def with_short_pads(text: str, below: str, above: str, via: Via, area: float) -> tuple[str, int]:
+    """The export with the pads of the layer ``below`` the top one only as long as the least ``area`` (um2) requires.
+
+    PDKMaster's are 1.18 um long in SKY130, and two of them on one track are too near where they are two tracks of the
+    top layer apart. Also returns how many changes there are.
+    """
+
+    def shorter(match: re.Match[str]) -> str:
+        long, wide = float(match[2]), float(match[3])
+        least = area / (via.size_um + 2 * wide) - via.size_um
+        needed = max(via.enclosure_um, math.ceil(least / 2 / GRID_UM - 1e-9) * GRID_UM)
+        return f"{match[1]}u({min(long, needed):g}), u({wide:g})"
+
+    pattern = (
+        rf"(via = tech\.getLayer\('{below}_{via.name}_{above}'\)\n\s+setEnclosures\(via, metal, \()"
+        r"u\(([\d.]+)\), u\(([\d.]+)\)"
+    )
+    return re.subn(pattern, shorter, text, count=1)
+
+
+def export_gds(path: Path, description: Any, library: Any) -> None:
+    """Write the cells as GDS."""
+    from pdkmaster.io.klayout import export2db
+
+    write_gds(
+        export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False, add_pin_label=True), path
+    )
+
+
+def export_decks(description: Any, devices: Any) -> dict[str, str]:
+    """KLayout's decks for 'drc' and 'lvs', text. devices: the package's prims_spiceparams."""
+    from pdkmaster.io.klayout import FileExporter
+
+    decks = FileExporter(tech=description.tech, gds_layers=description.gds_layers, prims_spiceparams=devices)()
+    # pdkmaster-io-klayout 0.1.8 writes a constant that KLayout does not have, where a process spaces wide metal farther
+    return {"drc": decks["drc"].replace(", Projection)", ", projection)"), "lvs": decks["lvs"]}
+
+
+def export_spice(cells: Sequence[Any], devices: Any) -> str:
+    """Subcircuits of the cells. devices: see `export_decks`."""
+    from pdkmaster.io.spice import SpiceNetlistFactory
+
+    netlists = SpiceNetlistFactory(params=devices)
+    return with_transistors("".join(netlists.export_circuit(cell.circuit) for cell in cells))
+
+
+def with_transistors(spice: str) -> str:
+    """SPICE with every transistor as a device: KLayout does not know those that a process has as subcircuits."""
+    cells = set(re.findall(r"(?im)^\.subckt (\S+)", spice))
+
+    def device(match: re.Match[str]) -> str:
+        return match[0] if match[2] in cells else f"M{match[1]}{match[2]}{match[3]}"
+
+    return re.sub(r"(?m)^X(\S+ (?:\S+ ){4})(\w+)((?: \w+=\S+)+)$", device, spice)
