@@ -1,24 +1,32 @@
 """Pads that alone are smaller than a process allows are made longer.
 
-The router draws a stack of cuts with pads of their least size, and a wire of a layer that is nothing but such a pad may
-be too small. It grows along one side, or both, where nothing of its layer is near.
+The router draws a via stack with pads of their least size, and metal of a layer that is nothing but such a pad may be
+too small. It grows along one side, or both, where nothing of its layer is near.
 """
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from platforms.layers import Layer
+
+if TYPE_CHECKING:
+    import klayout.db as db
 
 GRID_NM = 5
 
 
-def grow(layout, top, wires, rules):
-    """Grow them in the top cell ``top``; rules: dict wire -> {'area': um2, 'space': um}. Returns how many were grown.
+def grow(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], rules: Mapping[str, Mapping[str, float]]) -> int:
+    """Grow them in the top cell ``top``; rules: by layer 'area' (um2) and 'space' (um). Returns how many were grown.
 
     One that has no room stays, and the design rules find it.
     """
     import klayout.db as db
 
     grown = 0
-    for wire in wires:
-        least = round(rules[wire.name]["area"] / layout.dbu**2)
-        space = round(rules[wire.name]["space"] / layout.dbu)
-        layer = layout.layer(*wire.gds)
+    for of in metals:
+        least = round(rules[of.name]["area"] / layout.dbu**2)
+        space = round(rules[of.name]["space"] / layout.dbu)
+        layer = layout.layer(*of.gds)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
         for polygon in metal.with_area(1, least, False).each() if least else ():
             others = metal - db.Region(polygon)
@@ -26,17 +34,17 @@ def grow(layout, top, wires, rules):
                 new = db.Region(box) - db.Region(polygon)  # its neighbours are as near as tracks are
                 if (others & new.sized(space)).is_empty():
                     top.shapes(layer).insert(box)
-                    metal += box
+                    metal.insert(box)
                     grown += 1
                     break
     return grown
 
 
-def longer(box, area):
+def longer(box: "db.Box", area: int) -> "Iterator[db.Box]":
     """Boxes with at least ``area`` that hold ``box``, as long as it or as high: both ways first, then one."""
     import klayout.db as db
 
-    def lack(length, width):
+    def lack(length: int, width: int) -> int:
         return -(-max(0, -(-area // width) - length) // (2 * GRID_NM)) * 2 * GRID_NM  # even in grids
 
     across, along = lack(box.width(), box.height()), lack(box.height(), box.width())

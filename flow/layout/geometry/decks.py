@@ -1,4 +1,4 @@
-"""KLayout decks: run in the application, which alone interprets them, their reports read, and PDKMaster's adapted."""
+"""KLayout decks: run in the application, which alone interprets them; their reports; PDKMaster's DRC deck adapted."""
 
 import os
 import re
@@ -10,9 +10,6 @@ from pathlib import Path
 from base.steps import StepError
 from base.tools import ToolError, finish
 from platforms.coriolis import CoriolisPlatform
-from platforms.layers import GdsLayer
-
-from ..netlist.netlist import SUPPLIES, Netlist
 
 
 def run_deck(
@@ -63,30 +60,3 @@ def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
                 f'{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output("{metal.name} hole", '
                 f'"{metal.name} minimum area of a hole")'
             )
-
-
-def hierarchical(deck: str, active: GdsLayer) -> str:
-    """The LVS deck, cell by cell instead of flat. active: layer of transistors and taps.
-
-    The substrate must then be in every cell and not around all of them: it is where something active is on it, and
-    one net everywhere, as the wafer is.
-    """
-    changes = (
-        (r"^flat$", "deep"),
-        (r"^_wafer = extent.*$", f"_wafer = input{active}"),
-        (r"^connect\((substrate__\w+), _wafer\)$", r'connect_global(\1, "SUBSTRATE")'),
-    )
-    for pattern, text in changes:
-        deck, found = re.subn(pattern, text, deck, flags=re.M)
-        if found != 1:
-            raise StepError(f"lvs: the deck has {found} lines like {pattern}, one was expected")
-    return deck
-
-
-def with_ports(deck: str, netlist: Netlist) -> str:
-    """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match."""
-    if "\nalign\n" not in deck:
-        raise StepError("lvs: the deck has no 'align'")
-    names = [net for port in netlist.ports for net in port.bits()] + list(SUPPLIES)
-    lines = "".join(f'same_nets!("{netlist.name}", "{net}", "{net}")\n' for net in names)
-    return deck.replace("\nalign\n", f"\nalign\n{lines}")

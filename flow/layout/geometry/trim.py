@@ -1,23 +1,31 @@
-"""Ends of wires that came too near to those of other wires are trimmed.
+"""Ends of segments that are too near to those of other segments are trimmed.
 
 The router's gauge sets pads side by side a few nm nearer than the process allows (0.11 to 0.13 um where 0.14 um is
-asked, a handful in a million um of wire). A pad reaches farther over its cut than it must, so that half the lack is
-taken from either side; whether that was right, the design rules and the layout-against-netlist check say afterwards.
+required, a handful in a million um of wire length). A pad encloses its via by more than it must, so that half the lack
+is taken from either side; DRC and LVS check the result.
 """
 
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from platforms.layers import Layer
+
+if TYPE_CHECKING:
+    import klayout.db as db
+
 GRID_NM = 5
-MOST_NM = 25  # that an end may lose: what pads have over the least enclosure of a cut
+MOST_NM = 25  # that an end may lose: what pads have over the least enclosure of a via
 END_NM = 500  # a longer edge is a side, which stays as it is
 
 
-def trim(layout, top, wires, spaces):
-    """Trim in the top cell ``top``; wires: of the process; spaces: dict wire -> least space (um). Returns ends cut."""
+def trim(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: Mapping[str, float]) -> int:
+    """Trim in the top cell ``top``; spaces: least, by layer (um). Returns how many ends."""
     import klayout.db as db
 
-    cuts = 0
-    for wire in wires:
-        layer = layout.layer(*wire.gds)
-        space = round(spaces[wire.name] / layout.dbu)
+    trimmed = 0
+    for metal in metals:
+        layer = layout.layer(*metal.gds)
+        space = round(spaces[metal.name] / layout.dbu)
         boxes = []
         for pair in db.Region(top.begin_shapes_rec(layer)).space_check(space, True, db.Region.Projection).each():
             edges = (pair.first, pair.second), (pair.second, pair.first)
@@ -27,11 +35,11 @@ def trim(layout, top, wires, spaces):
             if 0 < depth <= MOST_NM:
                 boxes += [_strip(edge, other, depth) for edge, other in ends]
         _subtract(top.shapes(layer), boxes)
-        cuts += len(boxes)
-    return cuts
+        trimmed += len(boxes)
+    return trimmed
 
 
-def _strip(edge, other, depth):
+def _strip(edge: "db.Edge", other: "db.Edge", depth: int) -> "db.Box":
     """The box ``depth`` deep behind ``edge``, away from ``other``."""
     import klayout.db as db
 
@@ -43,7 +51,7 @@ def _strip(edge, other, depth):
     return db.Box(a.left, a.bottom - depth if below else a.bottom, a.right, a.bottom if below else a.bottom + depth)
 
 
-def _subtract(shapes, boxes):
+def _subtract(shapes: "db.Shapes", boxes: "Iterable[db.Box]") -> None:
     """Take ``boxes`` out of ``shapes`` where they meet."""
     import klayout.db as db
 

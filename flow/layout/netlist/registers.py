@@ -163,6 +163,7 @@ class Cut:
         guess: dict[Bit, Bit | None] = {bit: "1" if behind[bit] else "0" for bit in missing if behind[bit] in (0, ALL)}
         wrong: dict[Bit, set[Bit]] = {bit: set() for bit in guess}
         kept = 0
+        cone = cache(self._cone)
         for _ in range(TURNS):
             now = {bit: rng.getrandbits(LANES) for bit in behind}
             now |= {bit: levels[held] if held in levels else now[held] for bit, held in guess.items() if held}
@@ -181,7 +182,7 @@ class Cut:
                         and not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other])
                     ),
                     default=None,
-                    key=lambda other, bit=bit: len(self._cone(bit) ^ self._cone(other)),
+                    key=lambda other, bit=bit: len(cone(bit) ^ cone(other)),
                 )
             kept = kept + 1 if better == guess and None not in guess.values() else 0
             guess = better
@@ -189,7 +190,6 @@ class Cut:
                 break
         return {bit: held for bit, held in guess.items() if held}
 
-    @cache
     def _cone(self, bit: Bit) -> frozenset[Bit]:
         """Bits that the next state of a register (Q bit) comes from."""
         return self._fan_in(self.registers[bit])
@@ -268,8 +268,8 @@ class Cut:
         """Return (number of x, the cut design as BLIF). Its inputs: those of the design, ``states``, ``unknown`` x.
 
         states: names by Q bit. given: by Q bit '0', '1' or a Q bit, what a register is assumed to hold. checked: bits
-        or constants by the name of the output. fixed: '0' or '1' by the name of the input. more: (name, lines) of further
-        outputs.
+        or constants by the name of the output. fixed: '0' or '1' by the name of the input. more: (name, lines) of
+        further outputs.
         """
         lines, net, used = self.network(states, given, fixed)
         for name, bit in checked.items():

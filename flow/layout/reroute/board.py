@@ -19,7 +19,7 @@ Layers = dict[int, Boxes]  # boxes by level of RoutingRules.layers
 
 
 class NetShapes(TypedDict):
-    """A net's segments, vias and, of every pin, the boxes of which any may be met, as coriolis.dump writes them (um)."""
+    """A net's segments, vias and, of every pin, the boxes of which any is to be met, as coriolis.dump has them (um)."""
 
     segments: list[list[Any]]
     vias: list[list[Any]]

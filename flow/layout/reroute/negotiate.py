@@ -4,7 +4,6 @@ That is negotiated congestion as in PathFinder (McMurchie and Ebeling, FPGA 1995
 routed.
 """
 
-import re
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -104,8 +103,3 @@ def reroute(board: Board, pins: Pins, left: Sequence[str], most: int, gds: Path,
         negotiate(board, pins, wanted, state)
         near, charged = (), ()
     return state
-
-
-def open_nets(log: str) -> list[str]:
-    """Names of the nets with a segment that the router gave up, by its own list: in order, each once."""
-    return list(dict.fromkeys(re.findall(r"^\s+\d+\| &<id:\d+ (?:Horizontal|Vertical) (\S+) ", log, re.M)))

@@ -1,25 +1,25 @@
 """Antennas of a layout, layer by layer."""
 
 import json
+from typing import Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..geometry.antenna import violations
 from .parameters import PdkParameters
 
 
-class Antenna(Step):
+class Antenna(Step[PdkParameters]):
     """Every layer in turn, on the connections that exist by then."""
 
     name = "antenna"
     inputs = {"gds": "fill.gds"}
     outputs = {"summary": "antenna.json"}
-    Parameters = PdkParameters
     metrics = {"antenna_violations": ""}
     tools = ("python klayout",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         import klayout.db as db
 
         tech, layout = self.tech(), db.Layout()

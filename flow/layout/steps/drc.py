@@ -1,8 +1,9 @@
 """Design rules: the deck that PDKMaster exports for the process, in KLayout."""
 
 import json
+from typing import Any
 
-from base.steps import Step, StepError
+from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
 from ..geometry.decks import hole_rules, run_deck, violations, with_flat_spaces
@@ -11,7 +12,7 @@ from .parameters import PdkParameters
 WARNING = "[Warning]"
 
 
-class Drc(Step):
+class Drc(Step[PdkParameters]):
     """Every rule of the deck over the whole layout; the report opens in KLayout.
 
     What the deck calls a warning (wide metal nearer than long parallel runs may be) is in the report and no violation:
@@ -21,11 +22,10 @@ class Drc(Step):
     name = "drc"
     inputs = {"gds": "fill.gds", "deck": "library.drc"}
     outputs = {"report": "drc.lyrdb", "summary": "drc.json", "deck": "spaces.drc"}
-    Parameters = PdkParameters
     metrics = {"drc_violations": ""}
     tools = ("klayout",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         log = outputs["report"].with_suffix(".log")
         deck = with_flat_spaces(inputs["deck"].read_text())
         outputs["deck"].write_text("\n".join([deck, *hole_rules(coriolis_platform(self.parameters.pdk))]) + "\n")

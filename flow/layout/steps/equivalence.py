@@ -4,8 +4,9 @@ import json
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from base.tools import run
 
 from ..netlist.equivalence import Pair, match
@@ -33,13 +34,13 @@ class EquivalenceParameters:
     seconds: int = 600
 
 
-class Equivalence(Step):
+class Equivalence(Step[EquivalenceParameters]):
     """Outputs and next states are equal as functions of inputs and states, the cells being what the Liberty says.
 
     A register of the RTL that the netlist lacks and that reaches an output must be a constant, or the duplicate of
     another: it is proven to be so after a reset, and to stay so (induction); the proof then uses that. Where the
-    Verilog leaves an output open (an array read beyond its end is x), so that it differs between all x at 0 and at 1, the
-    netlist may have either; the next states of registers must not depend on an x.
+    Verilog leaves an output open (an array read beyond its end is x), so that it differs between all x at 0 and at 1,
+    the netlist may have either; the next states of registers must not depend on an x.
     """
 
     name = "equivalence"
@@ -50,11 +51,10 @@ class Equivalence(Step):
         "liberty": "library.liberty",
     }
     outputs = {"summary": "equivalence.json"}
-    Parameters = EquivalenceParameters
     metrics = {"equivalence": "", "registers": "", "constant_registers": "", "double_registers": ""}
     tools = ("yosys",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p = self.parameters
         with tempfile.TemporaryDirectory(prefix="talbot-") as name:
             folder = Path(name)
@@ -64,7 +64,9 @@ class Equivalence(Step):
             missing = sorted(gold.live() - set(states), key=int)
             held = gold.substitutes(missing, states, p.reset)
             proofs = Pair(gold, gate, states, gate_states, folder, p.seconds, held).prove(missing, p.reset)
-        lacking = {gold.names[bit][0]: gold.names.get(held.get(bit), [held.get(bit)])[0] for bit in missing}
+        lacking = {
+            gold.names[bit][0]: gold.names.get(held[bit], [held[bit]])[0] if bit in held else None for bit in missing
+        }
         outputs["summary"].write_text(json.dumps({"proofs": proofs, "missing": lacking}, indent=1) + "\n")
         constants = sum(value in ("0", "1") for value in held.values())
         return {

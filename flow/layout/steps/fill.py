@@ -1,16 +1,17 @@
 """Metal fill of every layer except the lowest."""
 
 import json
+from typing import Any
 
 from base.gds import write_gds
-from base.steps import Step
+from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
 from ..geometry.fill import fill, peak_density
 from .parameters import PdkParameters
 
 
-class Fill(Step):
+class Fill(Step[PdkParameters]):
     """The largest squares first, until a layer has its density or no room.
 
     before, after: density of every layer in its densest window. density_violations: layers with more than the process
@@ -20,11 +21,10 @@ class Fill(Step):
     name = "fill"
     inputs = {"gds": "stream_out.gds"}
     outputs = {"gds": "layout.gds", "summary": "fill.json"}
-    Parameters = PdkParameters
     metrics = {"squares": "", "before": "", "after": "", "density_violations": ""}
     tools = ("python klayout",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         import klayout.db as db
 
         tech, layout = coriolis_platform(self.parameters.pdk), db.Layout()

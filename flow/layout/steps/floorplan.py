@@ -80,7 +80,7 @@ class Floorplan(Step[FloorplanParameters]):
         }
 
     def check(self, netlist: Netlist, areas: dict[str, float], macros: dict[str, str]) -> None:
-        """Raise StepError unless all cells have a layout and ``macros`` (cells by instance) are those in the netlist."""
+        """Raise StepError unless all cells have a layout and ``macros`` (cell by instance) are those in the netlist."""
         modules = set(macros.values())
         if unknown := sorted({i.cell for i in netlist.instances} - set(areas) - modules):
             raise StepError(

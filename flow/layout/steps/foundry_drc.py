@@ -1,19 +1,19 @@
-"""Design rules once more, by the decks of the foundry's PDK where the user has one: in KLayout and in Magic."""
+"""Design rules by the decks of the foundry's PDK, where it is installed: in KLayout and in Magic."""
 
 import json
 import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from base.steps import Step, StepError
+from base.steps import Files, Step, StepError
 from base.tools import finish
 from platforms.foundry import foundry_checks
 
-from . import klayout_decks
-from .klayout_decks import run_deck, violations
+from ..geometry.decks import run_deck, violations
 
-# Of every rule that is broken, a line: how often, a tabulator, Magic's words
+# A line for every broken rule: how often, a tabulator, Magic's message
 MAGIC = """
 if {{"drc(full)" ni [drc listall style]}} {{
   puts "error: the technology [tech name] has no style drc(full)"
@@ -43,64 +43,61 @@ class FoundryDrcParameters:
     top: str = ""
 
 
-class FoundryDrc(Step):
-    """The KLayout deck over the whole layout, with all of its rules that are meant for blocks."""
+class FoundryDrc(Step[FoundryDrcParameters]):
+    """The KLayout deck over the whole layout, with all of its rules for blocks."""
 
     name = "foundry_drc"
     inputs = {"gds": "fill.gds", "deck": "foundry.klayout"}
     outputs = {"report": "foundry.lyrdb", "summary": "foundry_drc.json"}
-    Parameters = FoundryDrcParameters
     metrics = {"foundry_drc_violations": ""}
-    uses = (klayout_decks,)
     tools = ("klayout",)
 
-    def run(self, inputs, outputs):
-        said = {
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        variables = {
             "input": inputs["gds"].resolve(),
             "topcell": self.parameters.top,
             "report": outputs["report"].resolve(),
             **dict(foundry_checks(self.parameters.pdk).defines),
         }
         log = outputs["report"].with_suffix(".log")
-        if run_deck(inputs["deck"].resolve(), {}, log, said):
-            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_telling(log.read_text())}")
+        if run_deck(inputs["deck"].resolve(), {}, log, variables):
+            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_error_line(log.read_text())}")
         found = violations(outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"foundry_drc_violations": sum(found.values())}
 
 
-class MagicDrc(Step):
+class MagicDrc(Step[FoundryDrcParameters]):
     """Magic's own rules, over the layout as Magic reads it."""
 
     name = "magic_drc"
     inputs = {"gds": "fill.gds", "magic": "foundry.magic"}
     outputs = {"report": "magic_drc.txt"}
-    Parameters = FoundryDrcParameters
     metrics = {"magic_drc_violations": ""}
     tools = ("magic",)
 
-    def run(self, inputs, outputs):
-        folder, known = outputs["report"].parent.resolve(), foundry_checks(self.parameters.pdk)
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        folder, deck = outputs["report"].parent.resolve(), foundry_checks(self.parameters.pdk)
         magic = inputs["magic"].resolve()
-        root = Path(str(magic).removesuffix(known.magic))
+        root = Path(str(magic).removesuffix(deck.magic))
         script = folder / "drc.tcl"
         script.write_text(
             MAGIC.format(gds=inputs["gds"].resolve(), top=self.parameters.top, report=outputs["report"].resolve())
         )
         done = finish(
-            ["magic", "-dnull", "-noconsole", "-rcfile", magic / known.rc, script],
+            ["magic", "-dnull", "-noconsole", "-rcfile", magic / deck.rc, script],
             cwd=folder,
             env={"PDK_ROOT": str(root), "HOME": os.environ.get("HOME", "/tmp")},
         )
         lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
         if done.returncode or lines[-1:] != ["end"]:
-            raise StepError(f"magic_drc: Magic failed: {_telling(done.stdout + done.stderr)}")
+            raise StepError(f"magic_drc: Magic failed: {_error_line(done.stdout + done.stderr)}")
         script.unlink()
         return {"magic_drc_violations": sum(int(line.split("\t")[0]) for line in lines[:-1])}
 
 
-def _telling(words):
-    """The line of a tool's ``words`` that tells what went wrong, else the last."""
-    said = [line.strip() for line in words.splitlines() if line.strip()]
-    told = [line for line in said if re.search(r"(?i)^error|undefined|ERROR:", line)]
-    return (told or said or ["it ended without a word"])[0 if told else -1]
+def _error_line(output: str) -> str:
+    """The line of a tool's ``output`` with the error, else the last."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    errors = [line for line in lines if re.search(r"(?i)^error|undefined|ERROR:", line)]
+    return (errors or lines[-1:] or ["it ended with no message"])[0]

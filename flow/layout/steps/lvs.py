@@ -1,14 +1,17 @@
 """Layout against netlist, down to transistors: the deck that PDKMaster exports for the process, in KLayout."""
 
-from base.steps import Step, StepError
+from typing import Any
+
+from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
-from ..geometry.decks import hierarchical, run_deck, with_ports
+from ..geometry.decks import run_deck
+from ..geometry.lvs_deck import hierarchical, with_ports
 from ..netlist.netlist import Netlist
 from .parameters import PdkParameters
 
 
-class Lvs(Step):
+class Lvs(Step[PdkParameters]):
     """The reference is the final netlist with the cells' transistor netlists; every port must match by name.
 
     A cell is compared once, transistor by transistor, and its instances by their pins: a fifth of the flat comparison's
@@ -18,11 +21,10 @@ class Lvs(Step):
     name = "lvs"
     inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "place_route.netlist", "deck": "library.lvs"}
     outputs = {"report": "lvs.lvsdb", "deck": "ports.lvs"}
-    Parameters = PdkParameters
     metrics = {"lvs_match": ""}
     tools = ("klayout",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         deck = hierarchical(inputs["deck"].read_text(), coriolis_platform(self.parameters.pdk).active)
         outputs["deck"].write_text(with_ports(deck, Netlist.read(inputs["netlist"])))
         log = outputs["report"].with_suffix(".log")

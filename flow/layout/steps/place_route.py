@@ -1,29 +1,28 @@
 """Power, placement, clock tree and routing: Coriolis, in a process of its own."""
 
 import json
-import re
 import sys
 import tempfile
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
-from base.gds import write_gds
 from base.paths import ROOT
-from base.steps import Step, StepError
+from base.steps import Files, Step
 from base.tools import finish
 from models.parameters import check_int, check_real
 from platforms.coriolis import coriolis_platform
 
-from ..geometry import macro as macro_module
+from ..coriolis.log import open_segments
 from ..geometry.macro import Macro
-from ..netlist import netlist as netlist_module
-from ..netlist.names import plain_names
-from ..netlist.netlist import SUPPLIES, Instance, Netlist
+from ..geometry.macro_cells import OVER_UM, make_solid
+from ..netlist.names import plain_macros, plain_names
+from ..netlist.netlist import Netlist
+from ..netlist.routed import placement, routed_netlist
 
-OVER_UM = 0.4  # that wires of a block may lie over its edge: half a wire on a track there
 MODEL = "talbot_block"  # Coriolis works in lower case
-BLOCK = "macro"  # and a number: a block's cell in Coriolis
 PHASES = ("clock_tree", "placement", "power", "routing")
 
 
@@ -41,17 +40,17 @@ class PlaceRouteParameters:
     density_variation: float = 0.05
     strap_pitch_um: float = field(default=45.0, metadata={"unit": "um"})
     events: int = 4_000_000
-    macros: tuple = ()
+    macros: tuple[str, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_int("effort", self.effort, 1, 3)
         check_real("density_variation", self.density_variation, 0.01, 0.9)
         check_real("strap_pitch_um", self.strap_pitch_um, 10, 1000)
         check_int("events", self.events, 1000, 100_000_000)
 
 
-class PlaceRoute(Step):
-    """Everything between a floorplan and a routed layout happens in one database, which Coriolis cannot store."""
+class PlaceRoute(Step[PlaceRouteParameters]):
+    """Everything between a floorplan and a routed layout, in one database, which Coriolis cannot store."""
 
     name = "place_route"
     inputs = {
@@ -60,7 +59,6 @@ class PlaceRoute(Step):
         "coriolis": "library.coriolis",
         "geometry": "library.geometry",
     }
-    uses = (macro_module, netlist_module)
     outputs = {
         "gds": "routed.gds",
         "netlist": "netlist.json",
@@ -68,7 +66,6 @@ class PlaceRoute(Step):
         "shapes": "shapes.json",
         "log": "coriolis.log",
     }
-    Parameters = PlaceRouteParameters
     metrics = {
         "routed": "",
         "stopped": "",
@@ -80,40 +77,40 @@ class PlaceRoute(Step):
     }
     tools = ("python coriolis-eda", "python klayout")
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: PlaceRouteParameters) -> None:
         super().__init__(parameters)
-        self.inputs = self.inputs | {module: f"macro.{module}.lef" for module in parameters.macros}
+        self.inputs = {**self.inputs, **{module: f"macro.{module}.lef" for module in parameters.macros}}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         netlist = Netlist.read(inputs["netlist"])
         names = plain_names(netlist, self.parameters.clock)
         plan = json.loads(inputs["floorplan"].read_text())
-        blocks = plain_blocks(netlist, plan["macros"])
-        request = self.request(inputs, plan, names, netlist, blocks)
+        macros = plain_macros(netlist, plan["macros"])
+        request = self.request(inputs, plan, names, netlist, macros)
         with tempfile.TemporaryDirectory(dir=outputs["log"].parent) as work:
-            result = self.coriolis(Path(work), netlist.blif(MODEL, names, blocks), request, outputs)
+            result = self.coriolis(Path(work), netlist.blif(MODEL, names, macros), request, outputs)
         if "stopped" in result:
             for name in ("gds", "netlist", "placement", "shapes"):
                 outputs[name].write_text("")
             return dict.fromkeys(self.metrics) | {"routed": False, "stopped": result["stopped"]}
         make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
-        final = routed_netlist(netlist, names, result["instances"], blocks)
+        final = routed_netlist(netlist, names, result["instances"], macros)
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
-        wires = [wire for net in result["segments"].values() for wire in net]
+        lengths = [length for net in result["segments"].values() for _, length, _ in net]
         cells = sum(bool(instance.pins) for instance in final.instances)
         return {
             "routed": result["routed"],
             "stopped": None,
             "open_segments": open_segments(outputs["log"].read_text()),
-            "wire_um": round(sum(wire[1] for wire in wires), 1),
-            "vias": sum(not wire[1] for wire in wires),
+            "wire_um": round(sum(lengths), 1),
+            "vias": lengths.count(0),
             "clock_buffers": cells - len(netlist.instances),
             **{f"{name}_s": round(result["times"].get(name, 0), 2) for name in PHASES},
         }
 
-    def coriolis(self, work, blif, request, outputs):
-        """Run it in the folder ``work``; returns its result (dict), {"stopped": its last words} if it gave up."""
+    def coriolis(self, work: Path, blif: str, request: dict[str, Any], outputs: Files) -> dict[str, Any]:
+        """Run it in the folder ``work``; returns its result, {"stopped": its last message} if it gave up."""
         (work / f"{MODEL}.blif").write_text(blif)
         (work / "request.json").write_text(json.dumps(request))
         done = finish(
@@ -121,121 +118,52 @@ class PlaceRoute(Step):
         )
         outputs["log"].write_text(done.stdout + done.stderr)
         if done.returncode or not (work / "result.json").exists():
-            said = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
-            return {"stopped": (said or ["it ended without a word"])[-1].strip()}
+            lines = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
+            return {"stopped": (lines or ["it ended with no message"])[-1].strip()}
         next(work.glob("*.gds")).replace(outputs["gds"])
         (work / "shapes.json").replace(outputs["shapes"])
         return json.loads((work / "result.json").read_text())
 
-    def request(self, inputs, plan, names, netlist, blocks):
-        """What Coriolis is asked for."""
-        p = self.parameters
-        known = coriolis_platform(p.pdk)
+    def request(
+        self,
+        inputs: Files,
+        plan: dict[str, Any],
+        names: Mapping[str, str],
+        netlist: Netlist,
+        macros: Mapping[str, tuple[str, Mapping[str, str]]],
+    ) -> dict[str, Any]:
+        """What flow.layout.coriolis reads, for JSON."""
+        p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         return {
             "cell": MODEL,
             "library": str(inputs["coriolis"].resolve()),
             "clock_tree": bool(p.clock),
             **{name: plan[name] for name in ("width_um", "height_um", "tree")},
             "macros": [
-                self.macro(inputs, block, netlist, *blocks[block["instance"]], known) for block in plan["macros"]
+                self.macro(Macro.read(inputs[macro["cell"]], tech), macro, netlist, *macros[macro["instance"]])
+                for macro in plan["macros"]
             ],
             "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
-            "metals": [asdict(metal) for metal in known.metals],
-            "vias": [asdict(via) for via in known.vias],
+            "metals": [asdict(metal) for metal in tech.metals],
+            "vias": [asdict(via) for via in tech.vias],
             **{
-                name: getattr(known, name)
+                name: getattr(tech, name)
                 for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
             },
             "over_um": OVER_UM,
             **{name: getattr(p, name) for name in ("effort", "density_variation", "strap_pitch_um", "events")},
         }
 
-    def macro(self, inputs, block, netlist, name, pins, known):
-        """A block laid out before, by its LEF, as Coriolis is told of it; its pins as [pin, whether it leads anywhere,
-        direction, wire, box]."""
-        macro = Macro.read(inputs[block["cell"]], known)
+    def macro(
+        self, macro: Macro, placed: dict[str, Any], netlist: Netlist, name: str, pins: Mapping[str, str]
+    ) -> dict[str, Any]:
+        """A macro in the request; its pins as [pin, whether its net has another end, direction, layer, box]."""
         ends = Counter(net for instance in netlist.instances for net in instance.pins.values())
         ends.update(net for port in netlist.ports for net in port.bits())
-        nets = next(instance.pins for instance in netlist.instances if instance.name == block["instance"])
+        nets = next(instance.pins for instance in netlist.instances if instance.name == placed["instance"])
         return {
             "name": name,
             "straps": macro.straps,
-            **{key: block[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
+            **{key: placed[key] for key in ("x_um", "y_um", "width_um", "height_um", "outer")},
             "pins": [[pins[pin], ends[nets[pin]] > 1, *piece] for pin, piece in macro.pins.items()],
         }
-
-
-def plain_blocks(netlist, placed):
-    """dict instance -> (cell, dict pin -> name) as Coriolis knows a block of the floorplan's list ``placed``."""
-    found = {instance.name: instance for instance in netlist.instances}
-    return {
-        block["instance"]: (f"{BLOCK}{k}", {pin: f"p{j}" for j, pin in enumerate(found[block["instance"]].pins)})
-        for k, block in enumerate(placed)
-    }
-
-
-def make_solid(gds, blocks, known):
-    """In the file ``gds``, make the cells of ``blocks`` (their entries for Coriolis) solid on all wires but the lowest,
-    but for the wires at their pins: for who routes after Coriolis, there is no way through a block."""
-    import klayout.db as db
-
-    if not blocks:
-        return
-    layout = db.Layout()
-    layout.read(str(gds))
-    for block in blocks:
-        cell, (left, bottom, *_) = layout.cell(block["name"]), block["outer"]
-        x, y = block["x_um"] - left, block["y_um"] - bottom
-        solid = db.DBox(x - OVER_UM, y - OVER_UM, x + block["width_um"] + OVER_UM, y + block["height_um"] + OVER_UM)
-        inside, keep_off = layout.create_cell(f"{block['name']}_solid"), max(known.pin_pitch_um.values())
-        cell.insert(db.CellInstArray(inside.cell_index(), db.Trans()))
-        for wire in known.metals[1:]:
-            layer = layout.layer(*wire.gds)
-            pins = db.Region(cell.shapes(layer)).sized(round(keep_off / layout.dbu))
-            inside.shapes(layer).insert(db.Region(solid.to_itype(layout.dbu)) - pins)
-    write_gds(layout, gds)
-
-
-def routed_netlist(netlist, names, placed, blocks):
-    """The netlist with what Coriolis added: the clock tree's buffers, and the cells that fill gaps.
-
-    placed: [name, cell, x, y, orientation, {pin: net}] of every instance. blocks: see `plain_blocks`. Raises StepError
-    if an instance went lost.
-    """
-    nets, instances, seen = {plain: net for net, plain in names.items()}, [], set()
-    for name, cell, *_, pins in placed:
-        pins = {pin: nets.get(net, f"cts_{net}") for pin, net in pins.items() if pin not in SUPPLIES}
-        number = _number(name)
-        if number is not None:
-            seen.add(number)
-            was = netlist.instances[number]
-            name = was.name
-            if name in blocks:
-                cell, pins = was.cell, {pin: pins[plain] for pin, plain in blocks[name][1].items()}
-        instances.append(Instance(name, cell, pins))
-    if len(seen) != len(netlist.instances):
-        raise StepError(f"place_route: {len(netlist.instances) - len(seen)} instances are not in the layout")
-    return Netlist(netlist.name, netlist.ports, tuple(instances))
-
-
-def _number(name):
-    """Place in the BLIF file of an instance that came from it, or None."""
-    match = re.fullmatch(r"subckt_(\d+)_\w+", name)
-    return int(match[1]) if match else None
-
-
-def placement(names, result):
-    """What reports and the extraction want to know of the layout, nets by their own names."""
-    nets = {plain: net for net, plain in names.items()}
-    return {
-        "straps": result["straps"],
-        "pins": [[side, nets[net], at] for side, net, at in result["pins"]],
-        "instances": [[number, *rest[:4]] for number, rest in ((_number(i[0]), i[1:]) for i in result["instances"])],
-        "segments": {nets.get(net, f"cts_{net}"): wires for net, wires in result["segments"].items()},
-    }
-
-
-def open_segments(log):
-    """Wires that the router gave up."""
-    found = re.search(r"Track Segment.*\[(\d+)\+(\d+)\]", log)
-    return int(found[2]) if found else 0

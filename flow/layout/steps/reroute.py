@@ -2,16 +2,18 @@
 
 import json
 from dataclasses import dataclass
+from typing import Any
 
 from base.gds import write_gds
-from base.steps import Step
+from base.steps import Files, Step
 from models.parameters import check_int
 from platforms.coriolis import coriolis_platform
 
+from ..coriolis.log import open_nets
 from ..netlist.names import plain_names
 from ..netlist.netlist import Netlist
 from ..reroute.board import Board
-from ..reroute.negotiate import open_nets, reroute
+from ..reroute.negotiate import reroute
 from ..reroute.rules import RoutingRules
 
 
@@ -23,11 +25,11 @@ class RerouteParameters:
     clock: str = "clk"
     most: int = 60
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_int("most", self.most, 0, 10_000)
 
 
-class Reroute(Step):
+class Reroute(Step[RerouteParameters]):
     """Rip-up and reroute with negotiated congestion.
 
     open_nets: still open. rerouted_nets: rerouted because they were open; antenna_jumpers: because of an antenna, with
@@ -46,7 +48,6 @@ class Reroute(Step):
         "geometry": "library.geometry",
     }
     outputs = {"gds": "rerouted.gds", "placement": "placement.json"}
-    Parameters = RerouteParameters
     metrics = {
         "open_nets": "",
         "rerouted_nets": "",
@@ -57,7 +58,7 @@ class Reroute(Step):
     }
     tools = ("python klayout",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         import klayout.db as db
 
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)

@@ -1,22 +1,20 @@
 """Verilog -> a netlist of the library's cells, registers with the names that they have in the Verilog."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from base.liberty.read import areas
-from base.steps import Step
+from base.steps import Files, Step
 from base.tools import run
 from models.parameters import check_int, check_real
 
-from ..netlist import buffering as buffering_module
-from ..netlist import netlist as netlist_module
+from ..geometry.floorplan import pins
 from ..netlist.buffering import buffer_fan_out, buffer_outputs
 from ..netlist.netlist import Buffer, Netlist, is_register, register_names
-from . import floorplan
-from .floorplan import pins
 
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
-BARE_PF = 0.1  # load of an output above which it has a buffer of its own
-AIM = 0.25  # share of the period that the mapper is asked for: it knows one corner and no wires
+BARE_PF = 0.1  # load of an output above which it has its own buffer
+AIM = 0.25  # share of the period that the mapper aims at: it knows one corner and no parasitics
 SCRIPT = """
 read_verilog -sv {rtl}
 {blocks}
@@ -42,37 +40,37 @@ write_json {json}
 
 @dataclass(frozen=True)
 class SynthesisParameters:
-    """top: module. period_ns: of the clock. fan_out: most cells behind one signal, 0 for no limit. load_pf: of an
-    output. macros: modules that were laid out before and stay what they are."""
+    """top: module. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit. load_pf: of an output.
+
+    macros: modules laid out before, black boxes here.
+    """
 
     top: str = ""
     period_ns: float = field(default=10.0, metadata={"unit": "ns"})
     fan_out: int = 16
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
-    macros: tuple = ()
+    macros: tuple[str, ...] = ()
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.1, 10_000)
         check_int("fan_out", self.fan_out, 2 if self.fan_out else 0, 1000)
         check_real("load_pf", self.load_pf, 0, 1000)
 
 
-class Synthesis(Step):
-    """Yosys. FSMs keep their codes and registers their names, so that every one can be compared with the Verilog."""
+class Synthesis(Step[SynthesisParameters]):
+    """Yosys. FSMs keep their codes and registers their names, so that each can be compared with the Verilog."""
 
     name = "synthesis"
     inputs = {"rtl": "rtl", "liberty": "library.liberty"}
     outputs = {"netlist": "netlist.json", "verilog": "netlist.v"}
-    Parameters = SynthesisParameters
     metrics = {"cells": "", "flip_flops": "", "cell_area_um2": "um2"}
-    uses = (buffering_module, floorplan, netlist_module)
     tools = ("yosys",)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: SynthesisParameters) -> None:
         super().__init__(parameters)
-        self.inputs = self.inputs | {name: f"macro.{name}.verilog" for name in parameters.macros}
+        self.inputs = {**self.inputs, **{name: f"macro.{name}.verilog" for name in parameters.macros}}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder = self.parameters, outputs["netlist"].parent
         files = {name: folder / f"{name}.log" for name in ("mapping", "json", "registers", "script")}
         aim = AIM * p.period_ns * 1000
@@ -118,6 +116,6 @@ class Synthesis(Step):
 class TimedSynthesis(Synthesis):
     """With characterized cells at ``corner``: the mapper sizes and buffers by their tables."""
 
-    def __init__(self, parameters, corner):
+    def __init__(self, parameters: SynthesisParameters, corner: str) -> None:
         super().__init__(parameters)
-        self.inputs = self.inputs | {"timing": f"timing.{corner}"}
+        self.inputs = {**self.inputs, "timing": f"timing.{corner}"}

@@ -3,7 +3,8 @@
 import pytest
 
 from base.steps import StepError
-from flow.layout.geometry.decks import hierarchical, with_flat_spaces
+from flow.layout.geometry.decks import with_flat_spaces
+from flow.layout.geometry.lvs_deck import hierarchical
 
 DRC = """deep
 nwm = input(64, 20)

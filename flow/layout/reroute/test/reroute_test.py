@@ -6,7 +6,7 @@ import pytest
 
 from flow.layout.geometry.test.gate import gate
 from flow.layout.reroute.board import Board
-from flow.layout.reroute.negotiate import negotiate, open_nets
+from flow.layout.reroute.negotiate import negotiate
 from flow.layout.reroute.nets import route_net
 from flow.layout.reroute.rules import RoutingRules
 from flow.layout.reroute.violations import Violations, find, split_levels
@@ -246,14 +246,3 @@ def test_nets_that_are_too_near_or_have_an_antenna():
     assert board.touching(["w1"]) == {"w1"}
     parts = [find(board.drawn(), RULES, TECH, levels) for levels in split_levels(RULES, 2)]
     assert sum(parts, Violations()).nets(board, board.routed) == (["w1"], ["w0"])
-
-
-def test_open_nets_are_read_from_the_routers_list():
-    log = """  o  Routing did not complete, unrouted segments:
-      1| &<id:27198 Horizontal w916 m1 [44.37um 30.82um] [48.96um 30.82um] 0.32um rpD:3 ----- 0 ------->
-      2| &<id:43820 Vertical clk_root_0 m2 [48.96um 30.82um] [48.98um 30.82um] 0.32um rpD:1 --S---->
-      3| &<id:43821 Horizontal w916 m1 [48.96um 30.82um] [48.98um 30.82um] 0.32um rpD:1 --S---->
-[WARNING] Track::repair(): Closing same net gap in <HorizontalTrack [285] m1 @131.1um> near:
-          <id:660094 Vertical w10315 m2 [60.69um 333.2um] [60.69um 333.5um] 0.37um rpD:1>
-"""
-    assert open_nets(log) == ["w916", "clk_root_0"]

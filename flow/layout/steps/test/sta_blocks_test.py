@@ -6,7 +6,7 @@ import shutil
 import pytest
 
 from flow.layout.design import Design
-from flow.layout.geometry.assembly import flat
+from flow.layout.netlist.flatten import flattened
 from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
@@ -41,7 +41,7 @@ def run(step, inputs, folder):
 
 
 def test_the_liberty_of_a_block_stands_for_its_cells(tmp_path):
-    block, whole = small.shift(), flat(TOP, {"part": small.shift()})
+    block, whole = small.shift(), flattened(TOP, {"part": small.shift()})
     block.write(tmp_path / "block.json")
     TOP.write(tmp_path / "top.json")
     files = write(

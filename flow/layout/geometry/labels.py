@@ -1,0 +1,69 @@
+"""Labels of a streamed layout: the design's names on the layers that the process's decks read."""
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import TYPE_CHECKING
+
+from base.steps import StepError
+from platforms.coriolis import CoriolisPlatform
+
+from ..netlist.netlist import SUPPLIES
+
+if TYPE_CHECKING:
+    import klayout.db as db
+
+
+def relabel(layout: "db.Layout", names: Mapping[str, str], ports: Collection[str], tech: CoriolisPlatform) -> None:
+    """Give the labels of ``ports`` the names of the design and drop all others, and Coriolis's blockages.
+
+    names: by Coriolis's name. Of a port's labels that at the west or the east edge stays, and all of the supplies:
+    where a net was rerouted, the others are where its segments were, and fill may come there. Raises StepError when a
+    port has no label.
+    """
+    import klayout.db as db
+
+    top = layout.top_cell()
+    found, edges = {}, top.bbox()
+    for metal in tech.metals:
+        label = layout.layer(*metal.label)
+        pin = layout.layer(*metal.pin)
+        texts = top.shapes(layout.layer(metal.layer, 0))
+        labels = list(texts.each(db.Shapes.STexts))
+        for shape in labels:
+            net = names.get(shape.text.string, shape.text.string)
+            if net in ports:
+                from_edge = min(shape.text.x - edges.left, edges.right - shape.text.x)
+                found.setdefault(net, []).append((from_edge, (label, pin), shape.text.trans))
+        for shape in labels:
+            shape.delete()
+        if metal.datatype:  # else it is where the metal itself is
+            texts.clear()
+    if lacking := sorted(set(ports) - set(found)):
+        raise StepError(f"stream_out: ports without a pin in the layout: {', '.join(lacking[:5])}")
+    kept = {layout.layer(*metal.pin): [] for metal in tech.metals}
+    for net, texts in found.items():
+        for _, layers, place in texts if net in SUPPLIES else [min(texts, key=lambda text: text[0])]:
+            kept[layers[-1]].append(place.disp)
+            for layer in layers:
+                top.shapes(layer).insert(db.Text(net, place))
+    for layer, places in kept.items():
+        _clear_pins(top.shapes(layer), places)
+    for info in [info for info in layout.layer_infos() if info.layer == tech.blockage_layer]:
+        layout.clear_layer(layout.layer(info))
+
+
+def _clear_pins(shapes: "db.Shapes", places: Iterable["db.Vector"]) -> None:
+    """Leave of the boxes ``shapes`` of a pins' layer, for each of ``places``, the smallest one around it.
+
+    Coriolis marks all segments of a port's net as pins, also those that `reroute` moved; decks take a pin for metal.
+    """
+    import klayout.db as db
+
+    boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]
+    smallest = [
+        min((box for box in boxes if box.contains(db.Point() + place)), key=db.Box.area, default=None)
+        for place in places
+    ]
+    for shape in list(shapes.each(db.Shapes.SAll - db.Shapes.STexts)):
+        shape.delete()
+    for box in filter(None, smallest):
+        shapes.insert(box)
