@@ -9,7 +9,7 @@ from typing import Any
 
 from base.steps import Files, Step, StepError
 from base.tools import finish
-from platforms.foundry import foundry_checks
+from platforms.foundry import FoundryChecks, foundry_checks
 
 from ..geometry.decks import run_deck, violations
 
@@ -57,7 +57,7 @@ class FoundryDrc(Step[FoundryDrcParameters]):
             "input": inputs["gds"].resolve(),
             "topcell": self.parameters.top,
             "report": outputs["report"].resolve(),
-            **dict(foundry_checks(self.parameters.pdk).defines),
+            **dict(_checks(self.parameters.pdk).defines),
         }
         log = outputs["report"].with_suffix(".log")
         if run_deck(inputs["deck"].resolve(), {}, log, variables):
@@ -77,7 +77,7 @@ class MagicDrc(Step[FoundryDrcParameters]):
     tools = ("magic",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        folder, deck = outputs["report"].parent.resolve(), foundry_checks(self.parameters.pdk)
+        folder, deck = outputs["report"].parent.resolve(), _checks(self.parameters.pdk)
         magic = inputs["magic"].resolve()
         root = Path(str(magic).removesuffix(deck.magic))
         script = folder / "drc.tcl"
@@ -94,6 +94,14 @@ class MagicDrc(Step[FoundryDrcParameters]):
             raise StepError(f"magic_drc: Magic failed: {_error_line(done.stdout + done.stderr)}")
         script.unlink()
         return {"magic_drc_violations": sum(int(line.split("\t")[0]) for line in lines[:-1])}
+
+
+def _checks(pdk: str) -> FoundryChecks:
+    """The foundry's checks of ``pdk``. Raises StepError for a process without."""
+    found = foundry_checks(pdk)
+    if found is None:
+        raise StepError(f"foundry_drc: {pdk} has no foundry checks")
+    return found
 
 
 def _error_line(output: str) -> str:
