@@ -1,9 +1,10 @@
-"""Stiff and extreme cases of the optical side: what is expected of each, and what came out.
+"""Stiff and extreme cases of the optical models: what is expected of each, and what is measured.
 
-Run with NumPy's warnings as errors (flow/stability.py does); nothing here may warn or make a NaN.
+Run with NumPy's warnings as errors (as flow/stability.py does): no case may warn or produce a NaN.
 """
 
 import tempfile
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -32,7 +33,15 @@ from models.scene import Sampling, load
 
 @dataclass(frozen=True)
 class Case:
-    """name, and what was expected (bound) and measured, for people. ok: whether it held."""
+    """One case of the table.
+
+    Attributes
+    ----------
+    name, bound, measured : str
+        Name, expectation and measurement, as text.
+    ok : bool
+        The measurement meets the expectation.
+    """
 
     name: str
     bound: str
@@ -40,8 +49,19 @@ class Case:
     ok: bool
 
 
-def table(cases):
-    """The cases as text, one a line."""
+def table(cases: Iterable[Case]) -> str:
+    """Format cases as text, one per line.
+
+    Parameters
+    ----------
+    cases : iterable of Case
+        Rows of the table.
+
+    Returns
+    -------
+    str
+        Aligned columns with a header.
+    """
     rows = [
         ("case", "expected", "measured", ""),
         *((c.name, c.bound, c.measured, "ok" if c.ok else "FAILED") for c in cases),
@@ -50,8 +70,8 @@ def table(cases):
     return "\n".join("  ".join(str(v).ljust(w) for v, w in zip(r, widths, strict=True)).rstrip() for r in rows)
 
 
-def optical_cases():
-    """All optical cases: list of Case."""
+def optical_cases() -> list[Case]:
+    """Run all optical cases."""
     return [
         *_responses(),
         *_integrals(),
@@ -65,12 +85,12 @@ def optical_cases():
     ]
 
 
-def _within(name, bound, value, low, high, unit=""):
-    """A Case that holds where low <= value <= high (never for NaN)."""
-    return Case(name, bound, f"{value:.3g}{unit}", bool(low <= value <= high))
+def _within(name: str, bound: str, value: float, low: float, high: float) -> Case:
+    """A case that is ok where low <= value <= high (never for NaN)."""
+    return Case(name, bound, f"{value:.3g}", bool(low <= value <= high))
 
 
-def _responses():
+def _responses() -> list[Case]:
     """rho out to grazing light for every extreme of m and beta, in both precisions."""
     out = []
     for dtype in ("float32", "float64"):
@@ -87,7 +107,7 @@ def _responses():
     return out
 
 
-def _integrals():
+def _integrals() -> list[Case]:
     """View weights against the adaptive quadrature at the extremes of the optics."""
     types = (PixelType(0, 0, 0.4), PixelType(50, 30, 0.4))
     still = Ripple(periods=0)
@@ -110,8 +130,8 @@ def _integrals():
     return out
 
 
-def _unseen_diode():
-    """m = 1, beta = 0: the second diode sees nothing; its capacitor ratio would be infinite."""
+def _unseen_diode() -> Case:
+    """m = 1, beta = 0: the second diode receives nothing; its capacitor ratio would be infinite."""
     g = gains(np.array([-1.0, 1.0]))
     return Case(
         "trim of a pixel with one blind diode",
@@ -121,7 +141,7 @@ def _unseen_diode():
     )
 
 
-def _exposures():
+def _exposures() -> list[Case]:
     """Currents, noise and wells far beyond the working range."""
     pair = np.stack([np.full((8, 12), 0.5), np.full((8, 12), 0.4)])
     full = ElectricalParameters(read_noise=0, offset_fpn=0)
@@ -155,7 +175,7 @@ def _exposures():
     return out
 
 
-def _frames():
+def _frames() -> list[Case]:
     """Whole captures of odd arrays, masks and scenes: every sample finite, unread pixels dark."""
     out = []
     for rows, cols, scene, mode, mask in (
@@ -173,7 +193,7 @@ def _frames():
         samples = capture(seen, sensor, made, Exposure(sensor.electrical, frame.timing, noise=0.0))
         dark = samples[:, ~made.read].max(initial=0.0)
         limit = 127.5 * (1 + 1e-12)
-        ok = np.isfinite(samples).all() and 0 <= samples.min() and samples.max() <= limit and dark < 0.001
+        ok = np.isfinite(samples).all() and samples.min() >= 0 and samples.max() <= limit and dark < 0.001
         out.append(
             Case(
                 f"capture of {scene}, {rows} x {cols}, {mode}, mask {mask:06x}",
@@ -185,7 +205,7 @@ def _frames():
     return out
 
 
-def _adjoint():
+def _adjoint() -> Case:
     """<Phi x, y> = <x, Phi' y> at the largest number of views."""
     sensor = SensorParameters(array=ArrayParameters(7, 11), optics=OpticsParameters(views=31, subsamples=2))
     operator, draw = CaptureOperator(sensor), np.random.default_rng(0)
@@ -195,13 +215,13 @@ def _adjoint():
     return _within(
         "capture operator and its transpose, 31 x 31 views",
         "relative difference <= 1e-12",
-        abs(left - right) / scale,
+        float(abs(left - right) / scale),
         0,
         1e-12,
     )
 
 
-def _one_view():
+def _one_view() -> Case:
     """One view in place of 25 equal ones, in single precision."""
     sensor = SensorParameters(array=ArrayParameters(12, 18))
     image = np.random.default_rng(0).random((12, 18), np.float32)
@@ -217,7 +237,7 @@ def _one_view():
     )
 
 
-def _pictures():
+def _pictures() -> list[Case]:
     """Picture files of every kind."""
     gray = np.tile(np.linspace(0, 255, 64).astype(np.uint8), (48, 1))
     good = {
@@ -235,7 +255,7 @@ def _pictures():
             path = Path(folder) / "picture.png"
             Image.fromarray(codes).save(path, compress_level=1)
             image = load(str(path), Sampling(16, 24)).image
-            ok = np.isfinite(image).all() and 0 <= image.min() and image.max() <= 1
+            ok = np.isfinite(image).all() and image.min() >= 0 and image.max() <= 1
             out.append(Case(f"picture: {name}", "radiance 0..1", f"{image.min():.3g}..{image.max():.3g}", bool(ok)))
         for name, value in bad.items():
             pixels = np.full((8, 12), 0.5, np.float32)
@@ -249,7 +269,7 @@ def _pictures():
     return out
 
 
-def _refused(name, path):
+def _refused(name: str, path: str) -> Case:
     try:
         load(path, Sampling(16, 24))
         measured = "accepted"
@@ -258,8 +278,8 @@ def _refused(name, path):
     return Case(name, "an error that names the field", measured, measured.startswith("scene = "))
 
 
-def _no_edges():
-    """A scene in focus makes no edges, so that the equations for its image are all zero."""
+def _no_edges() -> Case:
+    """A scene in focus has no edges, so that the equations for its image are all zero."""
     tile = TileParameters()
     operator = EdgeOperator(SensorParameters(array=ArrayParameters(8, 12)), np.zeros((8, 12)), np.ones(tile.n_types))
     image = image_from_edges(np.zeros((8, 12)), operator)

@@ -119,7 +119,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         "peak": PEAK,
         "signal_span": float(span),
         "energy_uj": energy_of(result),
-        "left_out": result.exposed.plan.left_out,
+        "left_out": [entry._asdict() for entry in result.exposed.plan.left_out],
         "rtl_cycles_per_s": chip.cycles / chip.seconds,
         "rtl_simulated_cycles": chip.cycles,
         "tools": {

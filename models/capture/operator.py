@@ -1,27 +1,63 @@
-"""Phi: the light field to the diodes and back, applied, never built [Jayasuriya2017, Eq. 3.3 to 3.5]."""
+"""Phi: from the light field to the diodes and back, applied, never built [Jayasuriya2017, Eq. 3.3 to 3.5]."""
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
-from models.parameters import ParameterError, check_choice
+from models.parameters import ParameterError, SensorParameters, check_choice
 from models.pixel.weights import view_weights
+
+Floats = npt.NDArray[np.floating]
+Ints = npt.NDArray[np.int64]
+
+
+class _Some(NamedTuple):
+    """Arguments of `_forward_some`; all rows at one position in the tile share their columns, as in every scan."""
+
+    lines: Ints  # rows to visit
+    columns: Ints  # (tile rows, most columns), padded
+    counts: Ints  # (tile rows,) columns of each
+    weights: Floats  # (tile rows, v, u, 2, most columns)
 
 
 class CaptureOperator:
-    """The linear map from a light field l[v, u, y, x] to the photocurrents of all diode pairs.
+    """Linear map from a light field l[v, u, y, x] to the photocurrents of all diode pairs.
 
-    sensor: SensorParameters. dtype: 'float32' or 'float64', of every array in and out.
-    angular: False where all views are equal: then the light field is (1, 1, rows, cols), and one view is read
-        instead of views squared. The result differs by rounding only (see `rounding`).
-    read: bool (rows, cols), pixels to compute; the others come out 0. None computes all. A pixel that is computed
-        has the same bits whatever the others do.
+    Photocurrents are relative: 1 is the average diode in a flat white scene.
 
-    Photocurrents are relative: 1 is a diode's average in a flat white scene.
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    dtype : str
+        'float32' or 'float64', the type of every array.
+    angular : bool
+        False where all views are equal: then the light field is (1, 1, rows, cols), and one view is read instead of
+        views squared. The result differs by rounding only (see `rounding`).
+    read : bool (rows, cols), optional
+        Pixels to compute; the others are 0. None computes all. The bits of a computed pixel do not depend on the
+        others.
+
+    Raises
+    ------
+    ParameterError
+        For a wrong dtype or shape.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.3 to 3.5.
     """
 
-    def __init__(self, sensor, dtype="float64", angular=True, read=None):
+    def __init__(
+        self,
+        sensor: SensorParameters,
+        dtype: str = "float64",
+        angular: bool = True,
+        read: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
         check_choice("dtype", dtype, ("float32", "float64"))
         self.sensor, self.dtype, self.angular = sensor, np.dtype(dtype), angular
         self.rows, self.cols = sensor.array.rows, sensor.array.cols
@@ -35,45 +71,57 @@ class CaptureOperator:
         self.read = None if read is None or read.all() else read
 
     @property
-    def shape(self):
-        """Of the light field."""
+    def shape(self) -> tuple[int, int, int, int]:
+        """Shape of the light field."""
         return self.views, self.views, self.rows, self.cols
 
+    @property
+    def _pixels(self) -> npt.NDArray[np.bool_]:
+        return np.ones((self.rows, self.cols), bool) if self.read is None else self.read
+
     @cached_property
-    def _spread(self):
+    def _spread(self) -> Floats:
         """Weights laid out along a row of pixels, for vector instructions: (tile rows, v, u, 2, cols)."""
         kinds = self.sensor.tile.type_map(self.sensor.tile.rows, self.cols)
         return np.ascontiguousarray(self.weights[kinds].transpose(0, 3, 4, 2, 1))
 
     @cached_property
-    def _some(self):
-        """What `_forward_some` needs: rows to visit, columns of each row of a tile (padded), how many, their weights.
-
-        All rows at one place in the tile share their columns, as in every scan.
-        """
+    def _some(self) -> _Some:
         height = self.sensor.tile.rows
-        masks = np.stack([self.read[r::height].any(0) for r in range(height)])
+        masks = np.stack([self._pixels[r::height].any(0) for r in range(height)])
         counts = masks.sum(1)
         columns = np.zeros((height, counts.max()), np.int64)
         for r in range(height):
             columns[r, : counts[r]] = np.flatnonzero(masks[r])
         kinds = self.sensor.tile.type_map(height, self.cols)
         weights = self.weights[np.take_along_axis(kinds, columns, 1)]
-        return (
-            np.flatnonzero(self.read.any(1)),
-            columns,
-            counts,
-            np.ascontiguousarray(weights.transpose(0, 3, 4, 2, 1)),
-        )
+        lines = np.flatnonzero(self._pixels.any(1))
+        return _Some(lines, columns, counts, np.ascontiguousarray(weights.transpose(0, 3, 4, 2, 1)))
 
     @cached_property
-    def _irregular(self):
-        """Whether rows at one place in the tile differ in their columns, so that `_forward_some` computes too much."""
+    def _irregular(self) -> bool:
+        """Whether rows at one position in the tile differ in their columns, so that `_forward_some` computes more."""
         lines, _, counts, _ = self._some
-        return counts[lines % len(counts)].sum() != self.read.sum()
+        return bool(counts[lines % len(counts)].sum() != self._pixels.sum())
 
-    def forward(self, light_field):
-        """Phi l: photocurrents of both diodes, (2, rows, cols)."""
+    def forward(self, light_field: Floats) -> Floats:
+        """Apply Phi.
+
+        Parameters
+        ----------
+        light_field : array (views, views, rows, cols)
+            l[v, u, y, x].
+
+        Returns
+        -------
+        array (2, rows, cols)
+            Photocurrents of both diodes.
+
+        Raises
+        ------
+        ParameterError
+            For a wrong shape or type.
+        """
         light_field = self._checked("light_field", light_field, self.shape)
         out = np.zeros((2, self.rows, self.cols), self.dtype)
         if self.read is None:
@@ -81,11 +129,27 @@ class CaptureOperator:
         else:
             _forward_some(light_field, *self._some, out)
             if self._irregular:
-                out *= self.read
+                out *= self._pixels
         return out
 
-    def transpose(self, pair):
-        """Phi' i: (2, rows, cols) back to (views, views, rows, cols). Pixels that are not read give nothing."""
+    def transpose(self, pair: Floats) -> Floats:
+        """Apply the transpose of Phi.
+
+        Parameters
+        ----------
+        pair : array (2, rows, cols)
+            Photocurrents of both diodes; pixels that are not read do not count.
+
+        Returns
+        -------
+        array (views, views, rows, cols)
+            l[v, u, y, x].
+
+        Raises
+        ------
+        ParameterError
+            For a wrong shape or type.
+        """
         pair = self._checked("pair", pair, (2, self.rows, self.cols))
         if self.read is not None:
             pair = pair * self.read
@@ -93,23 +157,35 @@ class CaptureOperator:
         _transpose(pair, self._spread, out)
         return out
 
-    def _checked(self, field, values, shape):
+    def _checked(self, field: str, values: Floats, shape: tuple[int, ...]) -> Floats:
         if values.shape != shape or values.dtype != self.dtype:
             raise ParameterError(f"{field} = {values.dtype} {values.shape}: must be {self.dtype} {shape}")
         return np.ascontiguousarray(values)
 
 
-def rounding(dtype, views):
-    """Relative difference at most between adding equal views one by one and taking the sum of their weights.
+def rounding(dtype: str, views: int) -> float:
+    """Largest relative difference between adding equal views one by one and using the sum of their weights.
 
-    The terms are positive, so each of the views**2 additions errs by at most one rounding of the sum.
+    The terms are positive, so each of the views**2 additions adds at most one rounding of the sum.
+
+    Parameters
+    ----------
+    dtype : str
+        'float32' or 'float64'.
+    views : int
+        Views along each axis.
+
+    Returns
+    -------
+    float
+        The bound.
     """
     return (views**2 + 2) * float(np.finfo(dtype).eps)
 
 
 # The kernels index whole arrays, not slices: only so does LLVM see that they do not overlap, and vectorizes.
 @njit(cache=True)
-def _forward(light_field, spread, out):
+def _forward(light_field: Floats, spread: Floats, out: Floats) -> None:
     views, rows, cols = light_field.shape[0], out.shape[1], out.shape[2]
     for y in range(rows):
         r = y % spread.shape[0]
@@ -122,7 +198,7 @@ def _forward(light_field, spread, out):
 
 
 @njit(cache=True)
-def _forward_some(light_field, lines, columns, counts, weights, out):
+def _forward_some(light_field: Floats, lines: Ints, columns: Ints, counts: Ints, weights: Floats, out: Floats) -> None:
     views = light_field.shape[0]
     total = np.empty((2, columns.shape[1]), out.dtype)
     for y in lines:
@@ -141,7 +217,7 @@ def _forward_some(light_field, lines, columns, counts, weights, out):
 
 
 @njit(cache=True)
-def _transpose(pair, spread, out):
+def _transpose(pair: Floats, spread: Floats, out: Floats) -> None:
     views, rows, cols = out.shape[0], out.shape[2], out.shape[3]
     for v in range(views):
         for u in range(views):

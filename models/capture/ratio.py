@@ -1,5 +1,6 @@
-"""How fast the capture operator is, measured against copying the light field."""
+"""Speed of the capture operator relative to copying the light field."""
 
+from collections.abc import Callable
 from time import perf_counter
 
 import numpy as np
@@ -9,18 +10,30 @@ from models.parameters import SensorParameters
 from .operator import CaptureOperator
 
 
-def capture_ratio(sensor=None, dtype="float64", repeats=5):
-    """Time of CaptureOperator.forward over the time of copying its light field, both the best of ``repeats``.
+def capture_ratio(sensor: SensorParameters | None = None, dtype: str = "float64", repeats: int = 5) -> float:
+    """Time of CaptureOperator.forward over the time of copying its light field.
 
-    sensor: SensorParameters, default the 384 x 384 sensor with 5 x 5 views.
+    Parameters
+    ----------
+    sensor : SensorParameters, optional
+        By default 384 x 384 pixels and 5 x 5 views.
+    dtype : str
+        'float32' or 'float64'.
+    repeats : int
+        Both times are the best of so many.
+
+    Returns
+    -------
+    float
+        Ratio.
     """
     operator = CaptureOperator(sensor or SensorParameters(), dtype)
     light_field = np.random.default_rng(0).random(operator.shape, operator.dtype)
-    operator.forward(light_field)  # compile, and lay the weights out
+    operator.forward(light_field)  # compile, and prepare the weights
     return _best(lambda: operator.forward(light_field), repeats) / _best(light_field.copy, repeats)
 
 
-def _best(run, repeats):
+def _best(run: Callable[[], object], repeats: int) -> float:
     times = []
     for _ in range(repeats):
         start = perf_counter()

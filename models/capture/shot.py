@@ -1,10 +1,11 @@
-"""Photon shot noise that a pixel draws by itself: what its neighbours see does not change it.
+"""Photon shot noise of one pixel, independent of its neighbours.
 
-A generator's own Poisson draws take more or fewer random bits as the mean wants; then leaving one pixel out would
-change the noise of all that follow. Here every count comes from one normal deviate.
+The Poisson draws of a generator consume more or fewer random bits depending on the mean: leaving one pixel out would
+change the noise of all that follow. Here every count is a function of one normal deviate.
 """
 
 import math
+from typing import Any
 
 from numba import vectorize
 
@@ -12,10 +13,22 @@ FEW = 60.0  # electrons
 
 
 @vectorize(["float32(float32, float32)", "float64(float64, float64)"], cache=True)
-def photon_count(mean, z):
-    """The Poisson count of ``mean`` (0..1e15) at the quantile of the standard normal deviate ``z``: a whole number.
+def photon_count(mean: Any, z: Any) -> Any:  # arrays outside, scalars inside
+    """Poisson count at the quantile of a standard normal deviate.
 
-    Few photons: the distribution function is inverted. Many: Cornish and Fisher's expansion, rounded.
+    Few photons: the distribution function is inverted. Many: the Cornish-Fisher expansion, rounded.
+
+    Parameters
+    ----------
+    mean : float32 or float64
+        Expected electrons, 0..1e15; broadcastable.
+    z : float32 or float64
+        Standard normal deviate; broadcastable.
+
+    Returns
+    -------
+    float32 or float64
+        Whole electrons.
     """
     if mean > FEW:
         return max(0.0, math.floor(mean + math.sqrt(mean) * z + (z * z - 1) / 6 + 0.5))

@@ -1,4 +1,4 @@
-"""One pixel: angular response, what it sees of each view, flat-field trim, polarization, time of flight."""
+"""One pixel: angular response, weights of the views, flat-field trim, polarization, time of flight."""
 
 from .polarization import transmission
 from .quadrature import Ripple, SamplingError, exact, sampling_error

@@ -6,22 +6,61 @@ S1 ~ I90 - I0, S2 ~ I135 - I45, psi = atan2(S2, S1) / 2. (The thesis prints psi 
 """
 
 import numpy as np
+import numpy.typing as npt
 
 
-def transmission(polarization, gamma, diattenuation):
-    """Factor on the photocurrent against unpolarized light of the same S0.
+def transmission(
+    polarization: npt.NDArray[np.floating], gamma: npt.ArrayLike, diattenuation: float
+) -> npt.NDArray[np.floating]:
+    """Factor on the photocurrent relative to unpolarized light of the same S0.
 
-    polarization: S1/S0 and S2/S0, (2, ...). gamma: rad, broadcast against the rest. diattenuation: 0..1.
-    Returns 0..2.
+    Parameters
+    ----------
+    polarization : array (2, ...)
+        S1/S0 and S2/S0.
+    gamma : array
+        Grating orientation in rad, broadcastable to ``polarization[0]``.
+    diattenuation : float
+        0..1.
+
+    Returns
+    -------
+    array (...)
+        0..2.
+
+    References
+    ----------
+    [Jayasuriya2017], Ch. 4.
     """
     s1, s2 = polarization
-    return np.maximum(1 - diattenuation * (s1 * np.cos(2 * gamma) + s2 * np.sin(2 * gamma)), 0)
+    angle = 2 * np.asarray(gamma)
+    return np.maximum(1 - diattenuation * (s1 * np.cos(angle) + s2 * np.sin(angle)), 0)
 
 
-def stokes(i0, i45, i90, i135, diattenuation):
-    """S1/S0 and S2/S0, (2, ...), from the common modes at four orientations; 0 where there is no light.
+def stokes(
+    i0: npt.NDArray[np.floating],
+    i45: npt.NDArray[np.floating],
+    i90: npt.NDArray[np.floating],
+    i135: npt.NDArray[np.floating],
+    diattenuation: float,
+) -> npt.NDArray[np.floating]:
+    """Relative Stokes parameters from the common modes at four orientations.
 
-    diattenuation: above 0, to 1.
+    Parameters
+    ----------
+    i0, i45, i90, i135 : array (...)
+        Common modes of the pixels at 0, 45, 90 and 135 degrees.
+    diattenuation : float
+        Greater than 0, at most 1.
+
+    Returns
+    -------
+    array (2, ...)
+        S1/S0 and S2/S0; 0 where there is no light.
+
+    References
+    ----------
+    [Jayasuriya2017], Ch. 4.
     """
     s1, s2 = i90 - i0, i135 - i45
     total = (i0 + i45 + i90 + i135) / 2
@@ -29,6 +68,21 @@ def stokes(i0, i45, i90, i135, diattenuation):
     return np.where(lit, np.stack([s1, s2]) / np.where(lit, total, 1) / diattenuation, 0.0)
 
 
-def angle(s1, s2):
-    """psi = atan2(S2, S1) / 2 in rad, modulo pi: in (-pi/2, pi/2]."""
+def angle(s1: npt.ArrayLike, s2: npt.ArrayLike) -> npt.NDArray[np.floating]:
+    """Angle of linear polarization, psi = atan2(S2, S1) / 2.
+
+    Parameters
+    ----------
+    s1, s2 : array
+        Stokes parameters, broadcastable.
+
+    Returns
+    -------
+    array
+        In rad, (-pi/2, pi/2].
+
+    References
+    ----------
+    [Jayasuriya2017], Ch. 4, with the factor 1/2 that the thesis leaves out.
+    """
     return 0.5 * np.arctan2(s2, s1)

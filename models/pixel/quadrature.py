@@ -1,25 +1,38 @@
-"""How far the sampled capture is from the integral it stands for [Jayasuriya2017, Eq. 3.3]."""
+"""Error of the sampled capture against the integral that it approximates [Jayasuriya2017, Eq. 3.3]."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
+import numpy.typing as npt
 from scipy.integrate import cubature
 
+from models.parameters import OpticsParameters, PixelType
+
 from .weights import density, raw_weights
+
+Floats = npt.NDArray[np.float64]
+Light = Callable[[Floats, Floats, float], Floats]
 
 
 @dataclass(frozen=True)
 class Ripple:
     """Light from one scene point over the lens: (1 + cos(2 pi periods nu / (2 nu_max) + 1)) / 2.
 
-    periods: across the diameter of the lens, 0 = the same from everywhere. degrees: direction in which it varies.
+    Attributes
+    ----------
+    periods : float
+        Periods across the diameter of the lens; 0 is the same light from every direction.
+    degrees : float
+        Direction in which the light varies.
     """
 
     periods: float = 1.0
     degrees: float = 30.0
 
-    def __call__(self, nu_x, nu_y, nu_max):
+    def __call__(self, nu_x: Floats, nu_y: Floats, nu_max: float) -> Floats:
+        """Radiance at points of the pupil."""
         along = nu_x * np.cos(np.deg2rad(self.degrees)) + nu_y * np.sin(np.deg2rad(self.degrees))
         return (1 + np.cos(np.pi * self.periods * along / nu_max + 1)) / 2
 
@@ -28,7 +41,12 @@ class Ripple:
 class SamplingError:
     """Error of a diode's photocurrent against the exact one, relative to the mean photocurrent of all diodes.
 
-    worst, rms: over the types' diodes. seconds: to compute the view weights.
+    Attributes
+    ----------
+    worst, rms : float
+        Over the diodes of all types.
+    seconds : float
+        Time to compute the view weights.
     """
 
     worst: float
@@ -36,30 +54,85 @@ class SamplingError:
     seconds: float
 
 
-def exact(types, optics, light, tolerance=1e-10):
-    """Photocurrents by adaptive cubature in polar coordinates over the lens: (types, 2), unscaled.
+def exact(
+    types: Sequence[PixelType], optics: OpticsParameters, light: Light, tolerance: float = 1e-10
+) -> npt.NDArray[np.float64]:
+    """Photocurrents by adaptive cubature in polar coordinates over the lens.
 
-    light: function of (nu_x, nu_y, nu_max). tolerance: relative, 1e-13..1e-2.
+    Parameters
+    ----------
+    types : sequence of PixelType
+        Pixel types.
+    optics : OpticsParameters
+        Lens and gratings.
+    light : callable
+        Radiance as a function of (nu_x, nu_y, nu_max).
+    tolerance : float
+        Relative, 1e-13..1e-2.
+
+    Returns
+    -------
+    float64 (types, 2)
+        Not scaled.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.3.
     """
 
-    def integrand(points):
+    def _integrand(points: Floats) -> Floats:
         r, phi = points.T
         x, y = r * np.cos(phi), r * np.sin(phi)
         return (density(types, optics, x, y) * (light(x, y, optics.nu_max) * r)).transpose(2, 0, 1)
 
-    result = cubature(integrand, [0, 0], [optics.nu_max, 2 * np.pi], rtol=tolerance, atol=1e-14)
+    # SciPy's stub takes the default of atol, 0, for its type.
+    result = cubature(_integrand, [0, 0], [optics.nu_max, 2 * np.pi], rtol=tolerance, atol=1e-14)  # pyright: ignore[reportArgumentType]
     return result.estimate
 
 
-def sampled(types, optics, light):
-    """The same from view weights and the light at the middle of each view: (types, 2), unscaled."""
+def sampled(types: tuple[PixelType, ...], optics: OpticsParameters, light: Light) -> npt.NDArray[np.float64]:
+    """Photocurrents from the view weights and the light at the middle of each view.
+
+    Parameters
+    ----------
+    types : tuple of PixelType
+        Pixel types.
+    optics : OpticsParameters
+        Lens, gratings and views.
+    light : callable
+        As in `exact`.
+
+    Returns
+    -------
+    float64 (types, 2)
+        Not scaled.
+    """
     middle = (np.arange(optics.views) + 0.5) / optics.views * 2 - 1
     nu_y, nu_x = np.meshgrid(middle * optics.nu_max, middle * optics.nu_max, indexing="ij")
     return np.tensordot(raw_weights(types, optics), light(nu_x, nu_y, optics.nu_max), 2)
 
 
-def sampling_error(types, optics, light=Ripple(), reference=None):
-    """SamplingError of `optics.views` and `optics.subsamples`. reference: `exact` of the same, if at hand."""
+def sampling_error(
+    types: tuple[PixelType, ...], optics: OpticsParameters, light: Light = Ripple(), reference: Floats | None = None
+) -> SamplingError:
+    """Error of a number of views and subsamples.
+
+    Parameters
+    ----------
+    types : tuple of PixelType
+        Pixel types.
+    optics : OpticsParameters
+        Lens, gratings, views and subsamples.
+    light : callable
+        As in `exact`.
+    reference : float64 (types, 2), optional
+        Result of `exact` if it is known.
+
+    Returns
+    -------
+    SamplingError
+        Relative error, and time.
+    """
     reference = exact(types, optics, light) if reference is None else reference
     start = perf_counter()
     raw_weights.__wrapped__(types, optics)  # past the cache

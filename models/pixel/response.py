@@ -1,25 +1,65 @@
 """The angular response of one photodiode [Jayasuriya2017, Eq. 2.2, 3.1 and 3.3]."""
 
 import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.floating]
 
 
-def aperture(theta_x, theta_y, sigma):
-    """Common-mode response A(theta): Gaussian of standard deviation ``sigma`` (rad), 1 on the axis.
+def aperture(theta_x: npt.ArrayLike, theta_y: npt.ArrayLike, sigma: float) -> Floats:
+    """Common-mode angular response A(theta), a Gaussian.
 
-    theta_x, theta_y: rad, |theta| <= pi/2, arrays of one floating type, which the result keeps.
-    Far out it stops at the smallest normal number of that type instead of becoming denormal.
+    Parameters
+    ----------
+    theta_x, theta_y : array
+        Incidence angle in rad, |theta| <= pi/2.
+    sigma : float
+        Standard deviation in rad.
+
+    Returns
+    -------
+    array
+        1 on the axis, of the floating type of theta; not below the smallest normal number of that type.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 2.2.
     """
     theta_x, theta_y = _floats(theta_x, theta_y)
     exponent = -0.5 * ((theta_x / sigma) ** 2 + (theta_y / sigma) ** 2)
     return np.exp(np.maximum(exponent, np.log(np.finfo(exponent.dtype).tiny) + 1))
 
 
-def response(alpha, beta, gamma, theta_x, theta_y, m, sigma):
-    """rho(alpha, beta, gamma; theta) = A (1 + m cos(beta (theta_x cos gamma + theta_y sin gamma) + alpha)).
+def response(
+    alpha: float, beta: float, gamma: float, theta_x: npt.ArrayLike, theta_y: npt.ArrayLike, m: float, sigma: float
+) -> Floats:
+    """Angular response rho = A (1 + m cos(beta (theta_x cos gamma + theta_y sin gamma) + alpha)).
 
-    alpha, gamma: rad. beta: 0..50 rad of response per rad of angle. m: 0..1. sigma: rad.
-    theta_x, theta_y: rad, |theta| <= pi/2 (grazing light included: nothing here takes a tangent).
-    Returns 0..2, of the type of theta. The second diode of a pixel has alpha + pi.
+    The second diode of a pixel has alpha + pi.
+
+    Parameters
+    ----------
+    alpha : float
+        Phase of the analyzer grating, rad.
+    beta : float
+        Angular frequency, 0..50 rad of response per rad of angle.
+    gamma : float
+        Grating orientation, rad.
+    theta_x, theta_y : array
+        Incidence angle in rad, |theta| <= pi/2, grazing light included.
+    m : float
+        Modulation depth, 0..1.
+    sigma : float
+        Standard deviation of the aperture in rad.
+
+    Returns
+    -------
+    array
+        0..2, of the floating type of theta.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.1.
     """
     theta_x, theta_y = _floats(theta_x, theta_y)
     phase = beta * (theta_x * np.cos(gamma) + theta_y * np.sin(gamma)) + alpha
@@ -28,14 +68,31 @@ def response(alpha, beta, gamma, theta_x, theta_y, m, sigma):
     return (aperture(theta_x, theta_y, sigma) * modulation).astype(theta_x.dtype)
 
 
-def vignetting(nu_x, nu_y, power):
-    """omega(nu) = cos(theta)**power of a ray with tangents nu_x, nu_y: 0..1, 1 on the axis."""
+def vignetting(nu_x: npt.ArrayLike, nu_y: npt.ArrayLike, power: float) -> Floats:
+    """Vignetting omega(nu) = cos(theta)**power of a ray.
+
+    Parameters
+    ----------
+    nu_x, nu_y : array
+        Tangents of the incidence angle.
+    power : float
+        Exponent, 0 or more.
+
+    Returns
+    -------
+    array
+        0..1, 1 on the axis, of the floating type of nu.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.3.
+    """
     nu_x, nu_y = _floats(nu_x, nu_y)
-    # hypot keeps huge tangents (grazing light) from overflowing as their squares would.
+    # hypot does not overflow for huge tangents (grazing light), as their squares would.
     return (1 / np.hypot(1, np.hypot(nu_x, nu_y)) ** power).astype(nu_x.dtype)
 
 
-def _floats(x, y):
+def _floats(x: npt.ArrayLike, y: npt.ArrayLike) -> tuple[Floats, Floats]:
     x, y = np.asarray(x), np.asarray(y)
     dtype = np.result_type(x, y)
     dtype = dtype if dtype.kind == "f" else np.float64

@@ -1,41 +1,91 @@
 """The flat-field residual of each pixel type and the capacitor ratio that nulls it.
 
-The amplifier converts a - g b of a pixel's diodes. A uniform area leaves k = (a - b) / (a + b) in the difference,
+The amplifier forms a - g b of a pixel's diodes. A uniform area leaves k = (a - b) / (a + b) in the difference,
 because the lens cuts the response off at a fraction of its period; g = (1 + k) / (1 - k) = a / b nulls it.
 """
 
 import numpy as np
+import numpy.typing as npt
 
-from models.parameters import ParameterError
+from models.parameters import OpticsParameters, ParameterError, TileParameters
 
 from .weights import view_weights
 
-GAIN_MAX = 64.0  # a diode that sees nothing of a flat field asks for no more (m = 1, beta = 0)
+GAIN_MAX = 64.0  # limit for a diode that receives nothing of a flat field (m = 1, beta = 0)
 
 
-def residual(weights):
-    """k of each type from view weights (types, 2, views, views): (types,), -1..1."""
+def residual(weights: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Flat-field residual of each pixel type.
+
+    Parameters
+    ----------
+    weights : float64 (types, 2, views, views)
+        View weights.
+
+    Returns
+    -------
+    float64 (types,)
+        k, -1..1.
+    """
     a, b = weights.sum((2, 3)).T
     return (a - b) / (a + b)
 
 
-def gains(k):
-    """Capacitor ratio g = (1 + k) / (1 - k) for residuals ``k`` in -1..1, limited to 1/64..64."""
+def gains(k: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Capacitor ratio g = (1 + k) / (1 - k) that nulls a residual.
+
+    Parameters
+    ----------
+    k : array
+        Residual, -1..1.
+
+    Returns
+    -------
+    float64
+        g, limited to 1/64..64.
+    """
     edge = (GAIN_MAX - 1) / (GAIN_MAX + 1)
-    k = np.clip(k, -edge, edge)
-    return (1 + k) / (1 - k)
+    limited = np.clip(k, -edge, edge)
+    return (1 + limited) / (1 - limited)
 
 
-def optical_gains(tile, optics):
-    """g of each pixel type, computed from the optics: (types,) float64."""
+def optical_gains(tile: TileParameters, optics: OpticsParameters) -> npt.NDArray[np.float64]:
+    """Capacitor ratio of each pixel type, computed from the optics.
+
+    Parameters
+    ----------
+    tile : TileParameters
+        Pixel types.
+    optics : OpticsParameters
+        Lens and gratings.
+
+    Returns
+    -------
+    float64 (types,)
+        g.
+    """
     return gains(residual(view_weights(tile, optics)))
 
 
-def measured_gains(samples, tile):
-    """g of each pixel type from a flat-field frame: (types,).
+def measured_gains(samples: npt.NDArray[np.floating], tile: TileParameters) -> npt.NDArray[np.float64]:
+    """Capacitor ratio of each pixel type, measured from a flat-field frame.
 
-    samples: diode pairs (rows, cols, 2), both diodes of a pixel, any unit; pixels of 0 take no part.
-    Raises ParameterError where a type saw no light.
+    Parameters
+    ----------
+    samples : array (rows, cols, 2)
+        Diode pairs in any unit; pixels of 0 do not count.
+    tile : TileParameters
+        Pixel types.
+
+    Returns
+    -------
+    float64 (types,)
+        g.
+
+    Raises
+    ------
+    ParameterError
+        If a type receives no light.
     """
     rows, cols = samples.shape[:2]
     kinds = tile.type_map(rows, cols)

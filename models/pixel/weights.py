@@ -1,20 +1,45 @@
-"""What each of the 24 x 2 photodiodes of a tile sees of each view: the only 48 x views numbers in the capture.
+"""Weight of each view in each of the 24 x 2 photodiodes of a tile: the only 48 x views numbers in the capture.
 
     W[type, diode, v, u] = integral over the view's cell of rho_type(atan nu) omega(nu) dnu
 
 The lens accepts |nu| <= nu_max, a disc. Cells are an even grid over the square around it, cut by the disc.
 """
 
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 from numpy.polynomial.legendre import leggauss
+
+from models.parameters import OpticsParameters, PixelType, TileParameters
 
 from .response import response, vignetting
 
 
-def density(types, optics, nu_x, nu_y):
-    """rho * omega of all diodes at the points nu_x, nu_y (n,): (types, 2, n)."""
+def density(
+    types: Sequence[PixelType], optics: OpticsParameters, nu_x: npt.NDArray[np.floating], nu_y: npt.NDArray[np.floating]
+) -> npt.NDArray[np.floating]:
+    """Integrand rho * omega of all diodes.
+
+    Parameters
+    ----------
+    types : sequence of PixelType
+        Pixel types.
+    optics : OpticsParameters
+        Lens and gratings.
+    nu_x, nu_y : array (n,)
+        Points in the pupil.
+
+    Returns
+    -------
+    array (types, 2, n)
+        0..2.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.3.
+    """
     theta_x, theta_y = np.arctan(nu_x), np.arctan(nu_y)
     omega = vignetting(nu_x, nu_y, optics.vignetting_power)
     return np.stack(
@@ -30,11 +55,23 @@ def density(types, optics, nu_x, nu_y):
     )
 
 
-def cell_nodes(optics, v, u):
-    """Gauss-Legendre nodes in the cell of view (v, u), inside the lens: nu_x, nu_y, weight, each (n,).
+def cell_nodes(optics: OpticsParameters, v: int, u: int) -> npt.NDArray[np.float64]:
+    """Gauss-Legendre nodes in the cell of one view, inside the lens.
 
-    The integral over nu_x runs in arcs, nu_x = nu_max sin t, cut where the disc crosses the cell's corners: so the
-    integrand is smooth right up to the rim of the lens and the error falls exponentially with the nodes.
+    The integral over nu_x runs in arcs, nu_x = nu_max sin t, cut where the disc crosses the cell's corners. The
+    integrand is thus smooth up to the rim of the lens, and the error falls exponentially with the nodes.
+
+    Parameters
+    ----------
+    optics : OpticsParameters
+        Lens, views and subsamples.
+    v, u : int
+        View row and column.
+
+    Returns
+    -------
+    float64 (3, n)
+        nu_x, nu_y and weight of each node.
     """
     radius = optics.nu_max
     edges = np.linspace(-radius, radius, optics.views + 1)
@@ -57,8 +94,21 @@ def cell_nodes(optics, v, u):
 
 
 @lru_cache(maxsize=32)
-def raw_weights(types, optics):
-    """The integrals above, unscaled: (types, 2, views, views) float64, read-only."""
+def raw_weights(types: tuple[PixelType, ...], optics: OpticsParameters) -> npt.NDArray[np.float64]:
+    """View weights W, not scaled.
+
+    Parameters
+    ----------
+    types : tuple of PixelType
+        Pixel types.
+    optics : OpticsParameters
+        Lens, gratings and views.
+
+    Returns
+    -------
+    float64 (types, 2, views, views)
+        Read-only.
+    """
     views = optics.views
     out = np.empty((len(types), 2, views, views))
     for v in range(views):
@@ -69,7 +119,24 @@ def raw_weights(types, optics):
     return out
 
 
-def view_weights(tile, optics):
-    """W (types, 2, views, views), so scaled that a flat white scene gives 1 in a diode on average."""
+def view_weights(tile: TileParameters, optics: OpticsParameters) -> npt.NDArray[np.float64]:
+    """View weights W, scaled so that the average diode measures 1 in a flat white scene.
+
+    Parameters
+    ----------
+    tile : TileParameters
+        Pixel types.
+    optics : OpticsParameters
+        Lens, gratings and views.
+
+    Returns
+    -------
+    float64 (types, 2, views, views)
+        W.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.3.
+    """
     raw = raw_weights(tile.types, optics)
     return raw / (raw.sum((1, 2, 3)).mean() / 2)

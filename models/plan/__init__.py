@@ -1,6 +1,6 @@
-"""What a frame needs of the models and the chip, and what it leaves out."""
+"""Plan of a frame: the work that it needs of the models and the chip, and the work that it leaves out."""
 
 from .flat import codes_per_unit, flat_tiles
-from .plan import Plan, plan
+from .plan import LeftOut, Plan, plan
 
-__all__ = ["Plan", "codes_per_unit", "flat_tiles", "plan"]
+__all__ = ["LeftOut", "Plan", "codes_per_unit", "flat_tiles", "plan"]

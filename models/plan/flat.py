@@ -1,21 +1,38 @@
-"""Tiles of which it is certain, before any capture, that the window comparison makes all their samples zero."""
+"""Tiles whose samples are all certain, before any capture, to be set to zero by the window comparison."""
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
-from models.parameters import ELEMENTARY_CHARGE
+from models.parameters import ELEMENTARY_CHARGE, AmpTiming, FrameParameters, SensorParameters
 from models.pixel.trim import gains, residual
 from models.pixel.weights import view_weights
+from models.scene import Scene
 
 MARGIN = 1.0  # code: half for the rounding of the converter, half for that of the trim registers
 
 
-def flat_tiles(scene, sensor, frame):
-    """Bool (tile rows, tile cols). All False outside edge mode and with a threshold of at most MARGIN.
+def flat_tiles(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> npt.NDArray[np.bool_]:
+    """Tiles in which no sample can reach the threshold.
 
-    The trimmed difference of a pixel is blind to the mean of its views: with weights c[v, u] = Wa - g Wb of sum 0
-    and views between l and h, |difference| <= sum|c| (h - l) / 2. A full well breaks that balance, so no tile in
-    which one may fill counts. Trim registers as the optics want them; noise and fixed pattern are not in the bound.
+    The trimmed difference of a pixel does not depend on the mean of its views: with weights c[v, u] = Wa - g Wb of
+    sum 0 and views between l and h, |difference| <= sum|c| (h - l) / 2. A full well breaks that balance, so that tiles
+    in which one may fill do not count. The trim registers follow the optics; the bound has no noise and no fixed
+    pattern.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    frame : FrameParameters
+        Configuration of the frame.
+
+    Returns
+    -------
+    bool (tile rows, tile cols)
+        All False outside edge mode and with a threshold of at most MARGIN.
     """
     tile = sensor.tile
     shape = sensor.tile_rows, sensor.tile_cols
@@ -31,10 +48,10 @@ def flat_tiles(scene, sensor, frame):
     return (spread * reach <= frame.threshold - MARGIN) & (highest < _well_radiance(weights, sensor, frame))
 
 
-def _well_radiance(weights, sensor, frame):
-    """Radiance that fills no diode's well in an interval between common-mode resets, if nothing else is brighter.
+def _well_radiance(weights: npt.NDArray[np.float64], sensor: SensorParameters, frame: FrameParameters) -> float:
+    """Largest radiance of a scene that fills no well between common-mode resets.
 
-    What a reset leaves behind is the difference: it adds up over the intervals.
+    A reset leaves the difference, which adds up over the intervals.
     """
     e, seconds = sensor.electrical, frame.timing.t_int / sensor.chip.f_clk
     white = e.white_current * seconds / ELEMENTARY_CHARGE
@@ -42,15 +59,28 @@ def _well_radiance(weights, sensor, frame):
     return room / (white * weights.sum((2, 3)).max() * (frame.timing.n_cm + 1))
 
 
-def codes_per_unit(sensor, timing):
-    """Codes of the difference that a relative photocurrent of 1 makes, before gain mismatch and full wells."""
+def codes_per_unit(sensor: SensorParameters, timing: AmpTiming) -> float:
+    """Codes of the difference per relative photocurrent, before gain mismatch and full wells.
+
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    timing : AmpTiming
+        Integration time and common-mode resets.
+
+    Returns
+    -------
+    float
+        Codes per unit.
+    """
     e = sensor.electrical
     seconds = timing.t_int / sensor.chip.f_clk * (timing.n_cm + 1)
     return e.white_current * seconds / ELEMENTARY_CHARGE / e.lsb_electrons * e.difference_gain
 
 
 @njit(cache=True)
-def _span(light_field, out):
+def _span(light_field: npt.NDArray[np.floating], out: npt.NDArray[np.float64]) -> None:
     """out[0, y, x] = largest minus smallest radiance over the views; out[1, y, x] = the largest."""
     views, _, rows, cols = light_field.shape
     for y in range(rows):

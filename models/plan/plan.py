@@ -1,36 +1,85 @@
-"""What a frame of a scene needs, decided before anything is computed; what it does not need is left out."""
+"""The work that a frame of a scene needs, decided before anything is computed; the rest is left out."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.scan import Scan
-from models.parameters import ALL_TYPES
+from models.parameters import ALL_TYPES, FrameParameters, SensorParameters
+from models.scene import Scene
 
 from .flat import flat_tiles
 
 
+class LeftOut(NamedTuple):
+    """Work that a plan leaves out.
+
+    Attributes
+    ----------
+    what, why, saved : str
+        The work, the reason, and the amount.
+    """
+
+    what: str
+    why: str
+    saved: str
+
+
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """angular: the views differ and all are read; else one stands for all.
-    polarized: the polarization of the light is weighed by the gratings.
-    captures: passes of the capture operator, 1, 3 or 4.  taps: sub-frames, 1 or 4.
-    read: bool (rows, cols), pixels that the frame reads.
-    flat: bool (tile rows, tile cols), tiles in which no sample can reach the threshold (edge mode, noise aside).
-    left_out: what was left out, why, and what that saved: dicts of 'what', 'why', 'saved'.
+    """Work of one frame.
+
+    Attributes
+    ----------
+    angular : bool
+        The views differ and all are read; else one represents all.
+    polarized : bool
+        The light is polarized and weighted by the gratings.
+    taps : int
+        Sub-frames, 1 or 4.
+    captures : int
+        Passes of the capture operator, 1, 3 or 4.
+    read : bool (rows, cols)
+        Pixels that the frame reads.
+    flat : bool (tile rows, tile cols)
+        Tiles in which no sample can reach the threshold (edge mode, without noise).
+    left_out : tuple of LeftOut
+        Work that is left out.
     """
 
     angular: bool
     polarized: bool
     taps: int
     captures: int
-    read: np.ndarray
-    flat: np.ndarray
-    left_out: tuple = field(default_factory=tuple)
+    read: npt.NDArray[np.bool_]
+    flat: npt.NDArray[np.bool_]
+    left_out: tuple[LeftOut, ...] = ()
 
 
-def plan(scene, sensor, frame):
-    """The Plan of one frame. scene: a Scene of the sensor's size. frame: FrameParameters. Raises ParameterError."""
+def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan:
+    """Plan one frame.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    frame : FrameParameters
+        Configuration of the frame.
+
+    Returns
+    -------
+    Plan
+        Its work.
+
+    Raises
+    ------
+    ParameterError
+        If the window is outside the array or selects no pixel.
+    """
     rows, cols = scene.shape
     read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read
     taps = 4 if frame.mode == "tof" else 1
@@ -40,7 +89,7 @@ def plan(scene, sensor, frame):
     notes = [tap_note] if tap_note else []
     if not angular:
         notes.append(
-            (
+            LeftOut(
                 "views",
                 "no angle content: all views are equal",
                 f"{views - 1} of {views} views of {captures} "
@@ -49,38 +98,38 @@ def plan(scene, sensor, frame):
         )
     if not polarized:
         notes.append(
-            ("polarization", "the light is unpolarized", f"a factor on each of {int(read.sum()):,} diode pairs")
+            LeftOut("polarization", "the light is unpolarized", f"a factor on each of {int(read.sum()):,} diode pairs")
         )
     unread = rows * cols - int(read.sum())
     if unread:
         why = "pixel types masked" if frame.mask != ALL_TYPES else "outside the window or between the tiles read"
-        notes.append(("unread pixels", why, f"{unread:,} of {rows * cols:,} pixels neither captured nor sequenced"))
+        saved = f"{unread:,} of {rows * cols:,} pixels neither captured nor sequenced"
+        notes.append(LeftOut("unread pixels", why, saved))
     flat = flat_tiles(scene, sensor, frame)
     if flat.any():
         samples = int((read & _spread(flat, sensor)).sum())
         notes.append(
-            (
+            LeftOut(
                 "conversions of flat tiles",
                 f"no sample there can reach threshold {frame.threshold}, noise aside",
                 f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles",
             )
         )
-    left_out = tuple({"what": what, "why": why, "saved": saved} for what, why, saved in notes)
-    return Plan(angular, polarized, taps, captures, read, flat, left_out)
+    return Plan(angular, polarized, taps, captures, read, flat, tuple(notes))
 
 
-def _captures(scene, taps):
-    """Capture passes that a frame takes, and what is left out for it."""
+def _captures(scene: Scene, taps: int) -> tuple[int, LeftOut | None]:
+    """Capture passes of a frame, and those that it leaves out."""
     if taps == 1:
-        return 1, ("time-of-flight taps", "the mode reads none", "3 of 4 sub-frames")
+        return 1, LeftOut("time-of-flight taps", "the mode reads none", "3 of 4 sub-frames")
     if scene.static and (scene.depth is None or not np.ptp(scene.depth)):
-        return 1, (
+        return 1, LeftOut(
             "capture passes of the taps",
             "static scene at one depth: each tap is the same frame, scaled",
             "3 of 4 capture passes",
         )
     if scene.static:
-        return 3, (
+        return 3, LeftOut(
             "capture passes of the taps",
             "static scene: mean, cosine and sine give all four taps",
             "1 of 4 capture passes",
@@ -88,10 +137,10 @@ def _captures(scene, taps):
     return 4, None
 
 
-def _spread(flat, sensor):
+def _spread(flat: npt.NDArray[np.bool_], sensor: SensorParameters) -> npt.NDArray[np.bool_]:
     tile = sensor.tile
     return np.repeat(np.repeat(flat, tile.rows, 0), tile.cols, 1)[: sensor.array.rows, : sensor.array.cols]
 
 
-def _megabytes(count):
+def _megabytes(count: int) -> str:
     return f"{count / 1e6:.1f} MB of light field"

@@ -1,4 +1,4 @@
-"""Images and light fields back from the samples."""
+"""Reconstruction of images and light fields from the samples."""
 
 from .demosaic import demosaic, edge_images
 from .edges import EdgeOperator, Solver, image_from_edges

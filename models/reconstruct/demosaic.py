@@ -1,12 +1,31 @@
-"""The samples of one pixel type lie a tile apart: gathered as small images, or spread over every pixel."""
+"""Samples by pixel type: gathered as small images at tile resolution, or interpolated to every pixel."""
+
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
+
+from models.parameters import TileParameters
 
 
-def edge_images(values, tile, read=None):
-    """Values (rows, cols) by pixel type at tile resolution: (types, tile rows, tile cols), 0 where nothing was read.
+def edge_images(
+    values: npt.NDArray[Any], tile: TileParameters, read: npt.NDArray[np.bool_] | None = None
+) -> npt.NDArray[Any]:
+    """Images of the pixel types at tile resolution.
 
-    read: bool (rows, cols), pixels that were read; None = all. Tiles at the far edges may be partial.
+    Parameters
+    ----------
+    values : array (rows, cols)
+        Samples. Tiles at the far edges may be partial.
+    tile : TileParameters
+        The tile.
+    read : bool (rows, cols), optional
+        Pixels that are read; None is all.
+
+    Returns
+    -------
+    array (types, tile rows, tile cols)
+        0 where nothing is read.
     """
     rows, cols = values.shape
     high, wide = -(-rows // tile.rows), -(-cols // tile.cols)
@@ -18,12 +37,24 @@ def edge_images(values, tile, read=None):
     return out
 
 
-def demosaic(values, tile, read=None):
-    """Every pixel type at every pixel, interpolated linearly between its own pixels: (types, rows, cols).
+def demosaic(
+    values: npt.NDArray[np.floating], tile: TileParameters, read: npt.NDArray[np.bool_] | None = None
+) -> npt.NDArray[np.floating]:
+    """Interpolate every pixel type linearly between its own pixels.
 
-    values: (rows, cols). read: bool (rows, cols), pixels that were read, of each type whole rows by whole columns (as
-    every scan reads); None = all. Outside a type's outermost pixels its nearest ones stand. A type without any pixel
-    is 0.
+    Parameters
+    ----------
+    values : array (rows, cols)
+        Samples.
+    tile : TileParameters
+        The tile.
+    read : bool (rows, cols), optional
+        Pixels that are read, of each type whole rows by whole columns, as in every scan; None is all.
+
+    Returns
+    -------
+    array (types, rows, cols)
+        Constant outside a type's outermost pixels; 0 for a type without any pixel.
     """
     rows, cols = values.shape
     kinds = tile.type_map(rows, cols)
@@ -37,8 +68,8 @@ def demosaic(values, tile, read=None):
     return out
 
 
-def _stretch(lattice, places, length):
-    """Rows of ``lattice`` at ``places`` -> rows at 0..length-1, linear between, constant outside."""
+def _stretch(lattice: npt.NDArray[np.floating], places: npt.NDArray[np.int64], length: int) -> npt.NDArray[np.floating]:
+    """Interpolate rows at ``places`` to rows at 0..length-1: linear between, constant outside."""
     at = np.interp(np.arange(length), places, np.arange(len(places), dtype=float))
     low = np.minimum(at.astype(int), len(places) - 1)
     high = np.minimum(low + 1, len(places) - 1)

@@ -1,48 +1,82 @@
-"""The image back from the decoded edge samples alone, where the disparity is known.
+"""Reconstruction of the image from the decoded edge samples alone, where the disparity is known.
 
 An edge sample is a difference over the lens: the sum of c[type, v, u] I(y + dv d, x + du d), with c = Wa - g Wb of sum
-0 and d the disparity at the pixel (what a nearer surface hides from some views is not modelled). Sought is the image
-that explains them with the least gradient:
+0 and d the disparity at the pixel (occlusion is not modelled). The result is the image with the least gradient that
+explains the samples:
 
     argmin |D I - samples|^2 + smoothness |grad I|^2
 
 by conjugate gradients, D applied and never built. For small disparities D is a derivative, so that plain conjugate
-gradients creep over large areas; the inverse of the Laplacian, by cosine transforms, is the preconditioner that makes
-them few. A difference knows no mean: the image has mean 0.
+gradients converge slowly over large areas; the preconditioner is the inverse of the Laplacian, by cosine transforms.
+A difference has no mean: the image has mean 0.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 from scipy.fft import dctn, idctn
 
-from models.parameters import ParameterError, check_int, check_real
+from models.parameters import ParameterError, SensorParameters, check_int, check_real
 from models.pixel.weights import view_weights
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
 class Solver:
-    """smoothness: weight of the gradient, 1e-9..1e3. iterations: at most, 1..10000. tolerance: relative, 0..1."""
+    """Settings of the conjugate gradients.
+
+    Attributes
+    ----------
+    smoothness : float
+        Weight of the gradient, 1e-9..1e3.
+    iterations : int
+        Limit, 1..10000.
+    tolerance : float
+        Relative residual at which the iteration ends, 0..1.
+    """
 
     smoothness: float = 1e-3
     iterations: int = 20
     tolerance: float = 1e-3
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("smoothness", self.smoothness, 1e-9, 1e3)
         check_int("iterations", self.iterations, 1, 10_000)
         check_real("tolerance", self.tolerance, 0, 1)
 
 
 class EdgeOperator:
-    """D: an image (rows, cols) to the trimmed differences of all pixels, and back. Float64.
+    """D: from an image to the trimmed differences of all pixels, and back.
 
-    sensor: SensorParameters. disparity: px a view step, (rows, cols). balance: g of each pixel type, (types,).
-    read: bool (rows, cols), pixels whose samples there are; None = all.
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    disparity : array (rows, cols)
+        Px per view step.
+    balance : array (types,)
+        Capacitor ratio g of each pixel type.
+    read : bool (rows, cols), optional
+        Pixels that have a sample; None is all.
+
+    Raises
+    ------
+    ParameterError
+        For a disparity of a wrong shape, or not finite.
     """
 
-    def __init__(self, sensor, disparity, balance, read=None):
+    def __init__(
+        self,
+        sensor: SensorParameters,
+        disparity: npt.ArrayLike,
+        balance: npt.ArrayLike,
+        read: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
         shape = sensor.array.rows, sensor.array.cols
         if np.shape(disparity) != shape or not np.isfinite(disparity).all():
             raise ParameterError(f"disparity shape = {np.shape(disparity)}: must be {shape}, every value finite")
@@ -53,31 +87,69 @@ class EdgeOperator:
             self.kinds = np.where(read, self.kinds, -1)
         self.disparity, self.shape = np.ascontiguousarray(disparity, float), shape
 
-    def forward(self, image):
+    def forward(self, image: npt.ArrayLike) -> Floats:
+        """Apply D.
+
+        Parameters
+        ----------
+        image : array (rows, cols)
+            Relative radiance.
+
+        Returns
+        -------
+        float64 (rows, cols)
+            Trimmed differences, 0 where nothing is read.
+        """
         out = np.zeros(self.shape)
         _gather(np.ascontiguousarray(image, float), self.disparity, self.kinds, self.weights, out)
         return out
 
-    def transpose(self, samples):
+    def transpose(self, samples: npt.ArrayLike) -> Floats:
+        """Apply the transpose of D.
+
+        Parameters
+        ----------
+        samples : array (rows, cols)
+            Trimmed differences; pixels that are not read do not count.
+
+        Returns
+        -------
+        float64 (rows, cols)
+            Image.
+        """
         out = np.zeros(self.shape)
         _scatter(np.ascontiguousarray(samples, float), self.disparity, self.kinds, self.weights, out)
         return out
 
 
-def image_from_edges(samples, operator, solver=Solver()):
-    """The image of mean 0, (rows, cols), in the unit in which ``samples`` (rows, cols) measure radiance.
+def image_from_edges(samples: npt.ArrayLike, operator: EdgeOperator, solver: Solver = Solver()) -> Floats:
+    """Reconstruct an image from edge samples.
 
-    samples: decoded codes divided by the codes that a radiance of 1 makes (models.plan.codes_per_unit).
+    Parameters
+    ----------
+    samples : array (rows, cols)
+        Decoded codes divided by the codes per unit of radiance (models.plan.codes_per_unit).
+    operator : EdgeOperator
+        D.
+    solver : Solver
+        Settings.
+
+    Returns
+    -------
+    float64 (rows, cols)
+        Relative radiance of mean 0.
     """
 
-    def normal(image):
+    def _normal(image: Floats) -> Floats:
         return operator.transpose(operator.forward(image)) + solver.smoothness * laplacian(image)
 
     right = operator.transpose(samples)
-    return _conjugate_gradients(normal, right - right.mean(), _inverse_laplacian(operator.shape), solver)
+    return _conjugate_gradients(_normal, right - right.mean(), _inverse_laplacian(operator.shape), solver)
 
 
-def _conjugate_gradients(apply, right, precondition, solver):
+def _conjugate_gradients(
+    apply: Callable[[Floats], Floats], right: Floats, precondition: Callable[[Floats], Floats], solver: Solver
+) -> Floats:
     """x of apply(x) = right, both (rows, cols), with the residual at most tolerance * |right|, or the last iteration's.
 
     Like scipy.sparse.linalg.cg, but without BLAS, whose threads stall one another where the cores are shared.
@@ -90,7 +162,7 @@ def _conjugate_gradients(apply, right, precondition, solver):
             break
         upward = precondition(residual)
         before, energy = energy, _dot(residual, upward)
-        if energy <= 0:  # nothing left but what the preconditioner is blind to: the mean
+        if energy <= 0:  # only the mean is left, which the preconditioner ignores
             break
         direction = upward + (energy / before if before else 0.0) * direction
         curved = apply(direction)
@@ -100,12 +172,23 @@ def _conjugate_gradients(apply, right, precondition, solver):
     return x - x.mean()
 
 
-def _dot(a, b):
+def _dot(a: Floats, b: Floats) -> float:
     return float(np.einsum("yx,yx", a, b))
 
 
-def laplacian(image):
-    """grad' grad of an image, its border free: (rows, cols)."""
+def laplacian(image: Floats) -> Floats:
+    """Negative Laplacian grad' grad of an image with a free border.
+
+    Parameters
+    ----------
+    image : float64 (rows, cols)
+        The image.
+
+    Returns
+    -------
+    float64 (rows, cols)
+        Its sum is 0.
+    """
     out = np.zeros_like(image)
     for axis in (0, 1):
         step = np.diff(image, axis=axis)
@@ -115,16 +198,16 @@ def laplacian(image):
     return out
 
 
-def _inverse_laplacian(shape):
-    """A function image -> the mean-free solution of laplacian(solution) = image - mean(image)."""
+def _inverse_laplacian(shape: tuple[int, int]) -> Callable[[Floats], Floats]:
+    """A function from an image to the mean-free solution of laplacian(solution) = image - mean(image)."""
     y, x = (2 - 2 * np.cos(np.pi * np.arange(n) / n) for n in shape)
     eigen = y[:, None] + x[None, :]
     eigen[0, 0] = np.inf
-    return lambda image: idctn(dctn(image, norm="ortho") / eigen, norm="ortho")
+    return lambda image: np.asarray(idctn(np.asarray(dctn(image, norm="ortho")) / eigen, norm="ortho"))
 
 
 @njit(cache=True)
-def _gather(image, disparity, kinds, weights, out):
+def _gather(image: Floats, disparity: Floats, kinds: Ints, weights: Floats, out: Floats) -> None:
     views = weights.shape[1]
     middle = (views - 1) / 2
     rows, cols = image.shape
@@ -150,7 +233,7 @@ def _gather(image, disparity, kinds, weights, out):
 
 
 @njit(cache=True)
-def _scatter(samples, disparity, kinds, weights, out):
+def _scatter(samples: Floats, disparity: Floats, kinds: Ints, weights: Floats, out: Floats) -> None:
     views = weights.shape[1]
     middle = (views - 1) / 2
     rows, cols = samples.shape

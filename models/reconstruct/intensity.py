@@ -1,25 +1,63 @@
 """The ordinary 2-D image: the sum of each pair [Jayasuriya2017, Eq. 3.6]."""
 
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming
+from models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
 from models.pixel.weights import view_weights
 
 FULL = 255.0  # LSB: both wells of a pair full
 
 
-def white_sum(sensor, timing=AmpTiming()):
-    """LSB of the sum of a pair under a flat white scene, on average over the types, full wells aside."""
+def white_sum(sensor: SensorParameters, timing: AmpTiming = AmpTiming()) -> float:
+    """Sum of a pair in a flat white scene, on average over the types, without full wells.
+
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor.
+    timing : AmpTiming
+        Integration time.
+
+    Returns
+    -------
+    float
+        In LSB.
+    """
     e = sensor.electrical
     return 2 * e.white_current * timing.t_int / sensor.chip.f_clk / ELEMENTARY_CHARGE / e.lsb_electrons
 
 
-def sum_image(sums, sensor, read=None, timing=AmpTiming()):
-    """Relative radiance (1 = white) of every pixel from the sums of its pair: (rows, cols), 0 at least.
+def sum_image(
+    sums: npt.NDArray[Any],
+    sensor: SensorParameters,
+    read: npt.NDArray[np.bool_] | None = None,
+    timing: AmpTiming = AmpTiming(),
+) -> npt.NDArray[np.floating]:
+    """Relative radiance of every pixel from the sum of its pair; each type's share of the common mode is divided out.
 
-    sums: (rows, cols) in LSB; they are clipped to 0..255. read: bool (rows, cols); pixels that were not read take the
-    nearest one that was; None = all were. timing: AmpTiming. Each type's own share of the common mode is divided out.
+    Parameters
+    ----------
+    sums : array (rows, cols)
+        In LSB; clipped to 0..255.
+    sensor : SensorParameters
+        The sensor.
+    read : bool (rows, cols), optional
+        Pixels that are read; the others take the value of the nearest one that is. None is all.
+    timing : AmpTiming
+        Integration time.
+
+    Returns
+    -------
+    array (rows, cols)
+        0 or more; 1 is white.
+
+    References
+    ----------
+    [Jayasuriya2017], Eq. 3.6.
     """
     share = view_weights(sensor.tile, sensor.optics).sum((1, 2, 3)) / 2
     white = white_sum(sensor, timing) * share[sensor.tile.type_map(*sums.shape)]
@@ -28,4 +66,5 @@ def sum_image(sums, sensor, read=None, timing=AmpTiming()):
         return out
     if not read.any():
         return np.zeros_like(out)
-    return out[tuple(distance_transform_edt(~read, return_distances=False, return_indices=True))]
+    nearest = np.asarray(distance_transform_edt(~read, return_distances=False, return_indices=True))
+    return out[nearest[0], nearest[1]]

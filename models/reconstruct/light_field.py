@@ -1,21 +1,41 @@
 """The linear light-field estimate  l = Sigma^-1 Phi' i,  Sigma = diag(Phi' Phi)  [Jayasuriya2017, Sec. 3.3.2]."""
 
 import numpy as np
+import numpy.typing as npt
 
+from models.capture import CaptureOperator
 from models.parameters import ParameterError
 
 from .demosaic import demosaic
 
 
-def light_field_estimate(operator, pair):
-    """l[v, u, y, x], (views, views, rows, cols), in the unit of ``pair`` (a white diode's photocurrent = white).
+def light_field_estimate(operator: CaptureOperator, pair: npt.NDArray[np.floating]) -> npt.NDArray[np.floating]:
+    """Linear estimate of the light field.
 
-    operator: the CaptureOperator of all views; pixels that it does not read take no part.
-    pair: both diodes of every pixel, (2, rows, cols), float32 or float64, which the result keeps.
+    The 24 types are demosaiced first, so that every pixel has all 48 measurements. Sigma contains the diagonal alone,
+    though the columns of Phi overlap (all are positive); each view is therefore scaled such that the estimate of a
+    uniform scene is exact.
 
-    The 24 types are demosaiced first, so that all 48 measurements stand at every pixel. Sigma knows the diagonal
-    alone, though the columns of Phi overlap (all are positive); so each view is scaled by what a uniform scene would
-    give, which comes back exact. Raises ParameterError for an operator of one view or a wrong shape.
+    Parameters
+    ----------
+    operator : CaptureOperator
+        Operator of all views; pixels that it does not read do not count.
+    pair : float32 or float64 (2, rows, cols)
+        Both diodes of every pixel.
+
+    Returns
+    -------
+    array (views, views, rows, cols)
+        l[v, u, y, x] in the unit and type of ``pair`` (a white diode's photocurrent = white).
+
+    Raises
+    ------
+    ParameterError
+        For an operator of one view or a wrong shape.
+
+    References
+    ----------
+    [Jayasuriya2017], Sec. 3.3.2.
     """
     shape = operator.rows, operator.cols
     if not operator.angular:
@@ -28,7 +48,7 @@ def light_field_estimate(operator, pair):
     seen = np.isin(np.arange(tile.n_types), kinds if read is None else kinds[read])
     if not seen.any():
         return np.zeros(operator.shape, pair.dtype)
-    # Phi of one place, all types demosaiced to it: (48, v, u).
+    # Phi of one pixel, all types demosaiced to it: (48, v, u).
     back = (operator.weights.astype(float) * seen[:, None, None, None]).reshape(-1, *operator.shape[:2])
     back /= np.tensordot(back, back.sum((1, 2)), (0, 0))
     return np.tensordot(back.astype(pair.dtype), measured.reshape(-1, *shape), (0, 0))

@@ -1,14 +1,30 @@
 """Peak signal-to-noise ratio."""
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ParameterError
 
 
-def psnr_db(found, truth, peak=1.0):
-    """10 log10(peak^2 / mean squared error) in dB; None where both are equal everywhere (the ratio is infinite).
+def psnr_db(found: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) -> float | None:
+    """Peak signal-to-noise ratio, 10 log10(peak^2 / mean squared error).
 
-    found, truth: arrays of one shape. peak: above 0. Raises ParameterError for different shapes.
+    Parameters
+    ----------
+    found, truth : array
+        Of one shape.
+    peak : float
+        Greater than 0.
+
+    Returns
+    -------
+    float or None
+        In dB; None where both are equal everywhere (the ratio is infinite).
+
+    Raises
+    ------
+    ParameterError
+        For different or empty shapes.
     """
     found, truth = np.asarray(found, float), np.asarray(truth, float)
     if found.shape != truth.shape or not found.size:
@@ -17,6 +33,21 @@ def psnr_db(found, truth, peak=1.0):
     return None if error == 0 else 10 * float(np.log10(peak**2 / error))
 
 
-def psnr_without_mean_db(found, truth, peak=1.0):
-    """The same after each has lost its mean: for images rebuilt from differences."""
+def psnr_without_mean_db(
+    found: npt.NDArray[np.floating], truth: npt.NDArray[np.floating], peak: float = 1.0
+) -> float | None:
+    """Peak signal-to-noise ratio after the removal of both means, for images reconstructed from differences.
+
+    Parameters
+    ----------
+    found, truth : array
+        Of one shape.
+    peak : float
+        Greater than 0.
+
+    Returns
+    -------
+    float or None
+        As in `psnr_db`.
+    """
     return psnr_db(found - np.mean(found), truth - np.mean(truth), peak)

@@ -1,12 +1,14 @@
-"""The image of a scene from the codes that left the chip in edge mode, and how good it is."""
+"""Reconstruction of a scene's image from the chip's codes in edge mode, and its quality."""
 
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from models.afe import trim_gain
-from models.parameters import AmpTiming
+from models.parameters import AmpTiming, SensorParameters
 from models.plan.flat import codes_per_unit
+from models.scene import Scene
 
 from .edges import EdgeOperator, Solver, image_from_edges
 from .psnr import psnr_without_mean_db
@@ -14,20 +16,55 @@ from .psnr import psnr_without_mean_db
 
 @dataclass(frozen=True, eq=False)
 class Rebuilt:
-    """image: relative radiance of mean 0, (rows, cols). psnr_db: against the scene's centre view, means removed, peak 1
-    (white); None where equal. method: for people."""
+    """A reconstructed image.
 
-    image: np.ndarray
+    Attributes
+    ----------
+    image : float64 (rows, cols)
+        Relative radiance of mean 0.
+    psnr_db : float or None
+        Against the scene's centre view, means removed, peak 1 (white); None where equal.
+    method : str
+        Name in reports.
+    """
+
+    image: npt.NDArray[np.float64]
     psnr_db: float | None
     method: str
 
 
-def rebuild(codes, read, scene, sensor, trim, timing=AmpTiming(), solver=Solver()):
-    """Rebuilt of decoded edge codes (rows, cols).
+def rebuild(
+    codes: npt.NDArray[np.integer],
+    read: npt.NDArray[np.bool_],
+    scene: Scene,
+    sensor: SensorParameters,
+    trim: npt.ArrayLike,
+    timing: AmpTiming = AmpTiming(),
+    solver: Solver = Solver(),
+) -> Rebuilt:
+    """Reconstruct an image from decoded edge codes.
 
-    read: bool (rows, cols), pixels that were read. scene: the Scene, for its disparity and to compare with.
-    trim: register values of the pixel types. timing: AmpTiming of the frame.
-    A scene in focus makes no edges: then the image is 0 everywhere.
+    Parameters
+    ----------
+    codes : array of int (rows, cols)
+        Codes of a frame in edge mode.
+    read : bool (rows, cols)
+        Pixels that are read.
+    scene : Scene
+        Source of the disparity and of the true image.
+    sensor : SensorParameters
+        The sensor.
+    trim : array of int (types,)
+        Register values of the pixel types.
+    timing : AmpTiming
+        Of the frame.
+    solver : Solver
+        Settings.
+
+    Returns
+    -------
+    Rebuilt
+        Image and PSNR; a scene in focus has no edges, and its image is 0 everywhere.
     """
     disparity = np.zeros(scene.shape) if scene.disparity is None else scene.disparity
     operator = EdgeOperator(sensor, disparity, trim_gain(trim), read)

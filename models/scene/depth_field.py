@@ -1,32 +1,52 @@
-"""The depth that every view sees, for time of flight."""
+"""Depth map of every view, for time of flight."""
+
+from collections.abc import Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from .camera import DEPTH_MAX
 from .views import view
 
 
-def view_depths(scene, steps):
-    """Depth in m at every pixel of every view, view after view: yields (v, u, (rows, cols)).
+def view_depths(
+    depth: npt.NDArray[np.floating], disparity: npt.NDArray[np.floating] | None, steps: npt.NDArray[np.float64]
+) -> Iterator[tuple[int, int, npt.NDArray[np.floating]]]:
+    """Depth at every pixel of every view, view after view.
 
-    scene: a Scene with depth. steps: offset of each view from the centre in view steps, (views,).
     The disparity is warped to the view, the nearest surface wins; inverse depth is affine in disparity.
+
+    Parameters
+    ----------
+    depth : array (rows, cols)
+        Depth of the centre view in m.
+    disparity : array (rows, cols) or None
+        Disparity of the centre view in px per view step; None is the same depth in all views.
+    steps : float64 (views,)
+        Offset of each view from the centre in view steps.
+
+    Yields
+    ------
+    v, u : int
+        View row and column.
+    depth : array (rows, cols)
+        In m.
     """
-    known = None if scene.disparity is None else _inverse_depth(scene)
-    image = np.zeros(scene.shape)
+    line = None if disparity is None else _inverse_depth(disparity, depth)
+    image = np.zeros(depth.shape)
     for v, dv in enumerate(steps):
         for u, du in enumerate(steps):
-            if known is None:
-                yield v, u, scene.depth
+            if disparity is None or line is None:
+                yield v, u, depth
                 continue
-            start, slope = known
-            surface = view(image, np.asarray(scene.disparity, float), dv, du)[1]
+            start, slope = line
+            surface = view(image, np.asarray(disparity, float), dv, du)[1]
             yield v, u, 1 / np.maximum(start + slope * surface, 1 / DEPTH_MAX)
 
 
-def _inverse_depth(scene):
-    """(a, b) of 1 / depth = a + b * disparity, from the nearest and the farthest pixel; None where all are alike."""
-    disparity, inverse = np.ravel(scene.disparity), 1 / np.ravel(scene.depth)
+def _inverse_depth(disparity: npt.NDArray[np.floating], depth: npt.NDArray[np.floating]) -> tuple[float, float] | None:
+    """(a, b) of 1 / depth = a + b * disparity, from the nearest and the farthest pixel; None where all are equal."""
+    disparity, inverse = np.ravel(disparity), 1 / np.ravel(depth)
     finite = inverse > 2 / DEPTH_MAX  # at infinity depth is cut off
     if not finite.any() or not np.ptp(disparity[finite]):
         return None

@@ -1,7 +1,7 @@
-"""A depth file beside a picture -> disparity against the reference plane (models/scene/camera.py).
+"""From a depth file next to a picture to disparity against the reference plane (models/scene/camera.py).
 
 .npy                (rows, cols), depth in m, 0.1..1000
-.npz                one array: `depth` (m, the same) or `disparity` (px a view step, -100..100, at the array's size)
+.npz                one array: `depth` (m, the same) or `disparity` (px per view step, -100..100, at the array's size)
 16-bit image        depth in mm, 100..65535
 8-bit image         inverse depth: 0 is 6 m, 255 is 2 m, linear in 1/m (brighter is nearer)
 """
@@ -10,22 +10,41 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ParameterError
 
 from . import camera, resample
 from .picture_file import read_codes
+from .sampling import Sampling
 from .scene import check_values
 
 NEAR, FAR = 2.0, 6.0  # m, of 8-bit images
 BYTES_MAX = 2**30  # of an array in an .npz
 
 
-def read_disparity(path, sampling, picture_shape):
-    """Disparity (rows, cols) of ``path`` against the reference plane, px a view step.
+def read_disparity(path: str | Path, sampling: Sampling, picture_shape: tuple[int, int]) -> npt.NDArray[np.float64]:
+    """Read a depth file.
 
-    picture_shape: (height, width) of the picture it belongs to: the crop is the same, the resolution may differ,
-    the proportions by 2 % at most. Raises ParameterError.
+    Parameters
+    ----------
+    path : path
+        The file.
+    sampling : Sampling
+        Size of the array, and views.
+    picture_shape : (int, int)
+        Height and width of the picture that the file belongs to. The crop is the same; the resolution may differ, the
+        proportions by 2 % at most.
+
+    Returns
+    -------
+    float64 (rows, cols)
+        Disparity against the reference plane in px per view step.
+
+    Raises
+    ------
+    ParameterError
+        For a file that is missing or damaged, a wrong shape, or a value out of range.
     """
     values, kind = _read(Path(path))
     if values.ndim != 2 or 0 in values.shape:
@@ -33,7 +52,7 @@ def read_disparity(path, sampling, picture_shape):
     height, width = values.shape
     if abs(np.log(width / height * picture_shape[0] / picture_shape[1])) > 0.02:
         raise ParameterError(f"depth shape = {values.shape}: must have the proportions of the image, {picture_shape}")
-    values = resample.pick(values, *sampling.shape, resample.centre_box(height, width, *sampling.shape))
+    values = resample.pick(values, *sampling.shape, box=resample.centre_box(height, width, *sampling.shape))
     if kind == "disparity":
         check_values("disparity", values, -100, 100)
         return values
@@ -45,7 +64,8 @@ def read_disparity(path, sampling, picture_shape):
     return camera.disparity(values, sampling)
 
 
-def _read(path):
+def _read(path: Path) -> tuple[npt.NDArray[np.generic], str]:
+    """Values of a file and their kind: depth, disparity, mm or inverse."""
     if path.suffix.lower() not in (".npy", ".npz"):
         codes = read_codes(path, "depth")
         return codes, "mm" if codes.dtype == np.uint16 else "inverse"
@@ -56,7 +76,7 @@ def _read(path):
             values, kind = np.load(path, mmap_mode="r", allow_pickle=False), "depth"
         else:
             if any(item.file_size > BYTES_MAX for item in zipfile.ZipFile(path).infolist()):
-                raise ParameterError(f"depth = {str(path)!r}: arrays must be of at most {BYTES_MAX} bytes")
+                raise ParameterError(f"depth = {str(path)!r}: arrays must have at most {BYTES_MAX} bytes")
             with np.load(path, allow_pickle=False) as archive:
                 kind = next((name for name in ("depth", "disparity") if name in archive), None)
                 if kind is None:

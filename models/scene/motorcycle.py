@@ -1,15 +1,34 @@
 """The Middlebury motorcycle pair of scikit-image [Scharstein2014] as a light field: the default scene."""
 
+from collections.abc import Callable
+
 import numpy as np
+import numpy.typing as npt
 from skimage.data import stereo_motorcycle
 
 from . import camera, resample, warp
+from .sampling import Sampling
 from .scene import Scene
 from .views import Second, light_field
 
 
-def motorcycle(sampling):
-    """The pair's left picture as the centre view, its measured disparity, the right picture behind the edges."""
+def motorcycle(sampling: Sampling) -> Scene:
+    """Motorcycle scene: the left picture is the centre view; the right one fills what edges hide.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+
+    Returns
+    -------
+    Scene
+        With disparity and depth.
+
+    References
+    ----------
+    [Scharstein2014].
+    """
     left, right, measured = stereo_motorcycle()
     zoom = camera.zoom(sampling)
     measured = np.ascontiguousarray(measured, float)
@@ -25,10 +44,10 @@ def motorcycle(sampling):
     disparity = crop(disparity, resample.pick)
     image = crop(resample.linear(left), resample.resize)
 
-    # A pixel of the left picture lies measured * zoom to the left in the right one, whose crop
-    # starts `start` px further left so that it holds what the left crop shows.
+    # A pixel of the left picture is measured * zoom to the left in the right one, whose crop
+    # starts `start` px further left so that it holds the content of the left crop.
     scale = camera.BASELINE * sampling.views / camera.APERTURE
-    offset = (focus - camera.disparity(np.inf, sampling)) * scale - camera.DOFFS_PX * zoom
+    offset = (focus - float(camera.disparity(np.inf, sampling))) * scale - camera.DOFFS_PX * zoom
     start = min(int(np.median(measured) * zoom), int(crop.box[0] * zoom))
     other = crop(resample.linear(right), resample.resize, -start / zoom)
     second = Second(other, disparity, scale, offset - start)
@@ -48,19 +67,21 @@ def motorcycle(sampling):
 class _Crop:
     """The centred part of the pair that fills the array, and ``margin`` pixels of the array around it."""
 
-    def __init__(self, shape, sampling, zoom, margin):
+    def __init__(self, shape: tuple[int, ...], sampling: Sampling, zoom: float, margin: int) -> None:
         self.size = sampling.rows + 2 * margin, sampling.cols + 2 * margin
         height, width = (n / zoom for n in self.size)
         left, upper = (shape[1] - width) / 2, (shape[0] - height) / 2
         self.box = left, upper, left + width, upper + height
 
-    def __call__(self, values, how, shift=0.0):
+    def __call__(
+        self, values: npt.NDArray[np.floating], how: Callable[..., npt.NDArray[np.float64]], shift: float = 0.0
+    ) -> npt.NDArray[np.float64]:
         left, upper, right, lower = self.box
         return how(values, *self.size, (left + shift, upper, right + shift, lower))
 
 
-def _margin(shape, disparity, sampling, zoom):
-    """Pixels around the array that the outer views look at, as far as the pair has them."""
-    wanted = np.ceil(np.abs(disparity).max() * np.abs(sampling.steps).max()) + 2
-    there = min((shape[0] * zoom - sampling.rows) / 2, (shape[1] * zoom - sampling.cols) / 2)
-    return int(min(wanted, there))
+def _margin(shape: tuple[int, ...], disparity: npt.NDArray[np.float64], sampling: Sampling, zoom: float) -> int:
+    """Pixels around the array that the outer views need, as far as the pair has them."""
+    needed = np.ceil(np.abs(disparity).max() * np.abs(sampling.steps).max()) + 2
+    present = min((shape[0] * zoom - sampling.rows) / 2, (shape[1] * zoom - sampling.cols) / 2)
+    return int(min(needed, present))

@@ -1,9 +1,11 @@
-"""Any image file -> linear luminance: 8 or 16 bit, gray, colour, palette or alpha, of any size."""
+"""From any image file to linear luminance: 8 or 16 bit, gray, colour, palette or alpha, of any size."""
 
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image, ImageOps, UnidentifiedImageError
 
 from models.parameters import ParameterError
@@ -14,12 +16,27 @@ PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
 KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
-def read_luminance(path, rows, cols):
-    """Linear luminance 0..1 of the picture at ``path``: float32 (height, width).
+def read_luminance(path: str | Path, rows: int, cols: int) -> npt.NDArray[np.float32]:
+    """Read the linear luminance of a picture.
 
-    8-bit codes are sRGB; 16-bit ones too; floating-point pictures (TIFF) are linear already. Transparency lies on
-    white. A picture far larger than rows x cols comes back smaller, reduced in whole boxes.
-    Raises ParameterError where the file is missing, no image, damaged, too large, or holds NaN or infinity.
+    8-bit and 16-bit codes are sRGB; floating-point pictures (TIFF) are linear. Transparency shows white.
+
+    Parameters
+    ----------
+    path : path
+        The image.
+    rows, cols : int
+        Size of the array. A much larger picture is reduced in whole boxes.
+
+    Returns
+    -------
+    float32 (height, width)
+        0..1.
+
+    Raises
+    ------
+    ParameterError
+        If the file is missing, no image, damaged, too large, or holds NaN or infinity.
     """
     with _opened(path, "scene") as picture:
         picture.draft("RGB", (KEEP * cols, KEEP * rows))  # JPEG: decode at a fraction of the size
@@ -27,8 +44,26 @@ def read_luminance(path, rows, cols):
         return _luminance(picture, path, max(1, min(picture.height // (KEEP * rows), picture.width // (KEEP * cols))))
 
 
-def read_codes(path, field):
-    """Gray codes of the picture at ``path`` as stored, uint8 or uint16 (height, width), for depth maps."""
+def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDArray[np.uint16]:
+    """Read the gray codes of a picture as stored, for depth maps.
+
+    Parameters
+    ----------
+    path : path
+        The image.
+    field : str
+        Name in the messages.
+
+    Returns
+    -------
+    uint8 or uint16 (height, width)
+        Codes.
+
+    Raises
+    ------
+    ParameterError
+        If the file is missing, no image, damaged, too large, or a floating-point picture.
+    """
     with _opened(path, field) as picture:
         picture = _loaded(picture, path, field)
         if picture.mode.startswith("I"):
@@ -41,13 +76,13 @@ def read_codes(path, field):
         return np.asarray(picture.convert("L"))
 
 
-def _opened(path, field):
+def _opened(path: str | Path, field: str) -> Image.Image:
     path = Path(path)
     if not path.is_file():
         raise ParameterError(f"{field} = {str(path)!r}: no such file; must be a readable file")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # up to PIXELS_MAX is wanted
+            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # up to PIXELS_MAX is allowed
             picture = Image.open(path)
     except Image.DecompressionBombError:
         raise ParameterError(f"{field} = {str(path)!r}: must be an image of 1..{PIXELS_MAX} pixels") from None
@@ -58,7 +93,7 @@ def _opened(path, field):
     return picture
 
 
-def _loaded(picture, path, field):
+def _loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # odd metadata is no concern of ours; damaged pixels raise
@@ -68,7 +103,7 @@ def _loaded(picture, path, field):
     return picture
 
 
-def _luminance(picture, path, factor):
+def _luminance(picture: Image.Image, path: str | Path, factor: int) -> npt.NDArray[np.float32]:
     if picture.mode == "F":
         values = np.asarray(picture)
         smallest, largest = float(values.min()), float(values.max())
@@ -93,9 +128,9 @@ def _luminance(picture, path, factor):
     return linear(_reduced(picture.convert("RGB"), factor, np.uint8))
 
 
-def _reduced(picture, factor, dtype):
+def _reduced(picture: Image.Image, factor: int, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
     return np.asarray(picture.reduce(factor) if factor > 1 else picture, dtype)
 
 
-def _decode16(unit):
+def _decode16(unit: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
     return np.where(unit <= 0.04045, unit / 12.92, ((unit + 0.055) / 1.055) ** 2.4)

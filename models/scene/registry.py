@@ -1,5 +1,6 @@
 """Scenes by name."""
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -8,9 +9,11 @@ from models.parameters import ParameterError
 from . import targets
 from .motorcycle import motorcycle
 from .photograph import PHOTOGRAPHS, photograph, picture
+from .sampling import Sampling
+from .scene import Scene
 
 # Each is a function of a Sampling; `name:number` on the command line adds the number (edge:30 is 30 degrees).
-scenes = {
+scenes: dict[str, Callable[..., Scene]] = {
     "motorcycle": motorcycle,
     "tilted": targets.tilted,
     "point": targets.point,
@@ -24,14 +27,33 @@ scenes = {
 NUMBERS = {"edge": ("degrees", -360.0, 360.0), "flat": ("percent", 0.0, 1600.0), "polarized": ("percent", 0.0, 100.0)}
 
 
-def load(scene, sampling, depth=None):
-    """The Scene of a name in `scenes` (or `name:number`), else of an image file.
+def load(scene: str, sampling: Sampling, depth: str | Path | None = None) -> Scene:
+    """Load a scene by name, or from an image file.
 
-    scene: str. sampling: a Sampling. depth: a file for an image file, else None. Raises ParameterError.
+    Parameters
+    ----------
+    scene : str
+        A name in `scenes`, `name:number`, or a path.
+    sampling : Sampling
+        Array, views and focal plane.
+    depth : path, optional
+        Depth file of an image file.
+
+    Returns
+    -------
+    Scene
+        The scene.
+
+    Raises
+    ------
+    ParameterError
+        For an unknown name, a number out of range, or a file that cannot be read.
     """
     name, colon, number = scene.partition(":")
     if scene not in scenes and not (colon and name in NUMBERS):
-        return picture(scene, sampling, depth) if _looks_like_file(scene) else _unknown(scene)
+        if _looks_like_file(scene):
+            return picture(scene, sampling, depth)
+        raise ParameterError(f"scene = {scene!r}: must be an image file or one of {', '.join(scenes)}")
     if depth is not None:
         raise ParameterError(f"depth = {str(depth)!r}: must be left out, the scene {name!r} has its own")
     if not colon:
@@ -39,15 +61,11 @@ def load(scene, sampling, depth=None):
     return scenes[name](sampling, _number(name, number))
 
 
-def _looks_like_file(scene):
+def _looks_like_file(scene: str) -> bool:
     return any(c in scene for c in "./\\") or Path(scene).is_file()
 
 
-def _unknown(scene):
-    raise ParameterError(f"scene = {scene!r}: must be an image file or one of {', '.join(scenes)}")
-
-
-def _number(name, text):
+def _number(name: str, text: str) -> float:
     what, low, high = NUMBERS[name]
     try:
         value = float(text)

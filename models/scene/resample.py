@@ -1,20 +1,50 @@
-"""Pictures of any size -> the array's size: the largest centred crop of its shape, anti-aliased."""
+"""From pictures of any size to the array's size: the largest centred crop of its shape, anti-aliased."""
+
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from PIL import Image
 
+Box = tuple[float, float, float, float]  # left, upper, right, lower in px
 
-def centre_box(height, width, rows, cols):
-    """(left, upper, right, lower) in px of the largest centred part with the shape rows : cols."""
+
+def centre_box(height: int, width: int, rows: int, cols: int) -> Box:
+    """Largest centred part of a picture with the proportions of the array.
+
+    Parameters
+    ----------
+    height, width : int
+        Size of the picture in px.
+    rows, cols : int
+        Size of the array in px.
+
+    Returns
+    -------
+    Box
+        In px of the picture.
+    """
     step = min(height / rows, width / cols)
     h, w = min(step * rows, height), min(step * cols, width)
     return (width - w) / 2, (height - h) / 2, (width + w) / 2, (height + h) / 2
 
 
-def resize(values, rows, cols, box=None):
-    """``values`` (2-D) -> float64 (rows, cols), each pixel a mean over what it covers (no overshoot).
+def resize(values: npt.NDArray[np.floating], rows: int, cols: int, box: Box | None = None) -> npt.NDArray[np.float64]:
+    """Reduce a picture by averaging, without overshoot, or enlarge it by linear interpolation.
 
-    Enlarged, it is interpolated linearly. box: the part to take, in px, default all of it.
+    Parameters
+    ----------
+    values : array (height, width)
+        The picture.
+    rows, cols : int
+        Size of the result.
+    box : Box, optional
+        Part to take; the whole picture by default.
+
+    Returns
+    -------
+    float64 (rows, cols)
+        Means over the area of each pixel.
     """
     picture = Image.fromarray(np.ascontiguousarray(values, np.float32))
     height, width = values.shape
@@ -24,8 +54,23 @@ def resize(values, rows, cols, box=None):
     return np.asarray(picture.resize((cols, rows), kernel, box=box), float)
 
 
-def pick(values, rows, cols, box=None):
-    """The nearest of ``values`` (2-D) at the middle of every pixel: nothing is mixed across a depth edge."""
+def pick(values: npt.NDArray[Any], rows: int, cols: int, box: Box | None = None) -> npt.NDArray[np.float64]:
+    """Nearest value at the middle of every pixel: nothing is mixed across a depth edge.
+
+    Parameters
+    ----------
+    values : array (height, width)
+        The picture.
+    rows, cols : int
+        Size of the result.
+    box : Box, optional
+        Part to take; the whole picture by default.
+
+    Returns
+    -------
+    float64 (rows, cols)
+        Values of the picture.
+    """
     height, width = values.shape
     left, upper, right, lower = box or (0, 0, width, height)
     y = np.minimum((upper + (np.arange(rows) + 0.5) * (lower - upper) / rows).astype(int), height - 1)
@@ -33,11 +78,27 @@ def pick(values, rows, cols, box=None):
     return np.asarray(values[y[:, None], x[None, :]], float)
 
 
-def linear(codes):
-    """sRGB codes, uint8 (..., 1 or 3), or gray (rows, cols) -> linear luminance 0..1, float32 [IEC61966-2-1]."""
+def linear(codes: npt.NDArray[np.uint8]) -> npt.NDArray[np.float32]:
+    """Linear luminance of sRGB codes.
+
+    Parameters
+    ----------
+    codes : uint8 (rows, cols) or (rows, cols, 3)
+        Gray or colour.
+
+    Returns
+    -------
+    float32 (rows, cols)
+        0..1.
+
+    References
+    ----------
+    [IEC61966-2-1].
+    """
     steps = np.arange(256) / 255
     decoded = np.where(steps <= 0.04045, steps / 12.92, ((steps + 0.055) / 1.055) ** 2.4).astype(np.float32)
     if codes.ndim == 2:
         return decoded[codes]
-    weights = np.float32([0.2126, 0.7152, 0.0722])  # Rec. 709
-    return sum(w * decoded[codes[..., i]] for i, w in enumerate(weights))
+    weights = np.array([0.2126, 0.7152, 0.0722], np.float32)  # Rec. 709
+    red, green, blue = (w * decoded[codes[..., i]] for i, w in enumerate(weights))
+    return red + green + blue

@@ -1,83 +1,62 @@
-"""What stands in front of the sensor.
+"""The scene in front of the sensor.
 
 Light fields are arrays l[v, u, y, x] everywhere in this project: view row, view column, pixel row, pixel column.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
-from models.parameters import ParameterError, check_choice, check_int, check_real
+from models.parameters import ParameterError, check_choice, check_int
 
 from .camera import DEPTH_MAX
+from .sampling import DTYPES
 
 RADIANCE_MAX = 16.0  # 1 = diffuse white; highlights and the saturated target go above it
-DTYPES = ("float32", "float64")
-
-
-@dataclass(frozen=True)
-class Sampling:
-    """How a scene is sampled: one array size, one angular sampling, one focal plane.
-
-    rows, cols: 1..1536 pixels.  views: along each axis, 1..31.  dtype: 'float32' or 'float64'.
-    focus: disparity of the focal plane against the reference plane (models/scene/camera.py), -100..100 px a view
-    step, towards the camera; None is the scene's own.
-    """
-
-    rows: int = 384
-    cols: int = 384
-    views: int = 5
-    focus: float | None = None
-    dtype: str = "float64"
-
-    def __post_init__(self):
-        check_int("rows", self.rows, 1, 1536)
-        check_int("cols", self.cols, 1, 1536)
-        check_int("views", self.views, 1, 31)
-        check_choice("dtype", self.dtype, DTYPES)
-        if self.focus is not None:
-            check_real("focus", self.focus, -100, 100)
-
-    @property
-    def shape(self):
-        return self.rows, self.cols
-
-    @property
-    def steps(self):
-        """Offset of every view from the centre, in view steps: (views,)."""
-        return np.arange(self.views) - (self.views - 1) / 2
-
-    def focus_or(self, default):
-        """The focal plane asked for, or ``default`` (px a view step of a 5 x 5 light field)."""
-        return default * 5 / self.views if self.focus is None else float(self.focus)
 
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """A sampled scene, checked when it is made.
+    """A sampled scene, checked when it is created.
 
-    name: for people.  views: views along each axis that the light field stands for.
-    light_field: l[v, u, y, x], radiance 0..16 (1 = diffuse white), (views, views, rows, cols) float32 or float64;
-        or (1, 1, rows, cols) where all views are equal.
-    image: the centre view, (rows, cols).
-    disparity: px a view step towards the camera from the focal plane, (rows, cols), or None where not known:
-        view (v, u) sees at (y, x) what the centre view sees at (y + dv * disparity, x + du * disparity).
-    depth: m from the camera, 0.001..1000, (rows, cols), or None.
-    polarization: S1/S0 and S2/S0, (2, rows, cols), of degree 0..1; None = unpolarized.
-    static: nothing moves or changes between the taps of a time-of-flight frame.
-    Raises ParameterError for a wrong shape or type, NaN, infinity or a value out of range.
+    Attributes
+    ----------
+    name : str
+        Name in reports.
+    views : int
+        Views along each axis that the light field represents, 1..31.
+    light_field : float32 or float64 (views, views, rows, cols)
+        l[v, u, y, x], radiance 0..16 (1 = diffuse white); (1, 1, rows, cols) where all views are equal.
+    image : array (rows, cols)
+        The centre view.
+    disparity : array (rows, cols) or None
+        Px per view step towards the camera from the focal plane; None if not known. View (v, u) shows at (y, x) what
+        the centre view shows at (y + dv * disparity, x + du * disparity).
+    depth : array (rows, cols) or None
+        Distance from the camera, 0.001..1000 m.
+    polarization : array (2, rows, cols) or None
+        S1/S0 and S2/S0, of degree 0..1; None is unpolarized.
+    static : bool
+        Nothing moves or changes between the taps of a time-of-flight frame.
+
+    Raises
+    ------
+    ParameterError
+        For a wrong shape or type, NaN, infinity or a value out of range.
     """
 
     name: str
     views: int
-    light_field: np.ndarray
-    image: np.ndarray
-    disparity: np.ndarray | None = None
-    depth: np.ndarray | None = None
-    polarization: np.ndarray | None = None
+    light_field: npt.NDArray[np.floating]
+    image: npt.NDArray[np.floating]
+    disparity: npt.NDArray[np.floating] | None = None
+    depth: npt.NDArray[np.floating] | None = None
+    polarization: npt.NDArray[np.floating] | None = None
     static: bool = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_int("views", self.views, 1, 31)
         field = self.light_field
         check_choice("light_field dtype", str(field.dtype), DTYPES)
@@ -103,24 +82,40 @@ class Scene:
             check_values("degree of polarization", np.hypot(*self.polarization), 0, 1 + 1e-6)
 
     @property
-    def shape(self):
-        """(rows, cols)."""
-        return self.light_field.shape[2:]
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        rows, cols = self.light_field.shape[2:]
+        return rows, cols
 
     @property
-    def angular(self):
+    def angular(self) -> bool:
         """Whether the views may differ."""
         return self.light_field.shape[:2] != (1, 1)
 
     @property
-    def full_light_field(self):
-        """The light field with every view there, (views, views, rows, cols): a read-only view, no copies."""
+    def full_light_field(self) -> npt.NDArray[np.floating]:
+        """Light field with all views, (views, views, rows, cols): read-only, no copies."""
         return np.broadcast_to(self.light_field, (self.views, self.views, *self.shape))
 
 
-def check_values(field, values, low, high):
-    """Raise ParameterError unless every element of the array ``values`` is finite and in [low, high]."""
-    # min and max pass NaN on, so that two passes see everything.
+def check_values(field: str, values: npt.NDArray[Any], low: float, high: float) -> None:
+    """Check that every element of an array is finite and in a range.
+
+    Parameters
+    ----------
+    field : str
+        Name in the message.
+    values : array
+        Checked values.
+    low, high : float
+        Allowed range, both ends included.
+
+    Raises
+    ------
+    ParameterError
+        For any other element.
+    """
+    # min and max propagate NaN, so that two passes are enough.
     smallest, largest = float(np.min(values)), float(np.max(values))
     if not (low <= smallest and largest <= high):
         worst = smallest if not low <= smallest else largest

@@ -1,83 +1,174 @@
-"""Analytic targets: radiance is a formula of the place, so every view is exact.
+"""Analytic targets: radiance is a formula of the position, so every view is exact.
 
-Places are px from the middle of the array, x to the right, y down. Each stands on a plane `focus` px a view step
-behind the focal plane (default 1, so that edges answer; 0 is in focus).
+Positions are px from the middle of the array, x to the right, y down. Each target is on a plane `focus` px per view
+step beyond the focal plane (default 1, so that edges respond; 0 is in focus).
 """
 
+from collections.abc import Callable
+
 import numpy as np
+import numpy.typing as npt
 
 from . import camera
+from .sampling import Sampling
 from .scene import Scene
 
-FOCUS = 1.0  # px a view step
+Floats = npt.NDArray[np.float64]
+
+FOCUS = 1.0  # px per view step
 WAVELENGTH = 24.0  # px, of the tilted plane's texture
-TILT = 4.0  # px a view step between the left and the right end of the tilted plane, both sides of focus
+TILT = 4.0  # px per view step between the left and the right end of the tilted plane, both sides of focus
 POINT_SIGMA = 0.7  # px
 SATURATED = 8.0  # radiance: fills the wells several times over
 
 
-def flat(sampling, level=50.0):
-    """A uniform scene of ``level`` percent of white, 0..1600."""
+def flat(sampling: Sampling, level: float = 50.0) -> Scene:
+    """Uniform scene.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+    level : float
+        Percent of white, 0..1600.
+
+    Returns
+    -------
+    Scene
+        One view.
+    """
     return _uniform("flat", sampling, level / 100)
 
 
-def saturated(sampling):
-    """So bright that every well is full."""
+def saturated(sampling: Sampling) -> Scene:
+    """Uniform scene that fills every well.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+
+    Returns
+    -------
+    Scene
+        One view.
+    """
     return _uniform("saturated", sampling, SATURATED)
 
 
-def black(sampling):
-    """No light at all."""
+def black(sampling: Sampling) -> Scene:
+    """Scene without light.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+
+    Returns
+    -------
+    Scene
+        One view.
+    """
     return _uniform("black", sampling, 0.0)
 
 
-def point(sampling):
-    """A point of light, on the plane."""
+def point(sampling: Sampling) -> Scene:
+    """Point of light in the middle of the array.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+
+    Returns
+    -------
+    Scene
+        All views; one view in focus.
+    """
     return _on_plane("point", sampling, lambda y, x: np.exp(-(x**2 + y**2) / (2 * POINT_SIGMA**2)))
 
 
-def edge(sampling, degrees=20.0):
-    """A straight edge from dark (0.05) to bright (0.95), one px wide; ``degrees`` from vertical, any angle."""
+def edge(sampling: Sampling, degrees: float = 20.0) -> Scene:
+    """Straight edge from dark (0.05) to bright (0.95), one px wide.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+    degrees : float
+        Angle from vertical.
+
+    Returns
+    -------
+    Scene
+        All views; one view in focus.
+    """
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     return _on_plane("edge", sampling, lambda y, x: 0.5 + 0.9 * np.clip(x * c + y * s, -0.5, 0.5))
 
 
-def tilted(sampling):
-    """A plane turned about the vertical through the focal plane, with a woven texture."""
+def tilted(sampling: Sampling) -> Scene:
+    """Plane turned about a vertical axis through the focal plane, with a woven texture.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+
+    Returns
+    -------
+    Scene
+        All views, with disparity and depth.
+    """
     y, x = _places(sampling)
-    # Never so steep that an outer view looks along the plane.
+    # The slope stays below that of an outer view's rays.
     slope = min(TILT * 5 / sampling.views / max(sampling.cols - 1, 1), 0.25 / max(sampling.steps[-1], 1))
     shift = sampling.focus_or(0.0)
 
-    def texture(v, u):
+    def _texture(v: Floats, u: Floats) -> Floats:
         k = 2 * np.pi / WAVELENGTH
         return 0.5 + 0.15 * (np.sin(k * u) + np.sin(k * v) + np.sin(k * (u + v) * 0.7))
 
     field = np.empty((sampling.views, sampling.views, *sampling.shape), sampling.dtype)
     for i, dv in enumerate(sampling.steps):
         for j, du in enumerate(sampling.steps):
-            # The disparity d = slope * place - shift at the place that this view sees: place = x + du * d, solved.
+            # The disparity d = slope * place - shift at the position that this view shows: place = x + du * d, solved.
             place = (x - du * shift) / (1 - du * slope)
-            field[i, j] = texture(y + dv * (slope * place - shift), place)
+            field[i, j] = _texture(y + dv * (slope * place - shift), place)
     raw = np.broadcast_to(slope * x, sampling.shape)
     return Scene(
-        "tilted", sampling.views, field, texture(y, x).astype(sampling.dtype), raw - shift, camera.depth(raw, sampling)
+        "tilted", sampling.views, field, _texture(y, x).astype(sampling.dtype), raw - shift, camera.depth(raw, sampling)
     )
 
 
-def polarized(sampling, degree=25.0):
-    """A uniform scene whose light is polarized by ``degree`` percent, its plane turning by pi from left to right."""
+def polarized(sampling: Sampling, degree: float = 25.0) -> Scene:
+    """Uniform scene of polarized light whose plane turns by pi from left to right.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and focal plane.
+    degree : float
+        Degree of polarization in percent, 0..100.
+
+    Returns
+    -------
+    Scene
+        One view, with polarization.
+    """
     psi = np.broadcast_to(np.pi * (np.arange(sampling.cols) + 0.5) / sampling.cols, sampling.shape)
     stokes = degree / 100 * np.stack([np.cos(2 * psi), np.sin(2 * psi)])
     return _uniform("polarized", sampling, 0.5, stokes)
 
 
-def _places(sampling):
+def _places(sampling: Sampling) -> tuple[Floats, Floats]:
     rows, cols = sampling.shape
-    return np.arange(rows)[:, None] - (rows - 1) / 2, np.arange(cols)[None, :] - (cols - 1) / 2
+    return np.arange(rows, dtype=float)[:, None] - (rows - 1) / 2, np.arange(cols, dtype=float)[None, :] - (
+        cols - 1
+    ) / 2
 
 
-def _uniform(name, sampling, radiance, polarization=None):
+def _uniform(name: str, sampling: Sampling, radiance: float, polarization: Floats | None = None) -> Scene:
     image = np.full(sampling.shape, radiance, sampling.dtype)
     return Scene(
         name,
@@ -89,8 +180,8 @@ def _uniform(name, sampling, radiance, polarization=None):
     )
 
 
-def _on_plane(name, sampling, radiance):
-    """``radiance(y, x)`` on a plane: all views equal, and only one kept, where the plane is in focus."""
+def _on_plane(name: str, sampling: Sampling, radiance: Callable[[Floats, Floats], Floats]) -> Scene:
+    """``radiance(y, x)`` on a plane; in focus all views are equal, and one is kept."""
     y, x = _places(sampling)
     d = -sampling.focus_or(FOCUS)
     steps = sampling.steps if d else np.zeros(1)

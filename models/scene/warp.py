@@ -1,23 +1,37 @@
-"""A picture with disparity -> the views around it: forward warp with a z-buffer, then sub-pixel sampling.
+"""From a picture with disparity to the views around it: forward warp with a z-buffer, then sub-pixel sampling.
 
-Only the disparity is warped forward (to the nearest pixels, the nearest surface wins); the radiance is then fetched
-at the exact sub-pixel place where the source saw that surface. So no surface is blurred by splatting.
+Only the disparity is warped forward (to the nearest pixels, the nearest surface wins). The radiance is then fetched
+at the exact sub-pixel position of that surface in the source, so that splatting blurs no surface.
 """
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
+
+Floats = npt.NDArray[np.float64]
+Bools = npt.NDArray[np.bool_]
 
 FOOTPRINT = 0.75  # px around its target that a pixel claims: surfaces stretched by up to 1.5 get no cracks
 BEHIND = -1e30  # no surface
-JUMP = 0.25  # px a view step between neighbours from which on two surfaces meet there
+JUMP = 0.25  # px per view step: a larger step between neighbours is a border of two surfaces
 
 
 @njit(cache=True)
-def splat(target, disparity, use, shift, dv, du):
-    """Warp ``disparity`` (rows, cols; px a view step) into ``target``, a z-buffer of the same rows.
+def splat(target: Floats, disparity: Floats, use: Bools, shift: Floats, dv: float, du: float) -> None:
+    """Warp a disparity map into a z-buffer; the largest disparity (the nearest surface) wins.
 
-    use: bool (rows, cols), pixels that take part. shift: px to the right of every pixel before the step, (rows,
-    cols). dv, du: view steps. The largest disparity (the nearest surface) wins.
+    Parameters
+    ----------
+    target : float64 (rows, n)
+        The z-buffer.
+    disparity : float64 (rows, cols)
+        Px per view step.
+    use : bool (rows, cols)
+        Pixels to warp.
+    shift : float64 (rows, cols)
+        Px to the right of every pixel before the step.
+    dv, du : float
+        View steps.
     """
     rows, cols = target.shape
     for y in range(disparity.shape[0]):
@@ -35,10 +49,21 @@ def splat(target, disparity, use, shift, dv, du):
 
 
 @njit(cache=True)
-def unmixed(disparity):
-    """Bool (rows, cols): False for the pixels of a farther surface that touch a nearer one.
+def unmixed(disparity: Floats) -> Bools:
+    """Pixels that show one surface alone.
 
-    Such a pixel shows a mixture of both; left in, it draws the nearer one's outline onto the farther.
+    A pixel of a farther surface that touches a nearer one shows a mixture of both; used, it would draw the outline of
+    the nearer one onto the farther.
+
+    Parameters
+    ----------
+    disparity : float64 (rows, cols)
+        Px per view step.
+
+    Returns
+    -------
+    bool (rows, cols)
+        False for such a mixture.
     """
     rows, cols = disparity.shape
     out = np.ones((rows, cols), np.bool_)
@@ -52,10 +77,17 @@ def unmixed(disparity):
 
 
 @njit(cache=True)
-def fill_rows(disparity, hole):
-    """Fill holes (bool) in place with the farther of the nearest known neighbours in the row: the background side.
+def fill_rows(disparity: Floats, hole: Bools) -> None:
+    """Fill holes in place with the farther of the nearest known neighbours in the row: the background side.
 
-    A row without any known pixel takes the smallest disparity known anywhere (0 where nothing is).
+    A row without any known pixel takes the smallest known disparity of all (0 if none is known).
+
+    Parameters
+    ----------
+    disparity : float64 (rows, cols)
+        Px per view step.
+    hole : bool (rows, cols)
+        Pixels to fill.
     """
     rows, cols = disparity.shape
     lowest = np.inf
@@ -83,15 +115,32 @@ def fill_rows(disparity, hole):
 
 
 @njit(cache=True)
-def _keys(t):
-    """Weights of cubic convolution [Keys1981] at -1, 0, 1, 2 for a place ``t`` in 0..1 between 0 and 1."""
+def _keys(t: float) -> tuple[float, float, float, float]:
+    """Weights of cubic convolution [Keys1981] at -1, 0, 1, 2 for a position ``t`` in 0..1."""
     t2, t3 = t * t, t * t * t
     return (-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3, -0.5 * t2 + 0.5 * t3)
 
 
 @njit(cache=True)
-def cubic(image, y, x):
-    """Value of ``image`` at a real place, the border pixels repeated outwards."""
+def cubic(image: Floats, y: float, x: float) -> float:
+    """Interpolate an image by cubic convolution, the border pixels repeated outwards.
+
+    Parameters
+    ----------
+    image : float64 (rows, cols)
+        The image.
+    y, x : float
+        Position in px.
+
+    Returns
+    -------
+    float
+        Value there.
+
+    References
+    ----------
+    [Keys1981].
+    """
     rows, cols = image.shape
     y, x = min(max(y, 0.0), rows - 1.0), min(max(x, 0.0), cols - 1.0)
     y0, x0 = int(y), int(x)
@@ -109,8 +158,22 @@ def cubic(image, y, x):
 
 
 @njit(cache=True)
-def fetch(out, image, disparity, dv, du, high):
-    """out[y, x] = image seen from (dv, du) where a pixel has ``disparity`` in the view; limited to 0..high."""
+def fetch(out: Floats, image: Floats, disparity: Floats, dv: float, du: float, high: float) -> None:
+    """Sample a picture for a view with a known disparity map.
+
+    Parameters
+    ----------
+    out : float64 (rows, cols)
+        Receives the view where it has a surface.
+    image : float64 (rows, cols)
+        The picture.
+    disparity : float64 (rows, cols)
+        Disparity map of the view; BEHIND is no surface.
+    dv, du : float
+        Offset of the view in view steps.
+    high : float
+        Largest value; the smallest is 0.
+    """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
             d = disparity[y, x]
@@ -119,10 +182,35 @@ def fetch(out, image, disparity, dv, du, high):
 
 
 @njit(cache=True)
-def fetch_second(out, surface, own, image, scale, offset, dv, du, high):
-    """Fill holes of ``surface`` in place from the second picture of a pair, whose surfaces are ``own``.
+def fetch_second(
+    out: Floats,
+    surface: Floats,
+    own: Floats,
+    image: Floats,
+    scale: float,
+    offset: float,
+    dv: float,
+    du: float,
+    high: float,
+) -> None:
+    """Fill the holes of a view in place from the second picture of a pair.
 
-    A pixel of disparity d lies ``scale * d + offset`` px to the left in the second picture.
+    Parameters
+    ----------
+    out : float64 (rows, cols)
+        Radiance of the view.
+    surface : float64 (rows, cols)
+        Disparity map of the view; BEHIND is a hole.
+    own : float64 (rows, cols)
+        Disparity map of the view from the second picture alone.
+    image : float64 (rows, cols)
+        The second picture.
+    scale, offset : float
+        A pixel of disparity d is ``scale * d + offset`` px to the left in the second picture.
+    dv, du : float
+        Offset of the view in view steps.
+    high : float
+        Largest value; the smallest is 0.
     """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
@@ -134,10 +222,19 @@ def fetch_second(out, surface, own, image, scale, offset, dv, du, high):
 
 
 @njit(cache=True)
-def fill_from_background(out, disparity, dv, du):
-    """Give every pixel without a surface the radiance and disparity of the nearest pixel on the background side.
+def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -> None:
+    """Fill every pixel without a surface in place from the nearest pixel on the background side.
 
-    Looks both ways along the direction of the view's step, so that the farther of the two surfaces is taken.
+    The search runs both ways along the direction of the view's step; the farther of the two surfaces is taken.
+
+    Parameters
+    ----------
+    out : float64 (rows, cols)
+        Radiance of the view.
+    disparity : float64 (rows, cols)
+        Disparity map of the view; BEHIND is no surface.
+    dv, du : float
+        Offset of the view in view steps; not both 0.
     """
     rows, cols = out.shape
     length = max(abs(dv), abs(du))

@@ -27,7 +27,7 @@ def _samples(scene, made, frame, noise=1.0):
 
 
 def _what(made):
-    return {entry["what"] for entry in made.left_out}
+    return {entry.what for entry in made.left_out}
 
 
 @pytest.mark.parametrize(
