@@ -1,1 +1,1 @@
-"""The processes: only what lies here knows layers, models, paths into a PDK's wheel and its coefficients."""
+"""The processes: layers, coefficients, device models and paths into a PDK are described here and nowhere else."""

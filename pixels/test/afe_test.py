@@ -1,4 +1,4 @@
-"""The real-number Verilog against its NumPy twin, sample for sample, in Verilator and in Icarus."""
+"""The real-number Verilog against its NumPy model, sample for sample, in Verilator and in Icarus."""
 
 import os
 import shutil

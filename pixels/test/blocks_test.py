@@ -1,4 +1,4 @@
-"""The analog blocks' pins are those of their real-number twin and of the chip; their footprints are as described."""
+"""The pins of the analog blocks are those of their real-number model and of the chip; footprints are as described."""
 
 import re
 from pathlib import Path
@@ -15,7 +15,7 @@ SMALL = ArrayParameters(8, 100), ChipParameters(2), AnalogSizes(chip_um=100.0)
 
 
 def widths(names):
-    """dict port -> bits of pins as 'a' and 'a[3]'."""
+    """Port -> bits, of pins as 'a' and 'a[3]'."""
     found = {}
     for name in names:
         base, _, bit = name.partition("[")
@@ -32,7 +32,7 @@ def outer(block):
     }
 
 
-def test_converters_and_columns_have_the_ports_of_their_twin():
+def test_converters_and_columns_have_the_ports_of_their_real_number_model():
     _, driver, columns, lanes = blocks()
     text = AFE.read_text()
     head = text[text.index(") (") : text.index(");")]
@@ -56,7 +56,7 @@ def test_converters_and_columns_have_the_ports_of_their_twin():
     assert {name for name, way in outer(lanes).items() if way == "output"} == {f"comparator[{k}]" for k in range(8)}
 
 
-def test_what_two_blocks_share_lies_at_the_same_place():
+def test_lines_that_two_blocks_share_are_at_the_same_place():
     array, driver, columns, lanes = blocks(*SMALL)
     for one, side, other, opposite in ((array, "west", driver, "east"), (array, "south", columns, "north")):
         there = {pin.name: pin.at_um for pin in one.pins if pin.side == side and not pin.supply}

@@ -1,1 +1,1 @@
-"""IHP SG13G2, 130 nm BiCMOS: all that the flow knows of it."""
+"""IHP SG13G2, 130 nm BiCMOS, from the wheel `c4m-pdk-ihpsg13g2` (PDKMaster)."""

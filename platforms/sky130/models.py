@@ -11,7 +11,7 @@ Only the subcircuits and bins that a netlist uses are handed to ngspice: 10 ms i
 devices), 1.5 s (continuous) or 31 s (the whole library).
 
 SkyWater has models of its own for leakage (LEAKAGE, of the binned set): its published leakage agrees with them
-within 20 %, and is 2.5 (n) and 2 to 4 times (p) what the models for timing give.
+within 20 %, and is 2.5 (n) and 2 to 4 times (p) that of the models for timing.
 
 The drive depends on the stress of the trench isolation (BSIM4's SA, SB, SD: distance from the gate to the edge of the
 diffusion): without these an inverter rises 12 % too slowly and falls 5 % too fast. SkyWater's cell netlists (.cdl)

@@ -1,4 +1,4 @@
-"""Tiny Tapeout's tiles on SKY130: their sizes and what its configuration asks projects not to change.
+"""Tiny Tapeout's tiles on SKY130: their sizes, and the configuration that projects must not change.
 
 From tt-support-tools (tile_sizes.yaml; the rows of def/tt_block_1x1_pg.def) and src/config.json of its template.
 """

@@ -9,10 +9,10 @@ def differences(first, second):
     """Lines that say where two netlists (cells.netlist.spice.Netlist) differ; none when no difference is seen.
 
     Transistors with model, width and length, source and drain interchangeable, ports by name. Nets and devices are
-    coloured by what they touch until the colours are stable (the first refinement of graph isomorphism, which decides
+    colored by what they touch until the colors are stable (the first refinement of graph isomorphism, which decides
     for cells: their nets differ in more than symmetry).
     """
-    a, b = _coloured(first), _coloured(second)
+    a, b = _colored(first), _colored(second)
     return [
         f"{who} has {count} more of {text}"
         for who, more in (("first", a - b), ("second", b - a))
@@ -20,19 +20,19 @@ def differences(first, second):
     ]
 
 
-def _coloured(netlist):
-    colour = {node: (node if node in netlist.ports else "") for node in netlist.nodes}
+def _colored(netlist):
+    color = {node: (node if node in netlist.ports else "") for node in netlist.nodes}
     devices = {}
     for _ in range(ROUNDS):
-        touching = {node: [] for node in colour}
+        touching = {node: [] for node in color}
         for t in netlist.transistors:
-            ends = sorted((colour[t.drain], colour[t.source]))
-            devices[t.name] = hash((_what(t), *ends, colour[t.gate], colour[t.bulk]))
+            ends = sorted((color[t.drain], color[t.source]))
+            devices[t.name] = hash((_what(t), *ends, color[t.gate], color[t.bulk]))
             for role, node in (("channel", t.drain), ("channel", t.source), ("gate", t.gate), ("bulk", t.bulk)):
                 touching[node].append((role, devices[t.name]))
-        colour = {
+        color = {
             node: (node if node in netlist.ports else hash((was, *sorted(touching[node]))).__str__())
-            for node, was in colour.items()
+            for node, was in color.items()
         }
     return Counter(f"{_what(t)} between {_named(netlist, t)} ({devices[t.name]:x})" for t in netlist.transistors)
 

@@ -94,7 +94,7 @@ def test_a_plate_above_shields_the_substrate(tmp_path):
     found = of_rectangles(tmp_path, ("li1", "a", 0, 0, 20, 10), ("met1", "b", 2, 2, 18, 8))
     assert found["a", "b"] > 16 * 6 * 114.2e-3
     alone = of_rectangles(tmp_path, ("met1", "b", 2, 2, 18, 8))
-    assert found.get(("b", "sub"), 0.0) < 0.2 * alone["b", "sub"]  # what lands 2 um out, beyond a
+    assert found.get(("b", "sub"), 0.0) < 0.2 * alone["b", "sub"]  # the part that ends 2 um out, beyond a
 
 
 def test_sidewalls(tmp_path):
@@ -127,7 +127,7 @@ def test_what_does_not_fit_is_refused(tmp_path):
 @needs_wheel
 @pytest.mark.parametrize("cell", ["inv_1", "buf_8", "dfxtp_1"])
 def test_conductors_connect_what_the_schematic_connects(cell):
-    """Without resistors the circuit is the same: their ends, and what hangs on them, are parts of one net."""
+    """Without resistors the circuit is the same: the nodes at their ends are parts of one net."""
     bare, ohmic = (
         spice.parse(extract(cells.file(cell, "gds"), f"sky130_fd_sc_hd__{cell}", TECH, resistors=resistors))
         for resistors in (False, True)
