@@ -9,7 +9,7 @@ TESTS_READY := $(VENV)/.tests-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
 
-# Arguments of `make sim`, each also an option of `python -m talbot sim`
+# Arguments of `make sim`, each also an option of `talbot sim`
 SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
 quoted = '$(subst ','\'',$(1))'
 sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o))))) $(if $(PHASE),--phase)
@@ -93,7 +93,7 @@ verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; go
 
 .PHONY: verilog
 verilog: $(READY)  ## build/verilog/<top>.v, linted
-	@$(PY) -m rtl.export --out build/verilog --check
+	@$(PY) -m talbot verilog --out build/verilog --check
 
 .PHONY: tradeoff
 tradeoff: $(READY)  ## error against run time: tables and plots in build/tradeoff/
@@ -161,15 +161,15 @@ cells_arguments = $(foreach o,$(CELLS_OPTIONS),$(if $($(o)),--$(shell echo $(o) 
 
 .PHONY: cells
 cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib
-	@$(PY) -m cells $(cells_arguments)
+	@$(PY) -m talbot cells $(cells_arguments)
 
 .PHONY: cells-report
 cells-report: $(LAYOUT_READY) have-tools  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
-	@$(PY) -m cells.report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER))
+	@$(PY) -m talbot cells-report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER))
 
 .PHONY: cells-stability
 cells-stability: $(LAYOUT_READY) have-tools  ## stiff and extreme cases of the characterizer: bound against measured
-	@$(PY) -m cells.stability
+	@$(PY) -m talbot cells-stability
 
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)

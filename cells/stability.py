@@ -1,13 +1,13 @@
-"""`python -m cells.stability`: stiff and extreme cases of the characterizer, bound against measured."""
+"""Stiff and extreme cases of the characterizer, bound against measured."""
 
 import sys
 import time
+from argparse import ArgumentParser, Namespace
 from dataclasses import replace
 
 import numpy as np
 from tqdm import tqdm
 
-from base.tools import ToolError
 from cells import sources
 from cells.characterize import delay, tristate
 from cells.characterize.bench import Bench
@@ -16,7 +16,6 @@ from cells.characterize.constraint import PATIENCE, bisect, outcome
 from cells.characterize.job import cell_of
 from cells.characterize.scenario import Scenarios
 from cells.corner import PROCESSES, Corner
-from models.parameters import ParameterError
 from models.stability import Case, table
 
 TYPICAL = Conditions(Corner("tt", 25, 1.8), "fitted")
@@ -199,15 +198,12 @@ def _case(name, bound, seconds, ok):
     return Case(name, bound, f"{seconds * 1e12:.1f} ps", bool(ok))
 
 
-def main():
-    try:
-        found = cases()
-    except (ParameterError, ToolError) as error:
-        print(f"cells.stability: {error}", file=sys.stderr)
-        return 2
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot cells-stability`: none."""
+
+
+def run(options: Namespace) -> int:
+    """Print the table of all cases; 1 where a bound is missed."""
+    found = cases()
     print(table(found))
     return 0 if all(case.ok for case in found) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,4 +1,4 @@
-"""`python -m pixels.footprints --out DIR`: footprints of the analog blocks, LEF and GDS, for `make layout`.
+"""Footprints of the analog blocks, LEF and GDS, for `make layout`.
 
 A footprint is a black-box macro, an outline with pins: it keeps a block's place on the die until a circuit with the
 same pins takes it.
@@ -6,15 +6,16 @@ same pins takes it.
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from base.command import main
 from base.files import staged
 from base.gds import write_gds
 from base.lef import write as lef_text
 from base.lef.read import Box
-from models.parameters import ArrayParameters, ChipParameters, ParameterError
+from models.parameters import ArrayParameters, ChipParameters
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
 from platforms.layers import Layer
@@ -101,26 +102,22 @@ def write(out: str | Path, made: Iterable[Block], pdk: str, supply_um: float) ->
             write_gds(black_box(block, pdk, supply_um), part / f"{block.name}.gds")
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Exit status of the command; 2 after a message on wrong input."""
-    parser = argparse.ArgumentParser(
-        prog="python -m pixels.footprints", description="Footprints of the analog blocks, LEF and GDS."
-    )
-    parser.add_argument("--pdk", default="sky130")
-    parser.add_argument("--rows", type=int, default=ArrayParameters().rows)
-    parser.add_argument("--cols", type=int, default=ArrayParameters().cols)
-    parser.add_argument("--lanes", type=int, default=ChipParameters().lanes)
-    parser.add_argument("--out", type=Path, required=True, help="folder")
-    options = parser.parse_args(argv)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `talbot footprints`."""
+    parser.add_argument("--pdk", default="sky130", help="process")
+    parser.add_argument("--rows", type=int, default=ArrayParameters().rows, help="pixels down")
+    parser.add_argument("--cols", type=int, default=ArrayParameters().cols, help="pixels across")
+    parser.add_argument("--lanes", type=int, default=ChipParameters().lanes, help="converters")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the files")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Write the footprints."""
     sizes = AnalogSizes()
-    try:
-        made = blocks(ArrayParameters(options.rows, options.cols), ChipParameters(options.lanes), sizes)
-        write(options.out, made, options.pdk, sizes.supply_um)
-    except (ParameterError, OSError) as error:
-        print(f"pixels.footprints: {error}", file=sys.stderr)
-        return 2
+    made = blocks(ArrayParameters(options.rows, options.cols), ChipParameters(options.lanes), sizes)
+    write(options.out, made, options.pdk, sizes.supply_um)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.modules[__name__]))

@@ -1,22 +1,15 @@
-"""`python -m rtl.export`: one Verilog file for each top, linted on demand."""
+"""One Verilog file for each top, linted on demand."""
 
 import argparse
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
+from base.command import main
 from base.files import write
 from base.paths import ROOT
-from models.parameters import (
-    DIVIDERS,
-    ArrayParameters,
-    ChipParameters,
-    ParameterError,
-    SensorParameters,
-    TileParameters,
-)
+from models.parameters import DIVIDERS, ArrayParameters, ChipParameters, SensorParameters, TileParameters
 from rtl.harness.translate import translate_component
-from rtl.lint import LintError, lint
+from rtl.lint import lint
 from rtl.tops import PACKERS, TOPS, build_top
 
 
@@ -25,10 +18,9 @@ def translate(name: str, sensor: SensorParameters) -> str:
     return translate_component(build_top(name, sensor), name)
 
 
-def arguments() -> argparse.ArgumentParser:
-    """The parser of the command line."""
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of `talbot verilog`."""
     sensor = SensorParameters()
-    parser = argparse.ArgumentParser(prog="python -m rtl.export", description=__doc__.splitlines()[0])
     parser.add_argument(
         "--top",
         action="append",
@@ -38,13 +30,12 @@ def arguments() -> argparse.ArgumentParser:
     )
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "verilog", help="folder of the files")
     parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")
-    parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down (%(default)s)")
-    parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across (%(default)s)")
-    parser.add_argument("--lanes", type=int, default=sensor.chip.lanes, help="converters (%(default)s)")
-    parser.add_argument("--divider", default=sensor.chip.divider, help=f"one of {', '.join(DIVIDERS)} (%(default)s)")
-    parser.add_argument("--n-frac", type=int, default=sensor.chip.n_frac, help="fraction bits (%(default)s)")
-    parser.add_argument("--iterations", type=int, default=sensor.chip.cordic_iterations, help="of CORDIC (%(default)s)")
-    return parser
+    parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down")
+    parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across")
+    parser.add_argument("--lanes", type=int, default=sensor.chip.lanes, help="converters")
+    parser.add_argument("--divider", default=sensor.chip.divider, help=f"one of {', '.join(DIVIDERS)}")
+    parser.add_argument("--n-frac", type=int, default=sensor.chip.n_frac, help="fraction bits")
+    parser.add_argument("--iterations", type=int, default=sensor.chip.cordic_iterations, help="of CORDIC")
 
 
 def sensor_of(options: argparse.Namespace) -> SensorParameters:
@@ -56,20 +47,15 @@ def sensor_of(options: argparse.Namespace) -> SensorParameters:
     )
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Write the tops' Verilog; 2 after an error."""
-    options = arguments().parse_args(argv)
-    try:
-        sensor = sensor_of(options)
-        for name in options.top or TOPS:
-            path = options.out / f"{name}.v"
-            write(path, translate(name, sensor))
-            print(f"{path}{': ' + ', '.join(lint(path, name)) if options.check else ''}")
-    except (ParameterError, LintError, OSError) as error:
-        print(f"rtl.export: {error}", file=sys.stderr)
-        return 2
+def run(options: argparse.Namespace) -> int:
+    """Write the tops' Verilog and print the files."""
+    sensor = sensor_of(options)
+    for name in options.top or TOPS:
+        path = options.out / f"{name}.v"
+        write(path, translate(name, sensor))
+        print(f"{path}{': ' + ', '.join(lint(path, name)) if options.check else ''}")
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.modules[__name__]))

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from base.tools import finish
+from base.tools import ToolError, finish
 from base.verilator import verilator_folder
 
 WAIVERS = Path(__file__).parent / "waivers.vlt"
 
 
-class LintError(RuntimeError):
+class LintError(ToolError):
     """A tool refused a file; the message holds the first lines of its output."""
 
 

@@ -1,1 +1,1 @@
-"""The command-line program: `python -m talbot`."""
+"""The command-line program: `talbot`."""

@@ -26,6 +26,16 @@ COMMANDS = {
     "layout-compare": ("flow.layout.report.compare", "finished layouts side by side"),
     "openroad": ("flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
     "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
+    "verilog": ("rtl.export", "the chip and its blocks as Verilog, linted"),
+    "replay": ("rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),
+    "registers": ("models.parameters.registers.command", "the register map as Markdown"),
+    "footprints": ("pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
+    "cells": ("cells.command", "a cell library characterized at one corner"),
+    "cells-report": ("cells.report.command", "the characterizer against a foundry's tables"),
+    "cells-stability": ("cells.stability", "stiff and extreme cases of the characterizer"),
+    "cells-compact": ("cells.compact.command", "the library Compact drawn and checked"),
+    "cells-compact-area": ("cells.compact.area", "our blocks on Compact and on sky130_fd_sc_hd"),
+    "cells-compact-search": ("cells.compact.search", "narrower cells of Compact by a longer search"),
     "handoff": ("flow.handoff.command", "one archive of a finished layout"),
 }
 

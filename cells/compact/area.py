@@ -1,17 +1,17 @@
-"""Area of our own blocks on this library against sky130_fd_sc_hd: python -m cells.compact.area
+"""Area of our own blocks on this library against sky130_fd_sc_hd.
 
 Both by the same Yosys script from Liberty files without delays: the mapper looks at areas and logic depth alone.
 """
 
-import argparse
 import json
-import sys
 import tempfile
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 from pathlib import Path
 
 from base.files import insert
-from base.jobs import Job, run
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from base.liberty.read import areas
 from base.tools import ToolError
 from base.tools import run as run_tool
@@ -49,30 +49,26 @@ def compare(verilog, blocks, ours, theirs, store=STORE):
         for block, file in files.items()
         for name, liberty in (("ours", ours), ("theirs", theirs))
     ]
-    found = run(jobs, store, "blocks mapped")
+    found = run_jobs(jobs, store, "blocks mapped")
     return {block: (found[2 * i], found[2 * i + 1]) for i, block in enumerate(files)}
 
 
-def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python -m cells.compact.area", description=__doc__.splitlines()[0])
-    parser.add_argument("--verilog", default="build/verilog", help="folder of the blocks' Verilog (make verilog)")
-    parser.add_argument("--liberty", default="build/cells/compact/compact.lib", help="of this library")
-    parser.add_argument("--blocks", default=",".join(BLOCKS), help="names, with commas between them")
-    parser.add_argument("--document", help="Markdown file whose part 'area' is written anew")
-    options = parser.parse_args(arguments)
-    try:
-        return _report(options)
-    except (ParameterError, ToolError) as error:
-        print(f"area: {error}", file=sys.stderr)
-        return 2
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot cells-compact-area`."""
+    add = parser.add_argument
+    add("--verilog", type=Path, default=Path("build/verilog"), help="folder of the blocks' Verilog (make verilog)")
+    add("--liberty", type=Path, default=Path("build/cells/compact/compact.lib"), help="of this library")
+    add("--blocks", default=",".join(BLOCKS), help="names, with commas between them")
+    add("--document", type=Path, help="also put the tables between the marks 'area' of this Markdown file")
 
 
-def _report(options):
+def run(options: Namespace) -> int:
+    """Print the areas of both; 1 where ours is larger than the limit allows."""
     from platforms.sky130.functions import liberty
 
-    ours = Path(options.liberty)
+    ours = options.liberty
     if not ours.exists():
-        raise ParameterError(f"liberty = {ours}: must be a file (python -m cells.compact)")
+        raise ParameterError(f"liberty = {ours}: must be a file (talbot cells-compact)")
     STORE.mkdir(parents=True, exist_ok=True)
     theirs = STORE / "sky130_fd_sc_hd.lib"
     theirs.write_text(liberty())
@@ -106,7 +102,3 @@ def _cells(found, k, liberty, most=10):
             f"{count[cell] * area[cell] / total:.1%} |"
         )
     return "\n".join(lines)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

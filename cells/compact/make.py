@@ -1,6 +1,6 @@
 """A cell from its schematic: the narrowest placement that routes and breaks no rule.
 
-recipes.json holds what a longer search has found (python -m cells.compact.search): a seed of the placement, where
+recipes.json holds what a longer search has found (talbot cells-compact-search): a seed of the placement, where
 extra gaps are, whether met1 is used. With it a cell is drawn at once; without it, it is searched for.
 """
 

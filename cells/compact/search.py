@@ -1,15 +1,15 @@
-"""Narrower cells by a longer search: python -m cells.compact.search --seeds 24:200 --cells dff_x1,dff_x2
+"""Narrower cells by a longer search: talbot cells-compact-search --seeds 24:200 --cells dff_x1,dff_x2.
 
-What beats the kept recipe goes into recipes.json, which is part of the sources.
+A recipe that beats the kept one goes into recipes.json, which is part of the sources.
 """
 
-import argparse
 import json
 import re
-import sys
+from argparse import ArgumentParser, Namespace
 
 from base.files import staged
-from base.jobs import Job, run
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.make import RECIPES, choose, recipe
@@ -25,21 +25,16 @@ def best(name, first, last, narrower):
     return found and [found.sites, found.met1, found.seed, found.spread]
 
 
-def main(arguments=None):
-    parser = argparse.ArgumentParser(prog="python -m cells.compact.search", description=__doc__.splitlines()[0])
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot cells-compact-search`."""
     parser.add_argument("--seeds", default="0:24", help="first:last")
     parser.add_argument("--anew", action="store_true", help="do not compare with the recipes that are kept")
-    parser.add_argument("--cells", help="names with commas between; default: all")
+    parser.add_argument("--cells", help="names with commas between (default: all)")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
-    options = parser.parse_args(arguments)
-    try:
-        return _run(options)
-    except ParameterError as error:
-        print(f"search: {error}", file=sys.stderr)
-        return 2
 
 
-def _run(options):
+def run(options: Namespace) -> int:
+    """Search and keep the recipes that are better."""
     seeds = re.fullmatch(r"(\d+):(\d+)", options.seeds)
     if not seeds:
         raise ParameterError(f"seeds = {options.seeds!r}: must be first:last, as 0:24")
@@ -56,7 +51,7 @@ def _run(options):
         )
         for name in names
     ]
-    found = run(jobs, "build/cells/compact/search", "cells searched", options.workers)
+    found = run_jobs(jobs, "build/cells/compact/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
     better = {name: made for name, made in zip(names, found, strict=True) if made}
     for name, (sites, met1, seed, _) in better.items():
@@ -67,7 +62,3 @@ def _run(options):
         lines = (f'"{name}": {json.dumps(kept[name])}' for name in sorted(kept))
         (part / RECIPES.name).write_text("{\n" + ",\n".join(lines) + "\n}\n")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,9 +3,7 @@
 
 def verilog(cells):
     """Text for ``cells`` (cells.compact.pdk.DrawnCell): a module each, without supply pins."""
-    return "\n".join(
-        ["// Compact cells; written by python -m cells.compact", *(module(cell.schematic) for cell in cells)]
-    )
+    return "\n".join(["// Compact cells; written by talbot cells-compact", *(module(cell.schematic) for cell in cells)])
 
 
 def module(schematic):

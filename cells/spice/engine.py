@@ -35,7 +35,7 @@ _WRONG = re.compile(
 )
 
 
-class SimulationError(RuntimeError):
+class SimulationError(ToolError):
     """A transient that failed with every setting; ``deck``: a netlist that reproduces it."""
 
     def __init__(self, message: str, deck: str) -> None:

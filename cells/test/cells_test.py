@@ -8,9 +8,9 @@ import subprocess
 import numpy as np
 import pytest
 
+from base.command import main
 from base.liberty.read import read
-from cells import sources
-from cells.__main__ import main
+from cells import command, sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
 from cells.liberty.check import problems
@@ -33,8 +33,8 @@ X1 Y A VPWR VGND sky130_fd_pr__nfet_01v8 w=0.65 l=0.15
 
 
 def make(folder, *arguments):
-    """The library of `python -m cells` with ``arguments``, and its path."""
-    assert main(["--out", str(folder), "--workers", "1", *arguments]) == 0
+    """The library of `talbot cells` with ``arguments``, and its path."""
+    assert main(command, ["--out", str(folder), "--workers", "1", *arguments]) == 0
     path = next(folder.glob("sky130_hd/*.lib"))
     return read(path), path
 
@@ -124,7 +124,7 @@ def test_every_cell_is_characterized_or_left_out_with_a_reason():
 
 @ready
 def test_an_unknown_cell_is_refused(tmp_path, capsys):
-    assert main(["--cells", "nand2_1,nope_1", "--out", str(tmp_path)]) == 2
+    assert main(command, ["--cells", "nand2_1,nope_1", "--out", str(tmp_path)]) == 2
     assert "cells = nope_1: must be of sky130_hd" in capsys.readouterr().err
 
 
@@ -144,10 +144,10 @@ X1 Y A VPWR VPWR sky130_fd_pr__pfet_01v8_hvt w=0.64 l=0.15
 def test_a_netlist_of_ones_own_becomes_a_library(tmp_path):
     (tmp_path / "mine.sp").write_text(OWN)
     arguments = ["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1", "--cells", "myinv"]
-    assert main(arguments) == 0
+    assert main(command, arguments) == 0
     library = read(tmp_path / "mine" / "tt_025C_1v80.lib")
     assert [cell.name for cell in library.all("cell")] == ["myinv"] and problems(library) == []
-    assert main([*arguments[:-1], "other", "--corner", "ff_025C_1v95"]) == 0
+    assert main(command, [*arguments[:-1], "other", "--corner", "ff_025C_1v95"]) == 0
     summary = json.loads((tmp_path / "mine" / "summary.json").read_text())
     assert summary["corner"] == "ff_025C_1v95" and set(summary["corners"]) == {"tt_025C_1v80", "ff_025C_1v95"}
     assert summary["corners"]["tt_025C_1v80"]["names"] == ["myinv"] and summary["names"] == ["other"]
@@ -172,7 +172,7 @@ def test_a_netlist_of_ones_own_becomes_a_library(tmp_path):
 )
 def test_a_wrong_netlist_is_refused_before_anything_runs(tmp_path, capsys, old, new, why):
     (tmp_path / "mine.sp").write_text(OWN[: OWN.index(".subckt other")].replace(old, new))
-    assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
+    assert main(command, ["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
     assert why in capsys.readouterr().err
     assert not (tmp_path / "mine").exists()
 
@@ -181,7 +181,7 @@ def test_a_wrong_netlist_is_refused_before_anything_runs(tmp_path, capsys, old, 
 def test_a_cell_that_never_reaches_its_level_is_reported_with_its_netlist(tmp_path, capsys):
     """An n transistor pulls up and a p transistor down: a buffer as switches, and short of both levels."""
     (tmp_path / "mine.sp").write_text(SWAPPED)
-    assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 1
+    assert main(command, ["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 1
     summary = json.loads((tmp_path / "mine" / "summary.json").read_text())
     assert summary["failed"] == ["myinv: Y: axes: myinv: Y does not reach its level after A changes"]
     assert "myinv: Y has no arc from A" in summary["problems"]
@@ -191,7 +191,7 @@ def test_a_cell_that_never_reaches_its_level_is_reported_with_its_netlist(tmp_pa
 @ready
 def test_a_file_that_is_no_text_is_refused(tmp_path, capsys):
     (tmp_path / "mine.sp").write_bytes(bytes(range(256)))
-    assert main(["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
+    assert main(command, ["--lib", str(tmp_path / "mine.sp"), "--out", str(tmp_path), "--workers", "1"]) == 2
     assert "mine.sp: has no .subckt" in capsys.readouterr().err
 
 

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from base.command import main
 from base.lef.read import read_macro
 from models.parameters import ArrayParameters, ChipParameters, ParameterError
+from pixels import footprints
 from pixels.blocks import ROW_PHASES, SUPPLIES, AnalogSizes, blocks
-from pixels.footprints import main
 
 AFE = Path(__file__).parents[1] / "afe.sv"
 SMALL = ArrayParameters(8, 100), ChipParameters(2), AnalogSizes(chip_um=100.0)
@@ -71,8 +72,8 @@ def test_lines_that_two_blocks_share_are_at_the_same_place():
 
 def test_footprints_read_back(tmp_path):
     db = pytest.importorskip("klayout.db", reason="klayout: not installed")
-    assert main(["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2  # no room
-    assert main(["--rows", "8", "--out", str(tmp_path)]) == 0
+    assert main(footprints, ["--rows", "8", "--cols", "100", "--lanes", "2", "--out", str(tmp_path)]) == 2  # no room
+    assert main(footprints, ["--rows", "8", "--out", str(tmp_path)]) == 0
     for block in blocks(ArrayParameters(rows=8)):
         macro = read_macro((tmp_path / f"{block.name}.lef").read_text())
         size, pins = (macro.width_um, macro.height_um), macro.pins

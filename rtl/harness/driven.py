@@ -10,6 +10,8 @@ from typing import Any
 
 from pymtl3 import Component, InPort, Interface, OutPort, mk_bits, update, update_ff
 
+from base.tools import ToolError
+
 from .ports import Port, places, port_signals, ports_of, split
 
 SOURCE = """
@@ -25,7 +27,7 @@ def behaviour(s, evaluate, clock):
 """
 
 
-class SimulationError(RuntimeError):
+class SimulationError(ToolError):
     """A simulation ended early; the message holds its output."""
 
 

@@ -4,14 +4,14 @@ import sys
 from pathlib import Path
 
 from base.paths import ROOT
-from base.tools import finish
+from base.tools import ToolError, finish
 from models.parameters import SensorParameters
 from rtl.tops import build_top
 
 VERILOG_ONLY = "AspChip"  # a frame of the chip takes too long in PyMTL: only the Verilog level runs all tests
 
 
-class RecordError(RuntimeError):
+class RecordError(ToolError):
     """The tests of a block fail; the message holds the end of pytest's output."""
 
 

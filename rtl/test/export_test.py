@@ -7,9 +7,11 @@ import sys
 
 import pytest
 
+from base.command import main
 from base.paths import ROOT
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
-from rtl.export import main, translate
+from rtl import export
+from rtl.export import translate
 from rtl.harness.translate import tidy
 from rtl.lint import LintError, lint
 from rtl.tops import TOPS
@@ -60,10 +62,10 @@ def test_lint_finds_what_is_wrong(tmp_path):
 
 
 def test_files_are_written_atomically(tmp_path, capsys):
-    assert main(["--top", "RegFile", "--out", str(tmp_path), "--rows", "9"]) == 0
+    assert main(export, ["--top", "RegFile", "--out", str(tmp_path), "--rows", "9"]) == 0
     assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
     assert (tmp_path / "RegFile.v").read_text() == translate("RegFile", SensorParameters(array=ArrayParameters(9, 384)))
-    assert main(["--top", "RegFile", "--out", str(tmp_path), "--lanes", "3"]) == 2
+    assert main(export, ["--top", "RegFile", "--out", str(tmp_path), "--lanes", "3"]) == 2
     assert "lanes = 3: must be one of" in capsys.readouterr().err
     assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
 

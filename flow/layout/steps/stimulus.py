@@ -168,9 +168,9 @@ def instance_of(tree, module, wanted):
 
 def in_tests(top, own, folder, trace):
     """Record the tests of the block; the trace whose Verilog is ``own`` goes to the file ``trace``: head."""
-    done = finish([sys.executable, "-m", "rtl.replay", "record", top, "--out", folder / "traces"], cwd=ROOT)
+    done = finish([sys.executable, "-m", "rtl.replay.command", "record", top, "--out", folder / "traces"], cwd=ROOT)
     if done.returncode:
-        raise ToolError(f"rtl.replay: {done.stderr.strip().splitlines()[-1]}")
+        raise ToolError(f"{done.stderr.strip().splitlines()[-1]}")
     heads = sorted((folder / "traces").glob("*.json"), key=lambda path: -path.with_suffix(".trace").stat().st_size)
     for path in heads:
         text = run([sys.executable, "-c", OF_A_TRACE, path], cwd=ROOT)

@@ -6,11 +6,11 @@ import sys
 
 import pytest
 
+from base.command import main
 from base.paths import ROOT
 from rtl.harness.icarus import MISSING, installed
 from rtl.harness.testbench import build, hooked
-from rtl.replay import load, record, replay, replay_files
-from rtl.replay.__main__ import main
+from rtl.replay import command, load, record, replay, replay_files
 
 LIBRARY = ROOT / "cells" / "gates.lib"
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
@@ -144,11 +144,11 @@ def test_traces_of_several_simulators_are_joined():
 
 def test_command(recorded, folder, capsys):
     path, verilog = map(str, recorded)
-    assert main(["replay", path, "--verilog", verilog]) == 0
+    assert main(command, ["replay", path, "--verilog", verilog]) == 0
     bug = planted(recorded[1], folder, "dac = ", "dac = 8'd1 ^ ")
-    assert main(["replay", path, "--verilog", str(bug)]) == 1
+    assert main(command, ["replay", path, "--verilog", str(bug)]) == 1
     assert "dac: expected" in capsys.readouterr().out
-    assert main(["replay", path, "--verilog", verilog + "x"]) == 2
+    assert main(command, ["replay", path, "--verilog", verilog + "x"]) == 2
     assert "file = " in capsys.readouterr().err
 
 

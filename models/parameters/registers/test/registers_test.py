@@ -1,7 +1,7 @@
 """The register map: its source and its document agree."""
 
 from models.parameters.registers import register_map
-from models.parameters.registers.__main__ import markdown
+from models.parameters.registers.command import markdown
 
 CHIP = register_map()
 

@@ -1,6 +1,6 @@
-"""`python -m models.parameters.registers`: the register map as Markdown."""
+"""The register map as Markdown."""
 
-import sys
+from argparse import ArgumentParser, Namespace
 
 from .map import Field, RegisterMap, register_map
 
@@ -21,7 +21,7 @@ def markdown(chip: RegisterMap) -> str:
     lines = [
         "# Register map of AspChip",
         "",
-        "Generated from `models/parameters/registers/asp_chip.rdl` by `python -m models.parameters.registers`.",
+        "Generated from `models/parameters/registers/asp_chip.rdl` by `talbot registers`.",
         "Byte addresses; fields of more than a byte are little-endian. SPI protocol: rtl/reg_file/README.md.",
         "",
         "| address | register | bits | field | access | reset | meaning |",
@@ -41,5 +41,28 @@ def markdown(chip: RegisterMap) -> str:
     return "\n".join(lines) + "\n"
 
 
-if __name__ == "__main__":
-    sys.stdout.write(markdown(register_map()))
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot registers`: none.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Of the command.
+    """
+
+
+def run(options: Namespace) -> int:
+    """Print the register map.
+
+    Parameters
+    ----------
+    options : Namespace
+        Empty.
+
+    Returns
+    -------
+    int
+        0, the exit status.
+    """
+    print(markdown(register_map()), end="")
+    return 0

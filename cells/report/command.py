@@ -1,24 +1,21 @@
-"""`python -m cells.report`: the characterizer against a foundry's tables, one page in build/cells/report/."""
+"""The characterizer against a foundry's tables: one page in build/cells/report/."""
 
-import argparse
 import json
-import sys
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from base.files import staged
 from base.liberty.read import read
 from base.page import render
-from base.tools import ToolError
+from base.paths import ROOT
 from cells import sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
 from cells.liberty import compare, reference
 from cells.library import characterize_library
 from cells.report import curve, pictures, separate
-from cells.spice.engine import SimulationError
 from models.parameters import ParameterError
 
-ROOT = Path(__file__).resolve().parent.parent.parent
 # per cent, constraints in ps: median and 95th percentile that are asked for at the typical corner
 BOUNDS = {
     "delay": (5, 12),
@@ -31,33 +28,32 @@ BOUNDS = {
 }
 
 
-def main(argv=None):
-    parser = argparse.ArgumentParser(prog="python -m cells.report", description=__doc__.splitlines()[0])
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot cells-report`."""
     parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json; without it nothing is compared")
     parser.add_argument("--corner", default="tt_025C_1v80", help="of the reference")
     parser.add_argument("--models", default="fitted", help="set of device models of the comparison")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "cells" / "report", help="folder of the page")
-    options = parser.parse_args(argv)
-    try:
-        conditions = Conditions(Corner.parse(options.corner), options.models)
-        page = {"corner": options.corner, "default": curve.DEFAULT, "points": curve.OFF_GRID, "kinds": {}}
-        if options.reference:
-            page |= against(conditions, options)
-        measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
-        found = curve.table(measured)
-        page |= {
-            "curve": found,
-            "curve_picture": pictures.error_against_time(found, curve.DEFAULT),
-            "off_grid": curve.by_cell(measured),
-        }
-        with staged(options.out) as part:
-            (part / "index.html").write_text(render(Path(__file__).with_name("index.html"), **page))
-            figures = {name: page.get(name) for name in ("kinds", "curve", "off_grid", "variants", "alone")}
-            (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
-    except (ParameterError, ToolError, SimulationError, OSError) as error:
-        print(f"cells.report: {error}", file=sys.stderr)
-        return 2
+
+
+def run(options: Namespace) -> int:
+    """Measure, write the page and print the errors by kind."""
+    conditions = Conditions(Corner.parse(options.corner), options.models)
+    page = {"corner": options.corner, "default": curve.DEFAULT, "points": curve.OFF_GRID, "kinds": {}}
+    if options.reference:
+        page |= against(conditions, options)
+    measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
+    found = curve.table(measured)
+    page |= {
+        "curve": found,
+        "curve_picture": pictures.error_against_time(found, curve.DEFAULT),
+        "off_grid": curve.by_cell(measured),
+    }
+    with staged(options.out) as part:
+        (part / "index.html").write_text(render(Path(__file__).with_name("index.html"), **page))
+        figures = {name: page.get(name) for name in ("kinds", "curve", "off_grid", "variants", "alone")}
+        (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
     for kind, e in page["kinds"].items():
         errors = (
             f"median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, "
@@ -89,7 +85,3 @@ def against(conditions, options):
     found = separate.separate("sky130_hd", names, conditions, options.reference, options.out / "jobs", options.workers)
     alone = {name: told[name] for name in ("only_theirs", "only_ours")}
     return {"kinds": kinds, "cells": cells, "variants": separate.table(found), "alone": alone}
-
-
-if __name__ == "__main__":
-    sys.exit(main())

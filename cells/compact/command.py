@@ -1,0 +1,38 @@
+"""The library Compact drawn, its files written and every cell checked: build/cells/compact/."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from base.command import failures
+from base.files import check_folder
+from cells.compact.make import NoLayout
+from cells.compact.write import written
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot cells-compact`."""
+    parser.add_argument("--out", type=Path, default=Path("build/cells/compact"), help="folder of the library's files")
+    parser.add_argument("--no-check", action="store_true", help="leave out DRC and LVS")
+
+
+def run(options: Namespace) -> int:
+    """Draw the library and print what its checks find; 1 where a cell has no layout or fails."""
+    from cells.compact.check import check
+
+    check_folder("out", options.out)
+    try:
+        gds = written(options.out)
+    except NoLayout as error:
+        return failures([str(error)])
+    names = list(json.loads(gds.with_name("areas.json").read_text()))
+    print(f"{len(names)} cells in {options.out}")
+    if options.no_check:
+        return 0
+    result = check(options.out, names)
+    bad = {name: found for name, found in result.items() if found["drc"] or not found["lvs"]}
+    for name, found in bad.items():
+        rules = ", ".join(f"{rule} x {count}" for rule, count in found["drc"].items())
+        print(f"  {name}: {rules or 'DRC clean'}; LVS {'matches' if found['lvs'] else 'does not match'}")
+    print(f"DRC and LVS: {len(names) + 1 - len(bad)} of {len(names) + 1} clean")
+    return 1 if bad else 0
