@@ -20,7 +20,10 @@ class FrontEndBench(ChipBench):
 
     def __init__(self, sim: Any, mode: str) -> None:
         self.index, self.decision = np.zeros(SENSOR.chip.lanes, int), 0
-        super().__init__(sim, SENSOR.chip.lanes, held=FRONT_END.values(samples(), mode))
+        held = FRONT_END.values(samples(), mode)
+        assert FRONT_END.converter  # SENSOR has imperfect converters
+        self.converter, self.shape = FRONT_END.converter, held.shape
+        super().__init__(sim, SENSOR.chip.lanes, held=held)
 
     def sample(self) -> None:
         """Sample and hold each enabled lane."""
@@ -28,8 +31,8 @@ class FrontEndBench(ChipBench):
         sim, self.decision = self.sim, -1
         for lane in (lane for lane in range(self.lanes) if sim.en[lane]):
             col = self.tile_cols * (self.lanes * int(sim.group) + lane) + int(sim.k)
-            self.index[lane] = np.ravel_multi_index((int(sim.sub), int(sim.row), col), self.held.shape)
-            self.taken[lane] = FRONT_END.converter.held(self.taken[lane], lane, self.index[lane])
+            self.index[lane] = np.ravel_multi_index((int(sim.sub), int(sim.row), col), self.shape)
+            self.taken[lane] = self.converter.held(self.taken[lane], lane, self.index[lane])
 
     def answers(self) -> int:
         """Return the comparators' outputs, one bit per lane."""
@@ -39,7 +42,7 @@ class FrontEndBench(ChipBench):
             dac = int(sim.dac[8 * lane : 8 * lane + 8])
             bits |= (
                 int(
-                    FRONT_END.converter.compare(
+                    self.converter.compare(
                         self.taken[lane], dac, bool(sim.unsigned_), lane, self.index[lane], self.decision
                     )
                 )

@@ -25,7 +25,7 @@ class Real:
     """A frame. data: its bytes. samples: their content, (rows, cols, subs)."""
 
     data: bytes
-    samples: npt.NDArray[np.int64]
+    samples: npt.NDArray[np.int16]
 
 
 def real_frame(name: str, size: tuple[int, int] | None = None) -> Real:
