@@ -40,7 +40,7 @@ def trim(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: M
 
 
 def _strip(edge: "db.Edge", other: "db.Edge", depth: int) -> "db.Box":
-    """The box ``depth`` deep behind ``edge``, away from ``other``."""
+    """The box ``depth`` deep inside ``edge``, away from ``other``."""
     import klayout.db as db
 
     a, b = edge.bbox(), other.bbox()

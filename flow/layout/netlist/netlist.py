@@ -140,15 +140,15 @@ class Netlist:
         inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
         inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
         shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
-        behind = {net: f"{net}_inside" for net in shared}
+        inner = {net: f"{net}_inside" for net in shared}
         instances = [
-            Instance(i.name, i.cell, {pin: behind.get(net, net) for pin, net in i.pins.items()})
+            Instance(i.name, i.cell, {pin: inner.get(net, net) for pin, net in i.pins.items()})
             if i.cell in macros
             else i
             for i in self.instances
         ]
         instances += [
-            Instance(f"inside{k}", buffer.cell, {buffer.input: net, buffer.output: behind[net]})
+            Instance(f"inside{k}", buffer.cell, {buffer.input: net, buffer.output: inner[net]})
             for k, net in enumerate(shared)
         ]
         return Netlist(self.name, self.ports, tuple(instances))

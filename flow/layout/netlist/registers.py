@@ -156,16 +156,16 @@ class Cut:
         """
         rng = random.Random(1)
         levels: dict[Bit, int] = {"0": 0, "1": ALL}
-        behind = {bit: rng.getrandbits(LANES) for bit in (*self.registers, *self.inputs)}
-        behind |= {bit: ALL for bit, name in self.inputs.items() if name == reset}
+        after = {bit: rng.getrandbits(LANES) for bit in (*self.registers, *self.inputs)}
+        after |= {bit: ALL for bit, name in self.inputs.items() if name == reset}
         for _ in range(RESET_CYCLES):
-            behind |= self._next(behind)
-        guess: dict[Bit, Bit | None] = {bit: "1" if behind[bit] else "0" for bit in missing if behind[bit] in (0, ALL)}
+            after |= self._next(after)
+        guess: dict[Bit, Bit | None] = {bit: "1" if after[bit] else "0" for bit in missing if after[bit] in (0, ALL)}
         wrong: dict[Bit, set[Bit]] = {bit: set() for bit in guess}
         kept = 0
         cone = cache(self._cone)
         for _ in range(TURNS):
-            now = {bit: rng.getrandbits(LANES) for bit in behind}
+            now = {bit: rng.getrandbits(LANES) for bit in after}
             now |= {bit: levels[held] if held in levels else now[held] for bit, held in guess.items() if held}
             then = self._next(now)
             better: dict[Bit, Bit | None] = {}
@@ -178,7 +178,7 @@ class Cut:
                         other
                         for other in present
                         if other not in wrong[bit]
-                        and behind[bit] == behind[other]
+                        and after[bit] == after[other]
                         and not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other])
                     ),
                     default=None,

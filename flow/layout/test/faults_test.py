@@ -22,7 +22,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def runner(tmp_path_factory):
-    """The Runner behind a closed layout of the counter."""
+    """The Runner after a closed layout of the counter."""
     folder = tmp_path_factory.mktemp("counter")
     design = Design("counter", "Counter", "")
     made = Runner(folder / "steps", counter.files(design, counter.VERILOG, folder))
@@ -88,8 +88,8 @@ def test_a_short_between_a_strap_and_a_signal_is_found(runner, tmp_path):
 
 def test_a_cut_net_is_found(runner, tmp_path):
     def cut(layout, top):
-        wires = [s for s in top.shapes(layout.layer(69, 20)).each() if s.is_box() or s.is_path() or s.is_polygon()]
-        max(wires, key=lambda shape: shape.bbox().height() * (shape.bbox().width() < 500)).delete()
+        segments = [s for s in top.shapes(layout.layer(69, 20)).each() if s.is_box() or s.is_path() or s.is_polygon()]
+        max(segments, key=lambda shape: shape.bbox().height() * (shape.bbox().width() < 500)).delete()
 
     assert not lvs(runner, changed(runner, tmp_path, cut), tmp_path)
 

@@ -1,4 +1,4 @@
-"""A small design around a block that was laid out before: clean, matching, proven; a block that is moved is found."""
+"""A small design around a macro: clean, matching, proven; a macro that is moved is found."""
 
 import pytest
 
@@ -44,7 +44,7 @@ OUTER = Design("pair", "Pair", "", macros=(MacroPlacement("first", "counter", (0
 
 
 def closed(design, verilog, folder, more):
-    """The Runner behind a layout of ``design`` that keeps the rules."""
+    """The Runner after a layout of ``design`` that keeps the rules."""
     runner = Runner(folder / design.name, counter.files(design, verilog, folder) | more, shared=folder / "shared")
     tried = lay_out_smallest(design, OPTIONS, runner, lambda design, options: [Lef(PdkParameters(options.pdk))])
     assert tried[-1].rules_broken == 0, tried
@@ -75,7 +75,7 @@ def test_it_is_clean_matches_and_is_proven(runners):
     }
 
 
-def test_a_block_moved_off_its_wires_is_found(runners, tmp_path):
+def test_a_block_moved_off_its_nets_is_found(runners, tmp_path):
     import klayout.db as db
 
     layout = db.Layout()

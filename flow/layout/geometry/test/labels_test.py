@@ -15,14 +15,14 @@ def routed():
     nothing; the supplies are strapped."""
     tech, layout = coriolis_platform("sky130"), db.Layout()
     top = layout.create_cell("block")
-    for wire, box, texts in (
+    for metal, box, texts in (
         (tech.metals[1], (-0.1, 1.0, 3.0, 1.3), [("w0", 0.0, 1.15), ("w0", 5.0, 8.0)]),
         (tech.metals[2], (0.0, 8.0, 10.0, 8.2), [("w1", 2.0, 8.1)]),
         (tech.metals[-1], (1.0, 0.0, 2.2, 10.0), [("vdd", 1.6, 0.0), ("vdd", 1.6, 5.0)]),
     ):
-        top.shapes(layout.layer(*wire.gds)).insert(db.DBox(*box))
+        top.shapes(layout.layer(*metal.gds)).insert(db.DBox(*box))
         for net, x, y in texts:
-            top.shapes(layout.layer(wire.layer, 0)).insert(db.DText(net, x, y))
+            top.shapes(layout.layer(metal.layer, 0)).insert(db.DText(net, x, y))
     # a segment of the port's net, the port itself, a segment that was moved
     for box in ((-0.1, 1.0, 3.0, 1.3), (-0.1, 1.0, 0.1, 1.3), (4.0, 7.9, 6.0, 8.1)):
         top.shapes(layout.layer(68, tech.pin_datatype)).insert(db.DBox(*box))

@@ -6,23 +6,23 @@ from flow.layout.geometry import notch
 from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
-WIRE = coriolis_platform("sky130").metals[1]
+METAL = coriolis_platform("sky130").metals[1]
 
 
 def filled(*boxes):
-    """(how many slits were filled, the metal behind that) of boxes in nm."""
+    """(how many slits were filled, the metal after that) of boxes in nm."""
     layout = db.Layout()
     top = layout.create_cell("top")
-    shapes = top.shapes(layout.layer(*WIRE.gds))
+    shapes = top.shapes(layout.layer(*METAL.gds))
     for box in boxes:
         shapes.insert(db.Box(*box))
-    return notch.fill(layout, top, (WIRE,), {WIRE.name: 0.14}), db.Region(shapes).merged()
+    return notch.fill(layout, top, (METAL,), {METAL.name: 0.14}), db.Region(shapes).merged()
 
 
 def test_the_slit_beside_a_pad_is_filled():
     pad, pin = (254_840, 92_790, 255_160, 93_050), (255_200, 92_760, 256_800, 93_080)
-    wire = (254_930, 92_850, 255_325, 92_990)
-    count, metal = filled(pad, pin, wire)
+    segment = (254_930, 92_850, 255_325, 92_990)
+    count, metal = filled(pad, pin, segment)
     assert count == 2
     assert metal.space_check(140, False, db.Region.Projection).is_empty()
     assert metal.area() == sum(db.Region(db.Box(*box)).area() for box in (pad, pin)) + 40 * 260

@@ -34,9 +34,9 @@ def sinks(netlist):
 
 def source(netlist, net):
     """The net that ``net`` is a copy of."""
-    behind = {i.pins["q"]: i.pins["i"] for i in netlist.instances if i.cell == "buf_x1"}
-    while net in behind:
-        net = behind[net]
+    sources = {i.pins["q"]: i.pins["i"] for i in netlist.instances if i.cell == "buf_x1"}
+    while net in sources:
+        net = sources[net]
     return net
 
 

@@ -60,10 +60,10 @@ def nets(layout, top, points):
         layers.append(l2n.make_layer(layout.layer(layer.layer, layer.datatype), layer.name))
         l2n.connect(layers[-1])
         if level:
-            cut = RULES.vias[level - 1]
-            cuts = l2n.make_layer(layout.layer(cut.layer, cut.datatype), cut.name)
-            for other in (cuts, layers[-1], layers[-2]):
-                l2n.connect(cuts, other)
+            via = RULES.vias[level - 1]
+            vias = l2n.make_layer(layout.layer(via.layer, via.datatype), via.name)
+            for other in (vias, layers[-1], layers[-2]):
+                l2n.connect(vias, other)
     l2n.extract_netlist()
     return [l2n.probe_net(layers[level], db.Point(x, y)).cluster_id for level, x, y in points]
 
@@ -168,16 +168,16 @@ def test_a_net_in_the_way_is_evicted():
         draw(layout, top, level, 20_000, 0, 20_400, 18_000)
         draw(layout, top, level, 20_000, 21_500, 20_400, SIDE)
     rows = range(17_000, 23_000, 680)
-    wires = [
+    segments = [
         [RULES.layers[level].name, 19.0, (y - 150) / 1000, 21.0, (y + 150) / 1000]
         for level in (1, 2, 3, 4)
         for y in rows
         if 18_300 < y < 21_200
     ]
-    for name, *box in wires:
+    for name, *box in segments:
         draw(layout, top, [layer.name for layer in RULES.layers].index(name), *(round(1000 * v) for v in box))
     shapes = {
-        net: {"segments": wires if net == "w2" else [], "vias": [], "pins": list(map(um, made))}
+        net: {"segments": segments if net == "w2" else [], "vias": [], "pins": list(map(um, made))}
         for net, made in pins.items()
     }
     board = Board(layout, RULES, shapes)
@@ -224,22 +224,25 @@ def test_nets_that_are_too_near_or_have_an_antenna():
     cell = gate(layout, TECH)
     for y in (5_000, 30_000):
         top.insert(db.CellInstArray(cell.cell_index(), db.Trans(db.Vector(1_000, y))))
-    wires = {
+    segments = {
         "w0": (1_300, 4_200, 61_000, 4_500),
         "w1": (5_000, 29_600, 9_000, 29_900),
         "w2": (1_300, 29_200, 9_000, 29_500),
     }
-    for box in wires.values():
+    for box in segments.values():
         draw(layout, top, 1, *box)
     board = Board(
         layout,
         RULES,
-        {net: {"segments": [["m1", *(v / 1000 for v in box)]], "vias": [], "pins": []} for net, box in wires.items()},
+        {
+            net: {"segments": [["m1", *(v / 1000 for v in box)]], "vias": [], "pins": []}
+            for net, box in segments.items()
+        },
     )
     whole = find(board.drawn(), RULES, TECH)
     assert whole.nets(board, board.routed) == (["w1"], ["w0"])
     assert whole.nets(board, board.routed, ["w2"]) == (["w2"], [])
-    for net in wires:
+    for net in segments:
         assert find(board.part([net]), RULES, TECH).nets(board, board.routed, [net]) == whole.nets(
             board, board.routed, [net]
         )

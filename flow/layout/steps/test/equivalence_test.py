@@ -116,7 +116,7 @@ def test_a_cut_net_is_found(made):
 
 @pytest.mark.parametrize("source, result", (("count[1]", "proven"), ("count[2]", "failed")))
 def test_a_register_that_nothing_reads_is_compared_where_it_is(made, source, result):
-    """A block that was laid out before has registers that its surroundings leave alone."""
+    """A macro has registers that the design around it does not use."""
     netlist = Netlist.read(made / "netlist.json")
     spare = Instance("spare_reg", "dff_x1", {"clk": "clk", "i": source, "q": "spare"})
     rtl = RTL.replace("endmodule", "  reg spare;\n  always @(posedge clk) spare <= count[1];\nendmodule")

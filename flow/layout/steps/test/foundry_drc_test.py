@@ -1,4 +1,4 @@
-"""Checks of an installed PDK: a small one, made here, with a deck and a technology of one metal, read by the real tools."""
+"""Checks of an installed PDK: a small one with a deck and a technology of one metal, read by the real tools."""
 
 import shutil
 
@@ -65,11 +65,11 @@ end
 
 @pytest.fixture
 def root(tmp_path):
-    known = foundry_checks("sky130")
+    checks = foundry_checks("sky130")
     for path, text in (
-        (known.klayout, DECK),
-        (f"{known.magic}/small.tech", TECHNOLOGY),
-        (f"{known.magic}/{known.rc}", f"tech load $::env(PDK_ROOT)/{known.magic}/small.tech\n"),
+        (checks.klayout, DECK),
+        (f"{checks.magic}/small.tech", TECHNOLOGY),
+        (f"{checks.magic}/{checks.rc}", f"tech load $::env(PDK_ROOT)/{checks.magic}/small.tech\n"),
     ):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / path).write_text(text)
@@ -77,7 +77,7 @@ def root(tmp_path):
 
 
 def checked(step, root, gap_nm):
-    """Metrics of ``step`` for two wires so far from one another."""
+    """Metrics of ``step`` for two segments so far from one another."""
     layout = db.Layout()
     layout.dbu = 0.001
     metal = layout.create_cell("top").shapes(layout.layer(68, 20))
@@ -99,14 +99,14 @@ def test_a_space_that_is_too_small(tool, kind, gap_nm, broken, root):
 
 
 @pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not installed")
-def test_a_deck_that_fails_is_told(root):
+def test_a_deck_that_fails_is_reported(root):
     (root / foundry_checks("sky130").klayout).write_text("no_such_word(1)\n")
     with pytest.raises(StepError, match="sky130A_mr.drc failed: .*no_such_word"):
         checked(FoundryDrc(FoundryDrcParameters("sky130", "top")), root, 150)
 
 
 @pytest.mark.skipif(not shutil.which("magic"), reason="magic: not installed")
-def test_a_technology_that_fails_is_told(root):
+def test_a_technology_that_fails_is_reported(root):
     (root / foundry_checks("sky130").magic / "sky130A.magicrc").write_text("no_such_word\n")
     with pytest.raises(StepError, match="magic_drc: Magic failed"):
         checked(MagicDrc(FoundryDrcParameters("sky130", "top")), root, 150)
