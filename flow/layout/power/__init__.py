@@ -1,0 +1,1 @@
+"""Power of cells and IR drop of supplies."""

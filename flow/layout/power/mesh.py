@@ -40,7 +40,7 @@ class Gap(NamedTuple):
 
 
 def metal(tech: CoriolisPlatform) -> Metal:
-    """Resistances of a process: rails on its lowest metal, straps on its highest, via stacks as straps.py draws them."""
+    """Resistances of a process: rails on its lowest metal, straps on its highest, stacks as straps.py draws them."""
     low, high = tech.metals[0], tech.metals[-1]
     stack = 0.0
     for via in tech.vias:
@@ -70,9 +70,7 @@ def drops(
     edges: list[tuple[int, int, float]] = []
     pads: list[tuple[int, float]] = []
     where = np.zeros(len(taps), int)  # nodes of the taps
-    for x, own in zip(
-        straps, crossing.tolist(), strict=True
-    ):  # up a strap; at least half a um of it to a pad at its end
+    for x, own in zip(straps, crossing.tolist(), strict=True):  # up a strap; half a um of it at least to a pad
         for low, high, a, b in zip(rails, rails[1:], own, own[1:]):
             if not any(x == gap.x_um and low < gap.top_um and gap.bottom_um < high for gap in gaps):
                 edges.append((a, b, metal.strap * (high - low)))

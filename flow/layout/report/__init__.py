@@ -1,0 +1,1 @@
+"""What a user reads of a layout: summary, limits, page, pictures, history, comparison."""

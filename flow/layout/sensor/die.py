@@ -25,7 +25,7 @@ from .metrics import RULES, summarize
 from .picture import by_block
 from .steps.die_antenna import DieAntenna
 from .steps.die_connectivity import DieConnectivity
-from .steps.die_gds import DieGds, DieGdsParameters
+from .steps.die_gds import DieGds
 from .steps.die_parasitics import DieParasitics, DieParasiticsParameters
 from .steps.die_plan import DiePlan, DiePlanParameters
 from .steps.die_sta import DieSta
@@ -65,8 +65,8 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list
     )
     return [
         DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
-        DieGds(DieGdsParameters(pdk)),
-        DieConnectivity(DieGdsParameters(pdk)),
+        DieGds(PdkParameters(pdk)),
+        DieConnectivity(PdkParameters(pdk)),
         DieParasitics(parasitics),
         *(DieSta(StaParameters(chip.top, corner, clock.period_ns)) for corner in options.corners),
         drc,

@@ -1,7 +1,10 @@
-"""The block's Liberty at one corner: delays, constraints and capacitances at its ports, and nothing of its inside."""
+"""The block's Liberty at one corner: delays, constraints and capacitances at its ports."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +15,8 @@ from base.steps import Step, StepError
 from base.tools import run
 
 from ..netlist.netlist import SUPPLIES, Netlist
-from ..power import energy as energy_module
 from ..power.energy import Cells
-from ..timing import boundary as boundary_module
-from ..timing import opensta as opensta_module
-from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Files, measure
+from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Boundary, Files, measure
 
 SLEWS = 0.02, 0.07, 0.25, 1.0  # ns
 LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2  # pF
@@ -26,30 +26,31 @@ COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
 
 @dataclass(frozen=True)
 class BlockLibertyParameters:
-    """corner: its name in the reports. clock: port."""
+    """Corner, and port of the clock."""
 
     corner: str = ""
     clock: str = "clk"
 
 
-class BlockLiberty(Step):
-    """Outputs have their latest delay from the clock (and from inputs that reach them through cells alone), inputs
-    their setup and hold at the clock's port. Made from OpenSTA's slacks, then read back into OpenSTA and compared at a
-    slew and a load beside the grid: model_error_ns. There is no power in it but leakage."""
+class BlockLiberty(Step[BlockLibertyParameters]):
+    """Timing of the ports from OpenSTA's slacks; no power but leakage.
+
+    Outputs have their latest delay from the clock, and from inputs that reach them through cells alone; inputs have
+    their setup and hold at the clock's port. The file is read back into OpenSTA and compared at a slew and a load off
+    the grid: model_error_ns.
+    """
 
     inputs = {"netlist": "place_route.netlist", "verilog": "stream_out.verilog", "spef": "extraction.spef"}
     outputs = {"liberty": "block.lib"}
-    Parameters = BlockLibertyParameters
     metrics = {"model_error_ns": "ns", "arcs": ""}
-    uses = (boundary_module, energy_module, opensta_module)
     tools = ("sta", "yosys")
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: BlockLibertyParameters) -> None:
         super().__init__(parameters)
         self.name = f"block_liberty_{parameters.corner}"
-        self.inputs = self.inputs | {"liberty": f"timing.{parameters.corner}", "areas": "floorplan.floorplan"}
+        self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}", "areas": "floorplan.floorplan"}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         clock, folder = self.parameters.clock, outputs["liberty"].parent
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
         files = Files(inputs["liberty"], inputs["verilog"], folder, inputs["spef"])
@@ -59,17 +60,17 @@ class BlockLiberty(Step):
                 netlist, clock, found, self.parameters.corner, inputs["liberty"], plan["width_um"] * plan["height_um"]
             )
         )
-        error = self.checked(netlist, files, outputs["liberty"], folder)
+        error = self.model_error(netlist, files, outputs["liberty"])
         return {"model_error_ns": error, "arcs": len(found.delays) + len(found.checks)}
 
-    def checked(self, netlist, files, made, folder):
-        """Largest difference (ns) of the model in a wrapper from the netlist, beside the grid. Raises StepError."""
+    def model_error(self, netlist: Netlist, files: Files, made: Path) -> float:
+        """Largest difference (ns) between the model in a wrapper and the netlist, off the grid. Raises StepError."""
         run(["yosys", "-q", "-p", f"read_liberty -lib {made}; hierarchy -check -top {netlist.name}"])
-        wrapper = folder / "wrapper.log"
+        wrapper = files.folder / "wrapper.log"
         wrapper.write_text(_wrapper(netlist))
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
-        model = measure(netlist, self.parameters.clock, Files(made, wrapper, folder, top="Wrapper"), *point)
+        model = measure(netlist, self.parameters.clock, Files(made, wrapper, files.folder, top="Wrapper"), *point)
         differences = []
         for name in ("delays", "checks"):
             one, other = getattr(own, name), getattr(model, name)
@@ -79,7 +80,7 @@ class BlockLiberty(Step):
         return round(max(differences, default=0.0), 4)
 
 
-def _wrapper(netlist):
+def _wrapper(netlist: Netlist) -> str:
     ports = [
         f"  {port.direction} {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};" for port in netlist.ports
     ]
@@ -95,15 +96,12 @@ def _wrapper(netlist):
     )
 
 
-def liberty(netlist, clock, found, corner, source, area):
-    """Text of the Liberty file. found: Boundary; source: the cells' Liberty, whose units and thresholds it has."""
+def liberty(netlist: Netlist, clock: str, found: Boundary, corner: str, source: Path, area: float) -> str:
+    """Text of the Liberty. source: the cells' Liberty, whose units and thresholds it has. area: um2."""
     cells = read(source)
-    library = Group(
-        "library",
-        (f"{netlist.name}__{corner}",),
-        {name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
-        | {"voltage_map": list(zip(SUPPLIES, (cells.number("nom_voltage"), 0.0), strict=True))},
-    )
+    attributes = {name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
+    attributes["voltage_map"] = [(SUPPLIES[0], cells.number("nom_voltage")), (SUPPLIES[1], 0.0)]
+    library = Group("library", (f"{netlist.name}__{corner}",), attributes)
     if conditions := cells.one("operating_conditions"):
         library.groups.append(conditions)
     leakage = round(sum(map(Cells(cells).leakage_nw, (i.cell for i in netlist.instances))), 4)
@@ -143,7 +141,7 @@ def liberty(netlist, clock, found, corner, source, area):
         dont_touch=True,
         dont_use=True,
         interface_timing=True,
-    )  # else OpenSTA sees latches
+    )  # without interface_timing OpenSTA finds latches
     for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
         cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
     for port in netlist.ports:
@@ -163,7 +161,7 @@ def liberty(netlist, clock, found, corner, source, area):
     return text(library)
 
 
-def _constraints(pin, net, clock, found):
+def _constraints(pin: Group, net: str, clock: str, found: Boundary) -> None:
     for kind, timing_type in (("max", "setup_rising"), ("min", "hold_rising")):
         if (net, kind, "rise") in found.checks:
             timing = pin.add("timing", related_pin=clock, timing_type=timing_type)
@@ -178,7 +176,7 @@ def _constraints(pin, net, clock, found):
                 )
 
 
-def _delays(pin, net, clock, found):
+def _delays(pin: Group, net: str, clock: str, found: Boundary) -> None:
     for source in sorted({source for source, output, _ in found.delays if output == net}):
         more = {"timing_type": "rising_edge"} if source == clock else COMBINATIONAL
         timing = pin.add("timing", related_pin=source, **more)

@@ -1,15 +1,15 @@
-"""The final netlist in Icarus with the delays of a corner, at the clock's full rate, through a recorded trace."""
+"""The stimulus replayed through the final netlist in Icarus with the delays of a corner, at the clock's full rate."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from base.steps import Step, StepError
 from models.parameters import check_real
 
-from ..netlist import netlist as netlist_module
 from ..netlist.netlist import Netlist
-from ..timing import delays as delays_module
-from ..timing import replay as replay_module
 from ..timing.delays import read
 from ..timing.replay import Timing, replay
 
@@ -18,25 +18,25 @@ CONSTANTS = {"zero", "one"}  # pins of cells without a path
 
 @dataclass(frozen=True)
 class GateDelaysParameters:
-    """corner: its name. period_ns: of the clock. input_delay, output_delay: of the surroundings, as shares of it."""
+    """Corner, period of the clock, I/O delays as shares of it."""
 
     corner: str = ""
     period_ns: float = field(default=20.0, metadata={"unit": "ns"})
     input_delay: float = 0.2
     output_delay: float = 0.2
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.5, 1e4)
         for name in ("input_delay", "output_delay"):
             check_real(name, getattr(self, name), 0, 0.5)
 
 
-class GateDelays(Step):
-    """passed: the trace whole, without a wrong output, an X, or a register whose setup or hold was not kept.
+class GateDelays(Step[GateDelaysParameters]):
+    """Outputs and timing checks of the whole trace: passed without a wrong output, an X or a violation.
 
-    Annotated: all path delays, with the wires' added to them (delays.py), and setup and hold of every register.
-    setup_margin_ns, hold_margin_ns: the least that occurred; no STA at this corner may promise more than they leave.
-    The activity: transitions a cycle and share of time at 1 of every net, glitches among them.
+    Annotated: all path delays with those of the nets (timing/delays.py), and setup and hold of every register.
+    setup_margin_ns, hold_margin_ns: the least that occurred; STA at this corner may report no larger slack. activity:
+    transitions a cycle, glitches included, and share of time at 1 of every net.
     """
 
     inputs = {
@@ -46,17 +46,15 @@ class GateDelays(Step):
         "trace": "stimulus.trace",
     }
     outputs = {"activity": "activity.json"}
-    Parameters = GateDelaysParameters
     metrics = {"passed": "", "failed": "", "cycles": "", "paths": "", "setup_margin_ns": "ns", "hold_margin_ns": "ns"}
-    uses = (delays_module, netlist_module, replay_module)
     tools = ("iverilog",)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: GateDelaysParameters) -> None:
         super().__init__(parameters)
         self.name = f"gate_delays_{parameters.corner}"
-        self.inputs = self.inputs | {"sdf": f"sta_{parameters.corner}.sdf"}
+        self.inputs = {**self.inputs, "sdf": f"sta_{parameters.corner}.sdf"}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         p, folder = self.parameters, outputs["activity"].parent
         netlist, delays = Netlist.read(inputs["netlist"]), read(inputs["sdf"].read_text())
         lacking = [i.name for i in netlist.instances if set(i.pins) - CONSTANTS and i.name not in delays.paths]
@@ -75,12 +73,12 @@ class GateDelays(Step):
         for name in ("cells", "netlist", "delays", "bench"):
             (folder / f"{name}.log").unlink()
         outputs["activity"].write_text(json.dumps(found.activity, indent=0) + "\n")
-        good = not found.wrong and not found.late
+        good, margins = not found.wrong and not found.late, found.margins or (0.0, 0.0)
         return {
             "passed": int(good),
             "failed": int(not good),
             "cycles": found.cycles,
             "paths": sum(map(len, delays.paths.values())),
-            "setup_margin_ns": round(found.margins[0], 4),
-            "hold_margin_ns": round(found.margins[1], 4),
+            "setup_margin_ns": round(margins[0], 4),
+            "hold_margin_ns": round(margins[1], 4),
         }

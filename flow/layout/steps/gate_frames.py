@@ -1,28 +1,35 @@
-"""Whole frames through the chip's netlist in Icarus, which knows X: every byte must be the golden chip's."""
+"""Whole frames through the chip's netlist in Icarus, with X: every byte must be that of the golden model."""
 
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from base.steps import Step
-from flow.simulate import icarus
+from base.steps.step import NoParameters
 from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
 
-MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip's divider makes phases
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from models.parameters import SensorParameters
+
+MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip computes phases
 SEED, TAPS = 1, 4
 
 
-class GateFrames(Step):
+class GateFrames(Step[NoParameters]):
     """A window of 2 x 4 tiles of the default sensor in three modes, configured and read back over SPI. Zero delay."""
 
     name = "gate_frames"
     inputs = {"verilog": "stream_out.verilog", "cells": "library.verilog"}
     outputs = {"log": "frames.txt"}
     metrics = {"passed": "", "failed": "", "cycles": "", "bytes": ""}
-    uses = (icarus,)
     tools = ("iverilog",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         from flow.frame.hardware import simulate
         from models.chip import front_end_of, golden_frame
         from models.parameters import FrameParameters, SensorParameters, Window
@@ -50,8 +57,8 @@ class GateFrames(Step):
         return {"passed": len(lines) - failed, "failed": failed, "cycles": cycles, "bytes": sent}
 
 
-def exposure(sensor):
-    """Random diode pairs (4, rows, cols, 2), their differences now and then beyond the converters' range."""
+def exposure(sensor: "SensorParameters") -> "npt.NDArray[np.float64]":
+    """Random diode pairs (4, rows, cols, 2), some with differences beyond the converters' range."""
     import numpy as np
 
     rng = np.random.default_rng(SEED)

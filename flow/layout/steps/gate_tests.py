@@ -1,10 +1,12 @@
-"""The block's own tests on a netlist: in Icarus, which knows X and fails on one at any output, or in Verilator."""
+"""The block's own tests on a netlist: in Icarus, where an X at an output fails, or in Verilator."""
 
 import sys
 import tempfile
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from base.paths import ROOT
 from base.steps import Step, StepError
@@ -16,38 +18,41 @@ NETLISTS = {"final": "stream_out.verilog", "synthesized": "synthesis.verilog"}
 
 @dataclass(frozen=True)
 class GateTestsParameters:
-    """folder: of the block in rtl/. names: what its tests build the block as, with the parameters laid out. top: its
-    module. netlist: 'final' or 'synthesized'. simulator: 'icarus' or 'verilator', which knows no X."""
+    """Which tests, netlist and simulator.
+
+    folder: of the block in rtl/. names: under which its tests build the block with the parameters laid out. top: its
+    module. netlist: 'final' or 'synthesized'. simulator: 'icarus' or 'verilator', which has no X.
+    """
 
     folder: str = ""
-    names: tuple = ()
+    names: tuple[str, ...] = ()
     top: str = ""
     netlist: str = "final"
     simulator: str = "icarus"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_choice("netlist", self.netlist, tuple(NETLISTS))
         check_choice("simulator", self.simulator, ("icarus", "verilator"))
 
 
-class GateTests(Step):
-    """Zero delay: the cells are their functions; timing is the STA's matter."""
+class GateTests(Step[GateTestsParameters]):
+    """The tests at zero delay: the cells are their functions; STA checks the timing."""
 
     inputs = {"cells": "library.verilog"}
     outputs = {"report": "tests.xml"}
-    Parameters = GateTestsParameters
     metrics = {"passed": "", "failed": ""}
     tools = ("iverilog",)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: GateTestsParameters) -> None:
         super().__init__(parameters)
         self.name = f"gate_tests_{parameters.netlist}_{parameters.simulator}"
-        self.inputs = self.inputs | {"verilog": NETLISTS[parameters.netlist]}
+        self.inputs = {**self.inputs, "verilog": NETLISTS[parameters.netlist]}
 
-    def starts(self):
+    def starts(self) -> tuple[str, ...]:
+        """The tests that pytest reads."""
         return (f"rtl/{self.parameters.folder}/test",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         p = self.parameters
         netlists = [f"--netlist={name}={inputs['verilog'].resolve()}:{p.top}" for name in p.names]
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
@@ -72,9 +77,9 @@ class GateTests(Step):
             outputs["report"].with_suffix(".log").write_text(done.stdout + done.stderr)
             report = Path(folder) / "tests.xml"
             if done.returncode not in (0, 1) or not report.exists():
-                raise StepError(f"{self.name}: pytest said: {(done.stdout + done.stderr).strip().splitlines()[-1:]}")
+                raise StepError(f"{self.name}: pytest printed: {(done.stdout + done.stderr).strip().splitlines()[-1:]}")
             outputs["report"].write_bytes(report.read_bytes())
-        suite = ET.parse(outputs["report"]).getroot().find("testsuite")
-        count = {kind: int(suite.get(kind)) for kind in ("tests", "failures", "errors", "skipped")}
+        suite = next(ET.parse(outputs["report"]).iter("testsuite"))
+        count = {kind: int(suite.attrib[kind]) for kind in ("tests", "failures", "errors", "skipped")}
         failed = count["failures"] + count["errors"]
         return {"passed": count["tests"] - failed - count["skipped"], "failed": failed}

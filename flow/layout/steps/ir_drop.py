@@ -1,33 +1,36 @@
-"""Voltage drop of supply and ground at every cell, from the mean current of the power step."""
+"""IR drop of supply and ground at every cell, from the mean current of the power step."""
 
 import json
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from base.steps import Step
-from platforms.coriolis import coriolis_platform
+from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..netlist.netlist import Netlist
-from ..power import mesh as mesh_module
-from ..power.mesh import drops, metal
+from ..power.mesh import Box, Gap, Tap, drops, metal
 
-MIRRORED = {"6", "2"}  # orientations of Hurricane (MY, R2) in which a cell hangs from its origin
+MIRRORED = {"6", "2"}  # orientations of Hurricane (MY, R2) in which a cell extends downwards from its origin
 LEFTWARDS = {"4", "2"}  # ... (MX, R2) in which it extends to the left of it
 
 
 @dataclass(frozen=True)
 class IrDropParameters:
-    """pdk: process. corner: of the power."""
+    """Process, and corner of the power."""
 
     pdk: str = "sky130"
     corner: str = ""
 
 
-class IrDrop(Step):
-    """Rails and straps as resistors, the straps' ends held at the supply. Static: the mean over the trace, no peaks.
+class IrDrop(Step[IrDropParameters]):
+    """Rails and straps as resistors, strap ends at the supply; static: the mean over the trace, no peaks.
 
-    ir_drop_percent: the largest sum of both drops at a cell, of the supply. current_lost: by the solver, as a share.
+    ir_drop_percent: the largest sum of both drops at a cell, of the supply. current_lost: share, by the solver.
     """
 
     inputs = {
@@ -37,7 +40,6 @@ class IrDrop(Step):
         "areas": "library.areas",
     }
     outputs = {"picture": "ir_drop.png", "cells": "ir_drop.json"}
-    Parameters = IrDropParameters
     metrics = {
         "supply_drop_mv": "mV",
         "ground_rise_mv": "mV",
@@ -45,44 +47,41 @@ class IrDrop(Step):
         "current_ua": "uA",
         "current_lost": "",
     }
-    uses = (mesh_module,)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: IrDropParameters) -> None:
         super().__init__(parameters)
         self.name = f"ir_drop_{parameters.corner}"
-        self.inputs = self.inputs | {"power": f"power_{parameters.corner}.instances"}
+        self.inputs = {**self.inputs, "power": f"power_{parameters.corner}.instances"}
 
-    def run(self, inputs, outputs):
-        known = coriolis_platform(self.parameters.pdk)
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+        tech = coriolis_platform(self.parameters.pdk)
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text())
         placed = json.loads(inputs["placement"].read_text())
-        cells = drawing(
-            netlist,
-            placed["instances"],
-            json.loads(inputs["areas"].read_text()),
-            json.loads(inputs["power"].read_text()),
-            known,
-        )
-        rows = round(plan["height_um"] / known.row_um)
+        areas, power = (json.loads(inputs[name].read_text()) for name in ("areas", "power"))
+        cells = currents(netlist, placed["instances"], areas, power, tech)
+        rows = round(plan["height_um"] / tech.row_um)
         found, lost = [], []
         for net, odd in (("vdd", 1), ("vss", 0)):  # rails of even rows are ground
             rails = list(range(odd, rows + 1, 2))
             straps = [x for supply, x, _ in placed["straps"] if supply == net]
-            gaps = [(x, *gap) for supply, x, cut in placed["straps"] if supply == net for gap in cut]
-            taps = [(rails.index(row if row % 2 == odd else row + 1), x, current) for row, x, current in cells]
+            gaps = [Gap(x, *gap) for supply, x, own in placed["straps"] if supply == net for gap in own]
+            taps = [
+                Tap(rails.index(cell.row if cell.row % 2 == odd else cell.row + 1), cell.x_um, cell.ampere)
+                for cell in cells
+            ]
             drop, share = drops(
-                [row * known.row_um for row in rails],
+                [row * tech.row_um for row in rails],
                 straps,
                 plan["height_um"],
                 taps,
-                metal(known),
+                metal(tech),
                 breaks(plan["macros"]),
                 gaps,
             )
             found.append(drop * 1000)
             lost.append(share)
         total = found[0] + found[1]
-        at = [(x, (row + 0.5) * known.row_um) for row, x, _ in cells]
+        at = [(cell.x_um, (cell.row + 0.5) * tech.row_um) for cell in cells]
         outputs["cells"].write_text(
             json.dumps([[round(x, 3), round(y, 3), float(mv)] for (x, y), mv in zip(at, total, strict=True)], indent=0)
             + "\n"
@@ -91,27 +90,43 @@ class IrDrop(Step):
         return {
             "supply_drop_mv": float(f"{found[0].max():.4g}"),
             "ground_rise_mv": float(f"{found[1].max():.4g}"),
-            "ir_drop_percent": float(f"{total.max() / known.supply_v / 10:.4g}"),
-            "current_ua": round(sum(current for *_, current in cells) * 1e6, 3),
+            "ir_drop_percent": float(f"{total.max() / tech.supply_v / 10:.4g}"),
+            "current_ua": round(sum(cell.ampere for cell in cells) * 1e6, 3),
             "current_lost": float(f"{max(lost):.1e}"),
         }
 
 
-def drawing(netlist, placed, areas, power, known):
-    """(row, x of its middle in um, A) of every cell that draws a current. placed: of the placement, in the netlist's
-    order. power: instance -> uW."""
+class Current(NamedTuple):
+    """The current of a cell. x_um: of its middle."""
+
+    row: int
+    x_um: float
+    ampere: float
+
+
+def currents(
+    netlist: Netlist,
+    placed: Sequence[Sequence[Any]],
+    areas: Mapping[str, float],
+    power: Mapping[str, float],
+    tech: CoriolisPlatform,
+) -> list[Current]:
+    """Currents of the cells that have one.
+
+    placed: of the placement, in the netlist's order. areas: cell -> um2. power: instance -> uW.
+    """
     found = []
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if instance.name in power:
-            width = areas[cell] / known.row_um
-            row = round(y / known.row_um) - (orientation in MIRRORED)
+            width = areas[cell] / tech.row_um
+            row = round(y / tech.row_um) - (orientation in MIRRORED)
             middle = x + width / 2 * (-1 if orientation in LEFTWARDS else 1)
-            found.append((row, middle, power[instance.name] * 1e-6 / known.supply_v))
+            found.append(Current(row, middle, power[instance.name] * 1e-6 / tech.supply_v))
     return found
 
 
-def breaks(macros):
-    """Boxes in which there are no rails: on the west and the east of the floorplan's blocks."""
+def breaks(macros: Sequence[Mapping[str, Any]]) -> list[Box]:
+    """Boxes without rails: on the west and the east of the floorplan's macros."""
     return [
         (left, m["y_um"], right, m["y_um"] + m["height_um"])
         for m in macros
@@ -119,8 +134,14 @@ def breaks(macros):
     ]
 
 
-def picture(path, at, drop, straps, plan):
-    """Cells by the sum of their drops, mV; straps as lines."""
+def picture(
+    path: Path,
+    at: Sequence[tuple[float, float]],
+    drop: npt.NDArray[np.float64],
+    straps: Sequence[Sequence[Any]],
+    plan: Mapping[str, Any],
+) -> None:
+    """Draw the cells, coloured by the sum of their drops, mV; straps as lines."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 6), layout="constrained")
@@ -129,6 +150,6 @@ def picture(path, at, drop, straps, plan):
     for _, place, _ in straps:
         axes.axvline(place, color="0.8", linewidth=1, zorder=0)
     shown = axes.scatter(x, y, c=drop, s=max(1.0, 20000 / len(at)), cmap="inferno", marker="s")
-    figure.colorbar(shown, label="supply's drop and ground's rise, mV")
+    figure.colorbar(shown, label="IR drop of supply and ground, mV")
     axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="um", ylabel="um")
     figure.savefig(path, dpi=130, metadata={"Software": None})

@@ -2,17 +2,17 @@
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from base.liberty.read import read
 from base.steps import Step
 from models.parameters import check_real
 
-from ..netlist import netlist as netlist_module
 from ..netlist.netlist import Netlist
-from ..power import energy as energy_module
 from ..power.energy import Cells, blocks, powers
-from ..timing import opensta as opensta_module
 from ..timing.opensta import opensta
 
 SLEWS = """
@@ -28,20 +28,21 @@ foreach pin [get_pins *] {{ report_slews $pin }}
 
 @dataclass(frozen=True)
 class PowerParameters:
-    """top: module. corner: its name. period_ns: of the clock."""
+    """Module, corner and period of the clock."""
 
     top: str = ""
     corner: str = ""
     period_ns: float = field(default=20.0, metadata={"unit": "ns"})
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.5, 1e4)
 
 
-class Power(Step):
-    """power_uw: what the block draws from its supply, on average over the trace, the loads of its outputs left out.
+class Power(Step[PowerParameters]):
+    """Mean power over the trace, without the loads of the outputs.
 
-    Slews are OpenSTA's, transitions the delayed simulation's (glitches too), capacitances the extraction's.
+    Slews are OpenSTA's, transitions those of the simulation with delays (glitches included), capacitances those of the
+    extraction.
     """
 
     inputs = {
@@ -51,25 +52,23 @@ class Power(Step):
         "sdc": "sdc",
     }
     outputs = {"instances": "power.json"}
-    Parameters = PowerParameters
     metrics = {"power_uw": "uW", "by_kind": "uW", "by_block": "uW", "energy_pj_cycle": "pJ", "transitions_cycle": ""}
-    uses = (energy_module, netlist_module, opensta_module)
     tools = ("sta",)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: PowerParameters) -> None:
         super().__init__(parameters)
         corner = parameters.corner
         self.name = f"power_{corner}"
-        self.inputs = self.inputs | {"liberty": f"timing.{corner}", "activity": f"gate_delays_{corner}.activity"}
+        self.inputs = {**self.inputs, "liberty": f"timing.{corner}", "activity": f"gate_delays_{corner}.activity"}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])
         cells, activity = Cells(read(inputs["liberty"])), json.loads(inputs["activity"].read_text())
         found = powers(
             netlist, cells, activity, wire_pf(inputs["spef"].read_text()), self.slews(inputs, outputs), p.period_ns
         )
         where = blocks(netlist)
-        by_block = {}
+        by_block: dict[str, float] = {}
         for name, power in found.items():
             by_block[where[name]] = by_block.get(where[name], 0.0) + power.total
         total = sum(power.total for power in found.values())
@@ -85,17 +84,17 @@ class Power(Step):
             "transitions_cycle": round(sum(toggles for toggles, _ in activity.values()), 2),
         }
 
-    def slews(self, inputs, outputs):
-        """dict (instance, pin) -> ns, the slower edge."""
-        said = opensta(outputs["instances"].with_suffix(".log"), SLEWS.format(top=self.parameters.top, **inputs))
+    def slews(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[tuple[str, str], float]:
+        """Slew (ns) of each (instance, pin), the slower edge."""
+        report = opensta(outputs["instances"].with_suffix(".log"), SLEWS.format(top=self.parameters.top, **inputs))
         return {
-            tuple(name.replace("\\", "").rsplit("/", 1)): max(float(rise), float(fall))
-            for name, rise, fall in re.findall(r"(?m)^(\S+/\S+) \^ \S+?:(\S+) v \S+?:(\S+)$", said)
+            (instance.replace("\\", ""), pin): max(float(rise), float(fall))
+            for instance, pin, rise, fall in re.findall(r"(?m)^(\S+)/([^/\s]+) \^ \S+?:(\S+) v \S+?:(\S+)$", report)
         }
 
 
-def wire_pf(spef):
-    """dict net -> pF of a SPEF as the extraction writes it (fF)."""
+def wire_pf(spef: str) -> dict[str, float]:
+    """Capacitance (pF) of each net in a SPEF of the extraction step (fF)."""
     return {
         name.replace("\\", ""): float(value) / 1000 for name, value in re.findall(r"(?m)^\*D_NET (\S+) (\S+)$", spef)
     }

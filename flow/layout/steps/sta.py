@@ -1,11 +1,13 @@
-"""Static timing at one corner, with the extracted wires: OpenSTA."""
+"""Static timing at one corner, with the parasitics, in OpenSTA."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 from base.steps import Step, StepError
 
-from ..timing import opensta as opensta_module
 from ..timing.opensta import opensta
 
 SCRIPT = """
@@ -25,34 +27,36 @@ write_sdf -digits 4 -no_timestamp {sdf}
 
 @dataclass(frozen=True)
 class StaParameters:
-    """top: module. corner: its name in the reports. period_ns: of the clock."""
+    """What is timed. top: module. corner: its name in the reports. period_ns: of the clock."""
 
     top: str = ""
     corner: str = ""
     period_ns: float = 0.0
 
 
-class Sta(Step):
-    """wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: of the clock at which the setup slack would be 0, the
-    delays outside staying what they are."""
+class Sta(Step[StaParameters]):
+    """Slacks, and an SDF of all delays.
+
+    wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: clock at which the setup slack is 0, with the same I/O
+    delays in ns.
+    """
 
     inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
-    Parameters = StaParameters
     metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz"}
-    uses = (opensta_module,)
     tools = ("sta",)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: StaParameters) -> None:
         super().__init__(parameters)
         self.name = f"sta_{parameters.corner}"
-        self.inputs = self.inputs | {"liberty": f"timing.{parameters.corner}"}
+        self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}"}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         p = self.parameters
-        said = opensta(outputs["report"].with_name("sta.log"), SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs))
-        outputs["report"].write_text(said)
-        worst = worst_slacks(said, "sta")
+        script = SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs)
+        report = opensta(outputs["report"].with_name("sta.log"), script)
+        outputs["report"].write_text(report)
+        worst = worst_slacks(report, "sta")
         return {
             "wns_ns": round(worst["setup"], 4),
             "whs_ns": round(worst["hold"], 4),
@@ -60,9 +64,9 @@ class Sta(Step):
         }
 
 
-def worst_slacks(said, step):
-    """dict 'setup' and 'hold' -> ns, from what OpenSTA ``said`` of SCRIPT. Raises StepError in the name of ``step``."""
-    worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", said)}
+def worst_slacks(report: str, step: str) -> dict[str, float]:
+    """Slacks (ns) of 'setup' and 'hold' from OpenSTA's output of SCRIPT. Raises StepError in the name of ``step``."""
+    worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", report)}
     if set(worst) != {"setup", "hold"}:
         raise StepError(f"{step}: OpenSTA: no slack")
     return worst

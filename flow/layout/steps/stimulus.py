@@ -1,23 +1,26 @@
-"""What happens at a block's ports in a real frame: recorded in the chip's RTL; else what its tests do there."""
+"""The stimulus of a block: its ports in a real frame, recorded in the chip's RTL; else in its own tests."""
 
 import json
 import sys
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from base.paths import ROOT
 from base.steps import Step, StepError
 from base.tools import ToolError, finish, run
-from flow.simulate import icarus
 from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
 from rtl.verilog import export_verilog
 
-from ..netlist import verilog
 from ..netlist.verilog import modules
 from .gate_frames import TAPS
+
+if TYPE_CHECKING:
+    from models.parameters import Window
 
 CHIP = "AspChip"
 TAP = """module Tap;
@@ -40,8 +43,10 @@ SCENE, SIZE = "motorcycle", (12, 18)  # of `make sim`'s own scene; pixels of the
 
 @dataclass(frozen=True)
 class StimulusParameters:
-    """top: module. rows, cols, divider, n_frac: of the chip in which the block is looked for. tiles: that are read, in
-    the middle of the array; None for all. folder: of the block in rtl/."""
+    """The block, and the chip in which it is looked for (rows, cols, divider, n_frac).
+
+    top: module. folder: of the block in rtl/. tiles: number of tiles read, in the middle of the array; None for all.
+    """
 
     top: str = ""
     folder: str = ""
@@ -52,28 +57,29 @@ class StimulusParameters:
     tiles: int | None = None
 
     @property
-    def options(self):
-        """Of rtl.export."""
+    def options(self) -> tuple[str, ...]:
+        """Options of rtl.export."""
         return f"--rows={self.rows}", f"--cols={self.cols}", f"--divider={self.divider}", f"--n-frac={self.n_frac}"
 
 
-class Stimulus(Step):
-    """The frame: time of flight with phases, so that every block works, of the scene of `make sim`, through a chip
-    with a small array; through AspChip itself of a few tiles. A block that is not in that chip with the same Verilog
-    has the trace of its own tests."""
+class Stimulus(Step[StimulusParameters]):
+    """A time-of-flight frame with phases, which uses every block, of the scene of `make sim`.
+
+    The chip has a small array; for AspChip itself a few tiles are read. A block that is not in that chip with the same
+    Verilog has the trace of its own tests.
+    """
 
     name = "stimulus"
     inputs = {"rtl": "rtl"}
     outputs = {"head": "stimulus.json", "trace": "stimulus.trace"}
-    Parameters = StimulusParameters
     metrics = {"source": "", "cycles": "", "results": ""}
-    uses = (icarus, verilog)
     tools = ("iverilog", "yosys")
 
-    def starts(self):
+    def starts(self) -> tuple[str, ...]:
+        """The tests that `rtl.replay` runs."""
         return (f"rtl/{self.parameters.folder}/test",)
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         top = self.parameters.top
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
@@ -87,8 +93,8 @@ class Stimulus(Step):
         return {name: head[name] for name in self.metrics}
 
 
-def in_frame(parameters, folder, trace):
-    """Record the first instance of the block in the chip in ``folder`` through a frame, to the file ``trace``: head."""
+def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[str, Any]:
+    """Record the block's first instance in the chip in ``folder`` through a frame, to the file ``trace``; the head."""
     from flow.frame.hardware import simulate
     from flow.frame.job import expose, see
     from flow.frame.request import request
@@ -98,7 +104,7 @@ def in_frame(parameters, folder, trace):
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
     top = parameters.top
-    path = instance_of(tree, CHIP, top)
+    path = instance_of(tree, CHIP, top) or ()
     ports = [
         {"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
         for name, port in tree[next(name for name in tree if name.lstrip("\\") == top)]["ports"].items()
@@ -136,14 +142,14 @@ def in_frame(parameters, folder, trace):
     }
 
 
-def middle(full, tiles):
-    """``tiles`` of the middle row of the Window ``full``."""
+def middle(full: "Window", tiles: int) -> "Window":
+    """``tiles`` tiles of the middle row of a window."""
     row, col = (full.row0 + full.row1) // 2, (full.col0 + full.col1 + 1 - tiles) // 2
     return replace(full, row0=row, row1=row, col0=col, col1=col + tiles - 1)
 
 
-def results(lines, ports):
-    """Messages that left at the port `send` of a trace: cycles in which it is valid and its taker ready."""
+def results(lines: Sequence[str], ports: Sequence[Mapping[str, Any]]) -> int:
+    """Messages that left at the port `send` of a trace: cycles with send.val and send.rdy."""
     places, low = {}, {False: 0, True: 0}
     for port in ports:
         places[port["path"].replace(".", "__")] = port["output"], low[port["output"]]
@@ -154,8 +160,8 @@ def results(lines, ports):
     return sum(all(int(line.split()[column], 16) >> at & 1 for column, at in wanted) for line in lines)
 
 
-def instance_of(tree, module, wanted):
-    """Path (tuple of instance names) from ``module`` to its first instance of ``wanted`` in Yosys's JSON, or None."""
+def instance_of(tree: Mapping[str, Any], module: str, wanted: str) -> tuple[str, ...] | None:
+    """Instance names from ``module`` to its first instance of ``wanted`` in Yosys's JSON, or None."""
     if module == wanted:
         return ()
     for name, cell in sorted(tree[module]["cells"].items()):
@@ -166,11 +172,11 @@ def instance_of(tree, module, wanted):
     return None
 
 
-def in_tests(top, own, folder, trace):
-    """Record the tests of the block; the trace whose Verilog is ``own`` goes to the file ``trace``: head."""
+def in_tests(top: str, own: str, folder: Path, trace: Path) -> dict[str, Any]:
+    """Record the tests of the block, that with the Verilog ``own`` to the file ``trace``; the head."""
     done = finish([sys.executable, "-m", "rtl.replay.command", "record", top, "--out", folder / "traces"], cwd=ROOT)
     if done.returncode:
-        raise ToolError(f"{done.stderr.strip().splitlines()[-1]}")
+        raise ToolError(done.stderr.strip().splitlines()[-1])
     heads = sorted((folder / "traces").glob("*.json"), key=lambda path: -path.with_suffix(".trace").stat().st_size)
     for path in heads:
         text = run([sys.executable, "-c", OF_A_TRACE, path], cwd=ROOT)

@@ -1,10 +1,10 @@
-"""The library's cells measured at the process's corners: delays, slews, energies, setup and hold as Liberty."""
+"""The library's cells characterized at the process's corners: delays, slews, energies, setup and hold as Liberty."""
 
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from base import jobs
 from base.liberty.read import read
@@ -20,40 +20,40 @@ NS = 1e-9
 
 @dataclass(frozen=True)
 class TimingParameters:
-    """pdk: process. corners: names. models: set of device models. slews_ns, loads: points of a table's axes;
-    constraint_slews_ns: of setup's and hold's. `make cells` has seven to nine points an axis and takes four times as
-    long."""
+    """Corners, device models, and points of the tables' axes; constraint_slews_ns: of setup and hold.
+
+    `make cells` has seven to nine points an axis and takes four times as long.
+    """
 
     pdk: str = "sky130"
-    corners: tuple = ()
+    corners: tuple[str, ...] = ()
     models: str = "fitted"
-    slews_ns: tuple = field(default=(0.01, 0.1, 0.4, 1.5), metadata={"unit": "ns"})
+    slews_ns: tuple[float, ...] = field(default=(0.01, 0.1, 0.4, 1.5), metadata={"unit": "ns"})
     loads: int = 4
-    constraint_slews_ns: tuple = field(default=(0.05, 0.6), metadata={"unit": "ns"})
+    constraint_slews_ns: tuple[float, ...] = field(default=(0.05, 0.6), metadata={"unit": "ns"})
 
 
-class Timing(Step):
-    """Each cell with its parasitics in ngspice, as in `make cells`; a cell measured once is kept by itself."""
+class Timing(Step[TimingParameters]):
+    """Each cell with its parasitics in ngspice, as in `make cells`; a cell once measured is kept by itself."""
 
     name = "timing"
     inputs = {"gds": "library.gds", "areas": "library.areas", "functions": "library.liberty"}
-    Parameters = TimingParameters
     metrics = {"cells": "", "simulations": "", "failed": ""}
     shared = True
     tools = ("ngspice",)
 
-    def __init__(self, parameters):
+    def __init__(self, parameters: TimingParameters) -> None:
         super().__init__(parameters)
         self.outputs = {corner: f"{corner}.lib" for corner in parameters.corners}
 
-    def run(self, inputs, outputs):
+    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
         from cells.characterize.conditions import Conditions
         from cells.characterize.job import cell_of, job
         from cells.corner import Corner
         from cells.liberty import build
 
         p = self.parameters
-        models, sources = device_models(p.pdk), found(inputs, extraction_platform(p.pdk))
+        models, sources = device_models(p.pdk), sources_of(inputs, extraction_platform(p.pdk))
         conditions = [
             Conditions(
                 Corner.parse(corner),
@@ -66,7 +66,7 @@ class Timing(Step):
             for corner in p.corners
         ]
         todo = [(source, condition) for condition in conditions for source in sources]
-        todo.sort(key=lambda pair: -len(pair[0].netlist))  # what takes longest goes first
+        todo.sort(key=lambda pair: -len(pair[0].netlist))  # the longest first
         store = next(iter(outputs.values())).parents[1] / "cells"
         measured = dict(
             zip(
@@ -84,9 +84,7 @@ class Timing(Step):
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
         cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
         constants = {
-            cell.name: build.Constant(
-                {pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name]
-            )
+            cell.name: build.Constant({pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name])
             for cell in read(inputs["functions"]).all("cell")
             if not cell.all("pin", direction="input")
         }
@@ -96,7 +94,7 @@ class Timing(Step):
                 f"{p.pdk}__{corner}",
                 condition,
                 [
-                    build.Entry(cell, measured[source.name, corner], source.area)
+                    build.Entrybuild.Entry(cell, measured[source.name, corner], source.area)
                     for cell, source in zip(cells, sources, strict=True)
                 ],
                 models,
@@ -106,8 +104,8 @@ class Timing(Step):
         return {"cells": len(cells), "simulations": sum(made["simulations"] for made in measured.values()), "failed": 0}
 
 
-def found(inputs: Mapping[str, Path], tech: ExtractionPlatform) -> "list[Source]":
-    """The Source of every cell with an input in the Liberty file of functions."""
+def sources_of(inputs: Mapping[str, Path], tech: ExtractionPlatform) -> "list[Source]":
+    """The cells with an input, as the library's functions name them, with their parasitics."""
     from cells.characterize.job import Source
     from cells.extract import extract
 

@@ -1,0 +1,1 @@
+"""Parasitics, STA, delays for simulation, and Liberty files."""

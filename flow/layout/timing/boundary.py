@@ -110,7 +110,7 @@ class Files:
 
 
 def reach(netlist: Netlist, clock: str) -> tuple[list[tuple[str, str]], list[str]]:
-    """Pairs (input, output) joined by cells alone, and inputs that reach a register; both sorted, the clock left out."""
+    """Pairs (input, output) joined by cells alone, and inputs that reach a register; sorted, without the clock."""
     drives: dict[str, set[str]] = {}
     ends = set()
     for instance in netlist.instances:

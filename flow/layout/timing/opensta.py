@@ -10,8 +10,8 @@ from base.tools import ToolError, finish
 def opensta(path: Path, script: str) -> str:
     """Write ``script`` to the file ``path`` and run it; OpenSTA's output.
 
-    Raises ToolError when it fails; StepError where it reports an error, or a name of the SPEF that it does not know, whose
-    parasitics would be missing from every figure.
+    Raises ToolError when it fails; StepError where it reports an error, or a name of the SPEF that it does not
+    know, whose parasitics would be missing from every figure.
     """
     path.write_text(f"{script}\nexit\n")
     done = finish(["sta", "-no_splash", "-no_init", "-exit", path])

@@ -40,7 +40,7 @@ def parasitics(segments: Iterable[tuple[str, float, float]], tech: CoriolisPlatf
 def extract(netlist: Netlist, placement: Path, tech: CoriolisPlatform) -> dict[str, Parasitics]:
     """Parasitics of the nets of ``netlist`` from the segments in the file ``placement``, by net."""
     nets = {net for instance in netlist.instances for net in instance.pins.values()}
-    segments = json.loads(placement.read_text())["wires"]
+    segments = json.loads(placement.read_text())["segments"]
     return {net: parasitics(parts, tech) for net, parts in segments.items() if net in nets}
 
 

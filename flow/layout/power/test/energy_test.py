@@ -26,10 +26,10 @@ def test_powers_by_hand():
 
 def test_power_follows_the_transitions():
     cells = Cells(parse(small.liberty()))
-    still = powers(small.shift(), cells, {net: (0.0, 0.5) for net in ACTIVITY}, {}, {}, 10.0)
+    still = powers(small.shift(), cells, dict.fromkeys(ACTIVITY, (0.0, 0.5)), {}, {}, 10.0)
     assert all(power.total == pytest.approx(0.005) for power in still.values())
-    extreme = powers(small.shift(), cells, {net: (1e9, 0.5) for net in ACTIVITY}, {}, {}, 10.0)
-    once = powers(small.shift(), cells, {net: (1.0, 0.5) for net in ACTIVITY}, {}, {}, 10.0)
+    extreme = powers(small.shift(), cells, dict.fromkeys(ACTIVITY, (1000000000.0, 0.5)), {}, {}, 10.0)
+    once = powers(small.shift(), cells, dict.fromkeys(ACTIVITY, (1.0, 0.5)), {}, {}, 10.0)
     for name in once:
         assert extreme[name].total - 0.005 == pytest.approx(1e9 * (once[name].total - 0.005), rel=1e-9)
 

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any
 
 from base.steps import Step
+from flow.layout.steps.parameters import PdkParameters
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
 
 from .. import connectivity
-from .die_gds import DieGdsParameters
 
 
-class DieConnectivity(Step[DieGdsParameters]):
+class DieConnectivity(Step[PdkParameters]):
     """Every net of the plan, extracted from the metal of the finished GDS and of the blocks in it.
 
     lvs_match: of the blocks' pins; the insides of the blocks have their own LVS.

@@ -2,12 +2,12 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from base.gds import write_gds
 from base.steps import Step, StepError
+from flow.layout.steps.parameters import PdkParameters
 from platforms.coriolis import coriolis_platform
 
 from ..plan import BLOCKS, CORE, ORIENTATIONS
@@ -17,14 +17,7 @@ if TYPE_CHECKING:
     import klayout.db as kdb
 
 
-@dataclass(frozen=True)
-class DieGdsParameters:
-    """pdk: process."""
-
-    pdk: str = "sky130"
-
-
-class DieGds(Step[DieGdsParameters]):
+class DieGds(Step[PdkParameters]):
     """The blocks' GDS at the places of the plan, and the plan's metal."""
 
     name = "die_gds"

@@ -21,7 +21,7 @@ TOP = "asp_sensor"
 
 @dataclass(frozen=True)
 class DiePlanParameters:
-    """pdk: process. die: sizes. extra: pins of analog blocks that lead to pins of the die."""
+    """Process, sizes of the die. extra: pins of analog blocks that lead to pins of the die."""
 
     pdk: str = "sky130"
     die: DieParameters = field(default_factory=DieParameters)

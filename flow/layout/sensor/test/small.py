@@ -3,8 +3,9 @@
 import json
 
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
+from flow.layout.steps.parameters import PdkParameters
 from flow.layout.sensor.steps.die_connectivity import DieConnectivity
-from flow.layout.sensor.steps.die_gds import DieGds, DieGdsParameters
+from flow.layout.sensor.steps.die_gds import DieGds
 from flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
 from models.parameters import ArrayParameters, ChipParameters
 from pixels.blocks import AnalogSizes, blocks
@@ -103,5 +104,5 @@ def plan(given, folder, die=DIE, extra=()):
 
 def connectivity(given, folder):
     """Metrics of the comparison of the GDS of the plan with its nets."""
-    run(DieGds(DieGdsParameters()), given, folder)
-    return run(DieConnectivity(DieGdsParameters()), given, folder)
+    run(DieGds(PdkParameters()), given, folder)
+    return run(DieConnectivity(PdkParameters()), given, folder)

@@ -67,9 +67,6 @@ def test_a_model_without_an_arc_is_found(files, tmp_path):
     text = (tmp_path / "block.lib").read_text()
     (tmp_path / "block.lib").write_text(text.replace("hold_rising", "recovery_rising"))
     with pytest.raises(StepError, match="does not find the arcs"):
-        step.checked(
-            small.shift(),
-            Files(files["liberty"], files["verilog"], tmp_path, files["spef"]),
-            tmp_path / "block.lib",
-            tmp_path,
+        step.model_error(
+            small.shift(), Files(files["liberty"], files["verilog"], tmp_path, files["spef"]), tmp_path / "block.lib"
         )

@@ -39,7 +39,10 @@ CELLS = {
 FLIP_FLOP = Storage("ff", "clk", 1, "i", ("i",))
 PORTS = {name: (*sorted(set(re.findall(r"i\d?", function))), output) for name, (output, function) in CELLS.items()}
 LIBERTY = liberty.liberty(
-    {name: ({output: function}, FLIP_FLOP if name == "dff_x1" else None) for name, (output, function) in CELLS.items()},
+    {
+        name: liberty.Function({output: function}, FLIP_FLOP if name == "dff_x1" else None)
+        for name, (output, function) in CELLS.items()
+    },
     PORTS | {"dff_x1": ("clk", "i", "q")},
     dict.fromkeys(CELLS, 10.0),
 )

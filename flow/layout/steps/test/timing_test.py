@@ -1,11 +1,11 @@
-"""The cells that `timing` measures are those of the library with an input, with what their layout adds."""
+"""The cells that `timing` measures are those of the library with an input, with their parasitics."""
 
 import importlib.util
 import json
 
 import pytest
 
-from flow.layout.steps.timing import found
+from flow.layout.steps.timing import sources_of
 from platforms.extraction import device_models, extraction_platform
 from platforms.sky130 import cells
 
@@ -36,6 +36,6 @@ def test_a_source_for_every_cell_with_an_input(tmp_path):
     }
     inputs["areas"].write_text(json.dumps({"sky130_fd_sc_hd__inv_1": 3.75}))
     inputs["functions"].write_text(FUNCTIONS)
-    (source,) = found(inputs, extraction_platform("sky130"))
+    (source,) = sources_of(inputs, extraction_platform("sky130"))
     assert (source.name, source.area) == ("sky130_fd_sc_hd__inv_1", 3.75)
     assert list(cell_of(source, models).functions) == ["Y"]
