@@ -84,9 +84,7 @@ class Timing(Step[TimingParameters]):
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
         cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
         constants = {
-            cell.name: build.Constant(
-                {pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name]
-            )
+            cell.name: build.Constant({pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name])
             for cell in read(inputs["functions"]).all("cell")
             if not cell.all("pin", direction="input")
         }
@@ -96,7 +94,7 @@ class Timing(Step[TimingParameters]):
                 f"{p.pdk}__{corner}",
                 condition,
                 [
-                    build.Entry(cell, measured[source.name, corner], source.area)
+                    build.Entrybuild.Entry(cell, measured[source.name, corner], source.area)
                     for cell, source in zip(cells, sources, strict=True)
                 ],
                 models,

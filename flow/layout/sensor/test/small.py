@@ -3,10 +3,10 @@
 import json
 
 from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
-from flow.layout.steps.parameters import PdkParameters
 from flow.layout.sensor.steps.die_connectivity import DieConnectivity
 from flow.layout.sensor.steps.die_gds import DieGds
 from flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
+from flow.layout.steps.parameters import PdkParameters
 from models.parameters import ArrayParameters, ChipParameters
 from pixels.blocks import AnalogSizes, blocks
 from pixels.footprints import write
