@@ -84,7 +84,9 @@ class Timing(Step[TimingParameters]):
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
         cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
         constants = {
-            cell.name: build.Constant({pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name])
+            cell.name: build.Constant(
+                {pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name]
+            )
             for cell in read(inputs["functions"]).all("cell")
             if not cell.all("pin", direction="input")
         }
