@@ -6,7 +6,7 @@ from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 from rtl.messages import ScanMsg, step_msg
 
 
-def declare_ports(s, lanes):
+def declare_ports(s, lanes: int) -> None:
     """Give the component ``s`` its ports."""
     s.step = RecvIfcRTL(step_msg(lanes))
     s.mode = InPort(Bits2)

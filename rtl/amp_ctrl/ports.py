@@ -5,7 +5,7 @@ from pymtl3 import InPort, OutPort
 DURATIONS = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard")
 
 
-def declare_ports(s):
+def declare_ports(s) -> None:
     """Give the component ``s`` its ports."""
     s.start, s.four_tap, s.hold_free = InPort(), InPort(), InPort()
     for name in DURATIONS:

@@ -1,5 +1,7 @@
 """AspChip at functional level: registers and golden frames at the chip's pins."""
 
+from typing import Any
+
 from pymtl3 import Component, Wire, connect, update, update_ff
 
 from models.parameters import (
@@ -22,8 +24,8 @@ from .pins import declare_pins
 TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
 
 
-def frame_of(cfg):
-    """FrameParameters of a ChipConfig, without the durations. Raises ParameterError if there is no such frame."""
+def frame_of(cfg: Any) -> FrameParameters:
+    """The frame of a ChipConfig, without the durations. Raises ParameterError if there is no such frame."""
     mode = MODES[int(cfg.mode)]
     return FrameParameters(
         Window(*(int(getattr(cfg, name)) for name in ("row0", "row1", "col0", "col1"))),
@@ -39,8 +41,8 @@ def frame_of(cfg):
     )
 
 
-def trims_of(cfg):
-    """Trim registers by pixel type, unsigned: tuple."""
+def trims_of(cfg: Any) -> tuple[int, ...]:
+    """Trim registers by pixel type, unsigned."""
     return tuple(int(cfg.trims) >> 8 * f.size * i & (1 << f.width) - 1 for i, f in enumerate(register_map().trims))
 
 

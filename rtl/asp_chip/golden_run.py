@@ -1,18 +1,20 @@
 """A frame at the chip's pins, from golden functions: the behaviour of AspChipFL."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.pattern import pattern_value
 from models.digital.phase import phase_samples
 from models.digital.sar import decisions
-from models.digital.scan import Scan
+from models.digital.scan import Scan, Step
 from models.digital.stream import StreamHeader, encode_frame
 from models.parameters import FrameParameters, SensorParameters
 
 
-def idle_pins():
+def idle_pins() -> dict[str, int]:
     """The pins that a frame drives, by name, with their value before a frame: 0."""
     return dict.fromkeys(
         (
@@ -42,16 +44,16 @@ class GoldenRun:
 
     sensor: SensorParameters
     frame: FrameParameters
-    trims: tuple
-    pins: dict = field(default_factory=idle_pins)
+    trims: tuple[int, ...]
+    pins: dict[str, int] = field(default_factory=idle_pins)
     made: int = 0
     left_out: int = 0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         array, chip = self.sensor.array, self.sensor.chip
         self.scan = Scan(array.rows, array.cols, chip.lanes, self.frame, self.sensor.tile)
 
-    def cycles(self, comparator, link_rdy):
+    def cycles(self, comparator: Callable[[], int], link_rdy: Callable[[], bool]) -> Iterator[None]:
         """Generator of the frame: each `next` sets the pins for a cycle.
 
         comparator, link_rdy: functions that return the pin's value in that cycle.
@@ -71,7 +73,7 @@ class GoldenRun:
                 yield
         self.pins.update(link_val=0, frame_sync=0)
 
-    def _convert(self, step, codes, comparator):
+    def _convert(self, step: Step, codes: npt.NDArray[np.int16], comparator: Callable[[], int]) -> Iterator[None]:
         """Convert the lanes of a step into ``codes``, a decision of all lanes a cycle."""
         tile, frame = self.sensor.tile, self.frame
         tiles = {

@@ -7,7 +7,7 @@ from models.parameters.registers import register_map
 INPUTS = ("sclk", "csn", "mosi", "link_rdy")
 
 
-def pins(lanes):
+def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
     """Types of the inputs and of the outputs by name, without clk and reset. lanes: converters."""
     inputs = {**dict.fromkeys(INPUTS, Bits1), "comparator": mk_bits(lanes)}
     outputs = {
@@ -41,7 +41,7 @@ def pins(lanes):
     return inputs, outputs
 
 
-def declare_pins(s, lanes):
+def declare_pins(s, lanes: int) -> None:
     """Give the component ``s`` its ports."""
     inputs, outputs = pins(lanes)
     for name, kind in inputs.items():

@@ -10,18 +10,18 @@ from .ports import declare_ports
 class LaneCycles:
     """One lane without ports, a cycle a call; AdcBankCL has one per lane.
 
-    dac: code at the DAC.  result: (code, converted) at the output, or None.
+    dac: code at the DAC. result: (code, converted) at the output, or None.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.run = None  # the conversion in progress
         self.left = 0  # decisions left at most
         self.waiting = None  # a result while the previous one is not taken yet
         self.result = None
         self.dac = 0
 
-    def tick(self, go, unsigned, threshold, comparator, taken):
-        """End a cycle in which ``go`` and ``comparator`` were as given and ``result`` was ``taken`` or not."""
+    def tick(self, go: bool, unsigned: bool, threshold: int, comparator: bool, taken: bool) -> None:
+        """End a cycle with these inputs, in which ``result`` was ``taken`` or not."""
         startable = not self.busy or (self.left == 1 and self.result is None)
         if taken:
             self.result = None
@@ -39,11 +39,12 @@ class LaneCycles:
             self.dac = next(self.run)
 
     @property
-    def busy(self):
+    def busy(self) -> bool:
+        """True while a conversion runs or its result waits."""
         return self.run is not None or self.waiting is not None
 
     @property
-    def free(self):
+    def free(self) -> bool:
         """True if a go is accepted in the next cycle."""
         return not self.busy or (0 < self.left <= 2 and self.result is None)
 

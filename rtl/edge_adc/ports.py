@@ -4,7 +4,7 @@ from pymtl3 import Bits7, Bits8, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 
-def declare_ports(s):
+def declare_ports(s) -> None:
     """Give the component ``s`` its ports."""
     s.go = InPort()
     s.unsigned_ = InPort()

@@ -1,5 +1,7 @@
 """QuadDivider at functional level: the golden functions at the ports."""
 
+from typing import Any
+
 from pymtl3 import Component, InPort, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
@@ -9,7 +11,7 @@ from rtl.messages import DivReq, div_resp
 from .variants import check_variant, ratio_bits
 
 
-def response(variant, n_frac, iterations, request, noise_floor):
+def response(variant: str, n_frac: int, iterations: int, request: Any, noise_floor: int) -> Any:
     """The DivResp of ``variant`` to the DivReq ``request``."""
     r = divide(variant, n_frac, iterations, request.x.int(), request.y.int(), int(noise_floor))
     return div_resp(ratio_bits(variant, n_frac))(

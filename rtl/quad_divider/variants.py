@@ -1,5 +1,7 @@
 """The variants by name, their parameters and their timing."""
 
+from pymtl3 import Component
+
 from models.parameters import DIVIDERS, check_choice, check_int
 from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 
@@ -9,14 +11,14 @@ from .quad_divider_rtl import QuadDividerPipelined, QuadDividerRadix2, QuadDivid
 DIVIDING = {"radix2": QuadDividerRadix2, "radix4": QuadDividerRadix4, "pipelined": QuadDividerPipelined}
 
 
-def check_variant(variant, n_frac, iterations):
+def check_variant(variant: str, n_frac: int, iterations: int) -> None:
     """Raise ParameterError unless there is such a divider."""
     check_choice("divider", variant, DIVIDERS)
     check_int("n_frac", n_frac, N_FRAC_MIN, N_FRAC_MAX)
     check_int("iterations", iterations, ITERATIONS_MIN, ITERATIONS_MAX)
 
 
-def quad_divider(variant, n_frac=8, iterations=10):
+def quad_divider(variant: str, n_frac: int = 8, iterations: int = 10) -> Component:
     """The RTL of ``variant`` ('radix2', 'radix4', 'pipelined' or 'cordic'). Raises ParameterError.
 
     n_frac: fraction bits of the ratio, 4..16 (not for CORDIC). iterations: of CORDIC, 4..16.
@@ -25,12 +27,12 @@ def quad_divider(variant, n_frac=8, iterations=10):
     return Cordic(iterations) if variant == "cordic" else DIVIDING[variant](n_frac)
 
 
-def ratio_bits(variant, n_frac=8):
+def ratio_bits(variant: str, n_frac: int = 8) -> int:
     """Width of the response's ratio: n_frac, or the fixed width of CORDIC's ratio, which is 0."""
     return RATIO_BITS if variant == "cordic" else n_frac
 
 
-def timing(variant, n_frac=8, iterations=10):
+def timing(variant: str, n_frac: int = 8, iterations: int = 10) -> tuple[int, int]:
     """Latency and interval in cycles: from the request to the first cycle of the response, and between two results."""
     check_variant(variant, n_frac, iterations)
     steps = {"radix2": n_frac, "radix4": -(-n_frac // 2), "pipelined": n_frac, "cordic": iterations}[variant]

@@ -1,5 +1,8 @@
 """The golden scan for the levels of ReadoutSeq: configuration from the ports, messages to them."""
 
+from collections.abc import Sequence
+from typing import Any
+
 from models.digital.scan import Scan
 from models.parameters import MODES, FrameParameters, TileParameters, Window
 from rtl.messages import SAMPLE, step_msg
@@ -7,24 +10,24 @@ from rtl.messages import SAMPLE, step_msg
 from .ports import WINDOW
 
 
-def configured_scan(s, rows, cols, lanes, tile):
+def configured_scan(s, rows: int, cols: int, lanes: int, tile: TileParameters) -> Scan:
     """The Scan that the ports of component ``s`` configure. Raises ParameterError if no frame can start."""
     window = Window(*(int(getattr(s, name)) for name in WINDOW))
     frame = FrameParameters(window, MODES[int(s.mode)], int(s.mask), decimation=int(s.decimation))
     return Scan(rows, cols, lanes, frame, tile)
 
 
-def tile_of(order, tile_rows, tile_cols):
+def tile_of(order: Sequence[int], tile_rows: int, tile_cols: int) -> TileParameters:
     """TileParameters with the pixel types in ``order``."""
     return TileParameters(tile_rows, tile_cols, TileParameters().types[: tile_rows * tile_cols], tuple(order))
 
 
-def row_steps(scan, row):
-    """The messages that convert one row, in order: list of StepMsg."""
+def row_steps(scan: Scan, row: int) -> list[Any]:
+    """The StepMsg that convert one row, in order."""
     Step = step_msg(scan.lanes)
     return [Step(SAMPLE, row, step.group, step.k, step.sub, step.enable) for step in scan.steps(row) if step.enable]
 
 
-def mark(kind, lanes, row=0):
-    """The FRAME, ROW or END message."""
+def mark(kind: int, lanes: int, row: int = 0) -> Any:
+    """The StepMsg of a FRAME, ROW or END."""
     return step_msg(lanes)(kind, row)

@@ -1,5 +1,6 @@
 """ReadoutSeq's ports, the same at every level (README.md), and the array's edges from its parameters."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from pymtl3 import InPort, OutPort
@@ -23,7 +24,7 @@ class Edges(NamedTuple):
     cols_there: int
 
 
-def edges(rows, cols, lanes, order, tile_rows, tile_cols):
+def edges(rows: int, cols: int, lanes: int, order: Sequence[int], tile_rows: int, tile_cols: int) -> Edges:
     """Edges of an array of rows x cols pixels. Raises ParameterError if the ports cannot address it."""
     check_int("rows", rows, 1, ROWS_MAX)
     check_int("cols", cols, 1, COLS_MAX)
@@ -35,7 +36,7 @@ def edges(rows, cols, lanes, order, tile_rows, tile_cols):
     return Edges(last_row, rows - last_row * tile_rows, last_col, cols - last_col * tile_cols)
 
 
-def declare_ports(s, lanes):
+def declare_ports(s, lanes: int) -> None:
     """Give the component ``s`` its ports."""
     s.start, s.overlap = InPort(), InPort()
     s.mode, s.mask, s.decimation = InPort(2), InPort(24), InPort(2)

@@ -121,7 +121,7 @@ class StepWalk(Component):
         return f"k{s.k} g{s.group} s{s.sub} {s.en.bin()}"
 
 
-def add_lanes(s, lanes, shift, Lanes):
+def add_lanes(s, lanes: int, shift: int, Lanes: type) -> None:
     """Give StepWalk ``s``, of two or more lanes, the register of the enabled ones."""
     ALL = Lanes((1 << lanes) - 1)
     kept = [Lanes(sum(1 << lane for lane in range(0, lanes, n))) for n in STRIDES]

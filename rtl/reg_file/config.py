@@ -8,7 +8,7 @@ from models.parameters.registers import register_map
 
 
 @cache
-def chip_config():
+def chip_config() -> type:
     """ChipConfig: every configuration field by its name, and `trims`, the trim registers.
 
     The register of pixel type 0 is lowest; its value is in the low bits of its bytes.
@@ -19,7 +19,7 @@ def chip_config():
 
 
 @cache
-def chip_status():
+def chip_status() -> type:
     """ChipStatus: busy, and one-cycle strobes for the sticky bits that the chip sets."""
     chip = register_map()
     strobes = [f.name for f in chip.fields if f.access == "w1c" and f.name != "refused"]

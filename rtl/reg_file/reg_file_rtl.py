@@ -26,7 +26,7 @@ from .config import chip_config, chip_status
 from .spi_slave_rtl import SpiSlave
 
 
-def packed(image, first, last):
+def packed(image: dict[int, int], first: int, last: int) -> int:
     """Bytes ``first``..``last`` of a dict address -> byte as one integer, little-endian."""
     return sum(image.get(a, 0) << 8 * (a - first) for a in range(first, last + 1))
 

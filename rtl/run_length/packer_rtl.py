@@ -5,7 +5,7 @@ from pymtl3 import Bits5, Bits7, Bits8, Bits31, Component, InPort, OutPort, Wire
 from .token_rtl import TokenCoder
 
 
-def declare_packer_ports(s):
+def declare_packer_ports(s) -> None:
     """Give the component ``s`` the ports of a packer."""
     s.restart = InPort()  # a row starts: empty but for the coder's state
     s.push = InPort()  # the sample is taken; only while `ready`

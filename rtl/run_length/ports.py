@@ -19,13 +19,13 @@ HEADER_PORTS = {
 }
 
 
-def declare_header_ports(s):
+def declare_header_ports(s) -> None:
     """Give the component ``s`` ports for the configuration in the header; held from FRAME to the end of the frame."""
     for name, kind in HEADER_PORTS.items():
         setattr(s, name, InPort(kind) if kind else InPort())
 
 
-def declare_ports(s):
+def declare_ports(s) -> None:
     """Give the component ``s`` its ports."""
     s.recv = RecvIfcRTL(ScanMsg)
     declare_header_ports(s)

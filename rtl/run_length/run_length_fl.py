@@ -12,7 +12,7 @@ from rtl.messages import END, FRAME, ROW, SAMPLE
 from .ports import declare_ports
 
 
-def header_of(s, rows, cols, lanes, tile_rows, tile_cols):
+def header_of(s, rows: int, cols: int, lanes: int, tile_rows: int, tile_cols: int) -> StreamHeader:
     """The StreamHeader that the ports of ``s`` configure."""
     window = Window(*(int(getattr(s, name)) for name in ("row0", "row1", "col0", "col1")))
     return StreamHeader(

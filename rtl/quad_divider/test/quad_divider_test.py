@@ -177,7 +177,7 @@ class TestCL(TestFL):
         for bench in benches:
             latency, interval = timing(*astuple(bench.config))
             got, sent = bench.run(vectors)
-            assert [taken - asked for (_, taken), asked in zip(got, sent)] == [latency] * len(vectors)
+            assert [taken - requested for (_, taken), requested in zip(got, sent)] == [latency] * len(vectors)
             assert [b - a for a, b in zip(sent, sent[1:])] == [interval] * (len(vectors) - 1)
 
     @SETTINGS
@@ -186,8 +186,8 @@ class TestCL(TestFL):
         config = data.draw(st.sampled_from(self.configs))
         model = Bench(simulator(QuadDividerCL, False, config), config)
         got, sent = self.bench(config).run(vectors, source, sink)
-        expected, asked = model.run(vectors, source, sink)
-        assert [cycle for _, cycle in got] == [cycle for _, cycle in expected] and sent == asked
+        expected, requested = model.run(vectors, source, sink)
+        assert [cycle for _, cycle in got] == [cycle for _, cycle in expected] and sent == requested
 
 
 class TestRTL(TestCL):
