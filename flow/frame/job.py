@@ -62,7 +62,7 @@ def expose(request: FrameRequest, scene: Scene, todo: Plan) -> Exposed:
 
     def samples(noise: float) -> npt.NDArray[np.float64]:
         exposure = Exposure(sensor.electrical, frame.timing, sensor.chip.f_clk, noise, request.seed)
-        return capture(scene, sensor, todo, exposure, trim_gain(trims))
+        return np.asarray(capture(scene, sensor, todo, exposure, trim_gain(trims)), np.float64)
 
     noisy = samples(request.noise)
     clean = samples(0.0) if request.noise else noisy

@@ -13,7 +13,7 @@ FOCAL_LENGTH_PX = 994.978  # at the resolution of the stereo pair
 BASELINE = 0.193001  # m
 DOFFS_PX = 31.086
 FIELD = (480, 720)  # px of the pair that fill the array; the rest is a margin for the outer views
-APERTURE = BASELINE / 2  # m: width of the lens, all views together. Ours: it makes about -2..2 px a view step.
+APERTURE = BASELINE / 2  # m: width of the lens, all views together. Our choice: about -2..2 px per view step.
 REFERENCE_DEPTH = 3.0  # m: depth of the reference plane (disparity 0), and of a scene without depth
 
 DEPTH_MAX = 1000.0  # m: represents infinity

@@ -26,14 +26,14 @@ class Second:
     def __init__(self, image: Floats, disparity: Floats, scale: float, offset: float) -> None:
         self.image, self.scale, self.offset = image, scale, offset
         everywhere = np.ones(disparity.shape, bool)
-        here = np.full(disparity.shape, warp.BEHIND)
+        here = np.full(disparity.shape, warp.NO_SURFACE)
         warp.splat(here, disparity, everywhere, -(scale * disparity + offset), 0.0, 0.0)
-        self.alone = here == warp.BEHIND  # shown by this picture alone
+        self.alone = here == warp.NO_SURFACE  # shown by this picture alone
         warp.fill_rows(here, self.alone)
         self.disparity = here
 
     def fill(self, out: Floats, surface: Floats, dv: float, du: float) -> None:
-        """Fill the holes of a view (surface == BEHIND) in place where this picture shows their contents.
+        """Fill the holes of a view (surface == NO_SURFACE) in place where this picture shows their contents.
 
         Parameters
         ----------
@@ -44,7 +44,7 @@ class Second:
         dv, du : float
             Offset of the view in view steps.
         """
-        own = np.full(surface.shape, warp.BEHIND)
+        own = np.full(surface.shape, warp.NO_SURFACE)
         warp.splat(own, self.disparity, self.alone, self.scale * self.disparity + self.offset, dv, du)
         warp.fetch_second(out, surface, own, self.image, self.scale, self.offset, dv, du, RADIANCE_MAX)
 
@@ -82,7 +82,7 @@ def view(
     if dv == 0 and du == 0:
         return image.copy(), disparity.copy()
     use = np.ones(disparity.shape, bool) if use is None else use
-    surface = np.full(disparity.shape, warp.BEHIND)
+    surface = np.full(disparity.shape, warp.NO_SURFACE)
     warp.splat(surface, disparity, use, np.zeros(disparity.shape), dv, du)
     out = np.zeros(image.shape)
     warp.fetch(out, image, surface, dv, du, RADIANCE_MAX)

@@ -12,7 +12,7 @@ Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
 
 FOOTPRINT = 0.75  # px around its target that a pixel claims: surfaces stretched by up to 1.5 get no cracks
-BEHIND = -1e30  # no surface
+NO_SURFACE = -1e30  # no surface
 JUMP = 0.25  # px per view step: a larger step between neighbours is a border of two surfaces
 
 
@@ -168,7 +168,7 @@ def fetch(out: Floats, image: Floats, disparity: Floats, dv: float, du: float, h
     image : float64 (rows, cols)
         The picture.
     disparity : float64 (rows, cols)
-        Disparity map of the view; BEHIND is no surface.
+        Disparity map of the view; NO_SURFACE is no surface.
     dv, du : float
         Offset of the view in view steps.
     high : float
@@ -177,7 +177,7 @@ def fetch(out: Floats, image: Floats, disparity: Floats, dv: float, du: float, h
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
             d = disparity[y, x]
-            if d > BEHIND:
+            if d > NO_SURFACE:
                 out[y, x] = min(max(cubic(image, y + dv * d, x + du * d), 0.0), high)
 
 
@@ -200,7 +200,7 @@ def fetch_second(
     out : float64 (rows, cols)
         Radiance of the view.
     surface : float64 (rows, cols)
-        Disparity map of the view; BEHIND is a hole.
+        Disparity map of the view; NO_SURFACE is a hole.
     own : float64 (rows, cols)
         Disparity map of the view from the second picture alone.
     image : float64 (rows, cols)
@@ -216,7 +216,7 @@ def fetch_second(
         for x in range(out.shape[1]):
             d = own[y, x]
             place = x + du * d - (scale * d + offset)
-            if surface[y, x] == BEHIND and d > BEHIND and 0 <= place <= image.shape[1] - 1:
+            if surface[y, x] == NO_SURFACE and d > NO_SURFACE and 0 <= place <= image.shape[1] - 1:
                 out[y, x] = min(max(cubic(image, y + dv * d, place), 0.0), high)
                 surface[y, x] = d
 
@@ -232,7 +232,7 @@ def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -
     out : float64 (rows, cols)
         Radiance of the view.
     disparity : float64 (rows, cols)
-        Disparity map of the view; BEHIND is no surface.
+        Disparity map of the view; NO_SURFACE is no surface.
     dv, du : float
         Offset of the view in view steps; not both 0.
     """
@@ -242,7 +242,7 @@ def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -
     known = disparity.copy()
     for y in range(rows):
         for x in range(cols):
-            if known[y, x] > BEHIND:
+            if known[y, x] > NO_SURFACE:
                 continue
             best, by, bx = np.inf, y, x
             for sign in (-1, 1):
@@ -251,7 +251,7 @@ def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -
                     r, c = int(np.round(y + sign * i * sy)), int(np.round(x + sign * i * sx))
                     if r < 0 or r >= rows or c < 0 or c >= cols:
                         break
-                    if known[r, c] > BEHIND:
+                    if known[r, c] > NO_SURFACE:
                         if known[r, c] < best:
                             best, by, bx = known[r, c], r, c
                         break

@@ -56,7 +56,7 @@ def test_leaving_types_out_changes_no_bit_of_the_rest(rows, cols, seed, mask):
 
 
 @pytest.mark.parametrize("dtype", ["float32", "float64"])
-def test_one_view_stands_for_all_within_the_bound(dtype):
+def test_one_view_represents_all_within_the_bound(dtype):
     sensor = _sensor(20, 30, views=5)
     one = CaptureOperator(sensor, dtype, angular=False)
     image = _random((20, 30), dtype)

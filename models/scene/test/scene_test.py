@@ -59,7 +59,7 @@ def test_tilted_plane_obeys_its_own_disparity():
     scene = load("tilted", Sampling(32, 64))
     x = np.arange(64.0)
     d = scene.disparity[16]
-    # A texture place x of the centre view lies at x - du d(x) in view u.
+    # A texture position x of the centre view is at x - du d(x) in view u.
     seen = np.interp(x - 2 * d, x, scene.light_field[2, 4, 16])
     assert np.abs(seen - scene.image[16])[8:-8].max() < 0.01
 

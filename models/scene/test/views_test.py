@@ -34,7 +34,7 @@ def _box():
 def test_nearer_surface_hides_the_farther_one():
     image, disparity = _box()
     out, surface = view(image, disparity, 0.0, 1.0, use=warp.unmixed(disparity))
-    # The square moves 3 px to the left, what is behind it 1 px to the right.
+    # The square moves 3 px to the left, the background 1 px to the right.
     assert (out[16:24, 23:31] > 0.85).all() and (surface[16:24, 22:32] == 3).all()
     # Uncovered: columns 32..35. They show the background, not the square.
     assert (surface[16:24, 32:36] == -1).all() and (out[16:24, 32:36] < 0.7).all()

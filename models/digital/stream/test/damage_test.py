@@ -1,4 +1,6 @@
-"""One wrong byte is corrected, a damaged row costs that row alone, and nothing makes the decoder crash, hang or lie."""
+"""One wrong byte is corrected, a damaged row costs that row alone, and the decoder never crashes, hangs or reports
+wrong samples.
+"""
 
 import zlib
 
@@ -81,9 +83,9 @@ def test_two_wrong_bytes_anywhere_in_a_row_cost_that_row(name):
 
 
 def test_one_wrong_byte_costs_a_row_where_the_frame_has_no_known_end():
-    """With other bytes behind the frame its CRC-32 cannot be found, and cannot mend: the row is reported.
+    """With other bytes after the frame its CRC-32 cannot be found, and cannot correct: the row is reported.
 
-    (Behind the last row the trailer alone is to be found, which is not enough to believe it.)
+    (After the last row only the trailer can be found, which is not enough to accept it.)
     """
     header, samples, data = sent("edge")
     starts = row_starts(header, samples)
@@ -142,14 +144,14 @@ def test_cut_short_anywhere(name):
 def test_trailer_damaged_worse(kind):
     header, samples, data = sent("edge")
     data = changed(changed(data, len(data) - 12, 7), len(data) - (11 if kind == "counts" else 2), 7)
-    for behind in (b"", data):
-        frame = decode_stream(data + behind)[0]
+    for after in (b"", data):
+        frame = decode_stream(data + after)[0]
         assert frame.made is None and not frame.bad_rows and "trailer" in frame.errors[0]
         assert np.array_equal(frame.samples, samples) and frame.stop == len(data)
 
 
 def test_bytes_lost_or_put_in():
-    """The rows behind a gap are found again."""
+    """The rows after a gap are found again."""
     header = header_of(48, 60, threshold=4)
     samples = samples_of(header, 3)
     data, starts = encode_frame(header, samples, 1000, 2000), row_starts(header, samples)
@@ -164,7 +166,7 @@ def test_bytes_lost_or_put_in():
 
 @pytest.mark.parametrize("mode, step", [("raw", 2), ("edge", 3)])
 def test_many_damaged_rows(mode, step):
-    """Rows of plain bytes are good or bad one by one; a run-length coded one is found by the row behind it."""
+    """Rows of plain bytes are good or bad one by one; a run-length coded one is found by the row after it."""
     header = header_of(200, 60, mode=mode, threshold=0)
     samples = samples_of(header, 3)
     data, starts = bytearray(encode_frame(header, samples, 1000, 2000)), row_starts(header, samples)
@@ -259,7 +261,7 @@ def test_fuzz(header, seed, draw):
 
 @settings(max_examples=100, deadline=None)
 @given(st.binary(max_size=300), headers())
-def test_fuzz_behind_a_good_header(body, header):
+def test_fuzz_after_a_good_header(body, header):
     frame = decode_stream(header.to_bytes() + body)[0]
     assert frame.errors and frame.samples.size == header.rows * header.cols * header.subs
 

@@ -27,7 +27,7 @@ FIELDS = (
 
 
 def token_lines(codes, threshold):
-    """A line for each token of a row: the state before it, what it stands for, its bits."""
+    """A line for each token of a row: the state before it, its meaning, its bits."""
     state, lines = START, []
     for code in codes:
         k, r2, run, credit = state
@@ -92,7 +92,7 @@ def edges():
 
 
 def noise():
-    """Values that no code makes smaller: literals take over when the credit is spent."""
+    """Values that do not compress: literals follow when the credit is used up."""
     return row_example(0, [-128, 127, -128, 127, -128, 127, -128, 127, 0, 100], 0)
 
 

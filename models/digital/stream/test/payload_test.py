@@ -10,7 +10,7 @@ CODES = st.lists(st.one_of(st.just(0), st.integers(-128, 127), st.integers(-3, 3
 
 
 def decoded(payload, count, edge, threshold, lead=3):
-    """Decode a payload that lies between other bytes: (bytes used, codes)."""
+    """Decode a payload between other bytes: (bytes used, codes)."""
     data = np.frombuffer(b"\xa5" * lead + payload + b"\x5a" * 7, np.uint8)
     where, value = np.empty(count, np.int32), np.empty(count, np.int16)
     end, found = decode_row(data, lead, data.size, count, edge, base_of(threshold), where, value)
@@ -72,7 +72,7 @@ def test_payload_that_no_encoder_writes_is_refused():
     payload = encode_payload(row, True, 0)
     assert decoded(payload, 30, True, 0)[0] == len(payload)
     assert decoded(payload, 30, True, 60)[0] < 0  # 100 above a base of 60
-    assert decoded(payload, 9, True, 0)[0] < 0  # the value lies outside
+    assert decoded(payload, 9, True, 0)[0] < 0  # the value is out of range
     assert decoded(payload[:-1] + bytes([payload[-1] | 1]), 30, True, 0)[0] < 0
     where, value = np.empty(30, np.int32), np.empty(30, np.int16)
     data = np.frombuffer(payload, np.uint8)
