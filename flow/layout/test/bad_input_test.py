@@ -37,6 +37,8 @@ def reported(capsys, arguments):
         (["quad_divider", "--utilization", "0"], "utilization = 0.0: must be"),
         (["quad_divider", "--utilization", "nan"], "utilization = nan: must be"),
         (["quad_divider", "--liberty", "nowhere.lib"], "liberty = nowhere.lib: no such file"),
+        (["quad_divider", "--analog", "mine"], "must be with DESIGN=asp_sensor alone"),
+        (["asp_sensor", "--pdk", "ihp-sg13g2"], "pdk = 'ihp-sg13g2': must be one of sky130 for a whole die"),
     ],
 )
 def test_bad_arguments(capsys, tmp_path, arguments, words):

@@ -1,12 +1,45 @@
 """The steps of a layout: the README lists each with its file and its test; installed decks are run."""
 
+import re
+from dataclasses import replace
 from pathlib import Path
 
-from flow.layout.chain import signoff_steps
-from flow.layout.design import design
+import pytest
+
+from flow.layout.chain import all_steps, signoff_steps
+from flow.layout.design import DESIGNS, design
 from flow.layout.options import Options
+from flow.layout.sensor.die import CHIP, die_steps
+
+FOLDER = Path(__file__).parents[1]
+DECKS = (("klayout", Path("deck")), ("magic", Path("deck")))
+ROW = re.compile(r"^\| \[`([\w<>]+)`\]\(([\w/.]+)\) \| ([^|]+) \|", re.M)
+
+
+@pytest.fixture
+def steps():
+    """All steps of all designs and of the die, by the name in the README."""
+    options = Options(decks=DECKS)
+    found = {}
+    for made in DESIGNS.values():
+        own = replace(options, utilization=made.utilization)
+        for step in (*all_steps(made, own), *(die_steps(made, own) if made.name == CHIP else ())):
+            corner = next((corner for corner in options.corners if step.name.endswith(corner)), None)
+            name = step.name.replace(corner, "<corner>") if corner else step.name
+            found[re.sub(r"^gate_tests_.*", "gate_tests_<netlist>_<simulator>", name)] = step
+    return found
+
+
+def test_the_readme_lists_every_step_with_its_file_and_its_test(steps):
+    rows = {name: (file, tests) for name, file, tests in ROW.findall((FOLDER / "README.md").read_text())}
+    assert sorted(rows) == sorted(steps)
+    for name, (file, tests) in rows.items():
+        module = ".".join(("flow.layout", *Path(file).with_suffix("").parts))
+        assert type(steps[name]).__module__ == module, name
+        links = re.findall(r"\]\(([\w/.]+)\)", tests)
+        assert links and all((FOLDER / link).is_file() for link in links), name
 
 
 def test_installed_decks_are_run():
-    options = Options(decks=(("klayout", Path("deck")), ("magic", Path("deck"))))
-    assert {"foundry_drc", "magic_drc"} <= {step.name for step in signoff_steps(design("amp_ctrl"), options)}
+    steps = signoff_steps(design("amp_ctrl"), Options(decks=DECKS))
+    assert {"foundry_drc", "magic_drc"} <= {step.name for step in steps}
