@@ -25,7 +25,7 @@ def random_frame():
     return [(random.randrange(1024), [step() for _ in range(random.randrange(4))]) for _ in range(random.randrange(4))]
 
 
-def said(frame, on, noise_floor):
+def messages(frame, on, noise_floor):
     """(messages in, messages out) of a frame: lists of int."""
     sent, expected = [(FRAME, 0)], [(FRAME, 0)]
     for row, steps in frame:
@@ -53,7 +53,7 @@ class PhasePathBench(Bench):
         self.dut.on.value, self.dut.noise_floor.value = int(on), noise_floor
         self.source.pace, self.sink.pace = (random.choice((0.1, 0.5, 0.9, 1)) for _ in range(2))
         await self.reset()
-        self.source.items, expected = said(random_frame(), on, noise_floor)
+        self.source.items, expected = messages(random_frame(), on, noise_floor)
         return expected
 
     async def frame(self):

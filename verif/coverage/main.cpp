@@ -1,12 +1,12 @@
 // Recorded cycles driven into verilated Verilog:
 // `program TRACE [--points FILE] [--states FILE] [--mutants FIRST LAST]`.
 //
-// TRACE: lines 'fresh inputs outputs' (rtl/replay/trace.py). Writes 'number cycle' a run to stdout: the first cycle
-// with an output that the trace does not have, or -1. Without --mutants there is one run, number 0; with it, a run for
+// TRACE: lines 'fresh inputs outputs' (rtl/replay/trace.py). Writes 'number cycle' for each run to stdout: first cycle
+// with an output that differs from the trace, or -1. Without --mutants there is one run, number 0; with it, a run for
 // every value FIRST..LAST of the input `mutant`, a fresh model each, to its first difference.
-// --points: Verilator's coverage; FILE.first has it behind the first cycle, in which constants take their values.
-// --states: 'register reset from to times' a line, of registers in consecutive cycles.
-// `program --drive MUTANT`: takes lines from stdin and answers with the outputs, as a driven bench of rtl/harness/icarus.py.
+// --points: Verilator's coverage; FILE.first has it after the first cycle, in which constants take their values.
+// --states: lines 'register reset from to times', of registers in consecutive cycles.
+// `program --drive MUTANT`: reads lines from stdin and writes the outputs (rtl/harness/icarus.py).
 
 #include <cstdint>
 #include <cstdio>
@@ -94,10 +94,10 @@ static std::vector<Cycle> read_trace(const char* name) {
 
 using Steps = std::map<std::tuple<int, bool, std::uint64_t, std::uint64_t>, long>;
 
-// First cycle that differs, or -1. all: go on behind it. points: file of the coverage, whose counts die with the model.
+// First cycle that differs, or -1. all: run on after it. points: file of the coverage, whose counts end with the model.
 static long run(const std::vector<Cycle>& cycles, std::uint64_t mutant, bool all, const char* points, Steps& steps) {
   VerilatedContext context;
-  context.randReset(points ? 0 : 2);    // what a register holds before its reset is anything, and covers nothing
+  context.randReset(points ? 0 : 2);    // a register before its reset has any value and covers nothing
   context.randSeed(1);
   const auto top = std::make_unique<VDut>(&context);
   std::uint64_t before[STATES + 1] = {};
@@ -143,7 +143,7 @@ static int converse(std::uint64_t mutant) {
   top->clk = 0;
   char* line = nullptr;
   std::size_t room = 0;
-  std::string answer(OUT_BITS, '0');      // ahead of the first edge: what a register holds is not to be looked at
+  std::string answer(OUT_BITS, '0');      // before the first edge, registers have no value
   bool known = false;
   while (getline(&line, &room, stdin) > 0) {
     if (line[0] == '1') {

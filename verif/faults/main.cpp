@@ -1,6 +1,6 @@
 // The chip alone under a waveform: +wave=FILE has a byte of pins for every cycle, +trace=FILE gets three bytes a cycle.
 // In: bit 0 sclk, 1 csn, 2 mosi, 3 link_rdy, 4 reset, 5 reset pulses while the clock is low, 6 ... while it is high.
-// Out, as they are ahead of the clock's edge: link_data; flags; phases (waveform.py names the bits).
+// Outputs before the clock edge: link_data; flags; phases (waveform.py names the bits).
 #include <cstdio>
 #include "VAspChip.h"
 #include "verilated.h"

@@ -14,7 +14,7 @@ def _out(p: Recorded) -> Mask:
 
 
 def _amplitude_suppressed(p: Recorded) -> Mask:
-    """A zero behind a phase that is none."""
+    """A zero after a phase of no value."""
     sample = _out(p) & (p.on == 1) & (p.send__kind == SAMPLE)
     return sample & (p.noise_floor > 0) & (p.send__data == 0)
 

@@ -190,7 +190,7 @@ promises:
 
 
 @pytest.mark.parametrize(
-    "old, new, said",
+    "old, new, message",
     [
         ("blocks: [EdgeAdc]", "blocks: [AmpCtrl]", "must be a top in rtl/edge_adc"),
         ("blocks:", "block:", "unknown key"),
@@ -204,8 +204,8 @@ promises:
         ("tests:", "checks:", "unknown key"),
     ],
 )
-def test_a_plan_that_does_not_hold_is_refused(tmp_path, old, new, said):
+def test_a_plan_that_does_not_hold_is_refused(tmp_path, old, new, message):
     path = tmp_path / "edge_adc.testplan.yaml"
     path.write_text(GOOD.replace(old, new))
-    with pytest.raises(ParameterError, match=said):
+    with pytest.raises(ParameterError, match=message):
         load_plan(path)

@@ -1,4 +1,4 @@
-"""Configuration written, and a second start, at any time around a frame: refused and told, or done; never half."""
+"""Configuration written, and a second start, at any time around a frame: refused and reported, or done."""
 
 import numpy as np
 import pytest

@@ -35,11 +35,11 @@ def test_reset_for_one_cycle_at_any_cycle_of_a_frame(name):
         hit[cycle] |= RESET
         wave.append(np.concatenate([frame.before, hit, again]))
     for cycle, trace in enumerate(run(wave)):
-        behind = frame.before.size + cycle + 1
+        after_reset = frame.before.size + cycle + 1
         where = f"{name}: reset {cycle} cycles into the frame"
-        quiet_part = trace.out[behind : behind + pause]
+        quiet_part = trace.out[after_reset : after_reset + pause]
         assert not (quiet_part[:, 1] & (VAL | SYNC | BUSY | HOLD | MISO)).any() and not quiet_part[:, 2].any(), where
-        cut = trace.taken < behind
+        cut = trace.taken < after_reset
         before, after = trace.out[trace.taken[cut], 0].tobytes(), trace.out[trace.taken[~cut], 0].tobytes()
         assert golden(name).stream.startswith(before) and after == golden(name).stream, where
         last = decode_stream(trace.stream)[-1]

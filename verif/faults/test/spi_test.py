@@ -24,8 +24,8 @@ def test_a_write_cut_at_any_bit():
     whole, read = 8 * (1 + len(BYTES)), read_transfer(FIRST, len(BYTES))
     traces = run([np.concatenate([BEFORE, cut_write(bits), transfer(read)]) for bits in range(whole + 1)])
     for bits, trace in enumerate(traces):
-        came = max(bits // 8 - 1, 0)
-        wanted = bytes(BYTES[:came]) + bytes(HELD[FIRST + i] for i in range(came, len(BYTES)))
+        written = max(bits // 8 - 1, 0)
+        wanted = bytes(BYTES[:written]) + bytes(HELD[FIRST + i] for i in range(written, len(BYTES)))
         assert trace.reply(trace.wave.size - transfer(read).size, len(read))[1:] == wanted, f"cut after {bits} bits"
 
 
@@ -47,7 +47,7 @@ def test_a_read_cut_at_any_bit():
 
 @pytest.mark.parametrize("bits", range(0, 33, 3))
 def test_cut_in_the_middle_of_a_frame(bits):
-    """The frame does not notice; `refused` is set where a whole byte came."""
+    """The frame is not affected; `refused` is set where a whole byte arrived."""
     frame = quiet("edge")
     cut = cut_write(bits)
     (trace,) = run([np.concatenate([frame.before, rest(5), cut, rest(frame.length), status_wave()])])

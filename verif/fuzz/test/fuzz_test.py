@@ -34,7 +34,7 @@ def crash(data, tile):
     return decode_stream(data, tile)
 
 
-def lie(data, tile):
+def falsify(data, tile):
     frames = decode_stream(data, tile)
     for frame in frames:
         frame.samples[frame.layout.rows[0]] ^= 1
@@ -56,7 +56,7 @@ def greedy(data, tile):
     "wrong, error",
     [
         (crash, "IndexError: index 4"),
-        (lie, "Broken: other samples"),
+        (falsify, "Broken: other samples"),
         (slow, "TimeoutError: 0.0"),
         (greedy, "MemoryError"),
     ],
@@ -89,7 +89,7 @@ def test_one_wrong_byte_anywhere_in_a_frame_of_every_mode(name, around):
 
 def test_a_row_lost_in_secret_is_seen(monkeypatch):
     frame = resync.real_frame("image", (12, 20))
-    monkeypatch.setattr(resync, "decode_stream", lambda data: lie(data, resync.request().sensor.tile))
+    monkeypatch.setattr(resync, "decode_stream", lambda data: falsify(data, resync.request().sensor.tile))
     with pytest.raises(AssertionError, match="byte 40 xor 0x03, alone: rows .* are wrong"):
         resync.check_position(frame, 40, 3, "alone")
 

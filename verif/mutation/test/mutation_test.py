@@ -60,14 +60,14 @@ def test_equivalence(small):
     """Against simulation of all short inputs: a mutant that differs there is never called equivalent."""
     ports, mutants, text = small
     program = compile_program(text, "Small", ports, mutant=True)
-    said = {m.number: compare(text, "Small", ports, m.number) for m in [ORIGINAL, *mutants]}
-    assert said[0] == (EQUIVALENT, 0)
+    verdicts = {m.number: compare(text, "Small", ports, m.number) for m in [ORIGINAL, *mutants]}
+    assert verdicts[0] == (EQUIVALENT, 0)
     differs = simulated(program, len(mutants))
     for mutant in mutants:
-        verdict, cycles = said[mutant.number]
+        verdict, cycles = verdicts[mutant.number]
         assert verdict == (DIFFERENT if differs[mutant.number] >= 0 else EQUIVALENT), mutant
         assert (cycles > 0) == (verdict == DIFFERENT)
-    assert {DIFFERENT} <= {verdict for verdict, _ in said.values()}
+    assert {DIFFERENT} <= {verdict for verdict, _ in verdicts.values()}
 
 
 def simulated(program, number, pattern=(0, 1, 1, 1, 0, 1, 1, 0, 1, 1)):
@@ -165,7 +165,7 @@ def test_one_mutant_alone(small, tmp_path):
 
 @pytest.mark.parametrize("block", ["PhasePath", "ReadoutSeq", "RunLength"])
 def test_promises_leave_the_block_its_work(block):
-    """A promise that nobody could keep would make every mutant equivalent."""
+    """A promise that no neighbour can keep would make every mutant equivalent."""
     top = build_top(block, SensorParameters())
     text = translate_component(top, block)
     mutants = generate(text, block, folder_of(block), 8, 1)

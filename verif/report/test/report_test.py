@@ -207,8 +207,8 @@ def test_the_page_holds_every_block_and_every_fault():
 def test_the_command_reads_what_steps_left(tmp_path, capsys):
     (tmp_path / "suite.json").write_text(json.dumps({"EdgeAdc": {"tests": {"passed": 3, "failed": 1}}}))
     assert main(["--read"], out=tmp_path) == 1
-    said = capsys.readouterr().err
-    assert "verif.report: EdgeAdc.tests.failed = 1: limit at most 0\n" in said
-    assert "verif.report: step formal = no results: formal.json is missing\n" in said
+    errors = capsys.readouterr().err
+    assert "verif.report: EdgeAdc.tests.failed = 1: limit at most 0\n" in errors
+    assert "verif.report: step formal = no results: formal.json is missing\n" in errors
     assert json.loads((tmp_path / "summary.json").read_text())["EdgeAdc"]["tests"]["failed"] == 1
     assert (tmp_path / "report.html").exists()
