@@ -100,6 +100,7 @@ def with_short_pads(text: str, below: str, above: str, via: Via, area: float) ->
     """
 
     def shorter(match: re.Match[str]) -> str:
+        """The enclosures with the length that the area requires."""
         long, wide = float(match[2]), float(match[3])
         least = area / (via.size_um + 2 * wide) - via.size_um
         needed = max(via.enclosure_um, math.ceil(least / 2 / GRID_UM - 1e-9) * GRID_UM)
@@ -143,6 +144,7 @@ def with_transistors(spice: str) -> str:
     cells = set(re.findall(r"(?im)^\.subckt (\S+)", spice))
 
     def device(match: re.Match[str]) -> str:
+        """The line as a transistor, unless it is a cell."""
         return match[0] if match[2] in cells else f"M{match[1]}{match[2]}{match[3]}"
 
     return re.sub(r"(?m)^X(\S+ (?:\S+ ){4})(\w+)((?: \w+=\S+)+)$", device, spice)

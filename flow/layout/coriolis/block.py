@@ -56,7 +56,7 @@ def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
 
 
 class TalbotBlock(Block):
-    """times: seconds of the phases. straps, pins: where they are."""
+    """A block with straps. times: seconds of the phases; straps, pins: where they are."""
 
     def __init__(self, conf: Any, request: dict[str, Any]) -> None:
         super().__init__(conf)

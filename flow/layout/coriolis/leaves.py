@@ -27,6 +27,7 @@ def balance(tree: Any) -> None:
     held, split = [], tree.rsplitNetlist
 
     def rsplit() -> None:
+        """Assign the sinks, then split the netlist as before."""
         ends = _ends(tree)
         points = [sink.getBoundingBox().getCenter() for sink in held]
         middles = [leaf.area.getCenter() for leaf in ends]

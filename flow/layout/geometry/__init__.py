@@ -1,0 +1,1 @@
+"""Subjects of a layout: shapes, floorplan, macros, fill, labels, decks, antennas."""

@@ -45,6 +45,7 @@ def longer(box: "db.Box", area: int) -> "Iterator[db.Box]":
     import klayout.db as db
 
     def lack(length: int, width: int) -> int:
+        """What ``length`` lacks for the area at this ``width``."""
         return -(-max(0, -(-area // width) - length) // (2 * GRID_NM)) * 2 * GRID_NM  # even in grids
 
     across, along = lack(box.width(), box.height()), lack(box.height(), box.width())

@@ -1,0 +1,1 @@
+"""Netlists: Yosys JSON, buffering, registers and their equivalence, macros, names."""

@@ -89,6 +89,7 @@ def clusters(places: Points, most: int) -> list[npt.NDArray[np.int64]]:
     count = -(-len(places) // most)
 
     def cut(indices: npt.NDArray[np.int64], count: int) -> list[npt.NDArray[np.int64]]:
+        """Cut ``indices`` into ``count`` groups."""
         if count == 1:
             return [indices]
         axis = np.argmax(np.ptp(places[indices], axis=0))

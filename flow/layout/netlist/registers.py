@@ -243,6 +243,7 @@ class Cut:
         names |= {bit: f"const{(fixed or {})[name]}" for bit, name in self.inputs.items() if name in (fixed or {})}
 
         def net(bit: Bit) -> str:
+            """Name of the net of ``bit``."""
             bit = given.get(bit, bit)
             if not isinstance(bit, int) and bit not in ("0", "1") and x is None:
                 anything.append(f"any{len(anything)}")

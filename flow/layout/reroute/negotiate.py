@@ -29,8 +29,11 @@ Pins = Mapping[str, Sequence[Sequence[Sequence[Any]]]]  # by net and pin (layer,
 
 @dataclass
 class Rerouted:
-    """routes: of the nets that were rerouted. open: nets without a route. tries: of every net. respaced, charged: nets
-    that were too near to others, nets that had an antenna."""
+    """Nets after rip-up and reroute.
+
+    routes: of the nets that were rerouted. open: nets without a route. tries: of every net. respaced, charged: nets
+    that were too near to others, nets that had an antenna.
+    """
 
     routes: dict[str, Route] = field(default_factory=dict)
     open: list[str] = field(default_factory=list)

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Violations:
-    """spacing: (level, box, box) of two edges (nm) that are too near. antennas: (level, polygon as KLayout writes it).
+    """Violations of a layout.
 
+    spacing: (level, box, box) of two edges (nm) that are too near. antennas: (level, polygon as KLayout writes it).
     Levels are those of RoutingRules.layers.
     """
 

@@ -16,7 +16,7 @@ PARTS = "netlist", "placement", "spice", "gds"  # of a macro
 
 @dataclass(frozen=True)
 class AssembleParameters:
-    """pdk: process. macros: modules laid out before."""
+    """Parameters of `Assemble`. pdk: process. macros: modules laid out before."""
 
     pdk: str = "sky130"
     macros: tuple[str, ...] = ()

@@ -26,7 +26,10 @@ GATE = (
 
 @dataclass(frozen=True)
 class EquivalenceParameters:
-    """top: module. clock, reset: its ports. seconds: time limit of a proof, beyond which it fails."""
+    """Parameters of `Equivalence`.
+
+    top: module. clock, reset: its ports. seconds: time limit of a proof, beyond which it fails.
+    """
 
     top: str = ""
     clock: str = "clk"

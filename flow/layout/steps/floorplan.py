@@ -18,8 +18,9 @@ CLOCK_CELLS_SHARE = 0.06  # of the cells' area, for the clock tree's buffers to 
 
 @dataclass(frozen=True)
 class FloorplanParameters:
-    """pdk: process. utilization: cells' area by core area without the macros. aspect: width by height.
+    """Parameters of `Floorplan`.
 
+    pdk: process. utilization: cells' area by core area without the macros. aspect: width by height.
     macros: (instance, module, share of the width, share of the height that are free to its west and south).
     """
 

@@ -37,7 +37,7 @@ quit -noprompt
 
 @dataclass(frozen=True)
 class FoundryDrcParameters:
-    """pdk: process. top: cell."""
+    """Parameters of `FoundryDrc`. pdk: process. top: cell."""
 
     pdk: str = "sky130"
     top: str = ""

@@ -5,6 +5,6 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class PdkParameters:
-    """pdk: process."""
+    """Parameters of a step that depends on the process alone. pdk: process."""
 
     pdk: str = "sky130"

@@ -28,8 +28,9 @@ PHASES = ("clock_tree", "placement", "power", "routing")
 
 @dataclass(frozen=True)
 class PlaceRouteParameters:
-    """pdk: process. clock: name of the clock port, '' without one. effort: of the placer, 1..3.
+    """Parameters of `PlaceRoute`.
 
+    pdk: process. clock: name of the clock port, '' without one. effort: of the placer, 1..3.
     density_variation: how unevenly the placer may spread the empty sites; what is packed does not route.
     strap_pitch_um: of a pair of power straps. events: most moves of the router. macros: modules laid out before.
     """

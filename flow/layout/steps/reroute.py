@@ -19,7 +19,10 @@ from ..reroute.rules import RoutingRules
 
 @dataclass(frozen=True)
 class RerouteParameters:
-    """pdk: process. clock: name of the clock port. most: open nets, with more the layout is given up."""
+    """Parameters of `Reroute`.
+
+    pdk: process. clock: name of the clock port. most: open nets, with more the layout is given up.
+    """
 
     pdk: str = "sky130"
     clock: str = "clk"

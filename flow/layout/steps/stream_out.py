@@ -16,7 +16,10 @@ from ..netlist.netlist import SUPPLIES, Netlist
 
 @dataclass(frozen=True)
 class StreamOutParameters:
-    """pdk: process. clock: name of the clock port. assembled: whether there are macros in it."""
+    """Parameters of `StreamOut`.
+
+    pdk: process. clock: name of the clock port. assembled: whether there are macros in it.
+    """
 
     pdk: str = "sky130"
     clock: str = "clk"

@@ -40,8 +40,9 @@ write_json {json}
 
 @dataclass(frozen=True)
 class SynthesisParameters:
-    """top: module. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit. load_pf: of an output.
+    """Parameters of `Synthesis`.
 
+    top: module. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit. load_pf: of an output.
     macros: modules laid out before, black boxes here.
     """
 
