@@ -77,19 +77,19 @@ locks: $(READY)  ## renew requirements/*.lock from pyproject.toml (uv)
 
 .PHONY: formal
 formal: $(TESTS_READY)  ## properties of every block proven, and that each catches its broken twin (needs Yosys, z3: make tools)
-	@$(PY) -m verif.formal
+	@$(PY) -m talbot formal
 
 .PHONY: coverage
 coverage: $(TESTS_READY)  ## line, toggle, branch, state machines and test plans: 100 %
-	@$(PY) -m verif.coverage
+	@$(PY) -m talbot coverage
 
 .PHONY: mutate
 mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must find
-	@$(PY) -m verif.mutation
+	@$(PY) -m talbot mutate
 
 .PHONY: verify
 verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was
-	@$(PY) -m verif.report
+	@$(PY) -m talbot verify
 
 .PHONY: verilog
 verilog: $(READY)  ## build/verilog/<top>.v, linted

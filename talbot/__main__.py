@@ -36,6 +36,13 @@ COMMANDS = {
     "cells-compact": ("cells.compact.command", "the library Compact drawn and checked"),
     "cells-compact-area": ("cells.compact.area", "our blocks on Compact and on sky130_fd_sc_hd"),
     "cells-compact-search": ("cells.compact.search", "narrower cells of Compact by a longer search"),
+    "formal": ("verif.formal.command", "every property proven, and that each catches its broken twin"),
+    "coverage": ("verif.coverage.command", "line, toggle, branch, state machines and test plans"),
+    "mutate": ("verif.mutation.command", "bugs planted in the RTL, each of which a test must find"),
+    "fuzz": ("verif.fuzz.command", "a million inputs for the decoder and the host"),
+    "bench": ("verif.bench.command", "cocotb benches in Icarus and in Verilator"),
+    "suite": ("verif.suite.command", "every test, counted by block and level"),
+    "verify": ("verif.report.command", "all of these six, and their report"),
     "handoff": ("flow.handoff.command", "one archive of a finished layout"),
 }
 

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 from base.cache import digest
 from base.paths import ROOT
+from base.tools import ToolError
 from base.verilator import verilator_folder
 from models.parameters import ArrayParameters, ChipParameters, SensorParameters
 from rtl.export import translate
@@ -30,7 +31,7 @@ BUILD_ARGS = {  # -O0: the C++ compiler takes longer than these simulations, whi
 }
 
 
-class BenchError(RuntimeError):
+class BenchError(ToolError):
     """A simulator is missing, refuses a design or hangs; the message has the end of its output."""
 
 

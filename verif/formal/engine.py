@@ -13,10 +13,12 @@ from functools import cache
 from pathlib import Path
 from typing import Self
 
+from base.tools import ToolError
+
 PASSED, FAILED, UNKNOWN = "passed", "failed", "unknown"
 
 
-class FormalError(Exception):
+class FormalError(ToolError):
     """A tool is missing or cannot read a design."""
 
 

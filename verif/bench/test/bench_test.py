@@ -4,11 +4,12 @@ import json
 
 import pytest
 
+from base.command import main
 from base.records import from_json
 from models.chip import golden_frame
 from rtl.harness.icarus import MISSING, installed
-from verif.bench import simulation
-from verif.bench.__main__ import CHIP, SAME, BenchRun, main, summary
+from verif.bench import command, simulation
+from verif.bench.command import CHIP, SAME, BenchRun, summary
 from verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
 from verif.bench.pymtl_frame import pymtl_stream
 from verif.results import BlockResults, Tests
@@ -33,7 +34,9 @@ def streams_of(simulators, tmp_path):
 
 @needs_icarus
 def test_a_bench_passes_and_counts(tmp_path, capsys):
-    assert main(["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]) == 0
+    assert (
+        main(command, ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]) == 0
+    )
     by_block = json.loads((tmp_path / "bench.json").read_text())
     found = from_json(dict[str, BlockResults], by_block)
     two = Tests(passed=2)
@@ -53,7 +56,7 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(simulation, "sources", planted)
     arguments = ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]
     for _ in range(2):  # a failure is tried again
-        assert main(arguments) == 1
+        assert main(command, arguments) == 1
         assert "PhasePath in icarus: any_taps_at_any_pace: " in capsys.readouterr().err
     assert not list((tmp_path / "bench").iterdir())
 

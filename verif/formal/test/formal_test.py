@@ -7,9 +7,9 @@ import shutil
 
 import pytest
 
+from base.command import main
 from models.parameters import ParameterError
-from verif.formal import __main__ as command
-from verif.formal import design, manifest
+from verif.formal import command, design, manifest
 from verif.formal.engine import FormalError, tool
 from verif.formal.proof import Twin, labels
 from verif.formal.prove import CoverResult, cover, prove, twin
@@ -46,7 +46,7 @@ def test_every_property_has_a_twin_that_finds_its_place():
 
 
 def test_the_byte_queue_is_proven_and_its_twins_fail(queue, tmp_path):
-    assert command.main(["--proof", queue.name, "--out", str(tmp_path), "--workers", "1"]) == 0
+    assert main(command, ["--proof", queue.name, "--out", str(tmp_path), "--workers", "1"]) == 0
     proofs = json.loads((tmp_path / "formal.json").read_text())["RunLength"]["proofs"]
     assert {proof["name"] for proof in proofs} == {f"byte_queue.{label}" for label in queue.twins}
     assert all(
@@ -120,7 +120,7 @@ def test_labels_are_given_and_differ(text, message):
 
 
 def test_a_block_without_proofs_and_an_unknown_one_are_refused(capsys):
-    assert command.main(["--proof", "nothing"]) == 2
-    assert capsys.readouterr().err == "verif.formal: proof = nothing: must be the name of a proof\n"
+    assert main(command, ["--proof", "nothing"]) == 2
+    assert capsys.readouterr().err == "verif.formal: error: proof = nothing: must be the name of a proof\n"
     with pytest.raises(SystemExit):
-        command.main(["--only", "Nothing"])
+        main(command, ["--only", "Nothing"])

@@ -5,9 +5,9 @@ import time
 
 import pytest
 
+from base.command import main
 from models.digital.stream import decode_stream
-from verif.fuzz import batch, checks, host, resync
-from verif.fuzz.__main__ import main
+from verif.fuzz import batch, checks, command, host, resync
 from verif.fuzz.streams import KINDS
 
 SEED = 20
@@ -81,7 +81,7 @@ def test_host_and_registers(target):
 @pytest.mark.parametrize("name", resync.FRAMES)
 @pytest.mark.parametrize("around", resync.AROUND)
 def test_one_wrong_byte_anywhere_in_a_frame_of_every_mode(name, around):
-    """Two values at every byte; `python -m verif.fuzz` tries more, and larger frames."""
+    """Two values at every byte; `talbot fuzz` tries more, and larger frames."""
     found = resync.sweep(name, around, 2, SEED, (12, 20))
     assert found.failures == [] and found.tried == 2 * found.bytes > 100
     assert bool(found.row_lost) == (around == "followed by bytes")
@@ -95,9 +95,9 @@ def test_a_row_lost_in_secret_is_seen(monkeypatch):
 
 
 def test_the_command(tmp_path, capsys):
-    assert main(["--inputs", "300", "--changes", "0", "--seed", "3", "--out", str(tmp_path)]) == 0
+    assert main(command, ["--inputs", "300", "--changes", "0", "--seed", "3", "--out", str(tmp_path)]) == 0
     found = json.loads((tmp_path / "fuzz.json").read_text())
     assert found["Decoder"]["fuzz"]["inputs"] == 300 and found["Host"]["fuzz"]["inputs"] == 60
-    assert main(["--only", "2", "17"]) == 0 and " ms" in capsys.readouterr().out
-    assert main(["--inputs", "-1"]) == 2
-    assert capsys.readouterr().err == "verif.fuzz: inputs = -1: must be an integer in 0..1000000000\n"
+    assert main(command, ["--only", "2", "17"]) == 0 and " ms" in capsys.readouterr().out
+    assert main(command, ["--inputs", "-1"]) == 2
+    assert capsys.readouterr().err == "verif.fuzz: error: inputs = -1: must be an integer in 0..1000000000\n"

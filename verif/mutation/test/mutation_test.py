@@ -5,6 +5,7 @@ import subprocess
 
 import pytest
 
+from base.command import main
 from models.parameters import SensorParameters
 from rtl.asp_chip.balance_rtl import Balance
 from rtl.harness.ports import Port, ports_of
@@ -13,7 +14,8 @@ from rtl.tops import build_top
 from verif.coverage.program import compile_program
 from verif.coverage.test.coverage_test import recorded, recorded_cycles
 from verif.coverage.testplan import folder_of
-from verif.mutation.__main__ import main, summary
+from verif.mutation import command
+from verif.mutation.command import summary
 from verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, promises
 from verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, own_tests
 from verif.mutation.mutants import Mutant, generate, shares, with_mutants
@@ -175,5 +177,5 @@ def test_promises_leave_the_block_its_work(block):
 
 
 def test_arguments(capsys, tmp_path):
-    assert main(["--factor", "0", "--out", str(tmp_path)]) == 2
+    assert main(command, ["--factor", "0", "--out", str(tmp_path)]) == 2
     assert "factor = 0.0" in capsys.readouterr().err

@@ -2,14 +2,15 @@
 
 import copy
 import json
+import sys
 from dataclasses import is_dataclass, replace
 
 import pytest
 
+from base.command import main
 from models.parameters import ParameterError
 from rtl.tops import TOPS
-from verif.report import limits, steps
-from verif.report.__main__ import main
+from verif.report import command, limits, steps
 from verif.report.merge import figures, summarize, totals
 from verif.report.page import render
 from verif.report.steps import Outcome, Step, run_step
@@ -176,20 +177,16 @@ STEP = "import json, pathlib, sys\npathlib.Path({out!r}).write_text({text!r})\ns
     ],
 )
 def test_how_a_step_may_end(tmp_path, monkeypatch, text, status, problem):
-    package = tmp_path / "a_step"
-    package.mkdir()
-    (package / "__init__.py").touch()
-    (package / "__main__.py").write_text(STEP.format(out=str(tmp_path / "one.json"), text=text, status=status))
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(steps, "ROOT", tmp_path)
-    found = run_step(Step("one", "a_step", "one"), tmp_path)
+    (tmp_path / "step.py").write_text(STEP.format(out=str(tmp_path / "one.json"), text=text, status=status))
+    monkeypatch.setattr(steps, "TALBOT", [sys.executable, tmp_path / "step.py"])
+    found = run_step(Step("one", "one", "one"), tmp_path)
     assert found.problem == problem or problem and found.problem.startswith(problem)
 
 
 def test_a_step_that_is_missing_keeps_no_old_results(tmp_path):
     (tmp_path / "one.json").write_text('{"AmpCtrl": {"tests": {"passed": 9, "failed": 0}}}')
-    found = run_step(Step("one", "verif.nowhere", "one"), tmp_path)
-    assert found.problem == "step one = missing: no module verif.nowhere" and found.by_block == {}
+    found = run_step(Step("one", "nowhere", "one"), tmp_path)
+    assert found.problem == "step one = exit status 2: must be 0 (see its output)" and found.by_block == {}
     assert not (tmp_path / "one.json").exists()
 
 
@@ -206,9 +203,9 @@ def test_the_page_holds_every_block_and_every_fault():
 
 def test_the_command_reads_what_steps_left(tmp_path, capsys):
     (tmp_path / "suite.json").write_text(json.dumps({"EdgeAdc": {"tests": {"passed": 3, "failed": 1}}}))
-    assert main(["--read"], out=tmp_path) == 1
+    assert main(command, ["--read", "--out", str(tmp_path)]) == 1
     errors = capsys.readouterr().err
-    assert "verif.report: EdgeAdc.tests.failed = 1: limit at most 0\n" in errors
-    assert "verif.report: step formal = no results: formal.json is missing\n" in errors
+    assert "EdgeAdc.tests.failed = 1: limit at most 0\n" in errors
+    assert "step formal = no results: formal.json is missing\n" in errors
     assert json.loads((tmp_path / "summary.json").read_text())["EdgeAdc"]["tests"]["failed"] == 1
     assert (tmp_path / "report.html").exists()

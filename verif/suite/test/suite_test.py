@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from base.command import main
 from rtl.tops import TOPS
 from verif.results import ROOT
-from verif.suite.__main__ import forget, jobs, main, summarize
+from verif.suite import command
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
+from verif.suite.command import forget, jobs, summarize
 from verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
 FILE = """
@@ -100,5 +102,5 @@ def test_failures_are_tried_again(tmp_path):
 
 
 def test_an_unknown_folder(capsys):
-    assert main(["--folder", "nowhere"]) == 2
-    assert capsys.readouterr().err.startswith("verif.suite: folder = 'nowhere': must be one of ")
+    assert main(command, ["--folder", "nowhere"]) == 2
+    assert capsys.readouterr().err.startswith("verif.suite: error: folder = 'nowhere': must be one of ")

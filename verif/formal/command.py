@@ -4,20 +4,21 @@ The exit status is 1 unless every property is proven by every engine named for i
 reached, and every twin fails. A timeout is not a proof.
 """
 
-import argparse
 import sys
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.jobs import run
+from base.command import failures
+from base.jobs import run as run_jobs
 from base.records import from_json
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 from verif.results import OUT, PROVEN, BlockResults, Property, write_step
 
 from . import manifest
-from .engine import UNKNOWN, FormalError, tool_or_none, version
+from .engine import UNKNOWN, tool_or_none, version
 from .plan import pieces
 from .proof import Proof
 from .prove import CoverResult, ProofResult, TwinResult
@@ -74,7 +75,7 @@ class Outcome:
 def collect(proofs: Iterable[Proof], store: Path, workers: int = -1) -> list[Outcome]:
     """Run every job of ``proofs``. store: folder of the kept results. workers: processes, -1 for all cores."""
     planned = [(proof, pieces(proof, present(proof))) for proof in proofs]
-    results = iter(run([piece.job for _, found in planned for piece in found], store, "formal", workers))
+    results = iter(run_jobs([piece.job for _, found in planned for piece in found], store, "formal", workers))
     outcomes = []
     for proof, found in planned:
         by_kind = {kind: {} for kind in (ProofResult, CoverResult, TwinResult)}
@@ -114,7 +115,7 @@ def table(outcomes: Iterable[Outcome]) -> str:
     return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
 
 
-def chosen(proofs: Sequence[Proof], options: argparse.Namespace) -> list[Proof]:
+def chosen(proofs: Sequence[Proof], options: Namespace) -> list[Proof]:
     """Return the ``proofs`` that the command line names, by default all. Raises ParameterError for none."""
     unknown = set(options.proof or ()) - {proof.name for proof in proofs}
     if unknown:
@@ -129,38 +130,21 @@ def chosen(proofs: Sequence[Proof], options: argparse.Namespace) -> list[Proof]:
     return found
 
 
-def arguments() -> argparse.ArgumentParser:
-    """Return the command line."""
-    parser = argparse.ArgumentParser(prog="python -m verif.formal", description=__doc__)
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot formal`."""
     parser.add_argument("--only", action="append", metavar="BLOCK", choices=TOPS, help="a block (may be repeated)")
     parser.add_argument("--proof", action="append", metavar="NAME", help="a proof by its name (may be repeated)")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder of formal.json; default: build/verify")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of formal.json")
     parser.add_argument("--workers", type=int, default=-1, help="processes; default: all cores")
-    return parser
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Return 0, 1 where something is not proven, 2 where nothing could be tried."""
-    options = arguments().parse_args(argv)
-    try:
-        proofs = chosen(manifest.every(), options)
-        outcomes = collect(proofs, options.out / "formal", options.workers)
-        write_step("formal", summary(outcomes), options.out)
-        print(table(outcomes))
-        for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
-            if not tool_or_none(engine):
-                print(
-                    f"verif.formal: {engine} = not found: second engine skipped; make tools installs it",
-                    file=sys.stderr,
-                )
-    except (ParameterError, FormalError, OSError) as error:
-        print(f"verif.formal: {error}", file=sys.stderr)
-        return 2
-    problems = [line for outcome in outcomes for line in outcome.problems]
-    for line in problems:
-        print(f"verif.formal: {line}", file=sys.stderr)
-    return 1 if problems else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+def run(options: Namespace) -> int:
+    """Return 0, 1 where something is not proven."""
+    proofs = chosen(manifest.every(), options)
+    outcomes = collect(proofs, options.out / "formal", options.workers)
+    write_step("formal", summary(outcomes), options.out)
+    print(table(outcomes))
+    for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
+        if not tool_or_none(engine):
+            print(f"{engine} = not found: second engine skipped; make tools installs it", file=sys.stderr)
+    return failures(line for outcome in outcomes for line in outcome.problems)

@@ -4,17 +4,19 @@ An input depends on the seed, its batch and its number alone. The bytes of a fai
 --only decodes a single input.
 """
 
-import argparse
 import sys
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
-from base.jobs import Job, run
+from base.command import failures
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from base.records import from_json
-from models.parameters import ParameterError, check_int
+from models.parameters import check_int
 from verif.results import OUT, BlockResults, Fuzz, Resync, Sweep, write_step
 
 from .batch import BATCH, Batch, make_input, run_batch, try_input
@@ -67,49 +69,34 @@ def running(folder: Path) -> list[str]:
     return [f"batch {mark.suffix[1:]}, input {mark.read_text().strip()}" for mark in sorted(folder.glob("at.*"))]
 
 
-def arguments() -> argparse.ArgumentParser:
-    """Return the command line."""
-    parser = argparse.ArgumentParser(
-        prog="python -m verif.fuzz", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("--inputs", type=int, default=1_000_000, help="for the decoder; default: %(default)s")
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot fuzz`."""
+    parser.add_argument("--inputs", type=int, default=1_000_000, help="for the decoder")
     parser.add_argument("--seed", type=int, default=SEED, help="default: %(default)s")
     parser.add_argument(
-        "--changes",
-        type=int,
-        default=CHANGES,
-        help="wrong values at each byte of the real frames, 0..255; default: %(default)s",
+        "--changes", type=int, default=CHANGES, help="wrong values at each byte of the real frames, 0..255"
     )
     parser.add_argument("--only", nargs=2, type=int, metavar=("BATCH", "INPUT"), help="one input by itself")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder of fuzz.json; default: build/verify")
-    return parser
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of fuzz.json")
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Return 0, 1 when an input failed, 2 for a wrong argument."""
-    options = arguments().parse_args(argv)
+def run(options: Namespace) -> int:
+    """Return 0, 1 when an input failed."""
     folder = options.out / "fuzz"
+    check_int("inputs", options.inputs, 0, 10**9)
+    check_int("seed", options.seed, 0, 2**32 - 1)
+    check_int("changes", options.changes, 0, 255)
+    if options.only:
+        return show(options.seed, *options.only)
+    for mark in folder.glob("at.*"):
+        mark.unlink(missing_ok=True)
     try:
-        check_int("inputs", options.inputs, 0, 10**9)
-        check_int("seed", options.seed, 0, 2**32 - 1)
-        check_int("changes", options.changes, 0, 255)
-        if options.only:
-            return show(options.seed, *options.only)
-        for mark in folder.glob("at.*"):
-            mark.unlink(missing_ok=True)
-        done = from_json(list[Batch], run(batches(options.inputs, options.seed, folder), folder, "fuzz"))
+        done = from_json(list[Batch], run_jobs(batches(options.inputs, options.seed, folder), folder, "fuzz"))
         jobs = sweeps(options.changes, options.seed) if options.changes else []
-        swept = from_json(list[Sweep], run(jobs, folder, "resync"))
-    except (ParameterError, OSError) as error:
-        print(f"verif.fuzz: {error}", file=sys.stderr)
-        return 2
+        swept = from_json(list[Sweep], run_jobs(jobs, folder, "resync"))
     except TerminatedWorkerError:
-        print(
-            f"verif.fuzz: a process ended (crash or timeout) at: "
-            f"{'; '.join(running(folder))}; seed {options.seed}: see --only",
-            file=sys.stderr,
-        )
-        return 1
+        where = "; ".join(running(folder))
+        return failures([f"a process ended (crash or timeout) at: {where}; seed {options.seed}: see --only"])
     found = summarize(options.seed, done, swept)
     write_step("fuzz", found, options.out)
     return report(found)
@@ -138,7 +125,3 @@ def report(found: Mapping[str, BlockResults]) -> int:
         for point in entry.open_points:
             print(f"  {point}", file=sys.stderr)
     return int(failures > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

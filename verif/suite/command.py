@@ -3,15 +3,16 @@
 A skipped test is an open point: what it checks is not checked.
 """
 
-import argparse
 import json
 import shutil
-import sys
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from base.jobs import Job, run
+from base.command import failures
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from base.paths import ROOT
 from base.records import from_json
 from base.sources import code
@@ -72,40 +73,25 @@ def last_seconds(store: Path) -> dict[str, float]:
     return {result["folder"]: result["seconds"] for result in kept}
 
 
-def arguments() -> argparse.ArgumentParser:
-    """Return the command line."""
-    parser = argparse.ArgumentParser(
-        prog="python -m verif.suite", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot suite`."""
     parser.add_argument("--folder", nargs="+", metavar="NAME", help="test folders; default: all")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder of suite.json; default: build/verify")
-    return parser
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of suite.json")
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Return 0, 1 when a test failed, 2 for a wrong argument."""
-    options = arguments().parse_args(argv)
+def run(options: Namespace) -> int:
+    """Return 0, 1 when a test failed."""
     store = options.out / "suite"
-    try:
-        known = folders()
-        for folder in options.folder or ():
-            if folder not in known:
-                raise ParameterError(f"folder = {folder!r}: must be one of {', '.join(known)}")
-        planned = jobs(options.folder or known, last_seconds(store) if store.exists() else {})
-        done = from_json(list[FolderRun], run(planned, store, "tests"))
-    except (ParameterError, OSError) as error:
-        print(f"verif.suite: {error}", file=sys.stderr)
-        return 2
+    known = folders()
+    for folder in options.folder or ():
+        if folder not in known:
+            raise ParameterError(f"folder = {folder!r}: must be one of {', '.join(known)}")
+    planned = jobs(options.folder or known, last_seconds(store) if store.exists() else {})
+    done = from_json(list[FolderRun], run_jobs(planned, store, "tests"))
     forget(planned, done, store)
     write_step("suite", summarize(done), options.out)
     cases = [case for result in done for case in result.cases]
-    for case in cases:
-        if case.outcome != PASSED:
-            print(f"verif.suite: {case.test} = {case.outcome}: {case.message[:300]}", file=sys.stderr)
+    failures(f"{case.test} = {case.outcome}: {case.message[:300]}" for case in cases if case.outcome != PASSED)
     counts = Counter(case.outcome for case in cases)
     print(", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED)))
     return int(counts[FAILED] > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -4,21 +4,20 @@ A seeded sample by Yosys, spread over the modules of each block, replaces the bl
 them all is compared with the original by induction. A survivor is a bug of the tests: exit status 1.
 """
 
-import argparse
 import json
-import sys
+from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from base.jobs import Job, run
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from base.paths import ROOT
 from base.records import from_json
 from base.sources import code
-from base.tools import ToolError
 from models.parameters import ParameterError
-from rtl.replay import RecordError, load
+from rtl.replay import load
 from rtl.tops import TOPS
 from verif.coverage.program import compile_program
 from verif.coverage.testplan import folder_of
@@ -74,10 +73,12 @@ def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: i
             tests.append(Job(name, try_tests, arguments, decides))
             formal = ROOT / "rtl" / folder_of(block) / "formal"
             judges.append(Job(name, judge, arguments, (text, formal)))  # independent of the tests
-    run(whole, store / "tests", "tests without a mutant")
-    results = from_json(list[Judgement], run(tests, store / "tests", "mutants against the tests"))
+    run_jobs(whole, store / "tests", "tests without a mutant")
+    results = from_json(list[Judgement], run_jobs(tests, store / "tests", "mutants against the tests"))
     left = [i for i, result in enumerate(results) if result.result == SURVIVED]
-    for i, result in zip(left, run([judges[i] for i in left], store / "judged", "undetected mutants"), strict=True):
+    for i, result in zip(
+        left, run_jobs([judges[i] for i in left], store / "judged", "undetected mutants"), strict=True
+    ):
         results[i] = from_json(Judgement, result)
     results = iter(results)
     return {block: summary(mutants, [next(results) for _ in mutants]) for block, mutants in made.items()}
@@ -96,28 +97,19 @@ def summary(mutants: Sequence[Mutant], judged: Sequence[Judgement]) -> BlockResu
     )
 
 
-def arguments() -> argparse.ArgumentParser:
-    """Return the command line."""
-    parser = argparse.ArgumentParser(
-        prog="python -m verif.mutation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot mutate`."""
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
-    parser.add_argument("--seed", type=int, default=SEED, help="of the sample (%(default)s)")
-    parser.add_argument("--factor", type=float, default=1.0, help="of the sample's size (%(default)s)")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder of mutation.json; default: build/verify")
-    return parser
+    parser.add_argument("--seed", type=int, default=SEED, help="of the sample")
+    parser.add_argument("--factor", type=float, default=1.0, help="of the sample's size")
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of mutation.json")
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Return 0, 1 with survivors, 2 where nothing could be measured."""
-    options = arguments().parse_args(argv)
-    try:
-        if not 0 < options.factor <= 100:
-            raise ParameterError(f"factor = {options.factor}: must be in 0..100")
-        found = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
-    except (ParameterError, ToolError, RecordError, OSError) as error:
-        print(f"verif.mutation: {error}", file=sys.stderr)
-        return 2
+def run(options: Namespace) -> int:
+    """Return 0, 1 with survivors."""
+    if not 0 < options.factor <= 100:
+        raise ParameterError(f"factor = {options.factor}: must be in 0..100")
+    found = try_mutants(options.only or TOPS, options.out / "mutation", options.factor, options.seed)
     write_step("mutation", found, options.out)
     whole = Counter()
     for block, entry in found.items():
@@ -128,7 +120,3 @@ def main(argv: Sequence[str] | None = None) -> int:
             print(f"  {text}")
     print(f"all, seed {options.seed}: {json.dumps(whole)}")
     return int(whole[SURVIVED] > 0)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

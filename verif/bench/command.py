@@ -1,15 +1,15 @@
 """Every cocotb bench in Icarus and in Verilator, and one frame in these and in PyMTL: build/verify/bench.json."""
 
-import argparse
 import sys
 import tempfile
+from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.jobs import Job, run
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from base.records import from_json
-from models.parameters import ParameterError
 from rtl.harness.icarus import MISSING, installed
 from verif.results import OUT, BlockResults, Tests, write_step
 
@@ -80,32 +80,25 @@ def summary(runs: Mapping[tuple[str, str], BenchRun]) -> dict[str, BlockResults]
     return by_block
 
 
-def arguments() -> argparse.ArgumentParser:
-    """Return the command line."""
-    parser = argparse.ArgumentParser(prog="python -m verif.bench", description=__doc__)
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot bench`."""
     parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: all")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
-    parser.add_argument("--seed", type=int, default=1, help="of the tests' random numbers (%(default)s)")
+    parser.add_argument("--seed", type=int, default=1, help="of the tests' random numbers")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")
-    parser.add_argument("--workers", type=int, default=-1, help="processes, -1 for all cores (%(default)s)")
-    return parser
+    parser.add_argument("--workers", type=int, default=-1, help="processes, -1 for all cores")
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Return 0, 1 when a test failed, 2 where nothing could be run."""
-    options = arguments().parse_args(argv)
+def run(options: Namespace) -> int:
+    """Return 0, 1 when a test failed."""
     simulators = options.simulator or list(SIMULATORS)
-    try:
-        if "icarus" in simulators and not installed():
-            raise BenchError(MISSING)
-        jobs = jobs_of(options.block or list(DESIGNS), simulators, options.seed)
-        store = options.out / "bench"
-        runs = from_json(list[BenchRun], run(list(jobs.values()), store, "benches", options.workers))
-        by_block = summary(dict(zip(jobs, runs, strict=True)))
-        write_step("bench", by_block, options.out)
-    except (ParameterError, BenchError, OSError) as error:
-        print(f"verif.bench: {error}", file=sys.stderr)
-        return 2
+    if "icarus" in simulators and not installed():
+        raise BenchError(MISSING)
+    jobs = jobs_of(options.block or list(DESIGNS), simulators, options.seed)
+    store = options.out / "bench"
+    runs = from_json(list[BenchRun], run_jobs(list(jobs.values()), store, "benches", options.workers))
+    by_block = summary(dict(zip(jobs, runs, strict=True)))
+    write_step("bench", by_block, options.out)
     for job, ran in zip(jobs.values(), runs, strict=True):
         if any(test.failure for test in ran.tests):
             (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)  # failures are tried again
@@ -114,7 +107,3 @@ def main(argv: Sequence[str] | None = None) -> int:
         for point in here.open_points:
             print(point, file=sys.stderr)
     return int(any(here.open_points for here in by_block.values()))
-
-
-if __name__ == "__main__":
-    sys.exit(main())

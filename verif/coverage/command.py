@@ -3,16 +3,14 @@
 A block's own tests are recorded and replayed into its exported Verilog. Exit status 1 where anything is below 100 %.
 """
 
-import argparse
-import sys
-from collections.abc import Sequence
+from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.jobs import Job, run
+from base.jobs import Job
+from base.jobs import run as run_jobs
 from base.records import from_json
-from base.tools import ToolError
 from models.parameters import ParameterError
-from rtl.replay import RecordError, load
+from rtl.replay import load
 from rtl.tops import TOPS
 from verif.results import OUT, BlockResults, write_step
 
@@ -41,35 +39,26 @@ def measured(plans: dict[str, TestPlan], store: Path) -> dict[str, Verdict]:
     traces = recorded(plans, store.parent / "traces")
     jobs = measure_jobs(plans, traces)
     found: dict[str, list[Measurement]] = {}
-    for (block, _), result in zip(jobs, run([job for _, job in jobs], store, "coverage"), strict=True):
+    for (block, _), result in zip(jobs, run_jobs([job for _, job in jobs], store, "coverage"), strict=True):
         found.setdefault(block, []).append(from_json(Measurement, result))
     return {block: judge(block, plan, found[block]) for block, plan in plans.items()}
 
 
-def arguments() -> argparse.ArgumentParser:
-    """Return the command line."""
-    parser = argparse.ArgumentParser(
-        prog="python -m verif.coverage", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot coverage`."""
     parser.add_argument("--only", nargs="+", choices=TOPS, metavar="BLOCK", help=f"of {', '.join(TOPS)}")
-    parser.add_argument("--out", type=Path, default=OUT, help="folder of coverage.json; default: build/verify")
-    return parser
+    parser.add_argument("--out", type=Path, default=OUT, help="folder of coverage.json")
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    """Return 0, 1 below 100 %, 2 where nothing could be measured."""
-    options = arguments().parse_args(argv)
-    try:
-        files = {block: plan_file(folder_of(block)) for block in options.only or TOPS}
-        loaded = {file: load_plan(file) for file in dict.fromkeys(files.values())}
-        plans = {block: loaded[file] for block, file in files.items()}
-        for block, plan in plans.items():
-            if block not in plan.blocks:
-                raise ParameterError(f"{files[block].name}: blocks = {plan.blocks}: must have {block}")
-        verdicts = measured(plans, options.out / "coverage")
-    except (ParameterError, ToolError, RecordError, OSError) as error:
-        print(f"verif.coverage: {error}", file=sys.stderr)
-        return 2
+def run(options: Namespace) -> int:
+    """Return 0, 1 below 100 %."""
+    files = {block: plan_file(folder_of(block)) for block in options.only or TOPS}
+    loaded = {file: load_plan(file) for file in dict.fromkeys(files.values())}
+    plans = {block: loaded[file] for block, file in files.items()}
+    for block, plan in plans.items():
+        if block not in plan.blocks:
+            raise ParameterError(f"{files[block].name}: blocks = {plan.blocks}: must have {block}")
+    verdicts = measured(plans, options.out / "coverage")
     write_step(
         "coverage",
         {
@@ -86,7 +75,3 @@ def main(argv: Sequence[str] | None = None) -> int:
         for text in verdict.errors + verdict.missing:
             print(f"  {text}")
     return int(not all(verdict.complete for verdict in verdicts.values()))
-
-
-if __name__ == "__main__":
-    sys.exit(main())
