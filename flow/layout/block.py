@@ -44,7 +44,7 @@ FIRST = "sdf", "lib"  # of the first corner, also under the design's name alone
 
 
 def lay_out(design: Design, options: Options, out: Path, note: Callable[[str], None]) -> tuple[Runner, dict[str, Any]]:
-    """Lay out ``design``, its macros before it; (its Runner, its summary). The results of each are in its folder in ``out``.
+    """Lay out ``design``, its macros before it: (its Runner, its summary). Each has its folder in ``out``.
 
     Raises StepError for a macro that breaks a limit.
     """

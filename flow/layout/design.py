@@ -35,7 +35,8 @@ class IoConstraints:
 class MacroPlacement:
     """A macro in a design: another design, laid out before it.
 
-    instance: path in the Verilog. design: name in DESIGNS. at: shares of the free width and height to its west and south.
+    instance: path in the Verilog. design: name in DESIGNS. at: shares of the free width and height to its west and
+    south.
     """
 
     instance: str

@@ -33,7 +33,7 @@ def macro_files(design: Design, runners: Mapping[str, Runner], corners: Sequence
 
 
 def check_same(design: Design, rtl: Path, runners: Mapping[str, Runner]) -> None:
-    """Raise StepError unless the design's Verilog (file ``rtl``) contains the modules that its macros were laid out from."""
+    """Raise StepError unless the design's Verilog (file ``rtl``) has the modules that its macros were laid out from."""
     own = modules(rtl.read_text())
     for macro in macro_designs(design):
         for name, text in modules(runners[macro.name].paths["rtl"].read_text()).items():

@@ -63,8 +63,8 @@ def drops(
 ) -> tuple[npt.NDArray[np.float64], float]:
     """Voltage between each tap and the pads (V), array (taps,), and the share of current that the solution loses.
 
-    rails: y of each, um. straps: x of each, um, at least one; their ends at 0 and ``height`` are the pads. breaks: boxes
-    without rails.
+    rails: y of each, um. straps: x of each, um, at least one; their ends at 0 and ``height`` are the pads. breaks:
+    boxes without rails.
     """
     crossing = np.arange(len(rails) * len(straps)).reshape(len(straps), len(rails))  # nodes of the straps
     edges: list[tuple[int, int, float]] = []

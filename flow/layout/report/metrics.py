@@ -106,7 +106,7 @@ def at_chip_clock(energies: dict[str, float] | None) -> dict[str, float] | None:
 
 
 def table_6_1(by_block: dict[str, float] | None, slowed: float) -> dict[str, list[float | None]] | None:
-    """Map each part to [uW in the thesis, uW here]; None without power. Parts of Table 6.1 are first, then other blocks.
+    """Map each part to [uW in the thesis, uW here]; None without power. Parts of Table 6.1 are first.
 
     by_block: uW. slowed: factor to the clock of the thesis's chip.
     """

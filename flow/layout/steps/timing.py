@@ -96,7 +96,7 @@ class Timing(Step[TimingParameters]):
                 f"{p.pdk}__{corner}",
                 condition,
                 [
-                    build.Entrybuild.Entry(cell, measured[source.name, corner], source.area)
+                    build.Entry(cell, measured[source.name, corner], source.area)
                     for cell, source in zip(cells, sources, strict=True)
                 ],
                 models,

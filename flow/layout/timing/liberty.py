@@ -27,7 +27,7 @@ class Function(NamedTuple):
 
 
 def functions(gds: Path, names: Iterable[str], models: ModuleType, tech: "ExtractionPlatform") -> dict[str, Function]:
-    """The functions of the cells ``names`` in ``gds``; cells without an output are left out. models: `device_models`."""
+    """Functions of the cells ``names`` in ``gds``; cells without an output are left out. models: `device_models`."""
     from cells.extract import extract
     from cells.netlist.function import understand
     from cells.netlist.spice import parse
