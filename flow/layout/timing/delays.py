@@ -1,9 +1,10 @@
 """OpenSTA's SDF for Icarus 11, which annotates the path delays of cells and no more.
 
 Measured with Icarus 11.0: IOPATH is annotated when all three values of a triple are present (OpenSTA leaves the
-typical one out, and a path then has no delay, with no message); INTERCONNECT is a syntax error; checks of setup and hold
-are not made. So a net's delay is added to that of the cell that drives it, the largest of its branches (that of an input
-port's net is left out), and setup and hold are modules of the bench (replay.py), each with the later time of both edges.
+typical one out, and a path then has no delay, with no message); INTERCONNECT is a syntax error; checks of setup and
+hold are not made. So a net's delay is added to that of the cell that drives it, the largest of its branches (that of an
+input port's net is left out), and setup and hold are modules of the bench (replay.py), each with the later time of
+both edges.
 """
 
 import re
