@@ -3,7 +3,9 @@
 import sys
 import time
 from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from tqdm import tqdm
@@ -12,43 +14,42 @@ from cells import sources
 from cells.characterize import delay, tristate
 from cells.characterize.bench import Bench
 from cells.characterize.conditions import Conditions
-from cells.characterize.constraint import PATIENCE, bisect, outcome
+from cells.characterize.constraint import PATIENCE, Event, bisect, outcome
 from cells.characterize.job import cell_of
 from cells.characterize.scenario import Scenarios
 from cells.corner import PROCESSES, Corner
+from cells.netlist.function import Cell
 from models.stability import Case, table
 
 TYPICAL = Conditions(Corner("tt", 25, 1.8), "fitted")
 FOUNDRY = (Corner("ss", 100, 1.6), Corner("ff", -40, 1.95))  # corners that SkyWater publishes tables for
 
 
-def cases():
-    """All cases: list of Case; shows a progress bar."""
-    todo = [(loads_and_slews, ()), (hundred_times_the_load, ()), (metastable, ()), (let_go, ())]
-    todo += [(fit_at_corner, (corner,)) for corner in FOUNDRY]
+def cases() -> list[Case]:
+    """All cases; shows a progress bar."""
+    todo: list[Callable[[], list[Case]]] = [loads_and_slews, hundred_times_the_load, metastable, let_go]
+    todo += [partial(fit_at_corner, corner) for corner in FOUNDRY]
     todo += [
-        (corner_case, (Corner(process, temperature, supply),))
+        partial(corner_case, Corner(process, temperature, supply))
         for process in PROCESSES
         for temperature, supply in ((-40, 1.2), (150, 1.2), (-40, 1.95), (150, 1.95))
     ]
-    found = []
-    for call, arguments in tqdm(todo, desc="cases", file=sys.stderr, disable=None):
-        found += call(*arguments)
-    return found
+    return [case for call in tqdm(todo, desc="cases", file=sys.stderr, disable=None) for case in call()]
 
 
-def cell(name):
-    """Cell of sky130_hd as laid out."""
+def cell(name: str) -> Cell:
+    """The cell of sky130_hd as laid out."""
     return cell_of(sources.source("sky130_hd", name), sources.process("sky130_hd"))
 
 
-def loads_and_slews():
-    """No load at all, slews of 1 ps and 10 ns: what the table's neighbours make one expect."""
+def loads_and_slews() -> list[Case]:
+    """No load at all, slews of 1 ps and 10 ns: close to the neighbours in the table."""
     out = []
     inverter = cell("inv_1")
     with Bench(inverter, sources.process("sky130_hd"), TYPICAL) as bench:
         for arc in inverter.arcs:
-            change, normal = arc.changes[0], bench.edge(arc.changes[0], "Y", 10e-12, 0.5e-15)
+            change = arc.changes[0]
+            normal = bench.edge(change, "Y", 10e-12, 0.5e-15)
             bare = bench.edge(change, "Y", 1e-12, 0.0)
             out.append(
                 _case(
@@ -79,7 +80,7 @@ def loads_and_slews():
     return out
 
 
-def hundred_times_the_load():
+def hundred_times_the_load() -> list[Case]:
     """A hundred times the largest load: a hundred times the slew, within 2 %."""
     out, inverter = [], cell("inv_1")
     with Bench(inverter, sources.process("sky130_hd"), TYPICAL) as bench:
@@ -98,18 +99,18 @@ def hundred_times_the_load():
     return out
 
 
-def metastable():
-    """A flip-flop ever closer to the edge between keeping and losing a bit, down to 1 fs: no run takes too long."""
+def metastable() -> list[Case]:
+    """A flip-flop ever closer to the edge between storing and losing a bit, down to 1 fs: no run takes too long."""
     flip_flop = cell("dfxtp_1")
     (scenario,), longest = Scenarios(flip_flop).setup("D", 1), 0.0
     with Bench(flip_flop, sources.process("sky130_hd"), TYPICAL) as bench:
 
-        def run_at(offset):
+        def run_at(offset: float) -> float | None:
             nonlocal longest
             started = time.monotonic()
             events = [
-                (scenario.clock, 0.0, scenario.clock_to, 10e-12),
-                (scenario.data, -offset, scenario.data_to, 10e-12),
+                Event(scenario.clock, 0.0, scenario.clock_to, 10e-12),
+                Event(scenario.data, -offset, scenario.data_to, 10e-12),
             ]
             found = outcome(bench, scenario.start, events, 1e-9, scenario.trigger, scenario.expected)
             longest = max(longest, time.monotonic() - started)
@@ -127,7 +128,7 @@ def metastable():
     ]
 
 
-def let_go():
+def let_go() -> list[Case]:
     """A tri-state output let go, at slews of 1 ps and 10 ns: no earlier or later than half the ramp."""
     buffer, out = cell("ebufn_1"), []
     process = sources.process("sky130_hd")
@@ -145,8 +146,8 @@ def let_go():
     return out
 
 
-def fit_at_corner(corner):
-    """How much slower or faster than typical a corner is, with the fitted models and those they were fitted from."""
+def fit_at_corner(corner: Corner) -> list[Case]:
+    """How much slower or faster than typical a corner is, with the fitted models and with the binned ones."""
     out, process = [], sources.process("sky130_hd")
     for name, output in (("nand2_1", "Y"), ("dfxtp_1", "Q")):
         tested, ratio = cell(name), {}
@@ -170,7 +171,7 @@ def fit_at_corner(corner):
     return out
 
 
-def corner_case(corner):
+def corner_case(corner: Corner) -> list[Case]:
     """A NAND gate at a corner: a small table that rises with the load, and a flip-flop that stores."""
     conditions = replace(TYPICAL, corner=corner)
     nand = cell("nand2_1")
@@ -189,12 +190,12 @@ def corner_case(corner):
             f"NAND and flip-flop at {corner.name}",
             "delays and slews rise with the load; 0 < clock to Q < 100 ns",
             f"longest {longest * 1e9:.2f} ns, clock to Q {max(stored) * 1e9:.2f} ns",
-            rises and 0 < min(stored) and max(stored) < 100e-9,
+            rises and min(stored) > 0 and max(stored) < 100e-9,
         )
     ]
 
 
-def _case(name, bound, seconds, ok):
+def _case(name: str, bound: str, seconds: float, ok: bool | np.bool_) -> Case:
     return Case(name, bound, f"{seconds * 1e12:.1f} ps", bool(ok))
 
 

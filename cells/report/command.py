@@ -3,6 +3,7 @@
 import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
+from typing import Any
 
 from base.files import staged
 from base.liberty.read import read
@@ -42,7 +43,7 @@ def run(options: Namespace) -> int:
     conditions = Conditions(Corner.parse(options.corner), options.models)
     page = {"corner": options.corner, "default": curve.DEFAULT, "points": curve.OFF_GRID, "kinds": {}}
     if options.reference:
-        page |= against(conditions, options)
+        page |= against(conditions, options.reference, options.out, options.workers)
     measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
     found = curve.table(measured)
     page |= {
@@ -65,23 +66,23 @@ def run(options: Namespace) -> int:
     return 0
 
 
-def against(conditions, options):
-    """What the page says about the reference: dict."""
-    known = reference.folder(options.reference)
+def against(conditions: Conditions, folder: Path, out: Path, workers: int) -> dict[str, Any]:
+    """The page's values about the reference in ``folder``."""
+    known = reference.folder(folder)
     names = sorted(set(known) & set(sources.names("sky130_hd")))
     if not names:
-        raise ParameterError(f"reference = {options.reference}: has no cell of sky130_hd")
-    characterize_library("sky130_hd", conditions, names, "extracted", options.out / "libraries", None, options.workers)
-    tree = read(options.out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
+        raise ParameterError(f"reference = {folder}: has no cell of sky130_hd")
+    characterize_library("sky130_hd", conditions, names, "extracted", out / "libraries", None, workers)
+    tree = read(out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
     differences = compare.library(tree, known)
-    told = compare.summary(differences)
-    kinds = told["error"]
+    summary = compare.summary(differences)
+    kinds = summary["error"]
     for kind, e in kinds.items():
         e["bound"] = BOUNDS.get(kind)
     cells = {}
     for name in names:
         same = [d for d in differences if d.cell == name]
         cells[name] = {**compare.summary(same), "picture": pictures.heat_maps(same)}
-    found = separate.separate("sky130_hd", names, conditions, options.reference, options.out / "jobs", options.workers)
-    alone = {name: told[name] for name in ("only_theirs", "only_ours")}
+    found = separate.separate("sky130_hd", names, conditions, folder, out / "jobs", workers)
+    alone = {name: summary[name] for name in ("only_theirs", "only_ours")}
     return {"kinds": kinds, "cells": cells, "variants": separate.table(found), "alone": alone}

@@ -1,7 +1,10 @@
 """Error against run time: tolerances, time steps and grids, each against a dense transient of the same netlist."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 
@@ -10,18 +13,47 @@ from cells import sources
 from cells.characterize import delay
 from cells.characterize.bench import Bench
 from cells.characterize.cell import axes_of, cpu_seconds
+from cells.characterize.conditions import Conditions
 from cells.characterize.job import cell_of, job
 from cells.spice.settings import Settings
 
 CELLS = ("inv_1", "nand2_1", "buf_2")
-SLOW = ("inv_8", "nor2_4", "xor2_1", "dfxtp_1")  # with the default setting alone
+SLOW = ("inv_8", "nor2_4", "xor2_1", "dfxtp_1")  # with the default setting only
 DEFAULT = "reltol 0.0001, 50 steps"
 OFF_GRID = 16  # random points of a table, the same for every setting
 DENSE = Settings(reltol=1e-6, trtol=1.0, steps=1000, method="gear")
+Truth = tuple[float, float, dict[str, float]]  # slew s, load F, what a dense transient measures there
 
 
-def settings(conditions):
-    """name -> Conditions: what is compared. The default is among them."""
+class Tried(TypedDict):
+    """A cell with one setting: CPU seconds, and the errors of delay and slew in per cent."""
+
+    name: str
+    cell: str
+    seconds: float
+    error: list[float]
+
+
+class Setting(NamedTuple):
+    """A setting: CPU seconds of CELLS, and absolute errors in per cent."""
+
+    name: str
+    seconds: float
+    median: float
+    p95: float
+
+
+class CellError(NamedTuple):
+    """Absolute errors of a cell in per cent with the default setting."""
+
+    cell: str
+    values: int
+    median: float
+    p95: float
+
+
+def settings(conditions: Conditions) -> dict[str, Conditions]:
+    """The settings that are compared, the default among them."""
     base, found = conditions, {}
     for reltol in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
         for steps in (20, 50, 200):
@@ -37,10 +69,10 @@ def settings(conditions):
     return found
 
 
-def measure(library, conditions, store, workers):
-    """[{name, cell, seconds of the processor, error: of delay and slew, per cent}]: CELLS with every setting, SLOW with
+def measure(library: str, conditions: Conditions, store: Path, workers: int) -> list[Tried]:
+    """Try CELLS with every setting, SLOW with the default.
 
-    the default. By one worker, for the sake of the seconds; what they are held against by ``workers``.
+    One worker measures them, for the sake of the seconds; the dense transients run in ``workers`` processes.
     """
     process, cells = sources.process(library), (*CELLS, *SLOW)
     found = {name: sources.source(library, name) for name in cells}
@@ -69,10 +101,9 @@ def measure(library, conditions, store, workers):
     return jobs.run(todo, store, "error against run time", workers=1)
 
 
-def one(library, name, label, conditions, truth):
-    """One cell with one setting, against its ``truth``: dict."""
+def one(library: str, name: str, label: str, conditions: Conditions, truth: Sequence[Sequence[Truth]]) -> Tried:
+    """Try one cell with one setting against its ``truth``."""
     cell = cell_of(sources.source(library, name), sources.process(library))
-    found = {"name": label, "cell": name, "error": []}
     started = cpu_seconds()
     with Bench(cell, sources.process(library), conditions) as bench:
         grid = {output: axes_of(bench, output) for output in cell.machine.outputs}
@@ -80,15 +111,18 @@ def one(library, name, label, conditions, truth):
             delay.table(bench, arc.changes[0], arc.output, grid[arc.output][1], grid[arc.output][0])
             for arc in cell.arcs
         ]
-    found["seconds"] = cpu_seconds() - started
-    for table, points in zip(tables, truth, strict=True):
-        for slew, load, exact in points:
-            found["error"] += [100 * (table.at(field, slew, load) / exact[field] - 1) for field in ("delay", "slew")]
-    return found
+    seconds = cpu_seconds() - started
+    errors = [
+        100 * (table.at(field, slew, load) / exact[field] - 1)
+        for table, points in zip(tables, truth, strict=True)
+        for slew, load, exact in points
+        for field in ("delay", "slew")
+    ]
+    return {"name": label, "cell": name, "error": errors, "seconds": seconds}
 
 
-def truth(library, name, base):
-    """For every arc of a cell [(slew, load, {delay, slew})]: dense transients at random points."""
+def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
+    """Run dense transients at random points of every arc of a cell."""
     rng, found = np.random.default_rng(1), []
     process = sources.process(library)
     cell = cell_of(sources.source(library, name), process)
@@ -98,8 +132,8 @@ def truth(library, name, base):
             for output in cell.machine.outputs
         }
         for arc in cell.arcs:
-            slews = np.exp(rng.uniform(*np.log([base.slews[0], base.slews[-1]]), OFF_GRID))
-            loads = np.exp(rng.uniform(*np.log([base.least_load, largest[arc.output]]), OFF_GRID))
+            slews = np.exp(rng.uniform(np.log(base.slews[0]), np.log(base.slews[-1]), OFF_GRID))
+            loads = np.exp(rng.uniform(np.log(base.least_load), np.log(largest[arc.output]), OFF_GRID))
             found.append(
                 [
                     (slew, load, vars(bench.edge(arc.changes[0], arc.output, slew, load)))
@@ -109,17 +143,20 @@ def truth(library, name, base):
     return found
 
 
-def table(found):
-    """[(setting, seconds of CELLS, median, 95th percentile)] of absolute errors in per cent."""
+def table(found: Sequence[Tried]) -> list[Setting]:
+    """Summarize every setting over CELLS."""
     rows = []
     for name in dict.fromkeys(f["name"] for f in found):
         same = [f for f in found if f["name"] == name and f["cell"] in CELLS]
         values = np.abs(np.concatenate([f["error"] for f in same]))
-        rows.append((name, sum(f["seconds"] for f in same), float(np.median(values)), float(np.percentile(values, 95))))
+        seconds, median, p95 = sum(f["seconds"] for f in same), np.median(values), np.percentile(values, 95)
+        rows.append(Setting(name, seconds, float(median), float(p95)))
     return rows
 
 
-def by_cell(found):
-    """[(cell, points, median, 95th percentile)] of absolute errors in per cent with the default setting."""
+def by_cell(found: Sequence[Tried]) -> list[CellError]:
+    """Summarize every cell with the default setting."""
     own = [(f["cell"], np.abs(f["error"])) for f in found if f["name"] == DEFAULT]
-    return [(cell, len(errors), float(np.median(errors)), float(np.percentile(errors, 95))) for cell, errors in own]
+    return [
+        CellError(cell, len(errors), float(np.median(errors)), float(np.percentile(errors, 95))) for cell, errors in own
+    ]

@@ -2,30 +2,33 @@
 
 import base64
 import io
+from collections.abc import Sequence
 
-import matplotlib
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-from matplotlib import pyplot as plt  # noqa: E402
+from cells.liberty.compare import Difference
+from cells.report.curve import Setting
 
 SCALE = 15  # per cent at the ends of the colours
 
 
-def embedded(figure):
+def embedded(figure: Figure) -> str:
     """The figure as the text of an <img src>."""
+    FigureCanvasAgg(figure)
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=80)
-    plt.close(figure)
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
 
 
-def heat_maps(differences):
-    """One row of maps: relative error in per cent of every two-dimensional table of one cell, grid by grid."""
+def heat_maps(differences: Sequence[Difference]) -> str:
+    """Draw the relative error in per cent (of constraints ps) of every two-dimensional table of one cell."""
     tables = [d for d in differences if np.ndim(d.theirs) == 2 and np.isfinite(d.ours - d.theirs).all()]
     columns = 6
     rows = max(1, -(-len(tables) // columns))
-    figure, axes = plt.subplots(rows, columns, figsize=(2.3 * columns, 2.2 * rows), squeeze=False, layout="constrained")
+    figure = Figure(figsize=(2.3 * columns, 2.2 * rows), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False)
     for axis in axes.flat:
         axis.axis("off")
     for axis, d in zip(axes.flat, tables, strict=False):
@@ -46,9 +49,10 @@ def heat_maps(differences):
     return embedded(figure)
 
 
-def error_against_time(rows, default):
-    """Seconds against the median and the 95th percentile of the error; points have their numbers in ``rows``."""
-    figure, axis = plt.subplots(figsize=(9, 5), layout="constrained")
+def error_against_time(rows: Sequence[Setting], default: str) -> str:
+    """Draw the error against CPU seconds: median and 95th percentile; points have their numbers in ``rows``."""
+    figure = Figure(figsize=(9, 5), layout="constrained")
+    axis = figure.subplots()
     for number, (name, seconds, median, high) in enumerate(rows, start=1):
         grid = name.startswith("grid")
         axis.plot([seconds, seconds], [median, high], "-", color="0.8", zorder=1)
@@ -61,7 +65,7 @@ def error_against_time(rows, default):
     axis.set(
         xscale="log",
         yscale="log",
-        xlabel="seconds of the processor, three cells",
+        xlabel="CPU seconds, three cells",
         ylabel="error in per cent: median, 95th percentile",
     )
     axis.grid(alpha=0.3, which="both")

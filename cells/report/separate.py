@@ -1,27 +1,54 @@
-"""Which part of the error is whose: device models, stray capacitances, the drawn transistors, the tables."""
+"""Sources of the error: device models, parasitics, the drawn transistors."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 
 from base import jobs
 from cells import sources
 from cells.characterize.bench import Bench
+from cells.characterize.conditions import Conditions
 from cells.characterize.job import cell_of, job
 from cells.liberty import reference
 
 POINTS = slice(0, None, 2)  # of the reference's axes: every other
 
 
-def variants(process):
-    """(models, netlist) of every combination."""
+class Errors(TypedDict):
+    """Errors of delay and slew of one cell in one variant, per cent."""
+
+    cell: str
+    models: str
+    netlist: str
+    delay: list[float]
+    slew: list[float]
+
+
+class Variant(NamedTuple):
+    """Absolute errors of delay and slew in per cent with a set of models and a netlist."""
+
+    models: str
+    netlist: str
+    entries: int
+    median: float
+    p95: float
+
+
+def variants(process: ModuleType) -> list[tuple[str, str]]:
+    """Every combination of a set of models and a netlist."""
     return [(models, netlist) for models in process.SETS for netlist in sources.NETLISTS]
 
 
-def separate(library, names, conditions, folder, store, workers):
-    """[{cell, models, netlist, delay: errors, slew: errors}] in per cent, at the reference's own points.
+def separate(
+    library: str, names: Sequence[str], conditions: Conditions, folder: Path, store: Path, workers: int
+) -> list[Errors]:
+    """Errors of every cell in every variant, at the reference's own points.
 
-    Nothing is interpolated, so that what is left is of models and netlist.
+    Nothing is interpolated, so that only models and netlist cause them.
     """
     process = sources.process(library)
     todo = []
@@ -42,18 +69,20 @@ def separate(library, names, conditions, folder, store, workers):
     return jobs.run(todo, store, "models and netlists", workers)
 
 
-def errors(library, name, conditions, netlist, file):
-    """Errors of delay and slew of one cell in one variant: dict."""
+def errors(library: str, name: str, conditions: Conditions, netlist: str, file: str) -> Errors:
+    """Errors of one cell in one variant, against the reference's ``file``."""
     process = sources.process(library)
     cell, theirs = cell_of(sources.source(library, name, netlist), process), reference.cell(file)
-    found = {"cell": name, "models": conditions.models, "netlist": netlist, "delay": [], "slew": []}
+    found: Errors = {"cell": name, "models": conditions.models, "netlist": netlist, "delay": [], "slew": []}
     with Bench(cell, process, conditions) as bench:
         for arc in cell.arcs:
-            for timing in theirs.one("pin", arc.output).all(
-                "timing", related_pin=arc.pin, timing_type=arc.type, timing_sense=arc.sense
-            ):
+            pin = theirs.one("pin", arc.output)
+            wanted = {"related_pin": arc.pin, "timing_type": arc.type, "timing_sense": arc.sense}
+            for timing in pin.all("timing", **wanted) if pin else ():
                 for field, kind in (("delay", f"cell_{arc.edge}"), ("slew", f"{arc.edge}_transition")):
                     table = timing.one(kind)
+                    if table is None:
+                        continue
                     values = table.array("values")[POINTS, POINTS]
                     ours = [
                         [
@@ -66,10 +95,11 @@ def errors(library, name, conditions, netlist, file):
     return found
 
 
-def table(found):
-    """[(models, netlist, entries, median, 95th percentile)] of absolute errors in per cent, delay and slew together."""
+def table(found: Sequence[Errors]) -> list[Variant]:
+    """Summarize every variant over all cells, delay and slew together."""
     rows = []
-    for key in dict.fromkeys((f["models"], f["netlist"]) for f in found):
-        values = np.abs([e for f in found if (f["models"], f["netlist"]) == key for e in (*f["delay"], *f["slew"])])
-        rows.append((*key, len(values), float(np.median(values)), float(np.percentile(values, 95))))
+    for models, netlist in dict.fromkeys((f["models"], f["netlist"]) for f in found):
+        same = [f for f in found if (f["models"], f["netlist"]) == (models, netlist)]
+        values = np.abs([e for f in same for e in (*f["delay"], *f["slew"])])
+        rows.append(Variant(models, netlist, len(values), float(np.median(values)), float(np.percentile(values, 95))))
     return rows

@@ -70,10 +70,10 @@ def test_states_of_theirs_are_each_held_against_our_one_table():
 
 def test_what_is_alone_is_named_and_not_dropped():
     ours, theirs = cell(clear("positive_unate", cell_fall=1)), cell(clear("positive_unate", fall_transition=1))
-    told = summary(differences("c", ours, theirs))
-    assert told["only_theirs"] == ["c: Q R clear positive_unate fall_transition"]
-    assert told["only_ours"] == ["c: Q R clear positive_unate cell_fall"]
-    assert told["error"]["slew"]["missing"] == 4 and "delay" not in told["error"]
+    report = summary(differences("c", ours, theirs))
+    assert report["only_theirs"] == ["c: Q R clear positive_unate fall_transition"]
+    assert report["only_ours"] == ["c: Q R clear positive_unate cell_fall"]
+    assert report["error"]["slew"]["missing"] == 4 and "delay" not in report["error"]
     other = summary(differences("c", cell(clear("positive_unate", cell_fall=1), pin="X"), theirs))
     assert other["only_theirs"] == ["c: Q R clear positive_unate fall_transition"]
 

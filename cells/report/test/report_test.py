@@ -8,9 +8,9 @@ import pytest
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
 from base.page import render
-from cells import report  # noqa: E402 - it imports KLayout
-from cells.liberty.compare import Difference, summary  # noqa: E402
-from cells.report import curve, pictures  # noqa: E402
+from cells import report
+from cells.liberty.compare import Difference, summary
+from cells.report import curve, pictures
 
 ERRORS = [
     {"name": curve.DEFAULT, "cell": "inv_1", "seconds": 2.0, "error": [1.0, -3.0, 2.0]},
@@ -27,7 +27,7 @@ def test_the_curve_has_the_settings_of_the_quick_cells():
     ]
 
 
-def test_the_default_is_told_cell_by_cell():
+def test_the_default_is_reported_cell_by_cell():
     assert [(cell, values, median) for cell, values, median, _ in curve.by_cell(ERRORS)] == [
         ("inv_1", 3, 2.0),
         ("nand2_1", 2, 4.5),
@@ -48,14 +48,14 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
     found = [Difference("c", "delay", "Y A cell_rise", full, 2 * full), Difference("c", "slew", "Y B", none, full)]
     picture = pictures.heat_maps(found)
     assert picture.startswith("data:image/png;base64,") and picture == pictures.heat_maps(found[:1])
-    told = summary(found)
+    found_summary = summary(found)
     page = {
         "corner": "tt",
         "default": curve.DEFAULT,
         "points": 1,
-        "alone": told,
-        "kinds": {kind: {**e, "bound": (5, 12)} for kind, e in told["error"].items()},
-        "cells": {"c": {**told, "picture": picture}},
+        "alone": found_summary,
+        "kinds": {kind: {**e, "bound": (5, 12)} for kind, e in found_summary["error"].items()},
+        "cells": {"c": {**found_summary, "picture": picture}},
         "variants": [("fitted", "extracted", 8, 1.0, 2.0)],
         "curve": curve.table(ERRORS),
         "off_grid": curve.by_cell(ERRORS),
