@@ -1,13 +1,15 @@
 """Area of our own blocks on this library against sky130_fd_sc_hd.
 
-Both by the same Yosys script from Liberty files without delays: the mapper looks at areas and logic depth alone.
+Both by the same Yosys script from Liberty files without delays: the mapper sees areas and logic depth alone.
 """
 
 import json
 import tempfile
 from argparse import ArgumentParser, Namespace
 from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import TypedDict
 
 from base.files import insert
 from base.jobs import Job
@@ -18,12 +20,19 @@ from base.tools import run as run_tool
 from models.parameters import ParameterError
 
 BLOCKS = ("QuadDividerRadix2", "EdgeAdc", "AmpCtrl", "RunLength", "RegFile")
-LIMIT = 1.6  # of the sum, ours by theirs
+LIMIT = 1.6  # of the areas' ratio, ours by theirs
 STORE = Path("build/cells/compact/area")
 
 
-def mapped(verilog, top, liberty):
-    """{"um2": area, "cells": {type: number}} of module ``top`` of the file ``verilog``, mapped to ``liberty``."""
+class Mapped(TypedDict):
+    """A mapped module: its area, and the number of cells by type."""
+
+    um2: float
+    cells: dict[str, int]
+
+
+def mapped(verilog: str, top: str, liberty: str) -> Mapped:
+    """Map module ``top`` of the file ``verilog`` to the cells of ``liberty``. Raises ToolError."""
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
         script = (
@@ -34,12 +43,14 @@ def mapped(verilog, top, liberty):
         cells = json.loads(report.read_text())["design"]["num_cells_by_type"]
     area = areas(Path(liberty))
     if left := sorted(cells.keys() - area.keys()):
-        raise ToolError(f"yosys: {top}: left {', '.join(left)} that {liberty} does not have")
+        raise ToolError(f"yosys: {top}: cells {', '.join(left)} are missing in {liberty}")
     return {"um2": sum(area[cell] * number for cell, number in cells.items()), "cells": cells}
 
 
-def compare(verilog, blocks, ours, theirs, store=STORE):
-    """{block: (ours, theirs)}, each as `mapped` returns it. verilog: folder of <block>.v."""
+def compare(
+    verilog: str | Path, blocks: Iterable[str], ours: Path, theirs: Path, store: Path = STORE
+) -> dict[str, tuple[Mapped, Mapped]]:
+    """Map every block to both libraries. verilog: folder of <block>.v. Raises ParameterError, ToolError."""
     files = {block: Path(verilog) / f"{block}.v" for block in blocks}
     for block, file in files.items():
         if not file.exists():
@@ -82,15 +93,16 @@ def run(options: Namespace) -> int:
     return 0 if total[0] / total[1] <= LIMIT else 1
 
 
-def _blocks(found, total):
+def _blocks(found: Mapping[str, tuple[Mapped, Mapped]], total: Sequence[float]) -> str:
     lines = ["| block | Compact um2 | sky130_fd_sc_hd um2 | ratio |", "|---|---:|---:|---:|"]
-    for block, (a, b) in (*((block, [side["um2"] for side in pair]) for block, pair in found.items()), ("all", total)):
+    rows = [(block, a["um2"], b["um2"]) for block, (a, b) in found.items()]
+    for block, a, b in (*rows, ("all", total[0], total[1])):
         lines.append(f"| {block} | {a:,.0f} | {b:,.0f} | {a / b:.2f} |")
     return "\n".join(lines)
 
 
-def _cells(found, k, liberty, most=10):
-    """The cells that the area of all blocks goes to, in library ``k`` of 0 and 1."""
+def _cells(found: Mapping[str, tuple[Mapped, Mapped]], k: int, liberty: Path, most: int = 10) -> str:
+    """The table of the cells with the largest share of the area, in library ``k`` of 0 and 1."""
     area, count = areas(liberty), Counter()
     for pair in found.values():
         count.update(pair[k]["cells"])

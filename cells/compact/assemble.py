@@ -1,9 +1,12 @@
-"""From columns to a routing task and, when it is routed, to the rectangles of a cell."""
+"""Gates and diffusions of a placement, and the routing task that they make."""
 
 from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from cells.compact.place import breaks
+from cells.compact.canvas import Canvas
+from cells.compact.grid import Vertex
+from cells.compact.place import Column, breaks
 from cells.compact.route import Task
 
 
@@ -13,20 +16,20 @@ class Diffusion:
 
     kind: str
     net: str
-    columns: list
+    columns: list[int]
 
 
 @dataclass
 class Assembly:
-    """columns: half-site columns; gates: (half-site column, Column); diffusions: list of Diffusion."""
+    """A placement in half-site columns: their number, the gates with their column, the diffusions."""
 
     columns: int
-    gates: list
-    diffusions: list = field(default_factory=list)
+    gates: list[tuple[int, Column]]
+    diffusions: list[Diffusion] = field(default_factory=list)
 
 
-def assemble(columns, spread=()):
-    """Columns in their places: Assembly. spread: indices k with a gap after column k that the nets would not need."""
+def assemble(columns: Sequence[Column], spread: Iterable[int] = ()) -> Assembly:
+    """Put columns in their places. spread: indices k with a gap after column k that the nets do not need."""
     gaps = set(breaks(columns)) | set(spread)
     gates, h = [], 1
     for k, column in enumerate(columns):
@@ -34,7 +37,7 @@ def assemble(columns, spread=()):
         h += 4 if k in gaps else 2
     made = Assembly(h, gates)
     for kind in "np":
-        for (h, column), following in zip(gates, [*gates[1:], None]):
+        for (h, column), following in zip(gates, [*gates[1:], None], strict=True):
             left, right = column.ends(kind)
             if (
                 not made.diffusions
@@ -50,14 +53,15 @@ def assemble(columns, spread=()):
     return made
 
 
-def task(made, canvas, ports):
-    """The routing Task of an Assembly."""
+def task(made: Assembly, canvas: Canvas, ports: tuple[str, ...]) -> Task:
+    """Make the routing task of an assembly."""
     count = Counter(d.net for d in made.diffusions)
     gate_nets = {net for _, c in made.gates for net in (c.n.gate, c.p.gate)}
-    terminals, blocked = {}, {"vss": set(), "vdd": set()}
+    terminals: dict[str, list[set[Vertex]]] = {}
+    blocked: dict[str, set[Vertex]] = {"vss": set(), "vdd": set()}
     for d in made.diffusions:
         row = 0 if d.kind == "n" else len(canvas.rows) - 1
-        spots = {("li", h, row) for h in d.columns}
+        spots: set[Vertex] = {("li", h, row) for h in d.columns}
         if d.net in blocked:
             blocked[d.net] |= spots
         elif count[d.net] > 1 or d.net in gate_nets or d.net in ports:

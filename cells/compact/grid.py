@@ -1,31 +1,41 @@
-"""Where wires of a cell may run: vertices on half-site columns by the canvas's rows, and which exclude each other.
+"""The routing grid of a cell: vertices on half-site columns by the canvas's rows, and which exclude each other.
 
 A vertex is (layer, column, row). Layers: poly between the diffusions (rows low and high), li everywhere, met1 where li
-does not suffice, and the cuts licon and mcon between them. On every layer neighbouring columns of one row are too near
+does not suffice, and the vias licon and mcon between them. On every layer neighbouring columns of one row are too near
 to each other for different nets. Besides:
 
 - ('pin', h, r): a pin on li from row r to r + 1; it holds these two vertices.
 - ('tap', h, side, r): a gate's contact in row r, low or high, with its pin to the other of these rows, both 0.08 um
-  beside the gate's middle (side -1 or 1), so that a wire fits on the other side of it.
+  beside the gate's middle (side -1 or 1), so that li of another net fits on the other side of it.
 - ('tip', h, side, r): such a contact in row r, low or high, with li from it away from the other row, which joins
   column h + side there.
 """
 
 import numpy as np
+import numpy.typing as npt
+
+from cells.compact.canvas import Canvas
+
+Vertex = tuple[str, int, int] | tuple[str, int, int, int]
+Neighbours = dict[Vertex, set[Vertex]]
+Packed = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]  # start of each vertex's members, and the members
 
 PRICE = {"li": 1.0, "poly": 2.0, "met1": 2.5, "licon": 2.0, "mcon": 4.0, "pin": 0.0, "tap": 3.0, "tip": 3.5}
 
 
 class Grid:
-    """Of ``columns`` half sites on ``canvas``; met1: is it there?
+    """The grid of ``columns`` half sites on ``canvas``, with or without met1.
 
-    vertices: list; number: its inverse; next, excludes, needs, crowds: vertex -> set of vertices: neighbours; what no
-    other net may hold beside it; what it stands for; what the same net may not hold beside it.
+    number: index of each of ``vertices``. Of a vertex, next: its neighbours; excludes: vertices that no other net may
+    hold beside it; needs: the vertices that it holds; crowds: those that the same net may not hold beside it.
     """
 
-    def __init__(self, columns, canvas, met1):
+    def __init__(self, columns: int, canvas: Canvas, met1: bool) -> None:
         self.columns, self.canvas = columns, canvas
-        self.next, self.excludes, self.needs, self.crowds = {}, {}, {}, {}
+        self.next: Neighbours = {}
+        self.excludes: Neighbours = {}
+        self.needs: Neighbours = {}
+        self.crowds: Neighbours = {}
         for h in range(columns):
             self._column(h, met1)
         self.vertices = list(self.next)
@@ -41,22 +51,23 @@ class Grid:
             self.crowds[v].discard(v)
             self.needs.setdefault(v, {v})
 
-    def arrays(self):
-        """(price, leaf, next, excludes, needs, crowds) for the router; the last four as (start, member) arrays."""
+    def arrays(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_], Packed, Packed, Packed, Packed]:
+        """Return price, leaf, next, excludes, needs and crowds for the router."""
         price = np.array([PRICE[v[0]] for v in self.vertices])
         leaf = np.array([v[0] in ("pin", "tap") for v in self.vertices])
-        return price, leaf, *(self._packed(table) for table in (self.next, self.excludes, self.needs, self.crowds))
+        nexts, excludes, needs, crowds = map(self._packed, (self.next, self.excludes, self.needs, self.crowds))
+        return price, leaf, nexts, excludes, needs, crowds
 
-    def _packed(self, table):
+    def _packed(self, table: Neighbours) -> Packed:
         members = [sorted(self.number[u] for u in table[v]) for v in self.vertices]
         start = np.cumsum([0, *(len(m) for m in members)])
         return start, np.array([u for m in members for u in m], dtype=np.int64)
 
-    def _join(self, a, b):
+    def _join(self, a: Vertex, b: Vertex) -> None:
         self.next.setdefault(a, set()).add(b)
         self.next.setdefault(b, set()).add(a)
 
-    def _column(self, h, met1):
+    def _column(self, h: int, met1: bool) -> None:
         low, high, rows = self.canvas.low, self.canvas.high, len(self.canvas.rows)
         right = h + 1 < self.columns
         for r in range(rows):
@@ -79,7 +90,7 @@ class Grid:
                 if right:
                     self._join(("met1", h, r), ("met1", h + 1, r))
                 self.excludes[("met1", h, r)] = {("met1", h + 1, r)}
-                near = {("mcon", k, s) for k in (h - 1, h, h + 1) for s in (r - 1, r, r + 1)}
+                near: set[Vertex] = {("mcon", k, s) for k in (h - 1, h, h + 1) for s in (r - 1, r, r + 1)}
                 self.excludes[("mcon", h, r)], self.crowds[("mcon", h, r)] = near, near
         self._join(("poly", h, low), ("poly", h, high))
         for r in self.canvas.pins:
@@ -92,8 +103,8 @@ class Grid:
             for side in (-1, 1):
                 self._beside(h, side)
 
-    def _beside(self, h, side):
-        """The contacts of gate column ``h`` that stand ``side`` of its middle."""
+    def _beside(self, h: int, side: int) -> None:
+        """Add the contacts of gate column ``h`` on ``side`` of its middle."""
         low, high = self.canvas.low, self.canvas.high
         here, other = (h, h + side), (h - 1, h, h + 1)
         for row, away in ((low, low - 1), (high, high + 1)):

@@ -1,39 +1,41 @@
-"""The library: every cell of the catalogue made once and kept, and as PDKMaster's objects for its exporters."""
+"""The library: every cell of the catalogue, drawn once and kept, and as PDKMaster's objects for its exporters."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from base.jobs import Job, run
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
+from cells.compact.draw import Drawn
 from cells.compact.make import make, recipe
 from cells.compact.ties import diode, ties
+from cells.compact.transistors import Schematic
+
+if TYPE_CHECKING:
+    from pdkmaster.design.library import RoutingGaugeLibrary
 
 NAME = "StdCellLib"
 FOLDER = Path("build/cells/compact")
 
 
-def drawn(canvas=None, store=FOLDER / "drawn", workers=-1, names=None):
-    """name -> (Schematic, drawing: dict with width in um and shapes) of every cell, or of ``names``.
-
-    Made by `base.jobs` and kept in ``store``: a second call reads them.
-    """
-    canvas = canvas or Canvas()
-    wanted = {name: s for name, s in schematics().items() if names is None or name in names}
+def drawn(
+    canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1
+) -> dict[str, tuple[Schematic, Drawn]]:
+    """Draw every cell, once: the jobs' results are kept in ``store``. workers: processes, -1 for all cores."""
+    canvas, wanted = canvas or Canvas(), schematics()
     order = sorted(wanted, key=lambda name: -len(wanted[name].n))  # the widest take longest
     jobs = [
         Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known)) for name in order
     ]
     made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
-    return {name: (wanted[name], made[name]) for name in wanted} | {
-        name: entry for name, entry in (ties(canvas) | diode(canvas)).items() if names is None or name in names
-    }
+    return {name: (wanted[name], made[name]) for name in wanted} | ties(canvas) | diode(canvas)
 
 
-def library(canvas=None, store=FOLDER / "drawn", workers=-1):
-    """pdkmaster.design.library.RoutingGaugeLibrary of all cells, for the exporters to Coriolis, KLayout and SPICE.
+def library(canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1) -> "RoutingGaugeLibrary":
+    """All cells as a library of PDKMaster, for the exporters to Coriolis, KLayout and SPICE.
 
-    workers: processes that draw what is not in ``store``; 1 within a process that should end by itself (joblib's
-    workers keep it waiting for five minutes).
+    workers: see `drawn`; 1 within a process that should end by itself (joblib's workers keep it waiting for five
+    minutes).
     """
     from cells.compact.pdk import to_pdkmaster
 
@@ -41,8 +43,8 @@ def library(canvas=None, store=FOLDER / "drawn", workers=-1):
     return to_pdkmaster(NAME, canvas, drawn(canvas, store, workers))
 
 
-def schematic_spice(schematic, canvas):
-    """The transistors alone, in um, as SkyWater's models want them."""
+def schematic_spice(schematic: Schematic, canvas: Canvas) -> str:
+    """The netlist of the transistors alone, sizes in um as SkyWater's models expect them."""
     lines = [f".subckt {schematic.name} {' '.join(schematic.ports)}"]
     for kind, switches, (low, high), bulk in (("n", schematic.n, canvas.n, "vss"), ("p", schematic.p, canvas.p, "vdd")):
         lines += [

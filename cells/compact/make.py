@@ -1,18 +1,21 @@
 """A cell from its schematic: the narrowest placement that routes and breaks no rule.
 
 recipes.json holds what a longer search has found (talbot cells-compact-search): a seed of the placement, where
-extra gaps are, whether met1 is used. With it a cell is drawn at once; without it, it is searched for.
+extra gaps are, whether met1 is used. With a recipe a cell is drawn at once, without one a placement is searched.
 """
 
 import json
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 
 from cells.compact.assemble import assemble, task
-from cells.compact.draw import Drawing
-from cells.compact.place import breaks, place
+from cells.compact.canvas import Canvas
+from cells.compact.draw import Box, Drawing, Drawn
+from cells.compact.place import Column, breaks, place
 from cells.compact.route import route
 from cells.compact.rules import broken
+from cells.compact.transistors import Schematic
 
 RECIPES = Path(__file__).with_name("recipes.json")
 SEEDS = 24  # placements tried when there is no recipe
@@ -27,40 +30,36 @@ class NoLayout(RuntimeError):
 
 @dataclass(frozen=True, order=True)
 class Recipe:
-    """sites: width; met1: is it used?; seed: of `place`; spread: indices of columns with an extra gap behind them."""
+    """A drawing of a cell: width in sites, whether met1 is used, seed of `place`, columns with an extra gap after."""
 
     sites: int
     met1: bool
     seed: int
-    spread: tuple
+    spread: tuple[int, ...]
 
 
-def recipe(name):
+def recipe(name: str) -> Recipe | None:
     """The Recipe kept for cell ``name``, or None."""
-    kept = json.loads(RECIPES.read_text()).get(name) if RECIPES.exists() else None
-    return Recipe(kept[0], kept[1], kept[2], tuple(kept[3])) if kept else None
+    if kept := json.loads(RECIPES.read_text()).get(name):
+        sites, met1, seed, spread = kept
+        return Recipe(sites, met1, seed, tuple(spread))
+    return None
 
 
-def make(schematic, canvas, known=None):
-    """What was drawn, as JSON can hold it: dict with width (um), shapes (list of dicts) and its recipe (list).
-
-    known: a Recipe to follow, should it still work. Raises NoLayout.
-    """
+def make(schematic: Schematic, canvas: Canvas, known: Recipe | None = None) -> Drawn:
+    """Draw a cell, by the Recipe ``known`` where that works. Raises NoLayout."""
     drawing = known and _draw(schematic, place(schematic, known.seed), known, canvas)
     if not drawing:
         known = choose(schematic, canvas, range(SEEDS))
-        if known is None:
-            raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
-        drawing = _draw(schematic, place(schematic, known.seed), known, canvas)
-    return {
-        "width": drawing.width,
-        "recipe": [known.sites, known.met1, known.seed, known.spread],
-        "shapes": [asdict(shape) for shape in drawing.shapes],
-    }
+        drawing = known and _draw(schematic, place(schematic, known.seed), known, canvas)
+    if not known or not drawing:
+        raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
+    shapes = [Box(**asdict(shape)) for shape in drawing.shapes]
+    return {"width": drawing.width, "recipe": list(astuple(known)), "shapes": shapes}
 
 
-def choose(schematic, canvas, seeds, below=None):
-    """Of the narrowest Recipes from ``seeds`` the one that is best to route to, or None; see `search`, `merit`."""
+def choose(schematic: Schematic, canvas: Canvas, seeds: Iterable[int], below: Recipe | None = None) -> Recipe | None:
+    """Choose of the narrowest recipes from ``seeds`` the one with the most `merit`; None where no placement routes."""
     found = []
     for one, drawing in search(schematic, canvas, seeds, below):
         if found and (one.sites > found[0][1].sites or len(found) == CHOICES):
@@ -69,23 +68,20 @@ def choose(schematic, canvas, seeds, below=None):
     return max(found, key=lambda pair: pair[0])[1] if found else None
 
 
-def merit(drawing):
-    """(tracks of met1 that the least accessible pin meets, at most 3; less met1 inside), the more the better."""
-    c = drawing.canvas
-    tracks = [k * c.site for k in range(1, round(c.height / c.site))]
+def merit(drawing: Drawing) -> tuple[int, int]:
+    """Pin access (tracks of met1 that the least accessible pin meets, at most 3), then less met1 inside."""
     pins = [
-        sum(s.bottom <= t - 0.16 + 1e-9 and t + 0.16 <= s.top + 1e-9 for t in tracks)
+        sum(s.bottom <= t - 0.16 + 1e-9 and t + 0.16 <= s.top + 1e-9 for t in drawing.canvas.tracks)
         for s in drawing.shapes
         if s.layer == "li.pin"
     ]
     return min(3, *pins, 3), -sum(s.layer == "m1" for s in drawing.shapes)
 
 
-def search(schematic, canvas, seeds, below=None):
-    """(Recipe, Drawing) of what works, the narrowest first and of these those on li alone. below: a Recipe to beat in
-
-    width.
-    """
+def search(
+    schematic: Schematic, canvas: Canvas, seeds: Iterable[int], below: Recipe | None = None
+) -> Iterator[tuple[Recipe, Drawing]]:
+    """Find what works, the narrowest first and of these those on li alone; narrower than ``below``."""
     placed = {seed: place(schematic, seed) for seed in seeds}
     tried = []
     for seed, columns in placed.items():
@@ -104,18 +100,18 @@ def search(schematic, canvas, seeds, below=None):
             yield trial, drawing
 
 
-def _draw(schematic, columns, recipe_, canvas):
-    """Drawing, or None where it cannot be routed or breaks a rule."""
-    made = assemble(columns, recipe_.spread)
-    wiring = route(task(made, canvas, schematic.ports), recipe_.met1, recipe_.seed)
+def _draw(schematic: Schematic, columns: Sequence[Column], recipe: Recipe, canvas: Canvas) -> Drawing | None:
+    """The drawing, None where it cannot be routed or breaks a rule."""
+    made = assemble(columns, recipe.spread)
+    wiring = route(task(made, canvas, schematic.ports), recipe.met1, recipe.seed)
     if wiring is None:
         return None
     drawings = (Drawing(canvas, made, wiring, reach) for reach in (True, False))
     return next((drawing for drawing in drawings if not broken(drawing)), None)
 
 
-def _spreads(columns, extra, seed):
-    """Where ``extra`` gaps go: a few choices, spread over the cell."""
+def _spreads(columns: Sequence[Column], extra: int, seed: int) -> list[tuple[int, ...]]:
+    """Choose where ``extra`` gaps go: a few choices, spread over the cell."""
     free = [k for k in range(len(columns) - 1) if k not in breaks(columns)]
     if extra == 0:
         return [()]

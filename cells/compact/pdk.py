@@ -1,4 +1,7 @@
-"""The drawn cells as a library of PDKMaster (c4m-pdk-sky130), from which its exporters write what tools load."""
+"""The drawn cells as a library of PDKMaster (c4m-pdk-sky130), for its exporters."""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from c4m.pdk.sky130.pdkmaster import cktfab, layoutfab, tech
 from pdkmaster.design import cell as pdk_cell
@@ -6,11 +9,17 @@ from pdkmaster.design.library import RoutingGaugeLibrary
 from pdkmaster.design.routinggauge import RoutingGauge
 from pdkmaster.technology import geometry
 
+from cells.compact.canvas import Canvas
+from cells.compact.draw import Drawn
+from cells.compact.transistors import Schematic
+
+PRIMITIVES: Any = tech.primitives  # PDKMaster's types do not tell metals from other primitives
+
 
 class DrawnCell(pdk_cell.Cell):
-    """A cell with its circuit and layout. schematic: Schematic; drawing: as `cells.compact.make.make` returns it."""
+    """A cell with its circuit and layout."""
 
-    def __init__(self, canvas, schematic, drawing):
+    def __init__(self, canvas: Canvas, schematic: Schematic, drawing: Drawn) -> None:
         super().__init__(name=schematic.name, tech=tech, cktfab=cktfab, layoutfab=layoutfab)
         self.schematic, self.drawing = schematic, drawing
         circuit = self.new_circuit()
@@ -19,19 +28,19 @@ class DrawnCell(pdk_cell.Cell):
         for shape in drawing["shapes"]:
             sides = {side: shape[side] for side in ("left", "bottom", "right", "top")}
             net = circuit.nets[shape["net"]] if shape["net"] else None
-            layout.add_shape(layer=tech.primitives[shape["layer"]], net=net, shape=geometry.Rect(**sides))
+            layout.add_shape(layer=PRIMITIVES[shape["layer"]], net=net, shape=geometry.Rect(**sides))
         layout.boundary = geometry.Rect(left=0.0, bottom=0.0, right=drawing["width"], top=canvas.height)
 
-    def _devices(self, circuit, canvas):
-        """Instances; returns net -> what is connected to it."""
-        pins = {}
+    def _devices(self, circuit: Any, canvas: Canvas) -> dict[str, list[Any]]:
+        """Add the instances; returns the ports that are connected to each net."""
+        pins: dict[str, list[Any]] = {}
         for kind, switches, (low, high), bulk in (
             ("n", self.schematic.n, canvas.n, "vss"),
             ("p", self.schematic.p, canvas.p, "vdd"),
         ):
             for k, switch in enumerate(switches):
                 device = circuit.instantiate(
-                    tech.primitives[f"{kind}fet_01v8"], name=f"{kind}{k}", w=round(high - low, 3), l=canvas.length
+                    PRIMITIVES[f"{kind}fet_01v8"], name=f"{kind}{k}", w=round(high - low, 3), l=canvas.length
                 )
                 for port, net in (
                     ("sourcedrain1", switch.a),
@@ -42,20 +51,20 @@ class DrawnCell(pdk_cell.Cell):
                     pins.setdefault(net, []).append(device.ports[port])
         if "diode" in self.drawing:
             width, height = self.drawing["diode"]
-            device = circuit.instantiate(tech.primitives["ndiode"], name="d0", width=width, height=height)
+            device = circuit.instantiate(PRIMITIVES["ndiode"], name="d0", width=width, height=height)
             pins.setdefault("i", []).append(device.ports["cathode"])
             pins.setdefault("vss", []).append(device.ports["anode"])
         return pins
 
-    def _connect(self, circuit, pins):
+    def _connect(self, circuit: Any, pins: Mapping[str, Iterable[Any]]) -> None:
         ports = self.schematic.ports
         for net in (*ports, *sorted(pins.keys() - set(ports))):
             circuit.new_net(name=net, external=net in ports, childports=tuple(pins.get(net, ())))
 
 
-def to_pdkmaster(name, canvas, drawn):
-    """RoutingGaugeLibrary ``name`` of ``drawn`` (name -> (Schematic, drawing))."""
-    metals = {metal: tech.primitives[metal] for metal in ("m1", "m2", "m5")}
+def to_pdkmaster(name: str, canvas: Canvas, drawn: Mapping[str, tuple[Schematic, Drawn]]) -> RoutingGaugeLibrary:
+    """The library ``name`` of the cells ``drawn``."""
+    metals = {metal: PRIMITIVES[metal] for metal in ("m1", "m2", "m5")}
     gauge = RoutingGauge(
         tech=tech,
         bottom=metals["m1"],

@@ -1,42 +1,47 @@
-"""Transistors in a row: which stands beside which, and which way round, so that diffusions are shared."""
+"""Placement of the transistors: their order in the row and their orientation, so that diffusions are shared."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
-BREAK = 10.0  # what a break of the diffusions weighs against one column that a net reaches
+from cells.compact.transistors import Schematic, Switch
+
+Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
+
+BREAK = 10.0  # cost of a break of the diffusions; that of a net is the columns that it spans
 
 
 @dataclass(frozen=True)
 class Column:
     """A gate column: the n and p switch, ``a`` on the left of each unless turned."""
 
-    n: object
-    p: object
+    n: Switch
+    p: Switch
     n_turned: bool
     p_turned: bool
 
-    def ends(self, kind):
-        """(left, right) net of its n or p switch."""
+    def ends(self, kind: str) -> tuple[str, str]:
+        """The left and the right net of its n or p switch."""
         switch, turned = (self.n, self.n_turned) if kind == "n" else (self.p, self.p_turned)
         return (switch.b, switch.a) if turned else (switch.a, switch.b)
 
 
-def breaks(columns):
+def breaks(columns: Sequence[Column]) -> list[int]:
     """Indices k where columns k and k + 1 cannot share both diffusions."""
     return [
         k
-        for k, (left, right) in enumerate(zip(columns, columns[1:]))
+        for k, (left, right) in enumerate(pairwise(columns))
         if any(left.ends(kind)[1] != right.ends(kind)[0] for kind in "np")
     ]
 
 
-def place(schematic, seed):
-    """Columns of ``schematic`` in an order with few breaks and short nets (simulated annealing): list of Column.
-
-    seed: another order of about the same cost.
-    """
+def place(schematic: Schematic, seed: int) -> list[Column]:
+    """Place ``schematic`` with few breaks and short nets (simulated annealing); another seed, another placement."""
     count = len(schematic.n)
     nets = {"vdd": 0, "vss": 1}
     pins = np.array(
@@ -53,8 +58,8 @@ def place(schematic, seed):
 
 
 @njit(cache=True)
-def _cost(pins, nets, order, turned):
-    """Breaks weigh most; then how far nets reach, rails not counted."""
+def _cost(pins: Ints, nets: int, order: Ints, turned: Flags) -> float:
+    """The cost: breaks weigh most, then how far nets reach, without the rails."""
     low, high = np.full(nets, 1e9), np.full(nets, -1e9)
     broken, x = 0, 0.0
     for k in range(order.shape[1]):
@@ -80,8 +85,8 @@ def _cost(pins, nets, order, turned):
 
 
 @njit(cache=True)
-def _anneal(pins, nets, steps, seed):
-    """(order, turned) of kinds n and p by columns. Gates of a column stay the same net or a clock's two phases."""
+def _anneal(pins: Ints, nets: int, steps: int, seed: int) -> tuple[Ints, Flags]:
+    """Order and orientation of kinds n and p by columns; a column's gates stay one net, or a clock's two phases."""
     np.random.seed(seed)
     count = pins.shape[1]
     order, turned = np.zeros((2, count), np.int64), np.zeros((2, count), np.bool_)

@@ -1,16 +1,24 @@
-"""Wires inside a cell: negotiated routing (PathFinder) on cells.compact.grid.
+"""Routing inside a cell: negotiated congestion (PathFinder) on cells.compact.grid.
 
-Every net is routed as if it were alone, at a price; where two meet the price rises until one of them goes round.
+Every net is routed as if it were alone, at a cost; where two nets meet the cost rises until one of them takes another
+way.
 """
 
 import heapq
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 from numba import njit
 
-from cells.compact.grid import Grid
+from cells.compact.canvas import Canvas
+from cells.compact.grid import Grid, Packed, Vertex
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
 
 ROUNDS = 80
 NOISE = 0.2
@@ -18,33 +26,34 @@ NOISE = 0.2
 
 @dataclass
 class Task:
-    """columns: half-site columns of the cell. terminals: net -> list of sets of vertices, one of each set to be met.
+    """What is to be routed in ``columns`` half-site columns of ``canvas``.
 
-    ports: nets that need a pin. blocked: net -> vertices that are its own from the start (stubs of the rails).
+    terminals: of every net sets of vertices; the net must meet one of each set. ports: nets that need a pin. blocked:
+    vertices that belong to a net from the start (stubs of the rails).
     """
 
     columns: int
-    canvas: object
-    terminals: dict
-    ports: tuple
-    blocked: dict = field(default_factory=dict)
+    canvas: Canvas
+    terminals: dict[str, list[set[Vertex]]]
+    ports: tuple[str, ...]
+    blocked: dict[str, set[Vertex]] = field(default_factory=dict)
 
 
 @dataclass
 class Wiring:
-    """vertices: net -> those that it holds; edges: net -> pairs of them; pins: net -> ('pin', ...) or ('tap', ...)."""
+    """The routes: vertices of every net, edges between them, and the pin of a port ('pin', ...) or ('tap', ...)."""
 
-    vertices: dict
-    edges: dict
-    pins: dict
+    vertices: dict[str, set[Vertex]]
+    edges: dict[str, list[tuple[Vertex, Vertex]]]
+    pins: dict[str, Vertex]
 
 
-def route(task, met1=True, seed=0):
-    """Wiring of ``task`` without a conflict, or None. met1: may the cell use it?
+def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
+    """Route ``task`` without a conflict; None where that fails. met1: whether the cell may use it.
 
-    seed: prices differ by up to NOISE at random, so that another seed tries other ways of equal length.
+    seed: of the noise on prices, up to NOISE; another seed tries other ways of equal length.
     """
-    grid, (price, *arrays) = _grid(task.columns, task.canvas, met1)
+    grid, (price, leaf, nexts, excludes, needs, crowds) = _grid(task.columns, task.canvas, met1)
     price = price * (1 + NOISE * np.random.default_rng(seed).random(len(price)))
     nets = sorted(task.terminals, key=lambda net: (len(task.terminals[net]), net))
     pins = {v for v in grid.vertices if v[0] in ("pin", "tap")}
@@ -56,21 +65,25 @@ def route(task, met1=True, seed=0):
     used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
     for k, own in enumerate(task.blocked.values()):
         used[len(nets) + k, [grid.number[v] for v in own]] = True
-    ok, edges = _negotiate(price, *arrays, net_start, set_start, members, used, len(nets), ROUNDS)
+    ok, edges = _negotiate(
+        price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, used, len(nets), ROUNDS
+    )
     if not ok:
         return None
     return _wiring(grid, [*nets, *task.blocked], used, edges)
 
 
 @lru_cache(maxsize=32)
-def _grid(columns, canvas, met1):
+def _grid(
+    columns: int, canvas: Canvas, met1: bool
+) -> tuple[Grid, tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_], Packed, Packed, Packed, Packed]]:
     grid = Grid(columns, canvas, met1)
     return grid, grid.arrays()
 
 
-def _wiring(grid, names, used, edges):
+def _wiring(grid: Grid, names: Sequence[str], used: Flags, edges: Iterable[tuple[int, int, int]]) -> Wiring:
     held = {net: {grid.vertices[i] for i in np.flatnonzero(used[k])} for k, net in enumerate(names)}
-    pairs = {net: [] for net in names}
+    pairs: dict[str, list[tuple[Vertex, Vertex]]] = {net: [] for net in names}
     for k, a, b in edges:
         pairs[names[k]].append((grid.vertices[a], grid.vertices[b]))
     pins = {net: v for net, vertices in held.items() for v in vertices if v[0] in ("pin", "tap")}
@@ -85,8 +98,21 @@ def _wiring(grid, names, used, edges):
 
 
 @njit(cache=True)
-def _negotiate(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, used, count, rounds):
-    """Fill ``used`` (net, vertex); returns (no conflict left?, edges as (net, vertex, vertex))."""
+def _negotiate(
+    price: Floats,
+    leaf: Flags,
+    nexts: Packed,
+    excludes: Packed,
+    needs: Packed,
+    crowds: Packed,
+    net_start: Ints,
+    set_start: Ints,
+    members: Ints,
+    used: Flags,
+    count: int,
+    rounds: int,
+) -> tuple[bool, list[tuple[int, int, int]]]:
+    """Fill ``used`` (net, vertex); returns whether no conflict is left, and edges as (net, vertex, vertex)."""
     past = np.zeros(len(price))
     held = np.zeros(len(price), np.int64)
     for net in range(count, used.shape[0]):
@@ -139,8 +165,23 @@ def _negotiate(price, leaf, nexts, excludes, needs, crowds, net_start, set_start
 
 
 @njit(cache=True)
-def _tree(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, held, past, present, net, edges):
-    """Vertices of a tree that meets every terminal of ``net``, and whether there is one; its edges are appended."""
+def _tree(
+    price: Floats,
+    leaf: Flags,
+    nexts: Packed,
+    excludes: Packed,
+    needs: Packed,
+    crowds: Packed,
+    net_start: Ints,
+    set_start: Ints,
+    members: Ints,
+    held: Ints,
+    past: Floats,
+    present: float,
+    net: int,
+    edges: list[tuple[int, int, int]],
+) -> tuple[Flags, bool]:
+    """Find a tree that meets every terminal of ``net``: its vertices, and whether there is one; appends its edges."""
     size = len(price)
     cost = np.zeros(size)
     for v in range(size):
@@ -202,7 +243,7 @@ def _tree(price, leaf, nexts, excludes, needs, crowds, net_start, set_start, mem
                 if crowded:
                     continue
                 best[u], came[u] = d + cost[u], v
-                heapq.heappush(heap, (best[u], u))
+                heapq.heappush(heap, (float(best[u]), int(u)))
         if end < 0:
             return tree, False
         while end >= 0:

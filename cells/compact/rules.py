@@ -1,17 +1,17 @@
-"""The rules that routing can break, checked at once while a cell is made; the decks check all of them at the end."""
+"""The design rules that routing can break, checked while a cell is made; the decks check all of them at the end."""
 
 import klayout.db as db
 
-from cells.compact.draw import regions
+from cells.compact.draw import Drawing, regions
 
 SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}  # nm
 WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}
 AREAS = {"li": 56_100, "m1": 83_000}  # nm2
 
 
-def broken(drawing):
-    """Names of the rules that a Drawing breaks: list."""
-    found = regions(drawing.shapes, db)
+def broken(drawing: Drawing) -> list[str]:
+    """The names of the rules that a drawing breaks."""
+    found = regions(drawing.shapes)
     whole = {layer: region.merged() for layer, region in found.items()}
     out = [f"{layer} space" for layer, space in SPACES.items() if not whole[layer].space_check(space).is_empty()]
     out += [f"{layer} width" for layer, width in WIDTHS.items() if not whole[layer].width_check(width).is_empty()]
@@ -19,9 +19,7 @@ def broken(drawing):
     nets = {}
     for s in drawing.shapes:
         if s.net:
-            nets.setdefault((s.layer, s.net), db.Region()).insert(
-                db.Box(*(round(v * 1000) for v in (s.left, s.bottom, s.right, s.top)))
-            )
+            nets.setdefault((s.layer, s.net), db.Region()).insert(s.nm)
     pads = whole["licon"] & whole["poly"]
     for layer in ("li", "poly", "m1"):
         own = [(net, region.merged()) for (name, net), region in nets.items() if name == layer]

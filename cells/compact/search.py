@@ -6,6 +6,7 @@ A recipe that beats the kept one goes into recipes.json, which is part of the so
 import json
 import re
 from argparse import ArgumentParser, Namespace
+from dataclasses import astuple
 
 from base.files import staged
 from base.jobs import Job
@@ -16,43 +17,42 @@ from cells.compact.make import RECIPES, choose, recipe
 from models.parameters import ParameterError
 
 
-def best(name, first, last, narrower):
-    """The best Recipe of cell ``name`` from placements of seeds ``first`` to ``last``, as a list, or None.
+def best(name: str, first: int, last: int, narrower: bool) -> list[object] | None:
+    """The best recipe of cell ``name`` from placements of seeds ``first`` to ``last``, as a list.
 
     narrower: only one that is narrower than the kept one.
     """
     found = choose(schematics()[name], Canvas(), range(first, last), recipe(name) if narrower else None)
-    return found and [found.sites, found.met1, found.seed, found.spread]
+    return list(astuple(found)) if found else None
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cells-compact-search`."""
     parser.add_argument("--seeds", default="0:24", help="first:last")
-    parser.add_argument("--anew", action="store_true", help="do not compare with the recipes that are kept")
+    parser.add_argument("--from-scratch", action="store_true", help="do not compare with the recipes that are kept")
     parser.add_argument("--cells", help="names with commas between (default: all)")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
 
 
 def run(options: Namespace) -> int:
     """Search and keep the recipes that are better."""
-    seeds = re.fullmatch(r"(\d+):(\d+)", options.seeds)
-    if not seeds:
+    span = re.fullmatch(r"(\d+):(\d+)", options.seeds)
+    if not span:
         raise ParameterError(f"seeds = {options.seeds!r}: must be first:last, as 0:24")
     names = options.cells.split(",") if options.cells else list(schematics())
     if unknown := sorted(set(names) - schematics().keys()):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
-    span = int(seeds[1]), int(seeds[2])
     jobs = [
         Job(
-            f"{name}.{span[0]}-{span[1]}{'.anew' if options.anew else ''}",
+            f"{name}.{span[1]}-{span[2]}{'.from_scratch' if options.from_scratch else ''}",
             best,
-            (name, *span, not options.anew),
+            (name, int(span[1]), int(span[2]), not options.from_scratch),
             (recipe(name), Canvas()),
         )
         for name in names
     ]
     found = run_jobs(jobs, "build/cells/compact/search", "cells searched", options.workers)
-    kept = json.loads(RECIPES.read_text()) if RECIPES.exists() else {}
+    kept = json.loads(RECIPES.read_text())
     better = {name: made for name, made in zip(names, found, strict=True) if made}
     for name, (sites, met1, seed, _) in better.items():
         was = kept.get(name, ["none"])[0]

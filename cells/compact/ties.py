@@ -1,23 +1,24 @@
-"""Cells that no router is needed for: taps that fill a row, and the diode against antenna charge."""
+"""Cells without routes: taps that fill a row, and the diode against antenna charge."""
 
 from dataclasses import asdict
 
-from cells.compact.draw import CUT, WIRE, Pen, frame
+from cells.compact.canvas import Canvas
+from cells.compact.draw import CUT, WIRE, Box, Drawn, Pen, frame
 from cells.compact.transistors import Schematic
 
 WIDTHS = (1, 2, 4, 8)  # sites
 
 
-def ties(canvas):
-    """Nothing but rails, well and taps: name -> (Schematic, drawing). Names tie, tie_w2, ..."""
+def ties(canvas: Canvas) -> dict[str, tuple[Schematic, Drawn]]:
+    """Draw cells of rails, well and taps alone: tie, tie_w2, ..."""
     return {
         (name := "tie" if sites == 1 else f"tie_w{sites}"): (Schematic(name, (), ()), _entry(Pen(canvas, sites)))
         for sites in WIDTHS
     }
 
 
-def diode(canvas):
-    """diode_w1: an n diffusion in the substrate, on the pin i: name -> (Schematic, drawing)."""
+def diode(canvas: Canvas) -> dict[str, tuple[Schematic, Drawn]]:
+    """Draw diode_w1: an n diffusion in the substrate, on the pin i."""
     pen, x = Pen(canvas, 1), canvas.site / 2
     low, high = canvas.n
     pen.at("difftap", "i", x, (low + high) / 2, 0.25, high - low)
@@ -25,9 +26,10 @@ def diode(canvas):
     pen.at("licon", "i", x, canvas.rows[0], CUT, CUT)
     for layer in ("li", "li.pin"):
         pen.box(layer, "i", x - WIRE / 2, canvas.rows[0] - 0.165, x + WIRE / 2, canvas.rows[canvas.high] + WIRE / 2)
-    return {"diode_w1": (Schematic("diode_w1", ("i",), ()), _entry(pen, diode=(0.25, round(high - low, 3))))}
+    drawn: Drawn = {**_entry(pen), "diode": (0.25, round(high - low, 3))}
+    return {"diode_w1": (Schematic("diode_w1", ("i",), ()), drawn)}
 
 
-def _entry(pen, **more):
+def _entry(pen: Pen) -> Drawn:
     frame(pen)
-    return {"width": pen.width, "shapes": [asdict(shape) for shape in pen.shapes], "met1": False, **more}
+    return {"width": pen.width, "shapes": [Box(**asdict(shape)) for shape in pen.shapes]}

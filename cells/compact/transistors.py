@@ -1,6 +1,10 @@
-"""Cells as transistors: complementary gates from their function, and what is no such gate one by one."""
+"""Cells as transistors: complementary gates from their functions, other transistors one by one."""
 
 from dataclasses import dataclass, field
+from itertools import pairwise
+from typing import Self, TypeAlias
+
+Function: TypeAlias = "str | tuple[Function, ...]"  # a net, or ('and' or 'or', functions)
 
 
 @dataclass(frozen=True)
@@ -15,32 +19,37 @@ class Switch:
 
 @dataclass
 class Schematic:
-    """name; inputs, outputs: nets in order; n, p: switches in equal number, n[i] and p[i] above each other at first.
+    """The transistors of a cell.
 
-    functions: output (or inner net of a gate) -> expression in Liberty's syntax of the inputs. storage: '' or 'ff' or
+    inputs, outputs: nets in order. n, p: switches in equal number, n[i] and p[i] above each other at first. functions:
+    of an output (or inner net of a gate) the expression in Liberty's syntax of the inputs. storage: '' or 'ff' or
     'gate' (a clock gate); a flip-flop's functions hold 'next_state' and, where it has one, 'clear'.
     """
 
     name: str
-    inputs: tuple
-    outputs: tuple
-    n: list = field(default_factory=list)
-    p: list = field(default_factory=list)
-    functions: dict = field(default_factory=dict)
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    n: list[Switch] = field(default_factory=list)
+    p: list[Switch] = field(default_factory=list)
+    functions: dict[str, str] = field(default_factory=dict)
     storage: str = ""
     _nodes: int = 0
 
     @property
-    def ports(self):
+    def ports(self) -> tuple[str, ...]:
+        """Inputs, outputs and supplies."""
         return (*self.inputs, *self.outputs, "vdd", "vss")
 
-    def node(self):
-        """A new inner net."""
+    def node(self) -> str:
+        """Name a new inner net."""
         self._nodes += 1
         return f"m{self._nodes}"
 
-    def gate(self, output, function, fingers=1):
-        """output = not function. function: a net's name, ('and', ...) or ('or', ...), nested. Fingers in parallel."""
+    def gate(self, output: str, function: Function, fingers: int = 1) -> Self:
+        """Add the gate output = not function, of ``fingers`` in parallel.
+
+        function: a net's name, ('and', ...) or ('or', ...), nested.
+        """
         self.functions[output] = f"!{self._expression(function)}"
         for k in range(fingers):
             # Every second finger the other way round, so that neighbours share what lies between them
@@ -49,30 +58,30 @@ class Schematic:
             self._network("p", function, *("vdd", output) if k % 2 else (output, "vdd"), self.p)
         return self
 
-    def _expression(self, function):
+    def _expression(self, function: Function) -> str:
         if isinstance(function, str):
             return f"({self.functions[function]})" if function in self.functions else function
         operator, *parts = function
-        sign = {"and": " & ", "or": " | "}[operator]
+        sign = " & " if operator == "and" else " | "
         return f"({sign.join(map(self._expression, parts))})"
 
-    def _network(self, kind, function, a, b, out):
+    def _network(self, kind: str, function: Function, a: str, b: str, out: list[Switch]) -> None:
         if isinstance(function, str):
             out.append(Switch(kind, function, a, b))
             return
         operator, *parts = function
         if (operator == "and") == (kind == "n"):  # in series
             nets = [a, *(self.node() for _ in parts[1:]), b]
-            for part, left, right in zip(parts, nets, nets[1:]):
+            for part, (left, right) in zip(parts, pairwise(nets), strict=True):
                 self._network(kind, part, left, right, out)
         else:
             for part in parts:
                 self._network(kind, part, a, b, out)
 
-    def inverting_tristate(self, output, data, on, off, reset=None):
-        """output = not data while ``on`` is high and ``off``, its complement, is low; else nothing drives it.
+    def inverting_tristate(self, output: str, data: str, on: str, off: str, reset: str | None = None) -> Self:
+        """Add output = not data while ``on`` is high and ``off``, its complement, is low; else it floats.
 
-        reset: a net that is low to make the output high in the first case.
+        reset: a net that makes the output high in the first case while it is low.
         """
         n, p = self.node(), self.node()
         self.n += [Switch("n", on, output, n), Switch("n", data, n, "vss")]
@@ -83,8 +92,8 @@ class Schematic:
             self.p.append(Switch("p", reset, p, "vdd"))
         return self
 
-    def pass_gate(self, a, b, on, off):
-        """``a`` and ``b`` joined while ``on`` is high and ``off``, its complement, is low."""
+    def pass_gate(self, a: str, b: str, on: str, off: str) -> Self:
+        """Join ``a`` and ``b`` while ``on`` is high and ``off``, its complement, is low."""
         self.n.append(Switch("n", on, a, b))
         self.p.append(Switch("p", off, a, b))
         return self

@@ -1,12 +1,20 @@
-"""Verilog models of the cells: functions, no delays; what gate-level simulation and equivalence read."""
+"""Verilog models of the cells, without delays: for gate-level simulation and equivalence."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from cells.compact.transistors import Schematic
+
+if TYPE_CHECKING:
+    from cells.compact.pdk import DrawnCell
 
 
-def verilog(cells):
-    """Text for ``cells`` (cells.compact.pdk.DrawnCell): a module each, without supply pins."""
+def verilog(cells: "Iterable[DrawnCell]") -> str:
+    """Text for ``cells``: a module each, without supply pins."""
     return "\n".join(["// Compact cells; written by talbot cells-compact", *(module(cell.schematic) for cell in cells)])
 
 
-def module(schematic):
+def module(schematic: Schematic) -> str:
     """The model of one cell."""
     s = schematic
     ports = [*(f"input {pin}" for pin in s.inputs), *(f"output {pin}" for pin in s.outputs)]
@@ -14,11 +22,11 @@ def module(schematic):
     return "\n".join([f"module {s.name} ({', '.join(ports)});", *body, "endmodule", ""])
 
 
-def _constant(function):
+def _constant(function: str) -> str:
     return {"0": "1'b0", "1": "1'b1"}.get(function, function)
 
 
-def _storage(s):
+def _storage(s: Schematic) -> list[str]:
     if s.storage == "gate":
         return ["  reg enable;", "  always @(clk or i) if (!clk) enable = i;", "  assign q = clk & enable;"]
     if "clear" in s.functions:

