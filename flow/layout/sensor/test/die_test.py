@@ -101,7 +101,7 @@ def test_a_wire_over_metal_inside_a_block_is_a_short(made, tmp_path):
     def change(plan):
         left, bottom, *_ = plan["blocks"][CORE]["box"]
         box = plan["shapes"][index(plan, "row[0]", 71)][3:]
-        strap = left + 50_000  # of vss, where the chip lies as drawn or upside down
+        strap = left + 50_000  # of vss, where the chip is as drawn or upside down
         assert plan["blocks"][CORE]["orientation"] in ("N", "FS")
         plan["shapes"].append(["row[0]", 71, 20, strap, bottom + 10_000, strap + 2000, bottom + 12_000])
         plan["shapes"].append(["row[0]", 70, 20, min(strap, box[0]), bottom + 10_900, strap + 2000, bottom + 11_300])

@@ -47,7 +47,7 @@ def parasitics(tmp_path_factory):
 def test_a_net_by_hand(parasitics):
     """tap[0]: from the chip to the row driver and the column amplifiers; capacitance by length and width."""
     _, nets, _, plan = parasitics
-    known, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
+    tech, tracks, route = coriolis_platform("sky130"), plan["tracks"], plan["routes"]["tap[0]"]
     assert len(route["branches"]) == 3 and nets["tap[0]"]["driver"] == "core"
     xs = [branch["x"] for branch in route["branches"]]
     lengths = {
@@ -57,7 +57,7 @@ def test_a_net_by_hand(parasitics):
     (core,) = [branch for branch in route["branches"] if branch["block"] == "core"]
     lengths[1, core["box"][3] - core["box"][1]] = max(core["box"][0] - core["x"], core["x"] - core["box"][2])
     femto = sum(
-        length * 1e-6 * (width / 1000 * known.metals[level].area_af_um2 + 2 * known.metals[level].fringe_af_um)
+        length * 1e-6 * (width / 1000 * tech.metals[level].area_af_um2 + 2 * tech.metals[level].fringe_af_um)
         for (level, width), length in lengths.items()
     )
     assert nets["tap[0]"]["wire_ff"] == pytest.approx(femto, abs=1e-3)
@@ -98,17 +98,17 @@ def test_a_long_wire_at_a_gate(tmp_path, layer, violations):
     """300 um of the trunks' metal at a gate of 0.03 um2; of the branches' metal nothing is reported."""
     import klayout.db as db
 
-    known, layout = coriolis_platform("sky130"), db.Layout()
+    tech, layout = coriolis_platform("sky130"), db.Layout()
     cell = layout.create_cell("gate")
 
     def draw(pair, *box):
         cell.shapes(layout.layer(*pair)).insert(db.DBox(*box))
 
-    draw(known.active, -0.1, -0.5, 0.1, 0.5)
-    draw(known.poly, -1, -0.075, 1, 0.075)
-    for pair in (known.contact, *(cut.gds for cut in known.vias)):
+    draw(tech.active, -0.1, -0.5, 0.1, 0.5)
+    draw(tech.poly, -1, -0.075, 1, 0.075)
+    for pair in (tech.contact, *(cut.gds for cut in tech.vias)):
         draw(pair, 0.8, -0.05, 0.9, 0.05)
-    for wire in known.metals:
+    for wire in tech.metals:
         draw(wire.gds, 0.7, -0.15, 1.1, 0.15)
     draw(layer, 0.7, -0.15, 300, 0.15)
     layout.write(str(tmp_path / "die.gds"))

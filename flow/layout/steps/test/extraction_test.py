@@ -8,9 +8,9 @@ from platforms.coriolis import coriolis_platform
 
 
 def test_a_wire_counts_with_its_area_both_edges_and_its_squares():
-    known = coriolis_platform("sky130")
-    m1, via = known.metals[1], known.vias[1]
-    femtofarad, ohm = parasitics([["m1", 10.0, 0.2], ["m1_via_m2", 0, 0]], known)
+    tech = coriolis_platform("sky130")
+    m1, via = tech.metals[1], tech.vias[1]
+    femtofarad, ohm = parasitics([["m1", 10.0, 0.2], ["m1_via_m2", 0, 0]], tech)
     assert femtofarad == pytest.approx(10 * (0.2 * m1.area_af_um2 + 2 * m1.fringe_af_um) / 1000)
     assert ohm == pytest.approx(10 / 0.2 * m1.sheet_ohm + via.ohm)
 

@@ -1,4 +1,4 @@
-"""The power step and the voltage drop behind it, on the shift register: totals, blocks, and what follows what."""
+"""The power step and the IR drop after it, on the shift register: totals, blocks, causes."""
 
 import json
 import shutil

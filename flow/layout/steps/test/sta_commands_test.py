@@ -29,7 +29,7 @@ SCRIPTS = {
 
 
 def commands(script):
-    """Names that stand where Tcl has a command: the first word of a line, behind a semicolon, in brackets."""
+    """Names in the place of a Tcl command: the first word of a line, after a semicolon, in brackets."""
     text = script.replace("{{", "{").replace("}}", "}")
     return sorted(set(re.findall(r"(?m)(?:^|;)\s*([a-z_]+)(?=\s|$)", text)) | set(re.findall(r"\[([a-z_]+)", text)))
 

@@ -1,4 +1,4 @@
-"""Where a block lies in the chip, and whether it is the same one."""
+"""The place of a block in the chip, and whether it is the same block."""
 
 import pytest
 
