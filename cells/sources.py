@@ -63,22 +63,17 @@ def source(library: str, name: str, netlist: str = "extracted") -> Source:
         raise ParameterError(f"netlist = {netlist!r}: must be one of {', '.join(NETLISTS)}")
     if library not in LIBRARIES:
         return Source(name, spice.subcircuit(spice.source(_file(library)), name), None)
-    parasitics = {"capacitors": netlist in ("extracted", "capacitances"), "resistors": netlist == "extracted"}
     if library == "compact":
-        if netlist == "schematic":
-            return Source(name, schematic_spice(schematics()[name], Canvas()), _compact_areas()[name])
-        return Source(
-            name,
-            extract(COMPACT / "compact.gds", name, extraction_platform("sky130"), **parasitics),
-            _compact_areas()[name],
-        )
-    gds = sky130_hd.file(name, "gds")
-    text = (
-        sky130_hd.file(name, "spice").read_text()
-        if netlist == "schematic"
-        else extract(gds, gds.stem, extraction_platform("sky130"), **parasitics)
-    )
-    return Source(name, text, sky130_hd.area(name))
+        gds, cell, um2 = COMPACT / "compact.gds", name, _compact_areas()[name]
+        schematic = schematic_spice(schematics()[name], Canvas())
+    else:
+        gds, um2 = sky130_hd.file(name, "gds"), sky130_hd.area(name)
+        cell, schematic = gds.stem, sky130_hd.file(name, "spice").read_text()
+    if netlist == "schematic":
+        return Source(name, schematic, um2)
+    capacitors, resistors = netlist in ("extracted", "capacitances"), netlist == "extracted"
+    tech = extraction_platform("sky130")
+    return Source(name, extract(gds, cell, tech, capacitors=capacitors, resistors=resistors), um2)
 
 
 def files(library: str, cells: Iterable[str]) -> dict[str, str]:

