@@ -55,7 +55,7 @@ sim-help: $(READY)  ## the arguments of make sim, explained
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(COMPLETE),--complete)
 
-SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:rtl' ':!:conftest.py')
+SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:*_bench.py' ':!:rtl' ':!:conftest.py')
 .PHONY: lint
 lint: $(LINT_READY)  ## ruff, the floor plan (import-linter), types (pyright), docstrings (numpydoc)
 	@$(VENV)/bin/ruff check
