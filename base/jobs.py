@@ -40,11 +40,15 @@ class Job:
         """The key of the result: of the name, of all code that ``call`` may run (`base.sources`) and of the inputs."""
         return digest(self.name, code(self.call.__module__), *self.inputs)
 
+    def file(self, store: Path) -> Path:
+        """The file of the kept result in the folder ``store``."""
+        return store / f"{self.name}.{self.digest}.json"
+
 
 def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -> list[Any]:
     """Return the results of ``jobs`` in their order.
 
-    store: folder of the kept results, <name>.<digest>.json. title: of the progress bar. workers: processes, -1 for
+    store: folder of the kept results. title: of the progress bar. workers: processes, -1 for
     all cores. An exception in a job ends the run; results of earlier jobs are kept. Raises ParameterError.
     """
     store = Path(store)
@@ -53,7 +57,7 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
     names = [job.name for job in jobs]
     if len(set(names)) != len(names):
         raise ParameterError(f"jobs = {title}: two have one name")
-    files = [store / f"{job.name}.{job.digest}.json" for job in jobs]
+    files = [job.file(store) for job in jobs]
     todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not file.exists()]
     with tqdm(total=len(jobs), initial=len(jobs) - len(todo), desc=title, disable=None) as bar, _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)

@@ -101,7 +101,7 @@ def run(options: Namespace) -> int:
     write_step("bench", by_block, options.out)
     for job, ran in zip(jobs.values(), runs, strict=True):
         if any(test.failure for test in ran.tests):
-            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)  # failures are tried again
+            job.file(store).unlink(missing_ok=True)  # failures are tried again
     for block, here in by_block.items():
         print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed")
         for point in here.open_points:

@@ -28,7 +28,7 @@ def recorded(blocks: Collection[str], store: Path = STORE) -> dict[str, list[Pat
         jobs.append(Job(block, _record, (block, str(folder)), (tests,)))
     for job in jobs:
         if not Path(job.arguments[1]).exists():  # its files were removed: the kept result is none
-            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)
+            job.file(store).unlink(missing_ok=True)
     return {
         block: [Path(path) for path in paths]
         for block, paths in zip(blocks, run(jobs, store, "recorded tests"), strict=True)

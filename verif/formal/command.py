@@ -82,7 +82,7 @@ def collect(proofs: Iterable[Proof], store: Path, workers: int = -1) -> list[Out
         for piece in found:
             result = from_json(piece.kind, next(results))
             if UNKNOWN in vars(result).values():  # tried again next time
-                (store / f"{piece.job.name}.{piece.job.digest}.json").unlink(missing_ok=True)
+                piece.job.file(store).unlink(missing_ok=True)
             by_kind[piece.kind][piece.name] = result
         outcomes.append(Outcome(proof, by_kind[ProofResult], by_kind[CoverResult]["cover"], by_kind[TwinResult]))
     return outcomes

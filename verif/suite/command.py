@@ -39,7 +39,7 @@ def forget(planned: Sequence[Job], done: Sequence[FolderRun], store: Path) -> No
     """Delete the kept results with a failed or skipped test, so that the next run tries them again."""
     for job, result in zip(planned, done, strict=True):
         if any(case.outcome != PASSED for case in result.cases):
-            (store / f"{job.name}.{job.digest}.json").unlink(missing_ok=True)
+            job.file(store).unlink(missing_ok=True)
 
 
 def summarize(done: Iterable[FolderRun]) -> dict[str, BlockResults]:

@@ -93,7 +93,7 @@ def test_counts_by_block(repository):
 
 def test_failures_are_tried_again(tmp_path):
     planned = jobs(["models/test", "rtl/test"], {"rtl/test": 5})
-    kept = [tmp_path / f"{job.name}.{job.digest}.json" for job in planned]
+    kept = [job.file(tmp_path) for job in planned]
     for path in kept:
         path.write_text("{}")
     passed, failed = Case("a", "passed", 0.0, ""), Case("b", "failed", 0.0, "")
