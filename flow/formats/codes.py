@@ -1,16 +1,18 @@
 """The codes that the formats are measured on."""
 
 import zipfile
+from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from models.parameters import ParameterError
 
 
-def default_codes():
-    """Edge codes of the default scene: (int16 codes of a converter without a threshold, float64 values in LSB),
+def default_codes() -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
+    """Edge codes of the default scene without a threshold, and their analog values in LSB, both (rows, cols).
 
-    both (rows, cols). The values are those of the same exposure without noise, ahead of the converter.
+    The values are those of the same exposure without noise, ahead of the converter.
     """
     from dataclasses import replace
 
@@ -25,7 +27,7 @@ def default_codes():
     return golden.codes[..., 0], exposed.ideal[..., 0]
 
 
-def load_codes(path):
+def load_codes(path: Path) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
     """The same from an npz file with ``codes`` and ``ideal``. Raises ParameterError."""
     try:
         with np.load(path) as file:
@@ -37,12 +39,12 @@ def load_codes(path):
     return codes.astype(np.int16), ideal.astype(float)
 
 
-def thresholded(codes, threshold):
+def thresholded(codes: npt.NDArray[np.int16], threshold: int) -> npt.NDArray[np.int16]:
     """What edge mode sends of them: the window comparison makes zeros of magnitudes under the threshold."""
     return np.where(np.abs(codes.astype(np.int16)) < threshold, np.int16(0), codes)
 
 
-def entropy_bytes(codes):
+def entropy_bytes(codes: npt.NDArray[np.integer]) -> float:
     """Bytes that an ideal coder of the samples' own frequencies, one by one, would need."""
     _, counts = np.unique(codes, return_counts=True)
     return float(-(counts * np.log2(counts / codes.size)).sum() / 8)

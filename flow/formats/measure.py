@@ -1,6 +1,10 @@
 """Bytes of every format in every scan order, and what noise does to a format."""
 
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.stream.payload import base_of
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
@@ -13,7 +17,12 @@ from .tokens import FORMATS
 THRESHOLDS = (0, 2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 20, 24)
 
 
-def frame_bytes(codes, threshold, encoder, segments):
+def frame_bytes(
+    codes: npt.NDArray[np.int16],
+    threshold: int,
+    encoder: Callable[..., int],
+    segments: Sequence[npt.NDArray[np.integer]],
+) -> int:
     """Bytes of a frame, header, marks and trailer included. codes: int16 (rows, cols); segments: flat indices."""
     flat, size = codes.ravel(), HEADER_BYTES + TRAILER_BYTES
     out = np.empty(4 * max(map(len, segments)) + 8, np.uint8)
@@ -22,7 +31,12 @@ def frame_bytes(codes, threshold, encoder, segments):
     return size
 
 
-def measure(codes, ideal, thresholds=THRESHOLDS, progress=iter):
+def measure(
+    codes: npt.NDArray[np.int16],
+    ideal: npt.NDArray[np.float64],
+    thresholds: Sequence[int] = THRESHOLDS,
+    progress: Callable[[Sequence[int]], Iterable[int]] = iter,
+) -> list[dict[str, Any]]:
     """One dict for each threshold, scan order and format.
 
     codes, ideal: (rows, cols), of a converter without threshold and ahead of it. progress: wraps the thresholds.
@@ -45,7 +59,7 @@ def measure(codes, ideal, thresholds=THRESHOLDS, progress=iter):
     return rows
 
 
-def growth(encoder, shape=(64, 384), seed=1):
+def growth(encoder: Callable[..., int], shape: tuple[int, int] = (64, 384), seed: int = 1) -> float:
     """Bytes of rows of random codes, marks included, over a byte a sample: what the format does to noise."""
     noise = np.random.default_rng(seed).integers(-128, 128, shape).astype(np.int16)
     rows = list(np.arange(noise.size).reshape(shape))

@@ -1,9 +1,10 @@
 """Scan orders: a frame's samples cut into segments, each coded by itself and closed by a mark."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Callable
 
 import numpy as np
+import numpy.typing as npt
 
 from models.digital.scan import Scan
 from models.parameters import FrameParameters, TileParameters, Window
@@ -18,27 +19,27 @@ class Order:
     buffer: what must be held before it can be sent in this order. lost: what a wrong byte costs.
     """
 
-    segments: Callable
+    segments: Callable[[int, int, TileParameters], list[npt.NDArray[np.integer]]]
     buffer: str
     lost: str
 
 
-def _raster(rows, cols, tile):
+def _raster(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
     return list(np.arange(rows * cols).reshape(rows, cols))
 
 
-def _type_in_row(rows, cols, tile):
+def _type_in_row(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
     frame = FrameParameters(Window(0, -(-rows // tile.rows) - 1, 0, -(-cols // tile.cols) - 1))
     scan = Scan(rows, cols, 8, frame, tile)
     return [row * cols + scan.row_samples(row)[0] for row in range(rows)]
 
 
-def _type_in_frame(rows, cols, tile):
+def _type_in_frame(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
     types = tile.type_map(rows, cols).ravel()
     return [np.flatnonzero(types == kind) for kind in range(tile.n_types)]
 
 
-def _tiles(rows, cols, tile):
+def _tiles(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
     row, col = np.divmod(np.arange(rows * cols), cols)
     order = np.lexsort((col % tile.cols, row % tile.rows, col // tile.cols, row // tile.rows))
     return np.split(order, np.flatnonzero(np.diff(row[order] // tile.rows)) + 1)
@@ -53,6 +54,8 @@ ORDERS = {
 CHIP = "type by type in the row"
 
 
-def segments_of(name, rows, cols, tile=TileParameters()):
-    """Every sample of a (rows, cols) array once: list of flat indices."""
+def segments_of(
+    name: str, rows: int, cols: int, tile: TileParameters = TileParameters()
+) -> list[npt.NDArray[np.integer]]:
+    """Every sample of a (rows, cols) array once, as flat indices by segment."""
     return ORDERS[name].segments(rows, cols, tile)

@@ -1,20 +1,31 @@
 """The measured comparison as Markdown and charts."""
 
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from matplotlib.figure import Figure
+
 from base.charts import curves
 
 from .orders import CHIP, ORDERS
 from .tokens import CHOSEN, FORMATS
 
 
-def _line(cells):
+def _line(cells: Iterable[object]) -> str:
     return "| " + " | ".join(str(cell) for cell in cells) + " |"
 
 
-def _table(head, lines):
+def _table(head: Sequence[str], lines: Iterable[Iterable[object]]) -> list[str]:
     return [_line(head), "|---" + "|---:" * (len(head) - 1) + "|", *map(_line, lines)]
 
 
-def markdown(rows, gates, growths, threshold, source):
+def markdown(
+    rows: Sequence[Mapping[str, Any]],
+    gates: Mapping[str, float] | None,
+    growths: Mapping[str, float],
+    threshold: int,
+    source: str,
+) -> str:
     """The tables: formats at ``threshold`` in every order, the chosen one at every threshold.
 
     rows: of `measure`. gates: format -> NAND2 equivalents, or None where Yosys is missing. growths: format -> ratio.
@@ -70,7 +81,7 @@ def markdown(rows, gates, growths, threshold, source):
     return "\n".join(out) + "\n"
 
 
-def chart(rows):
+def chart(rows: Sequence[Mapping[str, Any]]) -> Figure:
     """Compression against PSNR of every format in the chip's order, and what the entropy allows."""
     series = {
         name: [

@@ -3,13 +3,15 @@
 Where a run of zeros is open at the end of the segment, it is told, and no value follows.
 """
 
+import numpy as np
+import numpy.typing as npt
 from numba import njit
 
 from models.digital.stream.payload import encode_row
 
 
 @njit(cache=True)
-def byte_pairs(codes, base, out):
+def byte_pairs(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
     """(zeros, value) in a byte each; 255 zeros alone are (255, 0). Returns the bytes written to out (uint8)."""
     at = run = 0
     for code in codes:
@@ -26,7 +28,7 @@ def byte_pairs(codes, base, out):
 
 
 @njit(cache=True)
-def _append(out, at, bits, length):
+def _append(out: npt.NDArray[np.uint8], at: int, bits: int, length: int) -> int:
     for i in range(length - 1, -1, -1):
         if at % 8 == 0:
             out[at // 8] = 0
@@ -36,7 +38,7 @@ def _append(out, at, bits, length):
 
 
 @njit(cache=True)
-def nibbles(codes, base, out):
+def nibbles(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
     """Zeros (15: no value follows), then sign and distance 0..6 from the base, or sign, 7 and the code."""
     at = run = 0
     for code in codes:
@@ -57,7 +59,7 @@ def nibbles(codes, base, out):
 
 
 @njit(cache=True)
-def _rice(codes, base, out, k, r2, adaptive):
+def _rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8], k: int, r2: int, adaptive: bool) -> int:
     at = run = 0
     for code in codes:
         distance, r = abs(code) - base, r2 >> 1
@@ -88,18 +90,18 @@ def _rice(codes, base, out, k, r2, adaptive):
 
 
 @njit(cache=True)
-def fixed_rice(codes, base, out):
+def fixed_rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
     """0 for 16 zeros; or 1, four bits of zeros, sign, distance in a Rice code of r = 3 (8 ones: seven plain bits)."""
     return _rice(codes, base, out, 4, 6, False)
 
 
 @njit(cache=True)
-def adaptive_rice(codes, base, out):
+def adaptive_rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
     """The same with 2**k zeros and r, both following the samples as in the stream's payload."""
     return _rice(codes, base, out, 3, 4, True)
 
 
-def payload(codes, base, out):
+def payload(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
     """The stream's payload: adaptive runs, exp-Golomb codes of adaptive order, literals that bound its growth."""
     return encode_row(codes, True, base, out, 0)
 

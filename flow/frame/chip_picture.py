@@ -9,7 +9,7 @@ BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}
 
 
 def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 360) -> str:
-    """Die, pixel array with the window that was read, column lanes and row logic, and one tile enlarged, as SVG text."""
+    """Die, pixel array with the window read, column lanes and row logic, and one tile enlarged, as SVG text."""
     rows, cols, pitch = sensor.array.rows, sensor.array.cols, sensor.array.pitch
     side = max(DIE, 1.3 * pitch * max(rows, cols))
     px = width / side

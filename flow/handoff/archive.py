@@ -4,12 +4,14 @@ import gzip
 import hashlib
 import io
 import tarfile
+from collections.abc import Mapping
+from pathlib import Path
 
 TIME = 315532800  # 1980-01-01, the first day that every archiver knows
 
 
-def archive(path, top, files):
-    """Write ``files`` (dict name -> bytes) to ``path``, sorted, in the folder ``top`` of the archive."""
+def archive(path: Path, top: str, files: Mapping[str, bytes]) -> None:
+    """Write ``files`` (contents by name) to ``path``, sorted, in the folder ``top`` of the archive."""
     with (
         open(path, "wb") as raw,
         gzip.GzipFile("", "wb", 9, raw, mtime=0) as zipped,
@@ -21,6 +23,6 @@ def archive(path, top, files):
             tar.addfile(entry, io.BytesIO(files[name]))
 
 
-def sha256(data):
-    """Of bytes, hexadecimal."""
+def sha256(data: bytes) -> str:
+    """Hash of ``data``, hexadecimal."""
     return hashlib.sha256(data).hexdigest()

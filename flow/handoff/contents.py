@@ -2,9 +2,11 @@
 
 import json
 import re
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+from flow.layout.design import Design
 from flow.layout.netlist.netlist import SUPPLIES
 from flow.layout.report.metrics import broken
 from models.parameters import ParameterError
@@ -38,8 +40,8 @@ class Broken(RuntimeError):
     """The layout breaks rules that no waiver covers; one line each."""
 
 
-def waived(design, path=WAIVERS):
-    """Waivers of a design: list of {design, rule, reason}. Raises ParameterError for one without a reason."""
+def waived(design: Design, path: Path = WAIVERS) -> list[dict[str, str]]:
+    """Waivers of a design, each with design, rule and reason. Raises ParameterError for one without a reason."""
     found = [waiver for waiver in json.loads(Path(path).read_text()) if waiver["design"] == design.name]
     for waiver in found:
         if not waiver.get("reason"):
@@ -47,12 +49,13 @@ def waived(design, path=WAIVERS):
     return found
 
 
-def contents(design, folder, waivers):
-    """dict name -> bytes, without the manifest; and dict of what is missing -> what stands in for it.
+def contents(
+    design: Design, folder: Path, waivers: Sequence[Mapping[str, str]]
+) -> tuple[dict[str, bytes], dict[str, str]]:
+    """Contents of the files by name, without the manifest, and the substitute of each optional file that is missing.
 
     Raises ParameterError that names every required file that is not there, Broken for rules not waived.
     """
-    folder = Path(folder)
     sources = {
         "reports/summary.json": folder / "summary.json",
         "reports/report.html": folder / "report.html",
@@ -94,13 +97,13 @@ def contents(design, folder, waivers):
     return files, substitutes
 
 
-def plain(data, folder):
-    """``data`` without what tells of the run that made it: its seconds, and where the layouts lie."""
+def plain(data: bytes, folder: Path) -> bytes:
+    """``data`` without run times and without the path of the layouts."""
     return RUN.sub(b"", data).replace(f"{folder.resolve().parent}/".encode(), b"")
 
 
-def manifest(design, files, substitutes):
-    """manifest.json as bytes: every file's size and SHA-256, versions of the tools, what stands in for what."""
+def manifest(design: Design, files: Mapping[str, bytes], substitutes: Mapping[str, str]) -> bytes:
+    """The file manifest.json: size and SHA-256 of every file, versions of the tools, substitutes of missing files."""
     summary = json.loads(files["reports/summary.json"])
     return (
         json.dumps(

@@ -1,11 +1,15 @@
 """The pages for people: pinout and datasheet, in Markdown."""
 
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
 from base.lef.read import read_macro
+from flow.layout.design import Design
 
 WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
 
 
-def pinout(lef):
+def pinout(lef: str) -> str:
     """Markdown table of the pins of a LEF."""
     rows = [
         f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |"
@@ -16,7 +20,7 @@ def pinout(lef):
     )
 
 
-def datasheet(design, summary, lef, waivers):
+def datasheet(design: Design, summary: Mapping[str, Any], lef: str, waivers: Sequence[Mapping[str, str]]) -> str:
     """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
     macro = read_macro(lef)
     io, clock = design.io, design.clock
@@ -56,7 +60,7 @@ def datasheet(design, summary, lef, waivers):
     return "\n".join([f"# {design.name}", "", "| | |", "|---|---|", *table, "", "## Waivers", "", *waived, ""])
 
 
-def _figures(summary, name, words):
+def _figures(summary: Mapping[str, Any], name: str, words: str) -> Iterator[tuple[str, Any]]:
     """Rows of a figure that summary.json holds by corner, as one number, or not at all."""
     value = summary.get(name)
     for corner, figure in value.items() if isinstance(value, dict) else [("", value)]:

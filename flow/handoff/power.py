@@ -1,6 +1,7 @@
 """A flat netlist with its supplies drawn in: ports of the module and pins of every cell."""
 
 import re
+from collections.abc import Sequence
 
 from models.parameters import ParameterError
 
@@ -8,7 +9,7 @@ HEADER = re.compile(r"(?m)^(module\s+\S+\s*)\((.*?)\);")
 INSTANCE = re.compile(r"(?m)^(\s+\w+\s+(?:\\\S+\s+|\w+\s*)\()(\..*)\);$")
 
 
-def powered(verilog, supplies):
+def powered(verilog: str, supplies: Sequence[str]) -> str:
     """``verilog`` with the nets ``supplies`` as ports and as pins of the same names on every cell.
 
     verilog: one module, an instance a line, as flow.layout writes it. Raises ParameterError for any other.

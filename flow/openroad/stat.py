@@ -6,7 +6,7 @@ CELLS = re.compile(r"Number of cells:\s+(\d+)|^\s+(\d+)\s+\S+\s+cells$", re.M)
 AREA = re.compile(r"Chip area for (?:top )?module[^:]*:\s+([\d.]+)")
 
 
-def counted(text):
-    """(number of cells, their area in um2) of the flat design in ``text``; None for what it does not say."""
+def counted(text: str) -> tuple[int | None, float | None]:
+    """Number of cells and their area in um2 of the flat design in ``text``; None for what it does not say."""
     cells, area = CELLS.search(text), AREA.search(text)
     return int(cells[1] or cells[2]) if cells else None, float(area[1]) if area else None

@@ -1,7 +1,11 @@
 """Sizes as a Markdown table."""
 
+from collections.abc import Sequence
 
-def markdown(sizes):
+from .measure import Size
+
+
+def markdown(sizes: Sequence[Size]) -> str:
     """Table of Size objects, in the order given."""
     lines = [
         "# Sizes",
@@ -19,7 +23,7 @@ def markdown(sizes):
     return "\n".join(lines) + "\n"
 
 
-def readme_table(sizes):
+def readme_table(sizes: Sequence[Size]) -> str:
     """Table of the blocks for the README: what each is, its contract's figures, and its size."""
     by_top = {s.top: s for s in sizes}
     lines = [
