@@ -45,6 +45,7 @@ def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
     edge = "rising" if bool(storage.active) != (storage.kind == "latch") else "falling"
 
     def searched(pin: str, kind: str, rise: Sequence[Scenario], fall: Sequence[Scenario]) -> None:
+        """Search one constraint of a pin by its edges."""
         constraint: Constraint = {"pin": pin, "related": storage.clock, "type": kind, "slews": slews}
         if rise:
             constraint["rise"] = tried(f"{pin} rise: {kind}", _longest, bench, rise)
@@ -195,6 +196,7 @@ def bisect(
     limit = easy + degrade * abs(easy) if moves else 0.0
 
     def kept(x: float) -> bool:
+        """Whether the constraint is kept at ``x``."""
         delay = run(x)
         return delay is not None and delay <= limit
 

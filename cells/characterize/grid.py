@@ -26,9 +26,11 @@ def refined(bench: Bench, changes: Sequence[Change], output: str, loads: Sequenc
     c = bench.conditions
 
     def along_slew(change: Change, load: float) -> Line:
+        """Line through the table at one load."""
         return lambda slew: bench.edge(change, output, slew, load)
 
     def along_load(change: Change, slew: float) -> Line:
+        """Line through the table at one slew."""
         return lambda load: bench.edge(change, output, slew, load)
 
     slew_lines = [along_slew(change, load) for change in changes for load in (loads[1], loads[len(loads) // 2])]

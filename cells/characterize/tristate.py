@@ -81,6 +81,7 @@ class Held:
         states = sorted({s.inputs for s in bench.machine.states if s.outputs[number] == "Z"})[: c.states]
 
         def one(inputs: Vector, low: float, high: float) -> float:
+            """F in one state."""
             wave = self.run(inputs, {self.output: (ramp, low, high)}, ramp)
             return abs(wave.charge(self.output, REST, REST + END * ramp)) / (END * bench.volts)
 

@@ -70,6 +70,7 @@ def differences(name: str, ours: Group, theirs: Group) -> list[Difference]:
     """Differences of one cell."""
 
     def number(kind: str, what: str, own: float, other: float) -> Difference:
+        """Compare two numbers."""
         return Difference(name, kind, what, np.array([own]), np.array([other]))
 
     found = [number("leakage", "mean", *(cell.number("cell_leakage_power") for cell in (ours, theirs)))]

@@ -118,6 +118,7 @@ def joined(netlist: Netlist) -> dict[str, str]:
     root = {n: n for n in netlist.nodes}
 
     def find(n: str) -> str:
+        """The root of a node."""
         while root[n] != n:
             n = root[n]
         return n

@@ -1,1 +1,1 @@
-"""ngspice as a process, and what its transients show."""
+"""Transients in ngspice, run as a process, and what they show."""

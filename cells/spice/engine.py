@@ -1,4 +1,4 @@
-"""ngspice as a process that loads the models once and then runs one transient after another.
+"""One ngspice process that loads the models once and then runs one transient after another.
 
 `ngspice -p` reads commands from a pipe; sources and loads change by `alter`, results come back in its binary file.
 A run that hangs is killed at its timeout, a failed one is repeated with `Settings.retries` in a new process, and what
