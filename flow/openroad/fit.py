@@ -74,6 +74,8 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
     )
     tools.run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())
+    if cells is None or area is None:
+        raise tools.ToolError(f"yosys: {stat}: no number of cells or no area")
     flip_flops = len(re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__{functions.FLIP_FLOP} ", netlist.read_text()))
     return Fit(name, project.tiles, cells, flip_flops, area, core_um2(project.tiles)), netlist
 

@@ -1,6 +1,8 @@
 """A design for LibreLane: config.yaml, constraints, Verilog. Run: librelane config.yaml."""
 
+from flow.layout.design import Design
 from flow.layout.timing.constraints import sdc
+from platforms.openroad import OpenRoadPlatform
 
 # LibreLane reads the constraints in every step; it says by this variable whether the clock has its tree by then
 PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPENLANE_SDC_IDEAL_CLOCKS)} {
@@ -11,9 +13,9 @@ PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPEN
 """
 
 
-def librelane(design, known, verilog):
-    """Files of the design: dict path -> text."""
-    utilization = round(100 * design.utilization * known.utilization_share)
+def librelane(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]:
+    """Files of the design: text by path."""
+    utilization = round(100 * design.utilization * tech.utilization_share)
     values = {
         "DESIGN_NAME": design.top,
         "VERILOG_FILES": f"[dir::{design.top}.v]",

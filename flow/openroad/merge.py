@@ -1,24 +1,28 @@
 """DEF and the cells' GDS -> one GDS, by KLayout's reader: OpenROAD itself writes none."""
 
+from collections.abc import Sequence
+from pathlib import Path
+
 from base.gds import write_gds
 from models.parameters import ParameterError
+from platforms.openroad import OpenRoadPlatform
 
 ROUTED = "NET,SPNET,VIA,PIN,LEFPIN,FILL"
 
 
-def layer_map(known):
+def layer_map(tech: OpenRoadPlatform) -> str:
     """Text of a KLayout layer map: shapes to a wire's own datatype, pins and labels to those of the process."""
-    lines = ["DIEAREA ALL {} {}".format(*known.outline)]
-    for name, (layer, datatype) in known.gds.items():
+    lines = ["DIEAREA ALL {} {}".format(*tech.outline)]
+    for name, (layer, datatype) in tech.gds.items():
         lines += [
             f"{name} {ROUTED} {layer} {datatype}",
-            f"{name} PIN {layer} {known.pin_datatype}",
-            f"NAME {name}/PIN {layer} {known.label_datatype}",
+            f"{name} PIN {layer} {tech.pin_datatype}",
+            f"NAME {name}/PIN {layer} {tech.label_datatype}",
         ]
     return "\n".join([*lines, ""])
 
 
-def merge(source, lefs, cells, known, target):
+def merge(source: Path, lefs: Sequence[Path], cells: Path, tech: OpenRoadPlatform, target: Path) -> tuple[float, float]:
     """Write the DEF file ``source`` as GDS ``target``. lefs: technology and cells; cells: their GDS.
 
     Returns (width, height) in um of the die. Raises ParameterError for a cell that has no layout.
@@ -26,7 +30,7 @@ def merge(source, lefs, cells, known, target):
     import klayout.db as db
 
     mapped = target.with_suffix(".map")
-    mapped.write_text(layer_map(known))
+    mapped.write_text(layer_map(tech))
     options = db.LoadLayoutOptions()
     config = options.lefdef_config
     config.dbu, config.read_lef_with_def, config.lef_files = 0.001, False, [str(path) for path in lefs]
@@ -44,5 +48,5 @@ def merge(source, lefs, cells, known, target):
     for name in sorted(used):
         layout.cell(name).copy_tree(library.cell(name))
     write_gds(layout, target, top)
-    box = db.Region(top.shapes(layout.layer(*known.outline))).bbox()
+    box = db.Region(top.shapes(layout.layer(*tech.outline))).bbox()
     return round(box.width() * layout.dbu, 3), round(box.height() * layout.dbu, 3)

@@ -2,7 +2,9 @@
 
 import json
 
+from flow.layout.design import Design
 from flow.layout.timing.constraints import sdc
+from platforms.openroad import OpenRoadPlatform
 
 # Metrics of flow-scripts' own rules-base.json that a design which closes must keep, whatever its size
 RULES = {
@@ -16,10 +18,10 @@ RULES = {
 }
 
 
-def orfs(design, known, verilog):
-    """Files of the design: dict path -> text. Run: make DESIGN_HOME=<folder>/orfs DESIGN_CONFIG=.../config.mk."""
-    name, platform = design.name, known.orfs_platform
-    utilization = round(100 * design.utilization * known.utilization_share)
+def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]:
+    """Files of the design: text by path. Run: make DESIGN_HOME=<folder>/orfs DESIGN_CONFIG=.../config.mk."""
+    name, platform = design.name, tech.orfs_platform
+    utilization = round(100 * design.utilization * tech.utilization_share)
     values = {
         "DESIGN_NAME": design.top,
         "DESIGN_NICKNAME": name,

@@ -1,7 +1,12 @@
 """summary.json of a run, as far as these stages measure what the contract of flow.layout asks for."""
 
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from flow.layout.design import Design
 from flow.layout.report.metrics import broken as breaks
-from platforms.openroad import CORNERS
+from platforms.openroad import CORNERS, OpenRoadPlatform
 
 from .stat import counted
 
@@ -12,9 +17,12 @@ RULES = {
 }
 
 
-def summarize(design, known, found, folder, box):
-    """dict; what is not measured is None. found: figures of the stages' logs. folder: of the run. box: (width, height)
-    in um.
+def summarize(
+    design: Design, tech: OpenRoadPlatform, found: Mapping[str, float], folder: Path, box: tuple[float, float]
+) -> dict[str, Any]:
+    """The figures of a run; None for those that are not measured.
+
+    found: figures of the stages' logs. folder: of the run. box: (width, height) in um.
     """
     by_corner = {name: {corner: found.get(f"{name}.{corner}") for corner in CORNERS} for name in ("wns_ns", "whs_ns")}
     cells, area = counted((folder / "synth.stat").read_text())
@@ -24,11 +32,11 @@ def summarize(design, known, found, folder, box):
         "design": design.name,
         "top": design.top,
         "backend": "openroad",
-        "pdk": known.name,
+        "pdk": tech.name,
         "cells": cells,
         "cell_area_um2": area,
         "area_um2": round(box[0] * box[1], 2),
-        "utilization": round(design.utilization * known.utilization_share, 4),
+        "utilization": round(design.utilization * tech.utilization_share, 4),
         "drc_violations": found.get("drc_violations"),
         "antenna_violations": found.get("antenna_violations"),
         "lvs_match": None,
@@ -39,6 +47,6 @@ def summarize(design, known, found, folder, box):
     }
 
 
-def broken(summary):
+def broken(summary: dict[str, Any]) -> list[str]:
     """Rules that ``summary`` breaks: lines; a figure that is missing breaks its rule."""
     return breaks(summary, RULES)

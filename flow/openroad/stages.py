@@ -3,13 +3,14 @@
 import os
 import re
 import shutil
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from base.liberty.read import without
 from base.tools import ToolError, finish
 from models.parameters import ParameterError
-from platforms.openroad import CORNERS
+from platforms.openroad import CORNERS, OpenRoadPlatform
 
 SCRIPTS = Path(__file__).parent / "tcl"
 INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"
@@ -24,10 +25,12 @@ class Stage:
     corner: str = ""
 
     @property
-    def log(self):
+    def log(self) -> str:
+        """File name of its log."""
         return f"{self.name}.{self.corner}.log" if self.corner else f"{self.name}.log"
 
-    def command(self):
+    def command(self) -> list[str]:
+        """Its program and arguments."""
         return (
             ["yosys", "-q", "-c", "synth.tcl"]
             if self.name == "synth"
@@ -35,7 +38,7 @@ class Stage:
         )
 
 
-def stages(top):
+def stages(top: str) -> list[Stage]:
     """Every Stage for the module ``top``."""
     databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "hold", "route")]
     return [
@@ -46,33 +49,33 @@ def stages(top):
     ]
 
 
-def pdk_root(known, environment=os.environ):
+def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ) -> Path:
     """The folder PDK_ROOT, every file of the process there. Raises ParameterError."""
     root = environment.get("PDK_ROOT", "")
     if not root:
         raise ParameterError(
             "PDK_ROOT = '': must be the folder of an installed PDK "
-            f"(pip install ciel; ciel enable --pdk-family {known.name} <version>)"
+            f"(pip install ciel; ciel enable --pdk-family {tech.name} <version>)"
         )
-    needed = [(path,) for path in (*known.liberty.values(), known.tech_lef, known.cell_lef, known.cell_gds)]
-    for paths in (*needed, known.rcx_rules):
+    needed = [(path,) for path in (*tech.liberty.values(), tech.tech_lef, tech.cell_lef, tech.cell_gds)]
+    for paths in (*needed, tech.rcx_rules):
         if not any((Path(root) / path).is_file() for path in paths):
             raise ParameterError(f"PDK_ROOT = {root}: must hold {' or '.join(paths)}")
     return Path(root)
 
 
-def missing_tools():
+def missing_tools() -> list[str]:
     """Of the programs that the stages call, those not on PATH."""
     return [tool for tool in ("yosys", "openroad") if not shutil.which(tool)]
 
 
-def run(folder, top, known, root, note):
-    """Run every stage in ``folder``; returns dict figure -> number, of the lines 'TALBOT name value' in their logs.
+def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:
+    """Run every stage in ``folder``; returns the figures by name, of the lines 'TALBOT name value' in their logs.
 
     note: called with each stage's name. Raises ToolError with the last lines of a stage that failed.
     """
-    text = (root / known.liberty["typical"]).read_text()
-    (folder / "synthesis.lib").write_text(without(text, known.dont_use))
+    text = (root / tech.liberty["typical"]).read_text()
+    (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
     found = {}
     for stage in stages(top):
         note(stage.log.removesuffix(".log"))

@@ -3,7 +3,9 @@
 from pathlib import Path
 
 from base.files import staged
+from flow.layout.design import Design
 from flow.layout.timing.constraints import sdc
+from platforms.openroad import OpenRoadPlatform
 from rtl.verilog import export_verilog
 
 from .librelane import librelane
@@ -13,21 +15,21 @@ from .tinytapeout import PROJECTS, project_files
 from .variables import variables
 
 
-def rtl(design, folder):
+def rtl(design: Design, folder: Path) -> str:
     """The Verilog of a Design, exported now: text. Raises ToolError."""
     (path,) = export_verilog(folder, [design.top], design.options)
     return path.read_text()
 
 
-def write(design, known, folder):
-    """Write the files of ``design`` for the process ``known`` (OpenRoad) into ``folder``; returns their names."""
+def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
+    """Write the files of ``design`` for the process ``tech`` (OpenRoad) into ``folder``; returns their names."""
     folder = Path(folder)
     verilog = rtl(design, folder)
     files = {
         f"{design.top}.sdc": sdc(design, propagated=False),
-        "design.tcl": variables(design, known),
-        **orfs(design, known, verilog),
-        **librelane(design, known, verilog),
+        "design.tcl": variables(design, tech),
+        **orfs(design, tech, verilog),
+        **librelane(design, tech, verilog),
     }
     if design.name in PROJECTS:
         files |= project_files(PROJECTS[design.name], design, verilog)
