@@ -3,8 +3,9 @@
 import re
 from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from base.gds import db
 from base.lef import write
 from base.lef.write import Rectangles
 from flow.layout.geometry.antenna import connected
@@ -12,9 +13,6 @@ from flow.layout.netlist.netlist import SUPPLIES
 from models.parameters import ParameterError
 from platforms.coriolis import CoriolisPlatform
 from platforms.layers import Layer
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 EDGE_UM = 0.3  # how far from the edge a pin is taken for one
 USES: dict[str, str] = dict(zip(SUPPLIES, ("POWER", "GROUND"), strict=True))
@@ -49,8 +47,6 @@ def abstract(gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform) -
 
     directions: pin -> 'input' or 'output'; the supplies are pins too. Raises ParameterError for a port without metal.
     """
-    import klayout.db as db
-
     layout = db.Layout()
     layout.read(str(gds))
     (top,) = layout.top_cells()
@@ -131,8 +127,6 @@ def read_back(lef: Path, gds: Path, directions: Mapping[str, str], tech: Corioli
     Every pin must be on metal of its layer, and all other metal inside the outline under an obstruction or nearer to a
     pin than obstructions come.
     """
-    import klayout.db as db
-
     layout, drawn = db.Layout(), db.Layout()
     layout.read(str(lef))
     drawn.read(str(gds))
@@ -163,8 +157,6 @@ def _pins(
     layout: "db.Layout", top: "db.Cell", die: "db.Box", layer: Layer, strap: bool
 ) -> Iterator[tuple[str, "db.Box"]]:
     """Pairs (net, box) of a layer's metal: signals where it reaches the west or east edge, supplies on the straps."""
-    import klayout.db as db
-
     edge = round(EDGE_UM / layout.dbu)
     beyond = die.enlarged(edge, 0)
     bands = db.Region(db.Box(beyond.left, die.bottom, die.left + edge, die.top))

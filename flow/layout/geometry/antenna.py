@@ -6,12 +6,9 @@ net, by the area of the net's gates, must stay below the process's ratio; a diff
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from base.gds import db
 from platforms.coriolis import CoriolisPlatform
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 SAFE = 1e9  # um2 of metal an um2 of diffusion, in the check of nets without one
 
@@ -30,8 +27,6 @@ def connected(
     layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int]
 ) -> Iterator[Connected]:
     """Yield the nets joined by the layers up to each of ``levels``. One is void as soon as the next is asked for."""
-    import klayout.db as db
-
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
     poly, active, contact = (
         l2n.make_polygon_layer(layout.layer(*pair), name)
@@ -63,8 +58,6 @@ def violations(
     layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int] | None = None
 ) -> "dict[int, db.Region]":
     """Metal of the nets on which it is too large for their gates, by level of tech.metals; ``levels``: default all."""
-    import klayout.db as db
-
     found = {}
     for nets in connected(layout, top, tech, range(len(tech.metals)) if levels is None else levels):
         level = len(nets.metals) - 1

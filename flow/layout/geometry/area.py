@@ -5,12 +5,9 @@ too small. It grows along one side, or both, where nothing of its layer is near.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING
 
+from base.gds import db
 from platforms.layers import Layer
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 GRID_NM = 5
 
@@ -20,8 +17,6 @@ def grow(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], rules: Ma
 
     One that has no room stays, and the design rules find it.
     """
-    import klayout.db as db
-
     grown = 0
     for of in metals:
         least = round(rules[of.name]["area"] / layout.dbu**2)
@@ -42,7 +37,6 @@ def grow(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], rules: Ma
 
 def longer(box: "db.Box", area: int) -> "Iterator[db.Box]":
     """Boxes with at least ``area`` that hold ``box``, as long as it or as high: both ways first, then one."""
-    import klayout.db as db
 
     def lack(length: int, width: int) -> int:
         """What ``length`` lacks for the area at this ``width``."""

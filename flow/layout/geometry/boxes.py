@@ -1,12 +1,9 @@
 """Shapes as arrays of boxes."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
-if TYPE_CHECKING:
-    import klayout.db as db
+from base.gds import db
 
 Box = tuple[int, int, int, int]  # left, bottom, right, top in database units
 Boxes = npt.NDArray[np.int64]  # (n, 4) of the same, further columns possible

@@ -1,17 +1,13 @@
 """Metal fill: squares of no net where a layer has room, so that every layer is polished alike."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import numpy.typing as npt
 
+from base.gds import db
 from platforms.coriolis import Fill
 from platforms.layers import Layer
 
 from .boxes import Box, Boxes, boxes
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 GRID = 200  # nm, of what is free
 Pixels = npt.NDArray[np.int64]  # (n, 2)
@@ -19,8 +15,6 @@ Pixels = npt.NDArray[np.int64]  # (n, 2)
 
 def fill(layout: "db.Layout", top: "db.Cell", metal: Layer, rules: Fill) -> int:
     """Draw the squares of one layer into the cell ``top``, the largest first; how many."""
-    import klayout.db as db
-
     layer, die = layout.layer(*metal.gds), top.bbox()
     drawn = db.Region(top.begin_shapes_rec(layer)).merged()
     wanted = rules.density * die.area() - drawn.area()
@@ -76,8 +70,6 @@ class Room:
 
 def peak_density(layout: "db.Layout", top: "db.Cell", metal: Layer, rules: Fill) -> float:
     """Covered share of a layer in the window of the cell where it is largest; windows overlap by half."""
-    import klayout.db as db
-
     box, size = top.bbox(), round(rules.window_um / layout.dbu)
     drawn, found = db.Region(top.begin_shapes_rec(layout.layer(*metal.gds))).merged(), []
     for left in range(box.left, max(box.left + 1, box.right - size // 2), size // 2):

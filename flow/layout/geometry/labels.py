@@ -1,15 +1,12 @@
 """Labels of a streamed layout: the design's names on the layers that the process's decks read."""
 
 from collections.abc import Collection, Iterable, Mapping
-from typing import TYPE_CHECKING
 
+from base.gds import db
 from base.steps import StepError
 from platforms.coriolis import CoriolisPlatform
 
 from ..netlist.netlist import SUPPLIES
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 
 def relabel(layout: "db.Layout", names: Mapping[str, str], ports: Collection[str], tech: CoriolisPlatform) -> None:
@@ -19,8 +16,6 @@ def relabel(layout: "db.Layout", names: Mapping[str, str], ports: Collection[str
     where a net was rerouted, the others are where its segments were, and fill may come there. Raises StepError when a
     port has no label.
     """
-    import klayout.db as db
-
     top = layout.top_cell()
     found, edges = {}, top.bbox()
     for metal in tech.metals:
@@ -56,8 +51,6 @@ def _clear_pins(shapes: "db.Shapes", places: Iterable["db.Vector"]) -> None:
 
     Coriolis marks all segments of a port's net as pins, also those that `reroute` moved; decks take a pin for metal.
     """
-    import klayout.db as db
-
     boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]
     smallest = [
         min((box for box in boxes if box.contains(db.Point() + place)), key=db.Box.area, default=None)

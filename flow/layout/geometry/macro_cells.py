@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from base.gds import write_gds
+from base.gds import db, write_gds
 from platforms.coriolis import CoriolisPlatform
 
 from ..netlist.names import MACRO
@@ -17,8 +17,6 @@ def make_solid(gds: Path, macros: Sequence[dict[str, Any]], tech: CoriolisPlatfo
 
     The routers after Coriolis then find no path through a macro.
     """
-    import klayout.db as db
-
     if not macros:
         return
     layout = db.Layout()
@@ -43,8 +41,6 @@ def insert_macros(
 
     The segments at the pins move to the top cell. macros: (GDS, entry in the floorplan), in the floorplan's order.
     """
-    import klayout.db as db
-
     layout, options = db.Layout(), db.LoadLayoutOptions()
     layout.read(str(source))
     top = layout.top_cell()

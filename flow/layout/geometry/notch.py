@@ -5,18 +5,13 @@ What fills a slit joins nothing that was not one shape before.
 """
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
+from base.gds import db
 from platforms.layers import Layer
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 
 def fill(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: Mapping[str, float]) -> int:
     """Fill them in the top cell ``top``, cells have none; spaces: least, by layer (um). Returns how many."""
-    import klayout.db as db
-
     filled = 0
     for of in metals:
         layer = layout.layer(*of.gds)

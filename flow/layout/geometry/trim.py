@@ -6,12 +6,9 @@ is taken from either side; DRC and LVS check the result.
 """
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
+from base.gds import db
 from platforms.layers import Layer
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 GRID_NM = 5
 MOST_NM = 25  # that an end may lose: what pads have over the least enclosure of a via
@@ -20,8 +17,6 @@ END_NM = 500  # a longer edge is a side, which stays as it is
 
 def trim(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: Mapping[str, float]) -> int:
     """Trim in the top cell ``top``; spaces: least, by layer (um). Returns how many ends."""
-    import klayout.db as db
-
     trimmed = 0
     for metal in metals:
         layer = layout.layer(*metal.gds)
@@ -41,8 +36,6 @@ def trim(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: M
 
 def _strip(edge: "db.Edge", other: "db.Edge", depth: int) -> "db.Box":
     """The box ``depth`` deep inside ``edge``, away from ``other``."""
-    import klayout.db as db
-
     a, b = edge.bbox(), other.bbox()
     if edge.p1.x == edge.p2.x:
         left = a.left < b.left
@@ -53,8 +46,6 @@ def _strip(edge: "db.Edge", other: "db.Edge", depth: int) -> "db.Box":
 
 def _subtract(shapes: "db.Shapes", boxes: "Iterable[db.Box]") -> None:
     """Take ``boxes`` out of ``shapes`` where they meet."""
-    import klayout.db as db
-
     for box in boxes:
         touched = [shape for shape in shapes.each_overlapping(box) if not shape.is_text()]
         left = db.Region()

@@ -1,13 +1,12 @@
 """The least area and width of a route's pieces of metal."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+from base.gds import db
 
 from ..geometry.boxes import Box
 from .route import Route
 from .window import NetView
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 
 def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
@@ -37,8 +36,6 @@ def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
 
 
 def _merged(boxes: list[Box]) -> "db.Region":
-    import klayout.db as db
-
     shapes: Any = [db.Box(*box) for box in boxes]  # KLayout's stub lacks this overload
     return db.Region(shapes).merged()
 

@@ -1,18 +1,17 @@
 """A routed layout whose nets can be ripped up and rerouted, net by net."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
+from base.gds import db
+
 from ..geometry.boxes import Box, Boxes, boxes
 from .route import Point, Route
 from .rules import RoutingRules
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 BOX_AND_NET = 5  # columns
 Layers = dict[int, Boxes]  # boxes by level of RoutingRules.layers
@@ -65,8 +64,6 @@ class Board:
 
     def _fixed(self, name: str) -> Boxes:
         """Boxes (n, 4) of what is left on a layer, in the cells, too."""
-        import klayout.db as db
-
         return boxes(db.Region(self.top.begin_shapes_rec(self.layers[name])))
 
     def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
@@ -94,8 +91,6 @@ class Board:
 
     def drawn(self) -> "db.Layout":
         """A new layout with the shapes of all nets in it."""
-        import klayout.db as db
-
         layout = self.layout.dup()
         shapes = {name: layout.top_cell().shapes(layer) for name, layer in self.layers.items()}
         for net in self.nets:
@@ -105,8 +100,6 @@ class Board:
 
     def part(self, nets: Iterable[str]) -> "db.Layout":
         """A new layout with the shapes of ``nets``, what of others is near to these, and the cells below alone."""
-        import klayout.db as db
-
         layout, found = self.layout.dup(), {}
         top, reach = layout.top_cell(), max(layer.space for layer in self.rules.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
@@ -148,8 +141,6 @@ class Board:
 
     def within(self, routed: Layers, level: int, polygon: str) -> set[str]:
         """Names of the nets with a box whose middle is in ``polygon``, KLayout's text; routed: see `owners`."""
-        import klayout.db as db
-
         outline = db.Polygon.from_s(polygon)
         box = outline.bbox()
         return {

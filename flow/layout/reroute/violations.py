@@ -3,17 +3,14 @@
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from base.gds import db
 from platforms.coriolis import CoriolisPlatform
 
 from ..geometry.antenna import violations as antennas
 from ..geometry.boxes import Box
 from .board import Board, Layers
 from .rules import RoutingRules
-
-if TYPE_CHECKING:
-    import klayout.db as db
 
 
 @dataclass(frozen=True)
@@ -48,8 +45,6 @@ def find(
     layout: "db.Layout", rules: RoutingRules, tech: CoriolisPlatform, levels: Collection[int] | None = None
 ) -> Violations:
     """Violations of a KLayout layout on ``levels``, default all."""
-    import klayout.db as db
-
     top, spacing = layout.top_cell(), []
     levels = range(len(rules.layers)) if levels is None else levels
     for level in filter(None, levels):  # the lowest is that of the cells' pins
@@ -64,8 +59,6 @@ def find(
 
 def find_in_file(path: Path, rules: RoutingRules, tech: CoriolisPlatform, levels: Collection[int]) -> Violations:
     """Violations of a GDS file: see `find`."""
-    import klayout.db as db
-
     layout = db.Layout()
     layout.read(str(path))
     return find(layout, rules, tech, levels)

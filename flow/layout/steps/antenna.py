@@ -3,6 +3,7 @@
 import json
 from typing import Any
 
+from base.gds import db
 from base.steps import Files, Step
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
@@ -20,8 +21,6 @@ class Antenna(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        import klayout.db as db
-
         tech, layout = self.tech(), db.Layout()
         layout.read(str(inputs["gds"]))
         found = {

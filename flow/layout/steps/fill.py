@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from base.gds import write_gds
+from base.gds import db, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
@@ -25,8 +25,6 @@ class Fill(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        import klayout.db as db
-
         tech, layout = coriolis_platform(self.parameters.pdk), db.Layout()
         layout.read(str(inputs["gds"]))
         top = layout.top_cell()

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import write_gds
+from base.gds import db, write_gds
 from base.steps import Files, Step
 from models.parameters import check_int
 from platforms.coriolis import coriolis_platform
@@ -62,8 +62,6 @@ class Reroute(Step[RerouteParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        import klayout.db as db
-
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         placement = json.loads(inputs["placement"].read_text())
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}

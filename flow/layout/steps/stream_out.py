@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import write_gds
+from base.gds import db, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
@@ -60,8 +60,6 @@ class StreamOut(Step[StreamOutParameters]):
             self.inputs = {**self.inputs, **assembled}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        import klayout.db as db
-
         p, tech, layout = self.parameters, coriolis_platform(self.parameters.pdk), db.Layout()
         netlist = Netlist.read(inputs["netlist"])
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
