@@ -1,1 +1,1 @@
-"""cocotb benches of the chip and of its stream blocks, the same in Icarus and in Verilator."""
+"""Benches in cocotb of the chip and of its stream blocks, the same in Icarus and in Verilator."""

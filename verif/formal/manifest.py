@@ -1,4 +1,4 @@
-"""rtl/<block>/formal/proofs.yaml: what is proven, how, and the bug of each property's twin."""
+"""Proofs as rtl/<block>/formal/proofs.yaml declares them: what is proven, how, and the bug of each property's twin."""
 
 from pathlib import Path
 from typing import Any

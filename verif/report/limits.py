@@ -1,4 +1,4 @@
-"""limits.json: the least (or most) that every figure may be, and which figures are beyond it.
+"""Limits of limits.json: the least (or most) that every figure may be, and which figures are beyond it.
 
 A figure that a block cannot have (coverage of state machines where it has none) is {"none": "the reason"}.
 """
