@@ -1,27 +1,18 @@
 """The sides of a block's pins, the places of its macros, and the room for its clock tree."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
 from models.parameters import ParameterError
 from platforms.coriolis import CoriolisPlatform
 
-from ..netlist.netlist import Port
 from .macro import Macro
 
-SIDES = ("west", "east")  # the router gives up on some pins on the other two
 BESIDE_UM = 15.0  # least width of rows beside a macro: a strap of either supply must find a place there
 TREE_ASPECT = 1.8  # Coriolis cuts a longer box in two halves, whose trunks then overlap
 HALO_ROWS = 3, 2  # heights of a row that are left free beside a macro, where its pins are met, and above it
-
-
-def pins(ports: Iterable[Port]) -> dict[str, list[str]]:
-    """Nets of the pins by side, in the order of the ports, buses together."""
-    nets = [net for port in sorted(ports, key=lambda port: port.direction) for net in port.bits()]
-    share = math.ceil(len(nets) / len(SIDES))
-    return {side: nets[k * share : (k + 1) * share] for k, side in enumerate(SIDES)}
 
 
 def halo_area(macro: Macro, tech: CoriolisPlatform) -> float:

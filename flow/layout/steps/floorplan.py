@@ -9,9 +9,10 @@ from base.steps import Files, Step, StepError
 from models.parameters import check_real
 from platforms.coriolis import coriolis_platform
 
-from ..geometry.floorplan import halo_area, largest_free, pins, place_macros
+from ..geometry.floorplan import halo_area, largest_free, place_macros
 from ..geometry.macro import Macro
 from ..netlist.netlist import Netlist
+from ..netlist.pins import pins
 
 CLOCK_CELLS_SHARE = 0.06  # of the cells' area, for the clock tree's buffers to come
 

@@ -8,9 +8,9 @@ from base.steps import Files, Step
 from base.tools import run
 from models.parameters import check_int, check_real
 
-from ..geometry.floorplan import pins
 from ..netlist.buffering import buffer_fan_out, buffer_outputs
 from ..netlist.netlist import Buffer, Netlist, is_register, register_names
+from ..netlist.pins import pins
 
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
 BARE_PF = 0.1  # load of an output above which it has its own buffer

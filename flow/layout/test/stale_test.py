@@ -65,6 +65,7 @@ EXACTLY = [
     ("cells/characterize/constraint.py", {"timing"}),
     ("cells/report/curve.py", set()),
     ("cells/compact/route.py", set()),
+    ("platforms/ihp_sg13g2/layers.py", set()),
     ("verif/formal/engine.py", set()),
     ("talbot/__main__.py", set()),
 ]
@@ -91,3 +92,42 @@ def test_exactly_these_steps_run_again(steps, tree, file, expected):
 def test_these_steps_run_again_and_those_do_not(steps, tree, file, some, others):
     found = changed(steps, tree, file)
     assert some <= found and not others & found
+
+
+# What the keys of the other caches are made of: modules, and tests of a block, whose code decides a kept result
+CACHES = {
+    "simulator": ("flow.simulate.verilator",),
+    "divider": ("flow.simulate.divider.simulator",),
+    "cell": ("cells.characterize.job",),
+    "proof": ("verif.formal.prove",),
+    "mutant": ("verif.mutation.judge", "rtl/edge_adc/test"),
+    "coverage": ("verif.coverage.measure",),
+    "trace": ("verif.coverage.traces", "rtl/edge_adc/test"),
+    "fuzz": ("verif.fuzz.batch",),
+}
+
+
+@pytest.mark.parametrize(
+    "file, expected",
+    [
+        ("rtl/edge_adc/edge_adc_rtl.py", {"simulator", "mutant", "trace"}),
+        ("models/digital/sar.py", {"mutant", "trace"}),
+        ("models/digital/stream/decode.py", {"fuzz"}),
+        ("flow/simulate/bench.sv", {"simulator"}),
+        ("flow/simulate/divider/main.cpp", {"divider", "mutant"}),
+        ("cells/spice/engine.py", {"cell"}),
+        ("verif/formal/engine.py", {"proof", "mutant"}),
+        ("verif/coverage/main.cpp", {"coverage", "mutant"}),
+        ("flow/layout/chain.py", set()),
+    ],
+)
+def test_exactly_these_caches_have_another_key(tree, file, expected):
+    def keys():
+        sources.forget()
+        return {name: sources.code(*starts, root=tree) for name, starts in CACHES.items()}
+
+    before = keys()
+    path = tree / file
+    path.write_text(path.read_text() + "\n")
+    after = keys()
+    assert {name for name in before if before[name] != after[name]} == expected
