@@ -24,20 +24,20 @@ from models.stability import Case, optical_cases, table
 SINGLE_TYPE = 1 << 13
 # (name, arguments of `request`); few sizes, since each compiles a simulator
 FRAMES = (
-    ("one tile, 4 x 6", dict(rows=4, cols=6, scene="camera")),
-    ("1 x 37 pixels", dict(rows=1, cols=37, scene="camera")),
-    ("37 x 1 pixels", dict(rows=37, cols=1, scene="camera")),
-    ("37 x 50, threshold 0", dict(rows=37, cols=50, threshold=0)),
-    ("37 x 50, threshold 127", dict(rows=37, cols=50, threshold=127)),
-    ("37 x 50, all types masked but one", dict(rows=37, cols=50, mask=SINGLE_TYPE, threshold=0)),
-    ("37 x 50, noise 100 times physical", dict(rows=37, cols=50, noise=100.0)),
-    ("37 x 50, saturated scene", dict(rows=37, cols=50, scene="saturated", threshold=0)),
-    ("37 x 50, black scene", dict(rows=37, cols=50, scene="black")),
-    ("37 x 50, black scene, no noise", dict(rows=37, cols=50, scene="black", noise=0.0, threshold=0)),
-    ("37 x 50, saturated, image mode", dict(rows=37, cols=50, scene="saturated", mode="image")),
-    ("37 x 50, raw mode", dict(rows=37, cols=50, mode="raw")),
-    ("37 x 50, time of flight", dict(rows=37, cols=50, mode="tof")),
-    ("37 x 50, time of flight through the divider", dict(rows=37, cols=50, mode="tof", phase=True)),
+    ("one tile, 4 x 6", {"rows": 4, "cols": 6, "scene": "camera"}),
+    ("1 x 37 pixels", {"rows": 1, "cols": 37, "scene": "camera"}),
+    ("37 x 1 pixels", {"rows": 37, "cols": 1, "scene": "camera"}),
+    ("37 x 50, threshold 0", {"rows": 37, "cols": 50, "threshold": 0}),
+    ("37 x 50, threshold 127", {"rows": 37, "cols": 50, "threshold": 127}),
+    ("37 x 50, all types masked but one", {"rows": 37, "cols": 50, "mask": SINGLE_TYPE, "threshold": 0}),
+    ("37 x 50, noise 100 times physical", {"rows": 37, "cols": 50, "noise": 100.0}),
+    ("37 x 50, saturated scene", {"rows": 37, "cols": 50, "scene": "saturated", "threshold": 0}),
+    ("37 x 50, black scene", {"rows": 37, "cols": 50, "scene": "black"}),
+    ("37 x 50, black scene, no noise", {"rows": 37, "cols": 50, "scene": "black", "noise": 0.0, "threshold": 0}),
+    ("37 x 50, saturated, image mode", {"rows": 37, "cols": 50, "scene": "saturated", "mode": "image"}),
+    ("37 x 50, raw mode", {"rows": 37, "cols": 50, "mode": "raw"}),
+    ("37 x 50, time of flight", {"rows": 37, "cols": 50, "mode": "tof"}),
+    ("37 x 50, time of flight through the divider", {"rows": 37, "cols": 50, "mode": "tof", "phase": True}),
 )
 
 

@@ -1,25 +1,25 @@
 """The codes that the formats are measured on."""
 
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from flow.frame import job
+from flow.frame.request import request
+from models.chip import golden_frame
 from models.parameters import ParameterError
 
+Codes = npt.NDArray[np.int16]
 
-def default_codes() -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
+
+def default_codes() -> tuple[Codes, npt.NDArray[np.float64]]:
     """Edge codes of the default scene without a threshold, and their analog values in LSB, both (rows, cols).
 
     The values are those of the same exposure without noise, ahead of the converter.
     """
-    from dataclasses import replace
-
-    from flow.frame import job
-    from flow.frame.request import request
-    from models.chip import golden_frame
-
     asked = request()
     scene, todo = job.see(asked)
     exposed = job.expose(asked, scene, todo)
@@ -27,7 +27,7 @@ def default_codes() -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
     return golden.codes[..., 0], exposed.ideal[..., 0]
 
 
-def load_codes(path: Path) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float64]]:
+def load_codes(path: Path) -> tuple[Codes, npt.NDArray[np.float64]]:
     """The same from an npz file with ``codes`` and ``ideal``. Raises ParameterError."""
     try:
         with np.load(path) as file:
@@ -39,7 +39,7 @@ def load_codes(path: Path) -> tuple[npt.NDArray[np.int16], npt.NDArray[np.float6
     return codes.astype(np.int16), ideal.astype(float)
 
 
-def thresholded(codes: npt.NDArray[np.int16], threshold: int) -> npt.NDArray[np.int16]:
+def thresholded(codes: Codes, threshold: int) -> Codes:
     """What edge mode sends of them: the window comparison makes zeros of magnitudes under the threshold."""
     return np.where(np.abs(codes.astype(np.int16)) < threshold, np.int16(0), codes)
 

@@ -10,19 +10,14 @@ from models.digital.stream.payload import base_of
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 from models.reconstruct.psnr import psnr_db
 
-from .codes import entropy_bytes, thresholded
-from .orders import MARK_BYTES, ORDERS, segments_of
-from .tokens import FORMATS
+from .codes import Codes, entropy_bytes, thresholded
+from .orders import MARK_BYTES, ORDERS, Indices, segments_of
+from .tokens import FORMATS, Encoder
 
 THRESHOLDS = (0, 2, 4, 6, 8, 9, 10, 11, 12, 14, 16, 20, 24)
 
 
-def frame_bytes(
-    codes: npt.NDArray[np.int16],
-    threshold: int,
-    encoder: Callable[..., int],
-    segments: Sequence[npt.NDArray[np.integer]],
-) -> int:
+def frame_bytes(codes: Codes, threshold: int, encoder: Encoder, segments: Sequence[Indices]) -> int:
     """Bytes of a frame, header, marks and trailer included. codes: int16 (rows, cols); segments: flat indices."""
     flat, size = codes.ravel(), HEADER_BYTES + TRAILER_BYTES
     out = np.empty(4 * max(map(len, segments)) + 8, np.uint8)
@@ -32,7 +27,7 @@ def frame_bytes(
 
 
 def measure(
-    codes: npt.NDArray[np.int16],
+    codes: Codes,
     ideal: npt.NDArray[np.float64],
     thresholds: Sequence[int] = THRESHOLDS,
     progress: Callable[[Sequence[int]], Iterable[int]] = iter,
@@ -59,7 +54,7 @@ def measure(
     return rows
 
 
-def growth(encoder: Callable[..., int], shape: tuple[int, int] = (64, 384), seed: int = 1) -> float:
+def growth(encoder: Encoder, shape: tuple[int, int] = (64, 384), seed: int = 1) -> float:
     """Bytes of rows of random codes, marks included, over a byte a sample: what the format does to noise."""
     noise = np.random.default_rng(seed).integers(-128, 128, shape).astype(np.int16)
     rows = list(np.arange(noise.size).reshape(shape))

@@ -10,36 +10,37 @@ from models.digital.scan import Scan
 from models.parameters import FrameParameters, TileParameters, Window
 
 MARK_BYTES = 2
+Indices = npt.NDArray[np.integer]
 
 
 @dataclass(frozen=True)
 class Order:
-    """segments: function of (rows, cols, tile) -> list of flat indices, int arrays.
+    """A scan order. segments: function of (rows, cols, tile) -> list of flat indices, int arrays.
 
     buffer: what must be held before it can be sent in this order. lost: what a wrong byte costs.
     """
 
-    segments: Callable[[int, int, TileParameters], list[npt.NDArray[np.integer]]]
+    segments: Callable[[int, int, TileParameters], list[Indices]]
     buffer: str
     lost: str
 
 
-def _raster(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
+def _raster(rows: int, cols: int, tile: TileParameters) -> list[Indices]:
     return list(np.arange(rows * cols).reshape(rows, cols))
 
 
-def _type_in_row(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
+def _type_in_row(rows: int, cols: int, tile: TileParameters) -> list[Indices]:
     frame = FrameParameters(Window(0, -(-rows // tile.rows) - 1, 0, -(-cols // tile.cols) - 1))
     scan = Scan(rows, cols, 8, frame, tile)
     return [row * cols + scan.row_samples(row)[0] for row in range(rows)]
 
 
-def _type_in_frame(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
+def _type_in_frame(rows: int, cols: int, tile: TileParameters) -> list[Indices]:
     types = tile.type_map(rows, cols).ravel()
     return [np.flatnonzero(types == kind) for kind in range(tile.n_types)]
 
 
-def _tiles(rows: int, cols: int, tile: TileParameters) -> list[npt.NDArray[np.integer]]:
+def _tiles(rows: int, cols: int, tile: TileParameters) -> list[Indices]:
     row, col = np.divmod(np.arange(rows * cols), cols)
     order = np.lexsort((col % tile.cols, row % tile.rows, col // tile.cols, row // tile.rows))
     return np.split(order, np.flatnonzero(np.diff(row[order] // tile.rows)) + 1)
@@ -54,8 +55,6 @@ ORDERS = {
 CHIP = "type by type in the row"
 
 
-def segments_of(
-    name: str, rows: int, cols: int, tile: TileParameters = TileParameters()
-) -> list[npt.NDArray[np.integer]]:
+def segments_of(name: str, rows: int, cols: int, tile: TileParameters = TileParameters()) -> list[Indices]:
     """Every sample of a (rows, cols) array once, as flat indices by segment."""
     return ORDERS[name].segments(rows, cols, tile)

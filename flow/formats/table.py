@@ -11,12 +11,9 @@ from .orders import CHIP, ORDERS
 from .tokens import CHOSEN, FORMATS
 
 
-def _line(cells: Iterable[object]) -> str:
-    return "| " + " | ".join(str(cell) for cell in cells) + " |"
-
-
-def _table(head: Sequence[str], lines: Iterable[Iterable[object]]) -> list[str]:
-    return [_line(head), "|---" + "|---:" * (len(head) - 1) + "|", *map(_line, lines)]
+def _table(head: Sequence[str], rows: Iterable[Iterable[object]]) -> list[str]:
+    first, *lines = [f"| {' | '.join(map(str, cells))} |" for cells in (head, *rows)]
+    return [first, "|---" + "|---:" * (len(head) - 1) + "|", *lines]
 
 
 def markdown(
@@ -31,67 +28,50 @@ def markdown(
     rows: of `measure`. gates: format -> NAND2 equivalents, or None where Yosys is missing. growths: format -> ratio.
     source: what was measured, in words.
     """
-    here = {(r["order"], r["format"]): r["ratio"] for r in rows if r["threshold"] == threshold}
-    known = next(r for r in rows if r["threshold"] == threshold)
+    at = [r for r in rows if r["threshold"] == threshold]
+    ratios = {(r["order"], r["format"]): f"{r['ratio']:.2f}" for r in at}
+    chosen = [r for r in rows if (r["order"], r["format"]) == (CHIP, CHOSEN)]
+
+    def share(row: Mapping[str, Any]) -> str:
+        return f"{100 * row['not_zero']:.1f} %"
+
+    formats = [
+        [name, *(ratios[order, name] for order in ORDERS), f"{100 * (growths[name] - 1):+.1f} %"]
+        + [f"{gates[name]:,.0f}" if gates else "needs Yosys"]
+        for name in FORMATS
+    ]
+    thresholds = [
+        [r["threshold"], f"{r['psnr_db']:.2f}", share(r), f"{r['bytes']:,}"]
+        + [f"{r['ratio']:.2f}", f"{r['entropy_ratio']:.2f}"]
+        for r in chosen
+    ]
     out = [
         "# Token formats and scan orders",
         "",
         f"Measured on {source}, by `talbot formats`.",
         "",
-        f"Threshold {threshold}: {known['psnr_db']:.1f} dB, {100 * known['not_zero']:.1f} % of the samples are "
-        f"not zero, and their zero-order entropy allows {known['entropy_ratio']:.2f} : 1. Compression (a byte a "
+        f"Threshold {threshold}: {at[0]['psnr_db']:.1f} dB, {share(at[0])} of the samples are "
+        f"not zero, and their zero-order entropy allows {at[0]['entropy_ratio']:.2f} : 1. Compression (a byte a "
         "sample over all bytes of the frame), what random codes grow by, and gates of the packer:",
         "",
-    ]
-    out += _table(
-        ["format", *ORDERS, "noise grows", "gates"],
-        [
-            [
-                name,
-                *(f"{here[order, name]:.2f}" for order in ORDERS),
-                f"{100 * (growths[name] - 1):+.1f} %",
-                f"{gates[name]:,.0f}" if gates else "needs Yosys",
-            ]
-            for name in FORMATS
-        ],
-    )
-    out += [
+        *_table(["format", *ORDERS, "noise grows", "gates"], formats),
         "",
-        *_table(
-            ["order", "must be held", "a wrong byte costs"],
-            [[name, order.buffer, order.lost] for name, order in ORDERS.items()],
-        ),
+        *_table(["order", "must be held", "a wrong byte costs"], [[n, o.buffer, o.lost] for n, o in ORDERS.items()]),
+        "",
+        f"{CHOSEN[0].upper()}{CHOSEN[1:]}, {CHIP}:",
+        "",
+        *_table(["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"], thresholds),
     ]
-    out += ["", f"{CHOSEN[0].upper()}{CHOSEN[1:]}, {CHIP}:", ""]
-    out += _table(
-        ["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"],
-        [
-            [
-                r["threshold"],
-                f"{r['psnr_db']:.2f}",
-                f"{100 * r['not_zero']:.1f} %",
-                f"{r['bytes']:,}",
-                f"{r['ratio']:.2f}",
-                f"{r['entropy_ratio']:.2f}",
-            ]
-            for r in rows
-            if (r["order"], r["format"]) == (CHIP, CHOSEN)
-        ],
-    )
     return "\n".join(out) + "\n"
 
 
 def chart(rows: Sequence[Mapping[str, Any]]) -> Figure:
     """Compression against PSNR of every format in the chip's order, and what the entropy allows."""
-    series = {
-        name: [
-            (r["psnr_db"], r["ratio"], f"T={r['threshold']}" if name == CHOSEN else "")
-            for r in rows
-            if (r["order"], r["format"]) == (CHIP, name)
-        ]
-        for name in FORMATS
-    }
-    series["zero-order entropy"] = [
-        (r["psnr_db"], r["entropy_ratio"], "") for r in rows if (r["order"], r["format"]) == (CHIP, CHOSEN)
-    ]
+    series: dict[str, list[tuple[float, float, str]]] = {}
+    for r in rows:
+        if r["order"] == CHIP:
+            label = f"T={r['threshold']}" if r["format"] == CHOSEN else ""
+            series.setdefault(r["format"], []).append((r["psnr_db"], r["ratio"], label))
+    chosen = [r for r in rows if (r["order"], r["format"]) == (CHIP, CHOSEN)]
+    series["zero-order entropy"] = [(r["psnr_db"], r["entropy_ratio"], "") for r in chosen]
     return curves(series, "PSNR of the codes sent (dB)", "compression", f"Token formats, {CHIP}", log_y=True)

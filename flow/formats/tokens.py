@@ -1,7 +1,9 @@
 """Encoders of one segment's codes in each token format that is compared; all have the arguments of the first.
 
-Where a run of zeros is open at the end of the segment, it is told, and no value follows.
+A run of zeros that is open at the end of the segment is coded, and no value follows.
 """
+
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
@@ -9,9 +11,14 @@ from numba import njit
 
 from models.digital.stream.payload import encode_row
 
+from .codes import Codes
+
+Bytes = npt.NDArray[np.uint8]
+Encoder = Callable[[Codes, int, Bytes], int]  # (codes of a segment, threshold's base, buffer) -> bytes written
+
 
 @njit(cache=True)
-def byte_pairs(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
+def byte_pairs(codes: Codes, base: int, out: Bytes) -> int:
     """(zeros, value) in a byte each; 255 zeros alone are (255, 0). Returns the bytes written to out (uint8)."""
     at = run = 0
     for code in codes:
@@ -28,7 +35,7 @@ def byte_pairs(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint
 
 
 @njit(cache=True)
-def _append(out: npt.NDArray[np.uint8], at: int, bits: int, length: int) -> int:
+def _append(out: Bytes, at: int, bits: int, length: int) -> int:
     for i in range(length - 1, -1, -1):
         if at % 8 == 0:
             out[at // 8] = 0
@@ -38,7 +45,7 @@ def _append(out: npt.NDArray[np.uint8], at: int, bits: int, length: int) -> int:
 
 
 @njit(cache=True)
-def nibbles(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
+def nibbles(codes: Codes, base: int, out: Bytes) -> int:
     """Zeros (15: no value follows), then sign and distance 0..6 from the base, or sign, 7 and the code."""
     at = run = 0
     for code in codes:
@@ -59,7 +66,7 @@ def nibbles(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8])
 
 
 @njit(cache=True)
-def _rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8], k: int, r2: int, adaptive: bool) -> int:
+def _rice(codes: Codes, base: int, out: Bytes, k: int, r2: int, adaptive: bool) -> int:
     at = run = 0
     for code in codes:
         distance, r = abs(code) - base, r2 >> 1
@@ -90,24 +97,24 @@ def _rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8], k
 
 
 @njit(cache=True)
-def fixed_rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
+def fixed_rice(codes: Codes, base: int, out: Bytes) -> int:
     """0 for 16 zeros; or 1, four bits of zeros, sign, distance in a Rice code of r = 3 (8 ones: seven plain bits)."""
     return _rice(codes, base, out, 4, 6, False)
 
 
 @njit(cache=True)
-def adaptive_rice(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
+def adaptive_rice(codes: Codes, base: int, out: Bytes) -> int:
     """The same with 2**k zeros and r, both following the samples as in the stream's payload."""
     return _rice(codes, base, out, 3, 4, True)
 
 
-def payload(codes: npt.NDArray[np.int16], base: int, out: npt.NDArray[np.uint8]) -> int:
+def payload(codes: Codes, base: int, out: Bytes) -> int:
     """The stream's payload: adaptive runs, exp-Golomb codes of adaptive order, literals that bound its growth."""
     return encode_row(codes, True, base, out, 0)
 
 
 # name -> (encoder, its packer in rtl/run_length)
-FORMATS = {
+FORMATS: dict[str, tuple[Encoder, str]] = {
     "byte pairs": (byte_pairs, "BytePairPacker"),
     "nibbles": (nibbles, "NibblePacker"),
     "Golomb-Rice, fixed": (fixed_rice, "FixedRicePacker"),

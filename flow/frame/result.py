@@ -36,7 +36,7 @@ class Exposed:
 
 @dataclass(frozen=True, eq=False)
 class FrameResult:
-    """Everything one run knows, for the figures, the pictures and the report."""
+    """Everything of one run, for the figures, the pictures and the report."""
 
     request: FrameRequest
     exposed: Exposed

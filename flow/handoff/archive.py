@@ -1,4 +1,4 @@
-"""A tar.gz in which nothing tells when, where or by whom it was made."""
+"""A tar.gz without times, users and paths of the machine that writes it."""
 
 import gzip
 import hashlib
@@ -7,7 +7,7 @@ import tarfile
 from collections.abc import Mapping
 from pathlib import Path
 
-TIME = 315532800  # 1980-01-01, the first day that every archiver knows
+TIME = 315532800  # 1980-01-01, the first day that every archiver can store
 
 
 def archive(path: Path, top: str, files: Mapping[str, bytes]) -> None:

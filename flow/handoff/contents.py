@@ -16,7 +16,7 @@ from .pages import datasheet, pinout
 from .power import powered
 
 WAIVERS = Path(__file__).parent / "waivers.json"
-# suffix of build/layout/<design>/<design>.* -> folder and, where it is another, suffix in the archive
+# suffix of build/layout/<design>/<design>.* -> folder in the archive
 REQUIRED = {
     "gds": "layout",
     "lef": "layout",
@@ -77,8 +77,7 @@ def contents(
     if lines:
         raise Broken("\n".join(lines))
     files, substitutes = {name: plain(path.read_bytes(), folder) for name, path in sources.items()}, {}
-    told = {name: value for name, value in summary.items() if name not in OF_A_RUN}
-    files["reports/summary.json"] = (json.dumps(told, indent=1) + "\n").encode()
+    files["reports/summary.json"] = _json({name: value for name, value in summary.items() if name not in OF_A_RUN})
     corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
     for suffix, (place, substitute) in OPTIONAL.items():
         paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]
@@ -92,7 +91,7 @@ def contents(
         f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(),
         "pinout.md": pinout(lef).encode(),
         "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
-        "waivers.json": (json.dumps(waivers, indent=1) + "\n").encode(),
+        "waivers.json": _json(waivers),
     }
     return files, substitutes
 
@@ -105,18 +104,13 @@ def plain(data: bytes, folder: Path) -> bytes:
 def manifest(design: Design, files: Mapping[str, bytes], substitutes: Mapping[str, str]) -> bytes:
     """The file manifest.json: size and SHA-256 of every file, versions of the tools, substitutes of missing files."""
     summary = json.loads(files["reports/summary.json"])
-    return (
-        json.dumps(
-            {
-                "design": design.name,
-                "top": design.top,
-                "pdk": summary.get("pdk"),
-                "backend": summary.get("backend"),
-                "versions": {"talbot": version("talbot"), **summary.get("tools", {})},
-                "substitutes": substitutes,
-                "files": {name: {"bytes": len(data), "sha256": sha256(data)} for name, data in sorted(files.items())},
-            },
-            indent=1,
-        )
-        + "\n"
-    ).encode()
+    return _json(
+        {"design": design.name, "top": design.top}
+        | {name: summary.get(name) for name in ("pdk", "backend")}
+        | {"versions": {"talbot": version("talbot"), **summary.get("tools", {})}, "substitutes": substitutes}
+        | {"files": {name: {"bytes": len(data), "sha256": sha256(data)} for name, data in sorted(files.items())}}
+    )
+
+
+def _json(value: object) -> bytes:
+    return (json.dumps(value, indent=1) + "\n").encode()

@@ -11,20 +11,18 @@ WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
 
 def pinout(lef: str) -> str:
     """Markdown table of the pins of a LEF."""
-    rows = [
-        f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |"
-        for p in read_macro(lef).pins.values()
-    ]
-    return "\n".join(
-        ["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|", *rows, ""]
-    )
+    lines = ["# Pinout", "", "| pin | direction | use | layer | x um | y um |", "|---|---|---|---|---:|---:|"]
+    for p in read_macro(lef).pins.values():
+        lines.append(f"| {p.name} | {p.direction.lower()} | {p.use.lower()} | {p.layer} | {p.x_um} | {p.y_um} |")
+    return "\n".join([*lines, ""])
 
 
 def datasheet(design: Design, summary: Mapping[str, Any], lef: str, waivers: Sequence[Mapping[str, str]]) -> str:
     """One page: size, timing by corner, power, what was checked, what was waived. A figure not measured is a dash."""
     macro = read_macro(lef)
     io, clock = design.io, design.clock
-    tests, density = summary.get("gate_tests"), summary.get("density") or {}
+    tests, density, stimulus = summary.get("gate_tests"), summary.get("density") or {}, summary.get("stimulus")
+    watched = f"{summary.get('stimulus_cycles')} cycles of {WATCHED[stimulus]}" if stimulus else None
     rows = [
         ("top", design.top),
         ("process", summary.get("pdk")),
@@ -39,12 +37,7 @@ def datasheet(design: Design, summary: Mapping[str, Any], lef: str, waivers: Seq
         *_figures(summary, "wns_ns", "setup slack, ns"),
         *_figures(summary, "whs_ns", "hold slack, ns"),
         ("timing rests on", summary.get("timing_rests_on")),
-        (
-            "power rests on",
-            f"{summary.get('stimulus_cycles')} cycles of {WATCHED[summary['stimulus']]}"
-            if summary.get("stimulus")
-            else None,
-        ),
+        ("power rests on", watched),
         *_figures(summary, "energy_pj_cycle", "energy a cycle, pJ"),
         *_figures(summary, "ir_drop_percent", "largest voltage drop, % of the supply"),
         ("netlist's tests passed, failed", tests and f"{tests['passed']}, {tests['failed']}"),

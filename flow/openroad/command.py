@@ -46,13 +46,9 @@ def run(options: Namespace) -> int:
         found = run_stages(folder, chosen.top, tech, root, bar.note)
         bar.note("gds")
         with staged(folder) as part:
-            box = merge(
-                folder / f"{chosen.top}.def",
-                [root / tech.tech_lef, root / tech.cell_lef],
-                root / tech.cell_gds,
-                tech,
-                part / f"{chosen.name}.gds",
-            )
+            lefs = [root / tech.tech_lef, root / tech.cell_lef]
+            gds = part / f"{chosen.name}.gds"
+            box = merge(folder / f"{chosen.top}.def", lefs, root / tech.cell_gds, tech, gds)
             for suffix in RESULTS:
                 shutil.copyfile(folder / f"{chosen.top}.{suffix}", part / f"{chosen.name}.{suffix}")
             summary = summarize(chosen, tech, found, folder, box)

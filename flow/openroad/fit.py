@@ -62,16 +62,9 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
         (folder / file).write_text((TOPS / file).read_text())
     (folder / "cells.lib").write_text(functions.small_liberty())
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
-    script.write_text(
-        SCRIPT.format(
-            top=project.top,
-            liberty=folder / "cells.lib",
-            stat=stat,
-            netlist=netlist,
-            constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}",
-            sources=" ".join(str(folder / file) for file in sources(project, chosen)),
-        )
-    )
+    verilog = " ".join(str(folder / file) for file in sources(project, chosen))
+    names = {"top": project.top, "liberty": folder / "cells.lib", "stat": stat, "netlist": netlist, "sources": verilog}
+    script.write_text(SCRIPT.format(constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}", **names))
     tools.run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())
     if cells is None or area is None:
@@ -82,18 +75,14 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
 
 def table(fits: Sequence[Fit]) -> str:
     """The table in Markdown."""
-    rows = [
-        f"| {f.project} | {f.tiles} | {f.cells:,} | {f.flip_flops:,} | {f.area_um2:,.0f} | {f.room_um2:,.0f} | "
-        f"{f.share:.0%} |"
-        for f in fits
+    lines = [
+        "| project | tiles | cells | flip-flops | cells' area, um2 | tiles' core, um2 | full |",
+        "|---|---|---:|---:|---:|---:|---:|",
     ]
-    return "\n".join(
-        [
-            "| project | tiles | cells | flip-flops | cells' area, um2 | tiles' core, um2 | full |",
-            "|---|---|---:|---:|---:|---:|---:|",
-            *rows,
-        ]
-    )
+    for f in fits:
+        sizes = f"{f.cells:,} | {f.flip_flops:,} | {f.area_um2:,.0f} | {f.room_um2:,.0f} | {f.share:.0%}"
+        lines.append(f"| {f.project} | {f.tiles} | {sizes} |")
+    return "\n".join(lines)
 
 
 def add_arguments(parser: ArgumentParser) -> None:

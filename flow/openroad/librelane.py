@@ -4,7 +4,7 @@ from flow.layout.design import Design
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import OpenRoadPlatform
 
-# LibreLane reads the constraints in every step; it says by this variable whether the clock has its tree by then
+# LibreLane reads the constraints in every step and sets this variable in those before the clock has its tree
 PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPENLANE_SDC_IDEAL_CLOCKS)} {
   unset_propagated_clock [all_clocks]
 } else {

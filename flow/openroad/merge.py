@@ -11,7 +11,7 @@ ROUTED = "NET,SPNET,VIA,PIN,LEFPIN,FILL"
 
 
 def layer_map(tech: OpenRoadPlatform) -> str:
-    """Text of a KLayout layer map: shapes to a wire's own datatype, pins and labels to those of the process."""
+    """Text of a KLayout layer map: shapes to a layer's own datatype, pins and labels to those of the process."""
     lines = ["DIEAREA ALL {} {}".format(*tech.outline)]
     for name, (layer, datatype) in tech.gds.items():
         lines += [

@@ -6,7 +6,7 @@ from flow.layout.design import Design
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import OpenRoadPlatform
 
-# Metrics of flow-scripts' own rules-base.json that a design which closes must keep, whatever its size
+# Metrics of flow-scripts' own rules-base.json that a signed-off design must keep, whatever its size
 RULES = {
     "constraints__clocks__count": (1, "=="),
     "detailedplace__design__violations": (0, "=="),
@@ -32,7 +32,7 @@ def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]
         "CORE_ASPECT_RATIO": 1,
         "CORE_MARGIN": 10,
         "PLACE_DENSITY_LB_ADDON": 0.1,
-        # else it is the number that the SDC has, which is in ns
+        # the default is the number in the SDC, which is in ns
         "ABC_CLOCK_PERIOD_IN_PS": round(1000 * design.clock.period_ns),
     }
     config = "".join(f"export {key} = {value}\n" for key, value in values.items())

@@ -1,4 +1,4 @@
-"""summary.json of a run, as far as these stages measure what the contract of flow.layout asks for."""
+"""The summary of a run: those figures of the contract of flow.layout that these stages measure."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -24,27 +24,18 @@ def summarize(
 
     found: figures of the stages' logs. folder: of the run. box: (width, height) in um.
     """
-    by_corner = {name: {corner: found.get(f"{name}.{corner}") for corner in CORNERS} for name in ("wns_ns", "whs_ns")}
+    slacks = {name: {corner: found.get(f"{name}.{corner}") for corner in CORNERS} for name in ("wns_ns", "whs_ns")}
     cells, area = counted((folder / "synth.stat").read_text())
-    period = design.clock.period_ns
-    slack = by_corner["wns_ns"]["slow"]
-    return {
-        "design": design.name,
-        "top": design.top,
-        "backend": "openroad",
-        "pdk": tech.name,
-        "cells": cells,
-        "cell_area_um2": area,
-        "area_um2": round(box[0] * box[1], 2),
-        "utilization": round(design.utilization * tech.utilization_share, 4),
-        "drc_violations": found.get("drc_violations"),
-        "antenna_violations": found.get("antenna_violations"),
-        "lvs_match": None,
-        "equivalence": None,
-        "gate_tests": None,
-        **by_corner,
-        "f_max_mhz": round(1000 / (period - slack), 2) if slack is not None else None,
-    }
+    slack = slacks["wns_ns"]["slow"]
+    f_max = None if slack is None else round(1000 / (design.clock.period_ns - slack), 2)
+    utilization = round(design.utilization * tech.utilization_share, 4)
+    return (
+        {"design": design.name, "top": design.top, "backend": "openroad", "pdk": tech.name}
+        | {"cells": cells, "cell_area_um2": area, "area_um2": round(box[0] * box[1], 2), "utilization": utilization}
+        | {name: found.get(name) for name in ("drc_violations", "antenna_violations")}
+        | dict.fromkeys(("lvs_match", "equivalence", "gate_tests"))
+        | {**slacks, "f_max_mhz": f_max}
+    )
 
 
 def broken(summary: dict[str, Any]) -> list[str]:

@@ -18,7 +18,7 @@ INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or 
 
 @dataclass(frozen=True)
 class Stage:
-    """name: of its script and log. gives: file without which it failed. corner: of the timing, or ''."""
+    """A script and its log. gives: file without which it failed. corner: of the timing, or ''."""
 
     name: str
     gives: str
@@ -31,22 +31,15 @@ class Stage:
 
     def command(self) -> list[str]:
         """Its program and arguments."""
-        return (
-            ["yosys", "-q", "-c", "synth.tcl"]
-            if self.name == "synth"
-            else ["openroad", "-no_init", "-no_splash", "-threads", "max", "-exit", f"{self.name}.tcl"]
-        )
+        program = "yosys -q -c" if self.name == "synth" else "openroad -no_init -no_splash -threads max -exit"
+        return [*program.split(), f"{self.name}.tcl"]
 
 
 def stages(top: str) -> list[Stage]:
     """Every Stage for the module ``top``."""
     databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "hold", "route")]
-    return [
-        Stage("synth", "netlist.v"),
-        *databases,
-        Stage("finish", f"{top}.spef"),
-        *(Stage("sta", f"{top}.{corner}.sdf", corner) for corner in CORNERS),
-    ]
+    timing = [Stage("sta", f"{top}.{corner}.sdf", corner) for corner in CORNERS]
+    return [Stage("synth", "netlist.v"), *databases, Stage("finish", f"{top}.spef"), *timing]
 
 
 def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ) -> Path:
@@ -82,11 +75,10 @@ def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callab
         (folder / stage.gives).unlink(missing_ok=True)
         done = finish(stage.command(), cwd=folder, env={"PDK_ROOT": str(root), "CORNER": stage.corner})
         (folder / stage.log).write_text(done.stdout + done.stderr)
-        if done.returncode or not (folder / stage.gives).is_file():
+        written = (folder / stage.gives).is_file()
+        if done.returncode or not written:
             tail = "\n".join((done.stdout + done.stderr).strip().splitlines()[-10:])
-            raise ToolError(
-                f"{stage.command()[0]} {stage.name}: status {done.returncode}, {stage.gives} "
-                f"{'written' if (folder / stage.gives).is_file() else 'not written'}:\n{tail}"
-            )
+            state = f"status {done.returncode}, {stage.gives} {'written' if written else 'not written'}"
+            raise ToolError(f"{stage.command()[0]} {stage.name}: {state}:\n{tail}")
         found |= {name: float(value) for name, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
     return found

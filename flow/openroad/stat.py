@@ -1,4 +1,4 @@
-"""What Yosys' command stat counted, in the words of its releases up to 2024 and of those since."""
+"""What Yosys' command stat counted, in the format of its releases up to 2024 and of those since."""
 
 import re
 
@@ -7,6 +7,6 @@ AREA = re.compile(r"Chip area for (?:top )?module[^:]*:\s+([\d.]+)")
 
 
 def counted(text: str) -> tuple[int | None, float | None]:
-    """Number of cells and their area in um2 of the flat design in ``text``; None for what it does not say."""
+    """Number of cells and their area in um2 of the flat design in ``text``; None for what is not there."""
     cells, area = CELLS.search(text), AREA.search(text)
     return int(cells[1] or cells[2]) if cells else None, float(area[1]) if area else None

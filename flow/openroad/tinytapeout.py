@@ -1,9 +1,12 @@
 """Tiny Tapeout: a block behind a byte bus in a few tiles, as a project that its tools take: info.yaml, src/, docs/."""
 
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import takewhile
 from pathlib import Path
 
+from flow.layout.design import Design
 from models.parameters import ParameterError, check_choice
 from platforms.sky130.tinytapeout import CONFIG, SIZES_UM
 
@@ -13,18 +16,21 @@ BUS = "tt_bytes.v"
 
 @dataclass(frozen=True)
 class Project:
-    """top: its module, file <top>.v in tops/. tiles: of SIZES_UM. ui, uo, uio: pins 0..7, '' for unused."""
+    """A project of the shuttle.
+
+    top: its module, file <top>.v in tops/. tiles: of SIZES_UM. ui, uo, uio: pins 0..7, '' for unused.
+    """
 
     top: str
     title: str
     description: str
     tiles: str
-    ui: tuple
-    uo: tuple
-    uio: tuple
+    ui: tuple[str, ...]
+    uo: tuple[str, ...]
+    uio: tuple[str, ...]
     test: str
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         check_choice("tiles", self.tiles, tuple(SIZES_UM))
         if not self.top.startswith("tt_um_"):
             raise ParameterError(f"top = {self.top!r}: must begin with tt_um_")
@@ -60,21 +66,16 @@ PROJECTS = {
 }
 
 
-def sources(project, design):
-    """Names of the Verilog files of a Project: its only list, from which all others are made."""
+def sources(project: Project, design: Design) -> list[str]:
+    """Names of the Verilog files of ``project``: its only list, from which all others are generated."""
     return [f"{project.top}.v", BUS, f"{design.top}.v"]
 
 
-def project_files(project, design, verilog):
-    """Files of the project: dict path -> text. verilog: of the Design."""
+def project_files(project: Project, design: Design, verilog: str) -> dict[str, str]:
+    """Files of the project: text by path. verilog: of ``design``."""
     config = {"CLOCK_PERIOD": design.clock.period_ns, "CLOCK_PORT": "clk", **CONFIG}
-    texts = dict(
-        zip(
-            sources(project, design),
-            ((TOPS / f"{project.top}.v").read_text(), (TOPS / BUS).read_text(), verilog),
-            strict=True,
-        )
-    )
+    ours = [(TOPS / name).read_text() for name in (f"{project.top}.v", BUS)]
+    texts = dict(zip(sources(project, design), [*ours, verilog], strict=True))
     return {
         "tinytapeout/info.yaml": info(project, design),
         "tinytapeout/docs/info.md": page(project, texts),
@@ -83,54 +84,28 @@ def project_files(project, design, verilog):
     }
 
 
-def info(project, design):
-    """Text of info.yaml, version 6."""
-
-    def quoted(text):
-        return json.dumps(text)  # a JSON string is a YAML string
-
-    lines = [
-        "project:",
-        f"  title: {quoted(project.title)}",
-        '  author: "Talbot"',
-        f"  description: {quoted(project.description)}",
-        '  language: "SystemVerilog"',
-        f"  clock_hz: {round(1e9 / design.clock.period_ns)}",
-        f"  tiles: {quoted(project.tiles)}",
-        f"  top_module: {quoted(project.top)}",
-        "  source_files:",
-        *(f"    - {quoted(name)}" for name in sources(project, design)),
-        "",
-        "pinout:",
-    ]
+def info(project: Project, design: Design) -> str:
+    """Text of info.yaml, version 6; a JSON string is a YAML string."""
+    text = f"""project:
+  title: {json.dumps(project.title)}
+  author: "Talbot"
+  description: {json.dumps(project.description)}
+  language: "SystemVerilog"
+  clock_hz: {round(1e9 / design.clock.period_ns)}
+  tiles: {json.dumps(project.tiles)}
+  top_module: {json.dumps(project.top)}
+  source_files:
+"""
+    text += "".join(f"    - {json.dumps(name)}\n" for name in sources(project, design)) + "\npinout:\n"
     for bank in ("ui", "uo", "uio"):
-        lines += [f"  {bank}[{k}]: {quoted(name)}" for k, name in enumerate(getattr(project, bank))]
-    return "\n".join([*lines, "", "yaml_version: 6", ""])
+        text += "".join(f"  {bank}[{k}]: {json.dumps(name)}\n" for k, name in enumerate(getattr(project, bank)))
+    return text + "\nyaml_version: 6\n"
 
 
-def page(project, texts):
-    """docs/info.md: the page of the shuttle's datasheet; the protocol as the top's own comment says it."""
-
-    def comment(name):
-        lines = texts[name].splitlines()
-        end = next(k for k, line in enumerate(lines) if not line.startswith("//"))
-        return "\n".join(line.removeprefix("//").strip() for line in lines[:end])
-
-    return "\n".join(
-        [
-            "## How it works",
-            "",
-            comment(f"{project.top}.v"),
-            "",
-            comment(BUS),
-            "",
-            "## How to test",
-            "",
-            project.test,
-            "",
-            "## External hardware",
-            "",
-            "None.",
-            "",
-        ]
-    )
+def page(project: Project, texts: Mapping[str, str]) -> str:
+    """The page docs/info.md of the shuttle's datasheet; the protocol is the comment at the head of each file."""
+    files = (texts[name].splitlines() for name in (f"{project.top}.v", BUS))
+    heads = [takewhile(lambda line: line.startswith("//"), lines) for lines in files]
+    works = "\n\n".join("\n".join(line.removeprefix("//").strip() for line in head) for head in heads)
+    sections = ("How it works", works), ("How to test", project.test), ("External hardware", "None.")
+    return "\n".join(f"## {title}\n\n{text}\n" for title, text in sections)

@@ -22,7 +22,7 @@ def rtl(design: Design, folder: Path) -> str:
 
 
 def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
-    """Write the files of ``design`` for the process ``tech`` (OpenRoad) into ``folder``; returns their names."""
+    """Write the files of ``design`` for the process ``tech`` into ``folder``; returns their names."""
     folder = Path(folder)
     verilog = rtl(design, folder)
     files = {

@@ -42,7 +42,8 @@ COMMANDS = {
     "initialize_floorplan": Command(
         "ifp README",
         _words(
-            "-site -die_area -core_area -utilization -aspect_ratio -core_space -additional_sites -row_parity -flip_sites"
+            "-site -die_area -core_area -utilization -aspect_ratio -core_space -additional_sites -row_parity"
+            " -flip_sites"
         ),
     ),
     "make_tracks": Command("ifp README", _words("-x_pitch -y_pitch -x_offset -y_offset"), (), 0, 1),

@@ -18,7 +18,7 @@ from platforms.sky130.tinytapeout import SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
 RUN = Path(__file__).parent / "librelane_run.py"
-# LibreLane calls `yosys -y SCRIPT OPTIONS -- ARGUMENTS`, which only a Yosys built with Python knows; the wheel is one
+# LibreLane calls `yosys -y SCRIPT OPTIONS -- ARGUMENTS`, which only a Yosys built with Python has; the wheel is one
 YOSYS = """#!/bin/sh
 script="$2"
 while [ "$1" != -- ]; do shift; done
