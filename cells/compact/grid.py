@@ -18,7 +18,11 @@ from cells.compact.canvas import Canvas
 
 Vertex = tuple[str, int, int] | tuple[str, int, int, int]
 Neighbours = dict[Vertex, set[Vertex]]
-Packed = tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]  # start of each vertex's members, and the members
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
+Packed = tuple[Ints, Ints]  # start of each vertex's members, and the members
+Arrays = tuple[Floats, Flags, Packed, Packed, Packed, Packed]  # price, leaf, next, excludes, needs, crowds
 
 PRICE = {"li": 1.0, "poly": 2.0, "met1": 2.5, "licon": 2.0, "mcon": 4.0, "pin": 0.0, "tap": 3.0, "tip": 3.5}
 
@@ -51,7 +55,7 @@ class Grid:
             self.crowds[v].discard(v)
             self.needs.setdefault(v, {v})
 
-    def arrays(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_], Packed, Packed, Packed, Packed]:
+    def arrays(self) -> Arrays:
         """Return price, leaf, next, excludes, needs and crowds for the router."""
         price = np.array([PRICE[v[0]] for v in self.vertices])
         leaf = np.array([v[0] in ("pin", "tap") for v in self.vertices])
@@ -114,22 +118,13 @@ class Grid:
             stripe = {("li", k, r) for k in here for r in (away, low, high)}
             pads = {("licon", h + 2 * side, row), ("tap", h + 2 * side, -side, row), ("tip", h + 2 * side, -side, row)}
             self.excludes[tap] = stripe | pads
-            self.crowds[tap] = (
-                stripe
-                | {("licon", k, r) for k in other for r in (low, high)}
-                | {(kind, h, s, r) for kind in ("tap", "tip") for s in (-1, 1) for r in (low, high)}
-            )
+            beside = {(kind, h, s, r) for kind in ("tap", "tip") for s in (-1, 1) for r in (low, high)}
+            self.crowds[tap] = stripe | {("licon", k, r) for k in other for r in (low, high)} | beside
         for row, away in ((low, low - 1), (high, high + 1)):
             tip = ("tip", h, side, row)
             self._join(("poly", h, row), tip)
             self._join(tip, ("li", h + side, away))
-            self.excludes[tip] = {("li", k, r) for k in here for r in (row, away)} | {
-                ("licon", h + 2 * side, row),
-                ("tip", h + 2 * side, -side, row),
-            }
-            self.crowds[tip] = (
-                {("licon", k, row) for k in other}
-                | {("tip", h, s, r) for s in (-1, 1) for r in (low, high)}
-                | {("li", k, row) for k in here}
-                | {("li", h, away)}
-            )
+            pads = {("licon", h + 2 * side, row), ("tip", h + 2 * side, -side, row)}
+            self.excludes[tip] = {("li", k, r) for k in here for r in (row, away)} | pads
+            beside = {("tip", h, s, r) for s in (-1, 1) for r in (low, high)} | {("li", h, away)}
+            self.crowds[tip] = {("licon", k, row) for k in other} | {("li", k, row) for k in here} | beside

@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
+from cells.compact.grid import Flags, Ints
 from cells.compact.transistors import Schematic, Switch
-
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 BREAK = 10.0  # cost of a break of the diffusions; that of a net is the columns that it spans
 
@@ -33,28 +30,16 @@ class Column:
 
 def breaks(columns: Sequence[Column]) -> list[int]:
     """Indices k where columns k and k + 1 cannot share both diffusions."""
-    return [
-        k
-        for k, (left, right) in enumerate(pairwise(columns))
-        if any(left.ends(kind)[1] != right.ends(kind)[0] for kind in "np")
-    ]
+    pairs = enumerate(pairwise(columns))
+    return [k for k, (left, right) in pairs if any(left.ends(kind)[1] != right.ends(kind)[0] for kind in "np")]
 
 
 def place(schematic: Schematic, seed: int) -> list[Column]:
     """Place ``schematic`` with few breaks and short nets (simulated annealing); another seed, another placement."""
-    count = len(schematic.n)
-    nets = {"vdd": 0, "vss": 1}
-    pins = np.array(
-        [
-            [[nets.setdefault(net, len(nets)) for net in (s.gate, s.a, s.b)] for s in kind]
-            for kind in (schematic.n, schematic.p)
-        ]
-    )
-    order, turned = _anneal(pins, len(nets), 4000 + 6000 * count * max(1, count - 4), seed)
-    return [
-        Column(schematic.n[order[0, k]], schematic.p[order[1, k]], bool(turned[0, k]), bool(turned[1, k]))
-        for k in range(count)
-    ]
+    n, p, nets = schematic.n, schematic.p, {"vdd": 0, "vss": 1}
+    pins = [[[nets.setdefault(net, len(nets)) for net in (s.gate, s.a, s.b)] for s in kind] for kind in (n, p)]
+    order, turned = _anneal(np.array(pins), len(nets), 4000 + 6000 * len(n) * max(1, len(n) - 4), seed)
+    return [Column(n[i], p[j], bool(a), bool(b)) for i, j, a, b in zip(*order, *turned, strict=True)]
 
 
 @njit(cache=True)
@@ -66,10 +51,8 @@ def _cost(pins: Ints, nets: int, order: Ints, turned: Flags) -> float:
         if k:
             gap = False
             for kind in range(2):
-                if (
-                    pins[kind, order[kind, k - 1], 1 if turned[kind, k - 1] else 2]
-                    != pins[kind, order[kind, k], 2 if turned[kind, k] else 1]
-                ):
+                left = pins[kind, order[kind, k - 1], 1 if turned[kind, k - 1] else 2]
+                if left != pins[kind, order[kind, k], 2 if turned[kind, k] else 1]:
                     gap = True
             broken += gap
             x += 2.0 if gap else 1.0

@@ -10,15 +10,12 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 
 from cells.compact.canvas import Canvas
-from cells.compact.grid import Grid, Packed, Vertex
+from cells.compact.grid import Arrays, Flags, Floats, Grid, Ints, Vertex
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
+Terminals = tuple[Ints, Ints, Ints]  # start of each net's sets, start of each set's members, and the members
 
 ROUNDS = 80
 NOISE = 0.2
@@ -65,18 +62,12 @@ def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
     used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
     for k, own in enumerate(task.blocked.values()):
         used[len(nets) + k, [grid.number[v] for v in own]] = True
-    ok, edges = _negotiate(
-        price, leaf, nexts, excludes, needs, crowds, net_start, set_start, members, used, len(nets), ROUNDS
-    )
-    if not ok:
-        return None
-    return _wiring(grid, [*nets, *task.blocked], used, edges)
+    ok, edges = _negotiate((price, leaf, nexts, excludes, needs, crowds), (net_start, set_start, members), used)
+    return _wiring(grid, [*nets, *task.blocked], used, edges) if ok else None
 
 
 @lru_cache(maxsize=32)
-def _grid(
-    columns: int, canvas: Canvas, met1: bool
-) -> tuple[Grid, tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_], Packed, Packed, Packed, Packed]]:
+def _grid(columns: int, canvas: Canvas, met1: bool) -> tuple[Grid, Arrays]:
     grid = Grid(columns, canvas, met1)
     return grid, grid.arrays()
 
@@ -98,54 +89,26 @@ def _wiring(grid: Grid, names: Sequence[str], used: Flags, edges: Iterable[tuple
 
 
 @njit(cache=True)
-def _negotiate(
-    price: Floats,
-    leaf: Flags,
-    nexts: Packed,
-    excludes: Packed,
-    needs: Packed,
-    crowds: Packed,
-    net_start: Ints,
-    set_start: Ints,
-    members: Ints,
-    used: Flags,
-    count: int,
-    rounds: int,
-) -> tuple[bool, list[tuple[int, int, int]]]:
+def _negotiate(grid: Arrays, terminals: Terminals, used: Flags) -> tuple[bool, list[tuple[int, int, int]]]:
     """Fill ``used`` (net, vertex); returns whether no conflict is left, and edges as (net, vertex, vertex)."""
-    past = np.zeros(len(price))
-    held = np.zeros(len(price), np.int64)
+    excludes, vertices, count = grid[3], used.shape[1], len(terminals[0]) - 1
+    past, held = np.zeros(vertices), np.zeros(vertices, np.int64)
     for net in range(count, used.shape[0]):
         held += used[net]
     edges = [(0, 0, 0)]
-    for round_ in range(rounds):
+    for round_ in range(ROUNDS):
         present = min(0.6 * 1.3**round_, 1e6)
         edges = [(0, 0, 0)]
         for net in range(count):
             held -= used[net]
             used[net] = False
-            tree, ok = _tree(
-                price,
-                leaf,
-                nexts,
-                excludes,
-                needs,
-                crowds,
-                net_start,
-                set_start,
-                members,
-                held,
-                past,
-                present,
-                net,
-                edges,
-            )
+            tree, ok = _tree(grid, terminals, held, past, present, net, edges)
             if not ok:
                 return False, edges
             used[net] = tree
             held += tree
         clashes = 0
-        for v in range(len(price)):
+        for v in range(vertices):
             if held[v] == 0:
                 continue
             clash = False
@@ -166,15 +129,8 @@ def _negotiate(
 
 @njit(cache=True)
 def _tree(
-    price: Floats,
-    leaf: Flags,
-    nexts: Packed,
-    excludes: Packed,
-    needs: Packed,
-    crowds: Packed,
-    net_start: Ints,
-    set_start: Ints,
-    members: Ints,
+    grid: Arrays,
+    terminals: Terminals,
     held: Ints,
     past: Floats,
     present: float,
@@ -182,6 +138,8 @@ def _tree(
     edges: list[tuple[int, int, int]],
 ) -> tuple[Flags, bool]:
     """Find a tree that meets every terminal of ``net``: its vertices, and whether there is one; appends its edges."""
+    price, leaf, nexts, excludes, needs, crowds = grid
+    net_start, set_start, members = terminals
     size = len(price)
     cost = np.zeros(size)
     for v in range(size):

@@ -15,6 +15,11 @@ from cells.netlist.states import Machine, Output
 
 Floats = npt.NDArray[np.float64]
 NS, PF, PJ, NW = 1e9, 1e12, 1e12, 1e9
+UNITS: dict[str, Value] = {"time": "1ns", "voltage": "1V", "current": "1mA", "leakage_power": "1nW"}
+UNITS |= {"pulling_resistance": "1kohm", "capacitive_load": (1.0, "pf")}
+ZERO = ["cell_leakage_power", "fanout_load", "inout_pin_cap", "input_pin_cap", "output_pin_cap"]  # by default
+ZERO += ["leakage_power_density"]
+SLEW_IN, LOAD = "input_transition_time", "total_output_net_capacitance"  # Liberty's names of axes
 
 
 class Entry(NamedTuple):
@@ -33,63 +38,25 @@ class Constant(NamedTuple):
 
 
 def library(
-    name: str,
-    conditions: Conditions,
-    cells: Sequence[Entry],
-    process: ModuleType,
-    constants: Mapping[str, Constant] | None = None,
+    name: str, c: Conditions, cells: Sequence[Entry], process: ModuleType, constants: Mapping[str, Constant]
 ) -> Group:
     """The library of ``cells`` and of those that hold a constant. process: a module like platforms.sky130.models."""
-    corner = conditions.corner
-    lib = Group(
-        "library",
-        (name,),
-        {
-            "technology": ("cmos",),
-            "delay_model": "table_lookup",
-            "time_unit": "1ns",
-            "voltage_unit": "1V",
-            "current_unit": "1mA",
-            "leakage_power_unit": "1nW",
-            "pulling_resistance_unit": "1kohm",
-            "capacitive_load_unit": (1.0, "pf"),
-            "nom_process": 1.0,
-            "nom_temperature": corner.temperature,
-            "nom_voltage": corner.supply,
-        },
-    )
+    lib = Group("library", (name,), {"technology": ("cmos",), "delay_model": "table_lookup"})
+    lib.attributes |= {f"{quantity}_unit": unit for quantity, unit in UNITS.items()}
+    nominal = {"process": 1.0, "temperature": c.corner.temperature, "voltage": c.corner.supply}
+    lib.attributes |= {f"nom_{quantity}": value for quantity, value in nominal.items()}
+    thresholds = {"input": c.middle, "output": c.middle, "slew_lower": c.lower, "slew_upper": c.upper}
     for edge in ("rise", "fall"):
-        lib.attributes |= {
-            f"input_threshold_pct_{edge}": 100 * conditions.middle,
-            f"output_threshold_pct_{edge}": 100 * conditions.middle,
-            f"slew_lower_threshold_pct_{edge}": 100 * conditions.lower,
-            f"slew_upper_threshold_pct_{edge}": 100 * conditions.upper,
-        }
-    lib.attributes |= {
-        "slew_derate_from_library": 1.0,
-        "default_max_transition": NS * conditions.longest_slew,
-        "default_cell_leakage_power": 0.0,
-        "default_fanout_load": 0.0,
-        "default_inout_pin_cap": 0.0,
-        "default_input_pin_cap": 0.0,
-        "default_output_pin_cap": 0.0,
-        "default_leakage_power_density": 0.0,
-    }
+        lib.attributes |= {f"{kind}_threshold_pct_{edge}": 100 * share for kind, share in thresholds.items()}
+    lib.attributes |= {"slew_derate_from_library": 1.0, "default_max_transition": NS * c.longest_slew}
+    lib.attributes |= dict.fromkeys((f"default_{name}" for name in ZERO), 0.0)
     ports = {port for entry in cells for port in entry.cell.machine.netlist.ports}
-    lib.attributes["voltage_map"] = [
-        (rail, level * corner.supply) for rail, level in process.SUPPLIES.items() if rail in ports
-    ]
-    lib.add(
-        "operating_conditions",
-        corner.name,
-        process=1.0,
-        temperature=corner.temperature,
-        voltage=corner.supply,
-        tree_type="balanced_tree",
-    )
-    _templates(lib, conditions, {_size(arc) for entry in cells for arc in entry.measured["arcs"]})
+    levels = {rail: level for rail, level in process.SUPPLIES.items() if rail in ports}
+    lib.attributes["voltage_map"] = [(rail, level * c.corner.supply) for rail, level in levels.items()]
+    lib.add("operating_conditions", c.corner.name, **nominal, tree_type="balanced_tree")
+    _templates(lib, c, {_size(arc) for entry in cells for arc in entry.measured["arcs"]})
     lib.groups += [_cell(entry, process) for entry in cells]
-    for cell, constant in (constants or {}).items():
+    for cell, constant in constants.items():
         group = lib.add("cell", cell, area=constant.area, cell_leakage_power=0.0)
         for pin, level in constant.levels.items():
             group.add("pin", pin, direction="output", function=str(level))
@@ -109,35 +76,16 @@ def _templates(lib: Group, c: Conditions, sizes: Iterable[str]) -> None:
             "index_1": NS * np.geomspace(c.slews[0], c.slews[-1], rows),
             "index_2": PF * np.geomspace(c.least_load, 100 * c.least_load, columns),
         }
-        lib.add(
-            "lu_table_template",
-            f"delay_{size}",
-            variable_1="input_net_transition",
-            variable_2="total_output_net_capacitance",
-            **axes,
-        )
-        lib.add(
-            "power_lut_template",
-            f"power_{size}",
-            variable_1="input_transition_time",
-            variable_2="total_output_net_capacitance",
-            **axes,
-        )
-    lib.add("power_lut_template", "quiet", variable_1="input_transition_time", index_1=slews)
-    lib.add(
-        "lu_table_template",
-        "constraint",
-        variable_1="related_pin_transition",
-        variable_2="constrained_pin_transition",
-        index_1=constraint,
-        index_2=constraint,
-    )
+        lib.add("lu_table_template", f"delay_{size}", variable_1="input_net_transition", variable_2=LOAD, **axes)
+        lib.add("power_lut_template", f"power_{size}", variable_1=SLEW_IN, variable_2=LOAD, **axes)
+    lib.add("power_lut_template", "quiet", variable_1=SLEW_IN, index_1=slews)
+    pins = {"variable_1": "related_pin_transition", "variable_2": "constrained_pin_transition"}
+    lib.add("lu_table_template", "constraint", **pins, index_1=constraint, index_2=constraint)
     lib.add("lu_table_template", "width", variable_1="related_pin_transition", index_1=constraint)
 
 
 def _cell(entry: Entry, process: ModuleType) -> Group:
-    cell, measured = entry.cell, entry.measured
-    machine = cell.machine
+    cell, measured, machine = entry.cell, entry.measured, entry.cell.machine
     group = Group("cell", (cell.name,))
     if entry.area is not None:
         group.attributes["area"] = float(entry.area)
@@ -148,7 +96,9 @@ def _cell(entry: Entry, process: ModuleType) -> Group:
             kind = ("nwell" if level else "pwell") if well else "primary_power" if level else "primary_ground"
             group.add("pg_pin", rail, pg_type=kind, voltage_name=rail)
     if cell.storage:
-        _storage(group, cell.storage)
+        if cell.storage.kind == "gate":
+            group.attributes["clock_gating_integrated_cell"] = _gating(cell.storage)
+        group.add("ff" if cell.storage.kind == "ff" else "latch", "IQ", "IQ_N", **storage_attributes(cell.storage))
     for pin in machine.inputs:
         _input(group, cell, measured, pin)
     for output in machine.outputs:
@@ -175,12 +125,6 @@ def _when(names: Iterable[str], levels: Iterable[Output]) -> str:
     return "&".join(("" if level else "!") + name for name, level in zip(names, levels, strict=True))
 
 
-def _storage(group: Group, storage: Storage) -> None:
-    if storage.kind == "gate":
-        group.attributes["clock_gating_integrated_cell"] = _gating(storage)
-    group.add("ff" if storage.kind == "ff" else "latch", "IQ", "IQ_N", **storage_attributes(storage))
-
-
 def storage_attributes(storage: Storage) -> dict[str, str]:
     """The attributes of a cell's group ff, or latch."""
     if storage.kind == "ff":
@@ -191,10 +135,8 @@ def storage_attributes(storage: Storage) -> dict[str, str]:
         inside = {"enable": PinLevel(storage.clock, 1 - storage.active).active, "data_in": storage.data}
     inside |= {name: pin.active for name, pin in (("clear", storage.clear), ("preset", storage.preset)) if pin}
     if storage.both is not None:
-        inside |= {
-            "clear_preset_var1": "HL"[1 - storage.both] if storage.both in (0, 1) else "X",
-            "clear_preset_var2": "L" if storage.both else "H",
-        }
+        inside["clear_preset_var1"] = "HL"[1 - storage.both] if storage.both in (0, 1) else "X"
+        inside["clear_preset_var2"] = "L" if storage.both else "H"
     return inside
 
 
@@ -204,28 +146,18 @@ def _gating(storage: Storage) -> str:
 
 
 def _input(group: Group, cell: Cell, measured: Measured, name: str) -> None:
-    rise_fall = measured["capacitance"].get(name)
-    pin = group.add("pin", name, direction="input")
-    storage = cell.storage
+    pin, storage = group.add("pin", name, direction="input"), cell.storage
     if storage and name == storage.clock and storage.kind != "latch":
         pin.attributes["clock"] = True
     if storage and storage.kind == "gate":
-        pin.attributes[
-            "clock_gate_clock_pin"
-            if name == storage.clock
-            else "clock_gate_enable_pin"
-            if name == storage.data_pins[0]
-            else "clock_gate_test_pin"
-        ] = True
-    _capacitance(pin, rise_fall)
+        role = {storage.clock: "clock", storage.data_pins[0]: "enable"}.get(name, "test")
+        pin.attributes[f"clock_gate_{role}_pin"] = True
+    _capacitance(pin, measured["capacitance"].get(name))
     _rails(pin, cell)
-    energy = measured["quiet_energy"].get(name)
-    if energy:
-        power = pin.add("internal_power", related_pg_pin=pin.text("related_power_pin"))
+    if energy := measured["quiet_energy"].get(name):
+        power, slews = pin.add("internal_power", related_pg_pin=pin.text("related_power_pin")), measured["slews"]
         for edge in ("rise", "fall"):
-            power.add(
-                f"{edge}_power", "quiet", index_1=NS * np.array(measured["slews"]), values=PJ * np.array(energy[edge])
-            )
+            power.add(f"{edge}_power", "quiet", index_1=NS * np.array(slews), values=PJ * np.array(energy[edge]))
     for constraint in measured["constraints"]:
         if constraint["pin"] == name:
             _constraint(pin, constraint)
@@ -233,11 +165,8 @@ def _input(group: Group, cell: Cell, measured: Measured, name: str) -> None:
 
 def _capacitance(pin: Group, rise_fall: tuple[float, float] | None) -> None:
     if rise_fall:
-        pin.attributes |= {
-            "capacitance": PF * sum(rise_fall) / 2,
-            "rise_capacitance": PF * rise_fall[0],
-            "fall_capacitance": PF * rise_fall[1],
-        }
+        pin.attributes["capacitance"] = PF * sum(rise_fall) / 2
+        pin.attributes["rise_capacitance"], pin.attributes["fall_capacitance"] = (PF * farad for farad in rise_fall)
 
 
 def _rails(pin: Group, cell: Cell) -> None:
@@ -251,18 +180,10 @@ def _rails(pin: Group, cell: Cell) -> None:
 def _constraint(pin: Group, found: Constraint) -> None:
     timing = pin.add("timing", related_pin=found["related"], timing_type=found["type"])
     for edge in ("rise", "fall"):
-        values = found.get(edge)
-        if values is None:
-            continue
-        axes: dict[str, Value] = {"index_1": NS * np.array(found["slews"])}
-        if np.ndim(values) == 2:
-            axes["index_2"] = NS * np.array(found["slews"])
-        timing.add(
-            f"{edge}_constraint",
-            "constraint" if np.ndim(values) == 2 else "width",
-            **axes,
-            values=NS * np.array(values),
-        )
+        if (values := found.get(edge)) is not None:
+            template = "constraint" if np.ndim(values) == 2 else "width"
+            axes = {f"index_{k + 1}": NS * np.array(found["slews"]) for k in range(np.ndim(values))}
+            timing.add(f"{edge}_constraint", template, **axes, values=NS * np.array(values))
 
 
 def _output(group: Group, cell: Cell, measured: Measured, name: str) -> None:
@@ -294,17 +215,11 @@ def _power(pin: Group, related: str, arcs: Sequence[ArcTables]) -> None:
     """Add the energy by output edge: the mean of the arcs that cause it."""
     power = pin.add("internal_power", related_pin=related, related_pg_pin=pin.text("related_power_pin"))
     for edge in ("fall", "rise"):
-        same = [arc for arc in arcs if arc["edge"] == edge]
-        if same:
+        if same := [arc for arc in arcs if arc["edge"] == edge]:
             energy = np.mean([arc["energy"] for arc in same if "energy" in arc], axis=0)
             _table(power, f"{edge}_power", "power", same[0], PJ * energy)
 
 
 def _table(group: Group, kind: str, template: str, arc: ArcTables, values: Floats) -> None:
-    group.add(
-        kind,
-        f"{template}_{_size(arc)}",
-        index_1=NS * np.array(arc["slews"]),
-        index_2=PF * np.array(arc["loads"]),
-        values=values,
-    )
+    slews, loads = NS * np.array(arc["slews"]), PF * np.array(arc["loads"])
+    group.add(kind, f"{template}_{_size(arc)}", index_1=slews, index_2=loads, values=values)
