@@ -1,7 +1,6 @@
 """The block's Liberty at one corner: delays, constraints and capacitances at its ports."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,17 +10,24 @@ import numpy as np
 from base.liberty.group import Group
 from base.liberty.read import read
 from base.liberty.write import text
-from base.steps import Step, StepError
+from base.steps import Files, StepError
 from base.tools import run
 
 from ..netlist.netlist import SUPPLIES, Netlist
 from ..power.energy import Cells
-from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Boundary, Files, measure
+from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Boundary, Sources, measure
+from .corner import CornerStep
 
 SLEWS = 0.02, 0.07, 0.25, 1.0  # ns
 LOADS = 0.001, 0.006, 0.02, 0.035, 0.06, 0.2  # pF
 EDGES = "rise", "fall"
 COMBINATIONAL = {"timing_type": "combinational", "timing_sense": "non_unate"}
+DELAY = {"index_1": np.array(SLEWS), "index_2": np.array(LOADS)}  # axes of the tables
+CONSTRAINT = {"index_1": np.array(SLEWS), "index_2": np.array(SLEWS)}
+TEMPLATES = (
+    ("delay", "input_net_transition", "total_output_net_capacitance", DELAY),
+    ("constraint", "related_pin_transition", "constrained_pin_transition", CONSTRAINT),
+)
 
 
 @dataclass(frozen=True)
@@ -32,7 +38,7 @@ class BlockLibertyParameters:
     clock: str = "clk"
 
 
-class BlockLiberty(Step[BlockLibertyParameters]):
+class BlockLiberty(CornerStep[BlockLibertyParameters]):
     """Timing of the ports from OpenSTA's slacks; no power but leakage.
 
     Outputs have their latest delay from the clock, and from inputs that reach them through cells alone; inputs have
@@ -40,37 +46,31 @@ class BlockLiberty(Step[BlockLibertyParameters]):
     the grid: model_error_ns.
     """
 
+    name = "block_liberty_{corner}"
     inputs = {"netlist": "place_route.netlist", "verilog": "stream_out.verilog", "spef": "extraction.spef"}
+    inputs |= {"liberty": "timing.{corner}", "areas": "floorplan.floorplan"}
     outputs = {"liberty": "block.lib"}
     metrics = {"model_error_ns": "ns", "arcs": ""}
     tools = ("sta", "yosys")
 
-    def __init__(self, parameters: BlockLibertyParameters) -> None:
-        super().__init__(parameters)
-        self.name = f"block_liberty_{parameters.corner}"
-        self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}", "areas": "floorplan.floorplan"}
-
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         clock, folder = self.parameters.clock, outputs["liberty"].parent
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
-        files = Files(inputs["liberty"], inputs["verilog"], folder, inputs["spef"])
+        files = Sources(inputs["liberty"], inputs["verilog"], folder, inputs["spef"])
         found = measure(netlist, clock, files, SLEWS, LOADS)
-        outputs["liberty"].write_text(
-            liberty(
-                netlist, clock, found, self.parameters.corner, inputs["liberty"], plan["width_um"] * plan["height_um"]
-            )
-        )
+        corner, area = self.parameters.corner, plan["width_um"] * plan["height_um"]
+        outputs["liberty"].write_text(liberty(netlist, clock, found, corner, inputs["liberty"], area))
         error = self.model_error(netlist, files, outputs["liberty"])
         return {"model_error_ns": error, "arcs": len(found.delays) + len(found.checks)}
 
-    def model_error(self, netlist: Netlist, files: Files, made: Path) -> float:
+    def model_error(self, netlist: Netlist, files: Sources, made: Path) -> float:
         """Largest difference (ns) between the model in a wrapper and the netlist, off the grid. Raises StepError."""
         run(["yosys", "-q", "-p", f"read_liberty -lib {made}; hierarchy -check -top {netlist.name}"])
         wrapper = files.folder / "wrapper.log"
         wrapper.write_text(_wrapper(netlist))
         point = (CHECK_SLEW_NS,), (CHECK_LOAD_PF,)
         own = measure(netlist, self.parameters.clock, files, *point)
-        model = measure(netlist, self.parameters.clock, Files(made, wrapper, files.folder, top="Wrapper"), *point)
+        model = measure(netlist, self.parameters.clock, Sources(made, wrapper, files.folder, top="Wrapper"), *point)
         differences = []
         for name in ("delays", "checks"):
             one, other = getattr(own, name), getattr(model, name)
@@ -81,19 +81,12 @@ class BlockLiberty(Step[BlockLibertyParameters]):
 
 
 def _wrapper(netlist: Netlist) -> str:
-    ports = [
-        f"  {port.direction} {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};" for port in netlist.ports
-    ]
     names = [port.name for port in netlist.ports]
-    return "\n".join(
-        [
-            f"module Wrapper ({', '.join(names)});",
-            *ports,
-            f"  {netlist.name} block ({', '.join(f'.{name}({name})' for name in names)});",
-            "endmodule",
-            "",
-        ]
-    )
+    lines = [f"module Wrapper ({', '.join(names)});"]
+    for port in netlist.ports:
+        lines.append(f"  {port.direction} {f'[{port.width - 1}:0] ' if port.width > 1 else ''}{port.name};")
+    lines.append(f"  {netlist.name} block ({', '.join(f'.{name}({name})' for name in names)});")
+    return "\n".join([*lines, "endmodule", ""])
 
 
 def liberty(netlist: Netlist, clock: str, found: Boundary, corner: str, source: Path, area: float) -> str:
@@ -105,51 +98,20 @@ def liberty(netlist: Netlist, clock: str, found: Boundary, corner: str, source: 
     if conditions := cells.one("operating_conditions"):
         library.groups.append(conditions)
     leakage = round(sum(map(Cells(cells).leakage_nw, (i.cell for i in netlist.instances))), 4)
-    slews, loads = np.array(SLEWS), np.array(LOADS)
-    library.add(
-        "lu_table_template",
-        "delay",
-        variable_1="input_net_transition",
-        variable_2="total_output_net_capacitance",
-        index_1=slews,
-        index_2=loads,
-    )
-    library.add(
-        "lu_table_template",
-        "constraint",
-        variable_1="related_pin_transition",
-        variable_2="constrained_pin_transition",
-        index_1=slews,
-        index_2=slews,
-    )
+    for name, one, other, axes in TEMPLATES:
+        library.add("lu_table_template", name, variable_1=one, variable_2=other, **axes)
     for width in sorted({port.width for port in netlist.ports if port.width > 1}):
-        library.add(
-            "type",
-            f"bus{width}",
-            base_type="array",
-            data_type="bit",
-            bit_width=width,
-            bit_from=width - 1,
-            bit_to=0,
-            downto=True,
-        )
-    cell = library.add(
-        "cell",
-        netlist.name,
-        area=round(area, 4),
-        cell_leakage_power=leakage,
-        dont_touch=True,
-        dont_use=True,
-        interface_timing=True,
-    )  # without interface_timing OpenSTA finds latches
+        bits: dict[str, int] = {"bit_width": width, "bit_from": width - 1, "bit_to": 0, "downto": True}
+        library.add("type", f"bus{width}", base_type="array", data_type="bit", **bits)
+    cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=leakage)
+    for flag in ("dont_touch", "dont_use", "interface_timing"):  # without the last OpenSTA finds latches
+        cell.attributes[flag] = True
     for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
         cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
     for port in netlist.ports:
-        group = (
-            cell
-            if port.width == 1
-            else cell.add("bus", port.name, bus_type=f"bus{port.width}", direction=port.direction)
-        )
+        group = cell
+        if port.width > 1:
+            group = cell.add("bus", port.name, bus_type=f"bus{port.width}", direction=port.direction)
         for net in port.bits():
             pin = group.add("pin", net, direction=port.direction)
             if port.direction == "input":
@@ -167,13 +129,8 @@ def _constraints(pin: Group, net: str, clock: str, found: Boundary) -> None:
             timing = pin.add("timing", related_pin=clock, timing_type=timing_type)
             for edge in EDGES:
                 table = found.checks[net, kind, edge]
-                timing.add(
-                    f"{edge}_constraint",
-                    "constraint",
-                    index_1=np.array(SLEWS),
-                    index_2=np.array(SLEWS),
-                    values=np.array([[table[a, b] for b in SLEWS] for a in SLEWS]),
-                )
+                values = np.array([[table[a, b] for b in SLEWS] for a in SLEWS])
+                timing.add(f"{edge}_constraint", "constraint", **CONSTRAINT, values=values)
 
 
 def _delays(pin: Group, net: str, clock: str, found: Boundary) -> None:
@@ -181,14 +138,6 @@ def _delays(pin: Group, net: str, clock: str, found: Boundary) -> None:
         more = {"timing_type": "rising_edge"} if source == clock else COMBINATIONAL
         timing = pin.add("timing", related_pin=source, **more)
         for edge in EDGES:
-            for name, tables in (
-                (f"cell_{edge}", found.delays[source, net, edge]),
-                (f"{edge}_transition", found.slews[net, edge]),
-            ):
-                timing.add(
-                    name,
-                    "delay",
-                    index_1=np.array(SLEWS),
-                    index_2=np.array(LOADS),
-                    values=np.array([[tables[a, b] for b in LOADS] for a in SLEWS]),
-                )
+            tables = {f"cell_{edge}": found.delays[source, net, edge], f"{edge}_transition": found.slews[net, edge]}
+            for name, table in tables.items():
+                timing.add(name, "delay", **DELAY, values=np.array([[table[a, b] for b in LOADS] for a in SLEWS]))

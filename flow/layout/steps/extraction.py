@@ -1,10 +1,8 @@
 """Parasitics of every net from the routed segments, as SPEF."""
 
-from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
 from ..netlist.netlist import Netlist
@@ -20,7 +18,7 @@ class Extraction(Step[PdkParameters]):
     outputs = {"spef": "parasitics.spef"}
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         netlist = Netlist.read(inputs["netlist"])
         nets = extract(netlist, inputs["placement"], coriolis_platform(self.parameters.pdk))
         outputs["spef"].write_text(spef(netlist, nets))

@@ -1,17 +1,16 @@
 """The stimulus replayed through the final netlist in Icarus with the delays of a corner, at the clock's full rate."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step, StepError
+from base.steps import Files, StepError
 from models.parameters import check_real
 
 from ..netlist.netlist import Netlist
 from ..timing.delays import read
 from ..timing.replay import Timing, replay
+from .corner import CornerStep
 
 CONSTANTS = {"zero", "one"}  # pins of cells without a path
 
@@ -31,7 +30,7 @@ class GateDelaysParameters:
             check_real(name, getattr(self, name), 0, 0.5)
 
 
-class GateDelays(Step[GateDelaysParameters]):
+class GateDelays(CornerStep[GateDelaysParameters]):
     """Outputs and timing checks of the whole trace: passed without a wrong output, an X or a violation.
 
     Annotated: all path delays with those of the nets (timing/delays.py), and setup and hold of every register.
@@ -39,36 +38,21 @@ class GateDelays(Step[GateDelaysParameters]):
     transitions a cycle, glitches included, and share of time at 1 of every net.
     """
 
-    inputs = {
-        "netlist": "place_route.netlist",
-        "cells": "library.verilog",
-        "head": "stimulus.head",
-        "trace": "stimulus.trace",
-    }
+    name = "gate_delays_{corner}"
+    inputs = {"netlist": "place_route.netlist", "cells": "library.verilog", "sdf": "sta_{corner}.sdf"}
+    inputs |= {"head": "stimulus.head", "trace": "stimulus.trace"}
     outputs = {"activity": "activity.json"}
     metrics = {"passed": "", "failed": "", "cycles": "", "paths": "", "setup_margin_ns": "ns", "hold_margin_ns": "ns"}
     tools = ("iverilog",)
 
-    def __init__(self, parameters: GateDelaysParameters) -> None:
-        super().__init__(parameters)
-        self.name = f"gate_delays_{parameters.corner}"
-        self.inputs = {**self.inputs, "sdf": f"sta_{parameters.corner}.sdf"}
-
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder = self.parameters, outputs["activity"].parent
         netlist, delays = Netlist.read(inputs["netlist"]), read(inputs["sdf"].read_text())
         lacking = [i.name for i in netlist.instances if set(i.pins) - CONSTANTS and i.name not in delays.paths]
         if lacking:
             raise StepError(f"{self.name}: the SDF has no delay of {', '.join(lacking[:5])}")
-        found = replay(
-            netlist,
-            inputs["cells"].read_text(),
-            inputs["head"],
-            Timing(p.period_ns, p.input_delay, p.output_delay),
-            folder,
-            delays,
-            count=True,
-        )
+        timing, cells = Timing(p.period_ns, p.input_delay, p.output_delay), inputs["cells"].read_text()
+        found = replay(netlist, cells, inputs["head"], timing, folder, delays, count=True)
         (folder / "verdict.log").write_text("\n".join((*found.first, *found.late[:100])) + "\n")
         for name in ("cells", "netlist", "delays", "bench"):
             (folder / f"{name}.log").unlink()

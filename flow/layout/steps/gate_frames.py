@@ -1,11 +1,10 @@
 """Whole frames through the chip's netlist in Icarus, with X: every byte must be that of the golden model."""
 
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from base.steps.step import NoParameters
 from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
@@ -29,7 +28,7 @@ class GateFrames(Step[NoParameters]):
     metrics = {"passed": "", "failed": "", "cycles": "", "bytes": ""}
     tools = ("iverilog",)
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         from flow.frame.hardware import simulate
         from models.chip import front_end_of, golden_frame
         from models.parameters import FrameParameters, SensorParameters, Window

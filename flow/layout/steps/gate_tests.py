@@ -3,13 +3,12 @@
 import sys
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from base.paths import ROOT
-from base.steps import Step, StepError
+from base.steps import Files, Step, StepError
 from base.tools import finish
 from models.parameters import check_choice
 
@@ -52,7 +51,7 @@ class GateTests(Step[GateTestsParameters]):
         """The tests that pytest reads."""
         return (f"rtl/{self.parameters.folder}/test",)
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p = self.parameters
         netlists = [f"--netlist={name}={inputs['verilog'].resolve()}:{p.top}" for name in p.names]
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:

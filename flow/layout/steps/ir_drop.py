@@ -9,14 +9,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from base.steps import Step
+from base.steps import Files
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..power.mesh import Box, Gap, Tap, drops, metal
+from .corner import CornerStep
 
 MIRRORED = {"6", "2"}  # orientations of Hurricane (MY, R2) in which a cell extends downwards from its origin
 LEFTWARDS = {"4", "2"}  # ... (MX, R2) in which it extends to the left of it
+Rows = Sequence[Sequence[Any]]  # of the placement's JSON
+Point = tuple[float, float]  # um
+Values = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -27,65 +31,40 @@ class IrDropParameters:
     corner: str = ""
 
 
-class IrDrop(Step[IrDropParameters]):
+class IrDrop(CornerStep[IrDropParameters]):
     """Rails and straps as resistors, strap ends at the supply; static: the mean over the trace, no peaks.
 
     ir_drop_percent: the largest sum of both drops at a cell, of the supply. current_lost: share, by the solver.
     """
 
-    inputs = {
-        "netlist": "place_route.netlist",
-        "placement": "place_route.placement",
-        "plan": "floorplan.floorplan",
-        "areas": "library.areas",
-    }
+    name = "ir_drop_{corner}"
+    inputs = {"netlist": "place_route.netlist", "placement": "place_route.placement", "plan": "floorplan.floorplan"}
+    inputs |= {"areas": "library.areas", "power": "power_{corner}.instances"}
     outputs = {"picture": "ir_drop.png", "cells": "ir_drop.json"}
-    metrics = {
-        "supply_drop_mv": "mV",
-        "ground_rise_mv": "mV",
-        "ir_drop_percent": "%",
-        "current_ua": "uA",
-        "current_lost": "",
-    }
+    metrics = {"supply_drop_mv": "mV", "ground_rise_mv": "mV", "ir_drop_percent": "%"}
+    metrics |= {"current_ua": "uA", "current_lost": ""}
 
-    def __init__(self, parameters: IrDropParameters) -> None:
-        super().__init__(parameters)
-        self.name = f"ir_drop_{parameters.corner}"
-        self.inputs = {**self.inputs, "power": f"power_{parameters.corner}.instances"}
-
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech = coriolis_platform(self.parameters.pdk)
         netlist, plan = Netlist.read(inputs["netlist"]), json.loads(inputs["plan"].read_text())
         placed = json.loads(inputs["placement"].read_text())
         areas, power = (json.loads(inputs[name].read_text()) for name in ("areas", "power"))
         cells = currents(netlist, placed["instances"], areas, power, tech)
-        rows = round(plan["height_um"] / tech.row_um)
+        rows, height = round(plan["height_um"] / tech.row_um), plan["height_um"]
         found, lost = [], []
         for net, odd in (("vdd", 1), ("vss", 0)):  # rails of even rows are ground
             rails = list(range(odd, rows + 1, 2))
             straps = [x for supply, x, _ in placed["straps"] if supply == net]
             gaps = [Gap(x, *gap) for supply, x, own in placed["straps"] if supply == net for gap in own]
-            taps = [
-                Tap(rails.index(cell.row if cell.row % 2 == odd else cell.row + 1), cell.x_um, cell.ampere)
-                for cell in cells
-            ]
-            drop, share = drops(
-                [row * tech.row_um for row in rails],
-                straps,
-                plan["height_um"],
-                taps,
-                metal(tech),
-                breaks(plan["macros"]),
-                gaps,
-            )
+            taps = [Tap(rails.index(row + (row % 2 != odd)), x_um, ampere) for row, x_um, ampere in cells]
+            heights = [row * tech.row_um for row in rails]
+            drop, share = drops(heights, straps, height, taps, metal(tech), breaks(plan["macros"]), gaps)
             found.append(drop * 1000)
             lost.append(share)
         total = found[0] + found[1]
         at = [(cell.x_um, (cell.row + 0.5) * tech.row_um) for cell in cells]
-        outputs["cells"].write_text(
-            json.dumps([[round(x, 3), round(y, 3), float(mv)] for (x, y), mv in zip(at, total, strict=True)], indent=0)
-            + "\n"
-        )
+        rounded = [[round(x, 3), round(y, 3), float(mv)] for (x, y), mv in zip(at, total, strict=True)]
+        outputs["cells"].write_text(json.dumps(rounded, indent=0) + "\n")
         picture(outputs["picture"], at, total, placed["straps"], plan)
         return {
             "supply_drop_mv": float(f"{found[0].max():.4g}"),
@@ -105,11 +84,7 @@ class Current(NamedTuple):
 
 
 def currents(
-    netlist: Netlist,
-    placed: Sequence[Sequence[Any]],
-    areas: Mapping[str, float],
-    power: Mapping[str, float],
-    tech: CoriolisPlatform,
+    netlist: Netlist, placed: Rows, areas: Mapping[str, float], power: Mapping[str, float], tech: CoriolisPlatform
 ) -> list[Current]:
     """Currents of the cells that have one.
 
@@ -134,13 +109,7 @@ def breaks(macros: Sequence[Mapping[str, Any]]) -> list[Box]:
     ]
 
 
-def picture(
-    path: Path,
-    at: Sequence[tuple[float, float]],
-    drop: npt.NDArray[np.float64],
-    straps: Sequence[Sequence[Any]],
-    plan: Mapping[str, Any],
-) -> None:
+def picture(path: Path, at: Sequence[Point], drop: Values, straps: Rows, plan: Mapping[str, Any]) -> None:
     """Draw the cells, coloured by the sum of their drops, mV; straps as lines."""
     from matplotlib.figure import Figure
 

@@ -2,18 +2,17 @@
 
 import json
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from base.liberty.read import read
-from base.steps import Step
+from base.steps import Files
 from models.parameters import check_real
 
 from ..netlist.netlist import Netlist
 from ..power.energy import Cells, blocks, powers
 from ..timing.opensta import opensta
+from .corner import CornerStep
 
 SLEWS = """
 read_liberty {liberty}
@@ -24,6 +23,9 @@ read_spef {spef}
 set sta_report_default_digits 5
 foreach pin [get_pins *] {{ report_slews $pin }}
 """
+
+
+KINDS = "internal", "switching", "leakage"
 
 
 @dataclass(frozen=True)
@@ -38,63 +40,48 @@ class PowerParameters:
         check_real("period_ns", self.period_ns, 0.5, 1e4)
 
 
-class Power(Step[PowerParameters]):
+class Power(CornerStep[PowerParameters]):
     """Mean power over the trace, without the loads of the outputs.
 
     Slews are OpenSTA's, transitions those of the simulation with delays (glitches included), capacitances those of the
     extraction.
     """
 
-    inputs = {
-        "netlist": "place_route.netlist",
-        "verilog": "stream_out.verilog",
-        "spef": "extraction.spef",
-        "sdc": "sdc",
-    }
+    name = "power_{corner}"
+    inputs = {"netlist": "place_route.netlist", "verilog": "stream_out.verilog", "spef": "extraction.spef"}
+    inputs |= {"sdc": "sdc", "liberty": "timing.{corner}", "activity": "gate_delays_{corner}.activity"}
     outputs = {"instances": "power.json"}
     metrics = {"power_uw": "uW", "by_kind": "uW", "by_block": "uW", "energy_pj_cycle": "pJ", "transitions_cycle": ""}
     tools = ("sta",)
 
-    def __init__(self, parameters: PowerParameters) -> None:
-        super().__init__(parameters)
-        corner = parameters.corner
-        self.name = f"power_{corner}"
-        self.inputs = {**self.inputs, "liberty": f"timing.{corner}", "activity": f"gate_delays_{corner}.activity"}
-
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, netlist = self.parameters, Netlist.read(inputs["netlist"])
         cells, activity = Cells(read(inputs["liberty"])), json.loads(inputs["activity"].read_text())
-        found = powers(
-            netlist, cells, activity, wire_pf(inputs["spef"].read_text()), self.slews(inputs, outputs), p.period_ns
-        )
+        wires, slews = wire_pf(inputs["spef"].read_text()), self.slews(inputs, outputs)
+        found = powers(netlist, cells, activity, wires, slews, p.period_ns)
         where = blocks(netlist)
         by_block: dict[str, float] = {}
         for name, power in found.items():
             by_block[where[name]] = by_block.get(where[name], 0.0) + power.total
         total = sum(power.total for power in found.values())
         outputs["instances"].write_text(json.dumps({name: power.total for name, power in found.items()}, indent=0))
+        by_kind = {kind: sum(getattr(power, kind) for power in found.values()) for kind in KINDS}
         return {
             "power_uw": round(total, 4),
-            "by_kind": {
-                kind: round(sum(getattr(power, kind) for power in found.values()), 4)
-                for kind in ("internal", "switching", "leakage")
-            },
+            "by_kind": {kind: round(value, 4) for kind, value in by_kind.items()},
             "by_block": {name: round(value, 4) for name, value in sorted(by_block.items(), key=lambda x: -x[1])},
             "energy_pj_cycle": round(total * p.period_ns / 1000, 4),
             "transitions_cycle": round(sum(toggles for toggles, _ in activity.values()), 2),
         }
 
-    def slews(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[tuple[str, str], float]:
+    def slews(self, inputs: Files, outputs: Files) -> dict[tuple[str, str], float]:
         """Slew (ns) of each (instance, pin), the slower edge."""
         report = opensta(outputs["instances"].with_suffix(".log"), SLEWS.format(top=self.parameters.top, **inputs))
-        return {
-            (instance.replace("\\", ""), pin): max(float(rise), float(fall))
-            for instance, pin, rise, fall in re.findall(r"(?m)^(\S+)/([^/\s]+) \^ \S+?:(\S+) v \S+?:(\S+)$", report)
-        }
+        found = re.findall(r"(?m)^(\S+)/([^/\s]+) \^ \S+?:(\S+) v \S+?:(\S+)$", report)
+        return {(name.replace("\\", ""), pin): max(float(rise), float(fall)) for name, pin, rise, fall in found}
 
 
 def wire_pf(spef: str) -> dict[str, float]:
     """Capacitance (pF) of each net in a SPEF of the extraction step (fF)."""
-    return {
-        name.replace("\\", ""): float(value) / 1000 for name, value in re.findall(r"(?m)^\*D_NET (\S+) (\S+)$", spef)
-    }
+    found = re.findall(r"(?m)^\*D_NET (\S+) (\S+)$", spef)
+    return {name.replace("\\", ""): float(value) / 1000 for name, value in found}

@@ -1,14 +1,13 @@
 """Static timing at one corner, with the parasitics, in OpenSTA."""
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step, StepError
+from base.steps import Files, StepError
 
 from ..timing.opensta import opensta
+from .corner import CornerStep
 
 SCRIPT = """
 read_liberty {liberty}
@@ -34,34 +33,26 @@ class StaParameters:
     period_ns: float = 0.0
 
 
-class Sta(Step[StaParameters]):
+class Sta(CornerStep[StaParameters]):
     """Slacks, and an SDF of all delays.
 
     wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: clock at which the setup slack is 0, with the same I/O
     delays in ns.
     """
 
-    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc"}
+    name = "sta_{corner}"
+    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc", "liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
     metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz"}
     tools = ("sta",)
 
-    def __init__(self, parameters: StaParameters) -> None:
-        super().__init__(parameters)
-        self.name = f"sta_{parameters.corner}"
-        self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}"}
-
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
-        p = self.parameters
-        script = SCRIPT.format(top=p.top, sdf=outputs["sdf"], **inputs)
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
+        script = SCRIPT.format(top=self.parameters.top, sdf=outputs["sdf"], **inputs)
         report = opensta(outputs["report"].with_name("sta.log"), script)
         outputs["report"].write_text(report)
         worst = worst_slacks(report, "sta")
-        return {
-            "wns_ns": round(worst["setup"], 4),
-            "whs_ns": round(worst["hold"], 4),
-            "f_max_mhz": round(1000 / (p.period_ns - worst["setup"]), 2),
-        }
+        f_max = round(1000 / (self.parameters.period_ns - worst["setup"]), 2)
+        return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4), "f_max_mhz": f_max}
 
 
 def worst_slacks(report: str, step: str) -> dict[str, float]:

@@ -1,16 +1,15 @@
 """Static timing of a design with macros, these by their Liberty; `sta` times all of their cells and nets."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step
+from base.steps import Files
 from platforms.coriolis import coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..timing.opensta import opensta
 from ..timing.parasitics import extract, spef
+from .corner import CornerStep
 from .sta import SCRIPT, worst_slacks
 
 
@@ -24,22 +23,22 @@ class StaBlocksParameters:
     macros: tuple[str, ...] = ()
 
 
-class StaBlocks(Step[StaBlocksParameters]):
+class StaBlocks(CornerStep[StaBlocksParameters]):
     """Worst slack of setup (blocks_wns_ns) and hold (blocks_whs_ns)."""
 
+    name = "sta_blocks_{corner}"
     inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement", "sdc": "sdc"}
+    inputs |= {"liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt"}
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}
     tools = ("sta",)
 
     def __init__(self, parameters: StaBlocksParameters) -> None:
         super().__init__(parameters)
-        corner = parameters.corner
-        self.name = f"sta_blocks_{corner}"
-        macros = {module: f"macro.{module}.{corner}" for module in parameters.macros}
-        self.inputs = {**self.inputs, "liberty": f"timing.{corner}", **macros}
+        macros = {module: f"macro.{module}.{parameters.corner}" for module in parameters.macros}
+        self.inputs = {**self.inputs, **macros}
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder, netlist = self.parameters, outputs["report"].parent, Netlist.read(inputs["netlist"])
         files = {name: folder / f"{name}.log" for name in ("verilog", "spef", "sdf")}
         files["verilog"].write_text(netlist.verilog())

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from base.paths import ROOT
-from base.steps import Step, StepError
+from base.steps import Files, Step, StepError
 from base.tools import ToolError, finish, run
 from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
@@ -79,7 +79,7 @@ class Stimulus(Step[StimulusParameters]):
         """The tests that `rtl.replay` runs."""
         return (f"rtl/{self.parameters.folder}/test",)
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         top = self.parameters.top
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)

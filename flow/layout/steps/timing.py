@@ -1,15 +1,13 @@
 """The library's cells characterized at the process's corners: delays, slews, energies, setup and hold as Liberty."""
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from base import jobs
 from base.liberty.read import read
 from base.liberty.write import text
-from base.steps import Step, StepError
+from base.steps import Files, Step, StepError
 from platforms.extraction import ExtractionPlatform, device_models, extraction_platform
 
 if TYPE_CHECKING:
@@ -46,7 +44,7 @@ class Timing(Step[TimingParameters]):
         super().__init__(parameters)
         self.outputs = {corner: f"{corner}.lib" for corner in parameters.corners}
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         from cells.characterize.conditions import Conditions
         from cells.characterize.job import cell_of, job
         from cells.corner import Corner
@@ -106,7 +104,7 @@ class Timing(Step[TimingParameters]):
         return {"cells": len(cells), "simulations": sum(made["simulations"] for made in measured.values()), "failed": 0}
 
 
-def sources_of(inputs: Mapping[str, Path], tech: ExtractionPlatform) -> "list[Source]":
+def sources_of(inputs: Files, tech: ExtractionPlatform) -> "list[Source]":
     """The cells with an input, as the library's functions name them, with their parasitics."""
     from cells.characterize.job import Source
     from cells.extract import extract

@@ -99,7 +99,7 @@ class Boundary:
 
 
 @dataclass(frozen=True)
-class Files:
+class Sources:
     """What OpenSTA reads. folder: of its scripts. top: the module, where it is not that of the netlist."""
 
     liberty: Path
@@ -138,7 +138,7 @@ def _nets(netlist: Netlist, direction: str) -> list[str]:
     return [net for port in netlist.ports if port.direction == direction for net in port.bits()]
 
 
-def measure(netlist: Netlist, clock: str, files: Files, slews: Sequence[float], loads: Sequence[float]) -> Boundary:
+def measure(netlist: Netlist, clock: str, files: Sources, slews: Sequence[float], loads: Sequence[float]) -> Boundary:
     """Measure ``netlist`` on the grid of ``slews`` (ns) and ``loads`` (pF). Raises StepError, ToolError."""
     pairs, registered = reach(netlist, clock)
     inputs, outputs = _nets(netlist, "input"), _nets(netlist, "output")

@@ -1,11 +1,9 @@
 """Connectivity of the die's GDS, compared with the nets of the plan."""
 
 import json
-from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from flow.layout.steps.parameters import PdkParameters
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
@@ -25,7 +23,7 @@ class DieConnectivity(Step[PdkParameters]):
     metrics = {"open_nets": "", "shorts": "", "lvs_match": ""}
     tools = ("python klayout",)
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         plan, pdk = json.loads(inputs["plan"].read_text()), self.parameters.pdk
         cells = {block["cell"]: name for name, block in plan["blocks"].items()}
         found = connectivity.nets(inputs["gds"], cells, coriolis_platform(pdk), top_metal(pdk))

@@ -2,11 +2,10 @@
 
 import json
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from base.gds import write_gds
-from base.steps import Step, StepError
+from base.steps import Files, Step, StepError
 from flow.layout.steps.parameters import PdkParameters
 from platforms.coriolis import coriolis_platform
 
@@ -26,7 +25,7 @@ class DieGds(Step[PdkParameters]):
     metrics = {"rectangles": ""}
     tools = ("python klayout",)
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         import klayout.db as db
 
         plan, layout = json.loads(inputs["plan"].read_text()), db.Layout()

@@ -3,10 +3,9 @@
 import json
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
 from .. import elmore
@@ -48,7 +47,7 @@ class DieParasitics(Step[DieParasiticsParameters]):
         "loads_over": "",
     }
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, plan = self.parameters, json.loads(inputs["plan"].read_text())
         tech = coriolis_platform(p.pdk)
         nets: dict[str, dict[str, Any]] = {}

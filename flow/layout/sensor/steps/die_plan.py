@@ -3,10 +3,9 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from pathlib import Path
 from typing import Any
 
-from base.steps import Step
+from base.steps import Files, Step
 from flow.layout.reroute.rules import RoutingRules
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
@@ -47,7 +46,7 @@ class DiePlan(Step[DiePlanParameters]):
         "wire_um": "um",
     }
 
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
         layers = [tech.metals[level].lef for level in (routing.STUB, routing.BRANCH)]

@@ -1,11 +1,10 @@
 """Static timing of the chip with the die's nets at its ports."""
 
 import re
-from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from flow.layout.steps.sta import Sta, StaParameters
+from base.steps import Files
+from flow.layout.steps.sta import Sta
 
 
 class DieSta(Sta):
@@ -15,14 +14,11 @@ class DieSta(Sta):
     worst_slew_ns: the longest of these.
     """
 
-    inputs = {"verilog": "core.verilog", "spef": "core.spef", "sdc": "die_parasitics.sdc"}
+    name = "die_sta_{corner}"
+    inputs = {**Sta.inputs, "verilog": "core.verilog", "spef": "core.spef", "sdc": "die_parasitics.sdc"}
     metrics = {**Sta.metrics, "slews_over": "", "worst_slew_ns": "ns"}
 
-    def __init__(self, parameters: StaParameters) -> None:
-        super().__init__(parameters)
-        self.name = f"die_sta_{parameters.corner}"
-
-    def run(self, inputs: Mapping[str, Path], outputs: Mapping[str, Path]) -> dict[str, Any]:
+    def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         found = super().run(inputs, outputs)
         slews = over(outputs["report"].read_text())
         return found | {"slews_over": len(slews), "worst_slew_ns": max(slews, default=None)}

@@ -8,7 +8,7 @@ import pytest
 from base.steps import StepError
 from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from flow.layout.timing.boundary import Files, measure, reach
+from flow.layout.timing.boundary import Sources, measure, reach
 from flow.layout.timing.parasitics import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
@@ -39,7 +39,7 @@ def test_reach():
 
 def test_delays_and_constraints_by_hand(files, tmp_path):
     found = measure(
-        small.shift(), "clk", Files(files["liberty"], files["verilog"], tmp_path, files["spef"]), (0.1,), (0.04,)
+        small.shift(), "clk", Sources(files["liberty"], files["verilog"], tmp_path, files["spef"]), (0.1,), (0.04,)
     )
     load = 0.001 + 0.999 / 0.999 * (0.04 - 0.001)  # the tables are straight: 1 ns over 0.999 pF
     rise = (load - 0.001) / 0.999
@@ -68,5 +68,5 @@ def test_a_model_without_an_arc_is_found(files, tmp_path):
     (tmp_path / "block.lib").write_text(text.replace("hold_rising", "recovery_rising"))
     with pytest.raises(StepError, match="does not find the arcs"):
         step.model_error(
-            small.shift(), Files(files["liberty"], files["verilog"], tmp_path, files["spef"]), tmp_path / "block.lib"
+            small.shift(), Sources(files["liberty"], files["verilog"], tmp_path, files["spef"]), tmp_path / "block.lib"
         )
