@@ -34,32 +34,17 @@ def buffer_fan_out(netlist: Netlist, sides: Mapping[str, Sequence[str]], buffer:
     large = {net: ends for net, ends in sinks.items() if len(ends) > most}
     places = estimated(instances, sides, {*large, *clocks}) if large else np.empty((0, 2))
     for net, ends in large.items():
-        instances += _tree(
-            net,
-            [(instances[number].pins, pin) for number, pin in ends],
-            places[[number for number, _ in ends]],
-            buffer,
-            most,
-        )
+        pins = [(instances[number].pins, pin) for number, pin in ends]
+        instances += _tree(net, pins, places[[number for number, _ in ends]], buffer, most)
     return replace(netlist, instances=tuple(instances))
 
 
 def buffer_outputs(netlist: Netlist, buffer: Buffer) -> Netlist:
     """Insert a buffer in front of every output: its load outside slows no path inside."""
     outputs = {net: f"{net}_within" for port in netlist.ports if port.direction == "output" for net in port.bits()}
-    instances = [
-        replace(i, pins={pin: outputs.get(net, net) for pin, net in i.pins.items()}) for i in netlist.instances
-    ]
-    return replace(
-        netlist,
-        instances=(
-            *instances,
-            *(
-                Instance(f"{net}_driver", buffer.cell, {buffer.input: within, buffer.output: net})
-                for net, within in outputs.items()
-            ),
-        ),
-    )
+    instances = [instance.with_nets(outputs) for instance in netlist.instances]
+    drivers = [buffer.instance(f"{net}_driver", within, net) for net, within in outputs.items()]
+    return replace(netlist, instances=(*instances, *drivers))
 
 
 def _tree(
@@ -71,9 +56,7 @@ def _tree(
         groups, above = clusters(places, most), []
         for group in groups:
             name = f"{net}_fan{len(made)}"
-            made.append(
-                Instance(f"{name}_buffer", buffer.cell, {buffer.input: net, buffer.output: name})
-            )  # OpenSTA mixes up equal names
+            made.append(buffer.instance(f"{name}_buffer", net, name))  # OpenSTA mixes up equal names
             above.append((made[-1].pins, buffer.input))
             for pins, pin in (ends[k] for k in group):
                 pins[pin] = name
@@ -108,9 +91,7 @@ def estimated(
 
     A net is a star around a node of its own. Solves Laplacian x = pull of the ports by conjugate gradients.
     """
-    ports = {
-        net: (side, (k + 0.5) / len(nets)) for side, nets in enumerate(sides.values()) for k, net in enumerate(nets)
-    }
+    ports = {n: (x, (k + 0.5) / len(nets)) for x, nets in enumerate(sides.values()) for k, n in enumerate(nets)}
     nets: dict[str, int] = {}
     branches = [
         (number, len(instances) + nets.setdefault(net, len(nets)))

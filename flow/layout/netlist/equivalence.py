@@ -48,13 +48,9 @@ class Pair:
             | {f"next({name})": cut.registers[bit] for bit, name in own.items()}
             for cut, own in ((gold, self.states), (gate, self.gate_states))
         )
-        substitutes = {f"c{k}": f"c{k}" for k in range(len(held))}
-        after_reset = replace(
-            self,
-            states=self.states | {bit: f"c{k}" for k, bit in enumerate(held)},
-            gate_states=self.gate_states | substitutes,
-            given={},
-        )
+        names = {bit: f"c{k}" for k, bit in enumerate(held)}
+        gate_states = self.gate_states | {name: name for name in names.values()}
+        after_reset = replace(self, states=self.states | names, gate_states=gate_states, given={})
         return {
             "same": self.equal(wanted | kept, made | as_held),
             "open": not loose or self.equal_where_defined(sorted(loose)),
@@ -106,8 +102,7 @@ def match(gold: Cut, gate: Cut, netlist: Netlist) -> tuple[dict[Bit, str], dict[
     """
     by_name = {name: bit for bit in gold.registers for name in gold.names[bit]}
     nets = {name: bit for bit, names in gate.names.items() for name in names}
-    states: dict[Bit, str] = {}
-    gate_states: dict[Bit, str] = {}
+    states, gate_states = {}, {}
     for instance in netlist.instances:
         if is_register(instance.cell):
             register, net = instance.name.removesuffix(REGISTER), nets.get(instance.pins["q"])

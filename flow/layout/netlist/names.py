@@ -1,23 +1,22 @@
 """Short names of nets for tools that do not take every name that Verilog allows."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from .netlist import Netlist
+from .netlist import MacroNames, Netlist
 
 CLOCK = "clk"  # name of the clock net in the netlist given to Coriolis
 MACRO = "macro"  # and a number: a macro's cell in Coriolis
 
 
-def plain_names(netlist: "Netlist", clock: str) -> dict[str, str]:
+def plain_names(netlist: Netlist, clock: str) -> dict[str, str]:
     """Map each net to a name of letters and digits only; the net ``clock`` to CLOCK."""
     nets = dict.fromkeys(net for port in netlist.ports for net in port.bits())
     nets.update(dict.fromkeys(net for instance in netlist.instances for net in instance.pins.values()))
     return {net: CLOCK if net == clock else f"w{number}" for number, net in enumerate(nets)}
 
 
-def plain_macros(netlist: "Netlist", placed: Iterable[dict[str, Any]]) -> dict[str, tuple[str, dict[str, str]]]:
+def plain_macros(netlist: Netlist, placed: Iterable[dict[str, Any]]) -> MacroNames:
     """Map each macro of the floorplan's list ``placed`` to (cell, names of its pins) in Coriolis."""
     found = {instance.name: instance for instance in netlist.instances}
     return {

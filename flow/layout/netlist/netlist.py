@@ -3,7 +3,7 @@
 import json
 import re
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,15 +11,8 @@ from base.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
 OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")  # of the library's cells
+MacroNames = Mapping[str, tuple[str, Mapping[str, str]]]  # by instance the cell and its pins by names for Coriolis
 REGISTER = "_reg"  # after a register's name: its flip-flop
-
-
-class Buffer(NamedTuple):
-    """A buffer of the library: the cell, its input and its output."""
-
-    cell: str
-    input: str
-    output: str
 
 
 def register_names(path: Path, top: str) -> set[str]:
@@ -56,6 +49,22 @@ class Instance:
     cell: str
     pins: dict[str, str]
 
+    def with_nets(self, names: Mapping[str, str]) -> "Instance":
+        """The same with other nets, by name, where ``names`` has them."""
+        return replace(self, pins={pin: names.get(net, net) for pin, net in self.pins.items()})
+
+
+class Buffer(NamedTuple):
+    """A buffer of the library: the cell, its input and its output."""
+
+    cell: str
+    input: str
+    output: str
+
+    def instance(self, name: str, source: str, target: str) -> Instance:
+        """The instance from the net ``source`` to the net ``target``."""
+        return Instance(name, self.cell, {self.input: source, self.output: target})
+
 
 @dataclass(frozen=True)
 class Netlist:
@@ -69,9 +78,8 @@ class Netlist:
     def read(cls, path: Path) -> "Netlist":
         """Read a file that `write` wrote."""
         data = json.loads(path.read_text())
-        return cls(
-            data["name"], tuple(Port(**p) for p in data["ports"]), tuple(Instance(**i) for i in data["instances"])
-        )
+        ports, instances = (Port(**p) for p in data["ports"]), (Instance(**i) for i in data["instances"])
+        return cls(data["name"], tuple(ports), tuple(instances))
 
     def write(self, path: Path) -> None:
         """Write as JSON."""
@@ -79,12 +87,7 @@ class Netlist:
 
     @classmethod
     def from_yosys(
-        cls,
-        path: Path,
-        top: str,
-        buffer: Buffer,
-        macros: Collection[str] = (),
-        registers: Collection[str] = frozenset(),
+        cls, path: Path, top: str, buffer: Buffer, macros: Collection[str] = (), registers: Collection[str] = ()
     ) -> "Netlist":
         """Read the module ``top`` of Yosys's JSON, every cell one of the library and every constant a cell's output.
 
@@ -100,9 +103,7 @@ class Netlist:
             ports.append(made)
             for net, bit in zip(made.bits(), port["bits"], strict=True):
                 if bit in names:
-                    extra.append(
-                        Instance(f"port{len(extra)}", buffer.cell, {buffer.input: names[bit], buffer.output: net})
-                    )
+                    extra.append(buffer.instance(f"port{len(extra)}", names[bit], net))
                 else:
                     names[bit] = net
         register_of = {}
@@ -122,13 +123,9 @@ class Netlist:
             for pin, port in modules[cell["type"]]["ports"].items() if cell["type"] in macros else ():
                 for net in Port(pin, "", len(port["bits"])).bits():
                     pins.setdefault(net, f"{called}.{net}")  # an output without a load
-            name = (
-                register_of[cell["connections"]["q"][0]] + REGISTER
-                if is_register(cell["type"])
-                else called
-                if cell["type"] in macros
-                else f"u{number}"
-            )
+            name = called if cell["type"] in macros else f"u{number}"
+            if is_register(cell["type"]):
+                name = register_of[cell["connections"]["q"][0]] + REGISTER
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 
@@ -141,17 +138,9 @@ class Netlist:
         inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
         shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
         inner = {net: f"{net}_inside" for net in shared}
-        instances = [
-            Instance(i.name, i.cell, {pin: inner.get(net, net) for pin, net in i.pins.items()})
-            if i.cell in macros
-            else i
-            for i in self.instances
-        ]
-        instances += [
-            Instance(f"inside{k}", buffer.cell, {buffer.input: net, buffer.output: inner[net]})
-            for k, net in enumerate(shared)
-        ]
-        return Netlist(self.name, self.ports, tuple(instances))
+        instances = [i.with_nets(inner) if i.cell in macros else i for i in self.instances]
+        instances += [buffer.instance(f"inside{k}", net, inner[net]) for k, net in enumerate(shared)]
+        return replace(self, instances=tuple(instances))
 
     def verilog(self) -> str:
         """Structural Verilog with the ports of the RTL."""
@@ -178,25 +167,16 @@ class Netlist:
             lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
         return "\n".join([*lines, ".ends", cells])
 
-    def blif(
-        self,
-        model: str,
-        net_names: Mapping[str, str],
-        macros: Mapping[str, tuple[str, Mapping[str, str]]] | None = None,
-    ) -> str:
-        """For Coriolis: model ``model``, nets by ``net_names``, instances in their order.
-
-        macros: by instance (cell, names of its pins), where both have other names than here.
-        """
+    def blif(self, model: str, net_names: Mapping[str, str], macros: MacroNames | None = None) -> str:
+        """For Coriolis: model ``model``, nets by ``net_names``, instances in their order."""
         lines = [f".model {model}"]
         for word, direction in ((".inputs", "input"), (".outputs", "output")):
             nets = [net_names[net] for port in self.ports if port.direction == direction for net in port.bits()]
             lines.append(f"{word} {' '.join(nets)}")
         for i in self.instances:
             cell, pins = (macros or {}).get(i.name, (i.cell, {}))
-            lines.append(
-                f".gate {cell} " + " ".join(f"{pins.get(pin, pin)}={net_names[net]}" for pin, net in i.pins.items())
-            )
+            joined = " ".join(f"{pins.get(pin, pin)}={net_names[net]}" for pin, net in i.pins.items())
+            lines.append(f".gate {cell} {joined}")
         return "\n".join([*lines, ".end", ""])
 
 
@@ -209,9 +189,7 @@ def _buses(pins: Mapping[str, str]) -> dict[str, str]:
             buses.setdefault(name, {})[int(bit)] = net
         else:
             made[pin] = net
-    return made | {
-        name: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}" for name, bits in buses.items()
-    }
+    return made | {bus: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}" for bus, bits in buses.items()}
 
 
 def is_register(cell: str) -> bool:

@@ -5,9 +5,10 @@ Two designs whose cut forms are equal, and whose registers are equal at one time
 
 import json
 import random
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
@@ -93,58 +94,31 @@ class Cut:
     @cached_property
     def inputs(self) -> dict[Bit, str]:
         """Name by bit of every input except the clock."""
-        return {
-            bit: _bit(name, index, port)
-            for name, port in self.module["ports"].items()
-            if port["direction"] == "input" and name != self.clock
-            for index, bit in enumerate(port["bits"])
-        }
+        return dict(self._ports("input"))
 
     @cached_property
     def outputs(self) -> dict[str, Bit]:
         """Bit by name of every output."""
-        return {
-            _bit(name, index, port): bit
-            for name, port in self.module["ports"].items()
-            if port["direction"] == "output"
-            for index, bit in enumerate(port["bits"])
-        }
+        return {name: bit for bit, name in self._ports("output")}
+
+    def _ports(self, direction: str) -> Iterator[tuple[Bit, str]]:
+        for name, port in self.module["ports"].items():
+            if port["direction"] == direction and name != self.clock:
+                yield from named_bits(name, port)
 
     @cached_property
     def order(self) -> list[Bit]:
         """Output bits of the gates, every one after its inputs. Raises StepError on a loop."""
-        order: list[Bit] = []
-        state: dict[Bit, int] = {}
-        for root in self.gates:
-            stack = [root]
-            while stack:
-                bit = stack[-1]
-                below = [b for b in self.gates[bit][1] if b in self.gates and state.get(b) != 2]
-                if state.get(bit) == 2:
-                    stack.pop()
-                elif not below:
-                    state[bit] = 2
-                    order.append(bit)
-                    stack.pop()
-                elif state.get(bit) == 1 and any(state.get(b) == 1 for b in below):
-                    raise StepError(f"equivalence: a loop of gates at {self.names.get(bit, [bit])[0]}")
-                else:
-                    state[bit] = 1
-                    stack += below
-        return order
+        sorter = TopologicalSorter({bit: pins for bit, (_, pins) in self.gates.items()})
+        try:
+            return [bit for bit in sorter.static_order() if bit in self.gates]
+        except CycleError as error:
+            bit = error.args[1][0]
+            raise StepError(f"equivalence: a loop of gates at {self.names.get(bit, [bit])[0]}") from None
 
     def live(self) -> set[Bit]:
         """Q bits of the registers that can reach an output."""
-        seen: set[Bit] = set()
-        stack = list(self.outputs.values())
-        while stack:
-            bit = stack.pop()
-            if bit not in seen:
-                seen.add(bit)
-                stack += (
-                    self.gates[bit][1] if bit in self.gates else [self.registers[bit]] if bit in self.registers else []
-                )
-        return seen & set(self.registers)
+        return set(self.registers) & self._fan_in(self.outputs.values(), self.registers)
 
     def substitutes(self, missing: Sequence[Bit], present: Collection[Bit], reset: str) -> dict[Bit, Bit]:
         """Find what the registers ``missing`` (Q bits) seem to hold after a reset: '0', '1' or one of ``present``.
@@ -163,7 +137,7 @@ class Cut:
         guess: dict[Bit, Bit | None] = {bit: "1" if after[bit] else "0" for bit in missing if after[bit] in (0, ALL)}
         wrong: dict[Bit, set[Bit]] = {bit: set() for bit in guess}
         kept = 0
-        cone = cache(self._cone)
+        cone = cache(lambda bit: self._fan_in([self.registers[bit]]))
         for _ in range(TURNS):
             now = {bit: rng.getrandbits(LANES) for bit in after}
             now |= {bit: levels[held] if held in levels else now[held] for bit, held in guess.items() if held}
@@ -173,37 +147,26 @@ class Cut:
                 if held and then[bit] != levels.get(held, then.get(held)):
                     wrong[bit].add(held)
                     held = None
-                better[bit] = held or min(
-                    (
-                        other
-                        for other in present
-                        if other not in wrong[bit]
-                        and after[bit] == after[other]
-                        and not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other])
-                    ),
-                    default=None,
-                    key=lambda other, bit=bit: len(cone(bit) ^ cone(other)),
-                )
+                free = (other for other in present if other not in wrong[bit] and after[bit] == after[other])
+                same = (other for other in free if not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other]))
+                better[bit] = held or min(same, default=None, key=lambda other, bit=bit: len(cone(bit) ^ cone(other)))
             kept = kept + 1 if better == guess and None not in guess.values() else 0
             guess = better
             if kept == SURE:
                 break
         return {bit: held for bit, held in guess.items() if held}
 
-    def _cone(self, bit: Bit) -> frozenset[Bit]:
-        """Bits that the next state of a register (Q bit) comes from."""
-        return self._fan_in(self.registers[bit])
-
-    def _fan_in(self, bit: Bit) -> frozenset[Bit]:
-        """Bits that ``bit`` comes from through gates, itself among them."""
+    def _fan_in(self, bits: Iterable[Bit], through: Mapping[Bit, Bit] | None = None) -> set[Bit]:
+        """Bits that ``bits`` come from through gates and the registers ``through``, themselves among them."""
         seen: set[Bit] = set()
-        stack = [bit]
+        stack = list(bits)
         while stack:
-            here = stack.pop()
-            if here not in seen:
-                seen.add(here)
-                stack += self.gates[here][1] if here in self.gates else []
-        return frozenset(seen)
+            bit = stack.pop()
+            if bit not in seen:
+                seen.add(bit)
+                stack += self.gates[bit][1] if bit in self.gates else []
+                stack += [through[bit]] if through and bit in through else []
+        return seen
 
     def _next(self, values: dict[Bit, int]) -> dict[Bit, int]:
         """Next state by Q bit, ALL lanes of numbers, from the values of inputs and states by bit."""
@@ -215,16 +178,8 @@ class Cut:
 
     def open_outputs(self) -> set[str]:
         """Names of the outputs that an x may reach."""
-        found = set()
-        for name, bit in self.outputs.items():
-            cone = self._fan_in(bit)
-            if any(
-                not isinstance(pin, int) and pin not in ("0", "1")
-                for here in cone & set(self.gates)
-                for pin in self.gates[here][1]
-            ):
-                found.add(name)
-        return found
+        cones = {name: self._fan_in([bit]) - {bit, "0", "1"} for name, bit in self.outputs.items()}
+        return {name for name, cone in cones.items() if any(isinstance(bit, str) for bit in cone)}
 
     def network(
         self,
@@ -277,21 +232,5 @@ class Cut:
             lines += [f".names {net(bit)} {name}", "1 1"]
         inputs = [*self.inputs.values(), *states.values(), *(f"any{k}" for k in range(max(used, unknown)))]
         outputs = [*checked, *(name for name, _ in more)]
-        return used, "\n".join(
-            [
-                ".model cut",
-                ".inputs " + " ".join(inputs),
-                ".outputs " + " ".join(outputs),
-                ".names const0",
-                ".names const1",
-                "1",
-                *lines,
-                *(line for _, made in more for line in made),
-                ".end",
-                "",
-            ]
-        )
-
-
-def _bit(name: str, index: int, port: Mapping[str, Any]) -> str:
-    return name if len(port["bits"]) == 1 else f"{name}[{index}]"
+        head = f".model cut\n.inputs {' '.join(inputs)}\n.outputs {' '.join(outputs)}\n.names const0\n.names const1\n1"
+        return used, "\n".join([head, *lines, *(line for _, made in more for line in made), ".end", ""])

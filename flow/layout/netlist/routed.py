@@ -6,14 +6,11 @@ from typing import Any
 
 from base.steps import StepError
 
-from .netlist import SUPPLIES, Instance, Netlist
+from .netlist import SUPPLIES, Instance, MacroNames, Netlist
 
 
 def routed_netlist(
-    netlist: Netlist,
-    names: Mapping[str, str],
-    placed: Sequence[Sequence[Any]],
-    macros: Mapping[str, tuple[str, Mapping[str, str]]],
+    netlist: Netlist, names: Mapping[str, str], placed: Sequence[Sequence[Any]], macros: MacroNames
 ) -> Netlist:
     """Add what Coriolis added: the clock tree's buffers, and fill cells.
 
