@@ -18,6 +18,13 @@ else:
     db = _Database()
 
 
+def read_gds(path: Path) -> "db.Layout":
+    """Read a file, GDS or LEF."""
+    layout = db.Layout()
+    layout.read(str(path))
+    return layout
+
+
 def write_gds(layout: "db.Layout", path: Path, top: "db.Cell | None" = None) -> None:
     """Write ``layout`` to the file ``path`` with no time stamp; top: only this cell and what is below it."""
     options = db.SaveLayoutOptions()

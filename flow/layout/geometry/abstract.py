@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
 from typing import NamedTuple
 
-from base.gds import db
+from base.gds import db, read_gds
 from base.lef import write
 from base.lef.write import Rectangles
 from flow.layout.geometry.antenna import connected
@@ -47,8 +47,7 @@ def abstract(gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform) -
 
     directions: pin -> 'input' or 'output'; the supplies are pins too. Raises ParameterError for a port without metal.
     """
-    layout = db.Layout()
-    layout.read(str(gds))
+    layout = read_gds(gds)
     (top,) = layout.top_cells()
     site, row = (round(size / layout.dbu) for size in (tech.site_um, tech.row_um))
     box = top.bbox()
@@ -127,9 +126,7 @@ def read_back(lef: Path, gds: Path, directions: Mapping[str, str], tech: Corioli
     Every pin must be on metal of its layer, and all other metal inside the outline under an obstruction or nearer to a
     pin than obstructions come.
     """
-    layout, drawn = db.Layout(), db.Layout()
-    layout.read(str(lef))
-    drawn.read(str(gds))
+    layout, drawn = read_gds(lef), read_gds(gds)
     top = drawn.top_cell()
     macro = layout.cell(top.name)
     layers = {info.name: layout.layer(info) for info in layout.layer_infos()}

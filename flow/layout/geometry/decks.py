@@ -12,18 +12,20 @@ from base.tools import ToolError, finish
 from platforms.coriolis import CoriolisPlatform
 
 
-def run_deck(
-    deck: Path, environment: Mapping[str, object], log: Path, variables: Mapping[str, object] | None = None
-) -> int:
-    """Run ``deck`` without the user's settings; its output goes to ``log``. Returns the exit status."""
-    defines = [word for name, value in (variables or {}).items() for word in ("-rd", f"{name}={value}")]
-    done = finish(
-        ["klayout", "-b", "-r", deck, *defines],
-        env={name: str(value) for name, value in environment.items()}
-        | {"HOME": os.environ.get("HOME", "/tmp"), "KLAYOUT_HOME": str(log.parent / ".klayout.log")},
-    )
+def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **environment: object) -> tuple[int, str]:
+    """Run ``deck`` without the user's settings. Returns status and output, which is also the log beside ``report``."""
+    log = report.with_suffix(".log")
+    env = {"HOME": os.environ.get("HOME", "/tmp"), "KLAYOUT_HOME": log.parent / ".klayout.log", **environment}
+    defines = [word for name, value in variables.items() for word in ("-rd", f"{name}={value}")]
+    done = finish(["klayout", "-b", "-r", deck, *defines], {name: str(value) for name, value in env.items()})
     log.write_text(done.stdout + done.stderr)
-    return done.returncode
+    return done.returncode, done.stdout + done.stderr
+
+
+def run_exported(deck: Path, gds: Path, report: Path, **files: Path) -> tuple[int, str]:
+    """Run ``deck``, one that PDKMaster exports, on the file ``gds``: see `run_deck`."""
+    paths = {name: path.resolve() for name, path in {"SOURCE_FILE": gds, "REPORT_FILE": report, **files}.items()}
+    return run_deck(deck, report, {}, CELL_NAME="", **paths)
 
 
 def violations(report: Path) -> dict[str, int]:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from base.gds import db, write_gds
+from base.gds import db, read_gds, write_gds
 from platforms.coriolis import CoriolisPlatform
 
 from ..netlist.names import MACRO
@@ -19,8 +19,7 @@ def make_solid(gds: Path, macros: Sequence[dict[str, Any]], tech: CoriolisPlatfo
     """
     if not macros:
         return
-    layout = db.Layout()
-    layout.read(str(gds))
+    layout = read_gds(gds)
     for macro in macros:
         cell, (left, bottom, *_) = layout.cell(macro["name"]), macro["outer"]
         x, y = macro["x_um"] - left, macro["y_um"] - bottom
@@ -41,8 +40,7 @@ def insert_macros(
 
     The segments at the pins move to the top cell. macros: (GDS, entry in the floorplan), in the floorplan's order.
     """
-    layout, options = db.Layout(), db.LoadLayoutOptions()
-    layout.read(str(source))
+    layout, options = read_gds(source), db.LoadLayoutOptions()
     top = layout.top_cell()
     options.cell_conflict_resolution = db.LoadLayoutOptions.CellConflictResolution.SkipNewCell  # of the library
     for number, (path, macro) in enumerate(macros):

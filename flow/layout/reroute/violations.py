@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.gds import db
+from base.gds import db, read_gds
 from platforms.coriolis import CoriolisPlatform
 
 from ..geometry.antenna import violations as antennas
@@ -59,9 +59,7 @@ def find(
 
 def find_in_file(path: Path, rules: RoutingRules, tech: CoriolisPlatform, levels: Collection[int]) -> Violations:
     """Violations of a GDS file: see `find`."""
-    layout = db.Layout()
-    layout.read(str(path))
-    return find(layout, rules, tech, levels)
+    return find(read_gds(path), rules, tech, levels)
 
 
 def split_levels(rules: RoutingRules, jobs: int) -> list[list[int]]:

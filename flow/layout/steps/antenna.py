@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from base.gds import db
+from base.gds import read_gds
 from base.steps import Files, Step
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
@@ -21,8 +21,7 @@ class Antenna(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech, layout = self.tech(), db.Layout()
-        layout.read(str(inputs["gds"]))
+        tech, layout = self.tech(), read_gds(inputs["gds"])
         found = {
             tech.metals[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
             for level, bad in violations(layout, layout.top_cell(), tech).items()

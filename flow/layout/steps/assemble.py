@@ -54,12 +54,9 @@ class Assemble(Step[AssembleParameters]):
         placements = {module: json.loads(inputs[f"{module}.placement"].read_text()) for module in modules}
         flat = flattened(netlist, {macro["instance"]: netlists[macro["cell"]] for macro in placed})
         flat.write(outputs["netlist"])
-        whole = merged_placement(
-            netlist,
-            placement,
-            {macro["instance"]: placements[macro["cell"]] for macro in placed},
-            {macro["instance"]: (macro["x_um"], macro["y_um"]) for macro in placed},
-        )
+        inside = {macro["instance"]: placements[macro["cell"]] for macro in placed}
+        places = {macro["instance"]: (macro["x_um"], macro["y_um"]) for macro in placed}
+        whole = merged_placement(netlist, placement, inside, places)
         outputs["placement"].write_text(json.dumps(whole, indent=0) + "\n")
         insert_macros(inputs["gds"], outputs["gds"], [(inputs[f"{m['cell']}.gds"], m) for m in placed], tech)
         cells = inputs["cells"].read_text()

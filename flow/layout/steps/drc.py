@@ -6,7 +6,7 @@ from typing import Any
 from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
-from ..geometry.decks import hole_rules, run_deck, violations, with_flat_spaces
+from ..geometry.decks import hole_rules, run_exported, violations, with_flat_spaces
 from .parameters import PdkParameters
 
 WARNING = "[Warning]"
@@ -26,16 +26,13 @@ class Drc(Step[PdkParameters]):
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        log = outputs["report"].with_suffix(".log")
         deck = with_flat_spaces(inputs["deck"].read_text())
         outputs["deck"].write_text("\n".join([deck, *hole_rules(coriolis_platform(self.parameters.pdk))]) + "\n")
-        files = {"SOURCE_FILE": inputs["gds"].resolve(), "CELL_NAME": "", "REPORT_FILE": outputs["report"].resolve()}
-        if status := run_deck(outputs["deck"], files, log):
-            lines = log.read_text().strip().splitlines()
-            raise StepError(
-                f"drc: KLayout failed with status {status}: "
-                f"{next((line for line in lines if 'ERROR' in line), lines[-1:])}"
-            )
+        status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
+        if status:
+            lines = output.strip().splitlines()
+            error = next((line for line in lines if "ERROR" in line), lines[-1:])
+            raise StepError(f"drc: KLayout failed with status {status}: {error}")
         found = violations(outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"drc_violations": sum(count for rule, count in found.items() if not rule.startswith(WARNING))}

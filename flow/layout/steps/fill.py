@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from base.gds import db, write_gds
+from base.gds import read_gds, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
@@ -25,8 +25,7 @@ class Fill(Step[PdkParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        tech, layout = coriolis_platform(self.parameters.pdk), db.Layout()
-        layout.read(str(inputs["gds"]))
+        tech, layout = coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
         top = layout.top_cell()
         before = {metal.name: peak_density(layout, top, metal, tech.fill) for metal in tech.metals}
         squares = sum(fill(layout, top, metal, tech.fill) for metal in tech.metals[1:])

@@ -65,9 +65,8 @@ class Floorplan(Step[FloorplanParameters]):
         netlist, areas = Netlist.read(inputs["netlist"]), json.loads(inputs["areas"].read_text())
         macros = [(name, Macro.read(inputs[module], tech), (x, y)) for name, module, x, y in p.macros]
         self.check(netlist, areas, {name: macro.name for name, macro, _ in macros})
-        area = sum(halo_area(macro, tech) for _, macro, _ in macros) + (
-            sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE) / p.utilization
-        )
+        cells = sum(areas.get(i.cell, 0) for i in netlist.instances) * (1 + CLOCK_CELLS_SHARE) / p.utilization
+        area = sum(halo_area(macro, tech) for _, macro, _ in macros) + cells
         rows = max(4, 2 * round(math.sqrt(area / p.aspect) / tech.row_um / 2))  # even: the top rail is ground too
         columns = math.ceil(area / (rows * tech.row_um) / tech.site_um)
         width, height = round(columns * tech.site_um, 4), round(rows * tech.row_um, 4)
@@ -85,12 +84,10 @@ class Floorplan(Step[FloorplanParameters]):
         """Raise StepError unless all cells have a layout and ``macros`` (cell by instance) are those in the netlist."""
         modules = set(macros.values())
         if unknown := sorted({i.cell for i in netlist.instances} - set(areas) - modules):
+            cells = ", ".join(unknown[:5])
             raise StepError(
-                f"floorplan: no layout of the cells {', '.join(unknown[:5])}: LIBERTY must be of the cells "
-                "that are laid out"
+                f"floorplan: no layout of the cells {cells}: LIBERTY must be of the cells that are laid out"
             )
         if lost := {i.name for i in netlist.instances if i.cell in modules} ^ set(macros):
-            raise StepError(
-                f"floorplan: the places given for macros and the macros in the Verilog differ by "
-                f"{', '.join(sorted(lost))}"
-            )
+            names = ", ".join(sorted(lost))
+            raise StepError(f"floorplan: the places given for macros and the macros in the Verilog differ by {names}")

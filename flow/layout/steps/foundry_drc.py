@@ -4,7 +4,6 @@ import json
 import os
 import re
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from base.steps import Files, Step, StepError
@@ -53,15 +52,11 @@ class FoundryDrc(Step[FoundryDrcParameters]):
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        variables = {
-            "input": inputs["gds"].resolve(),
-            "topcell": self.parameters.top,
-            "report": outputs["report"].resolve(),
-            **dict(_checks(self.parameters.pdk).defines),
-        }
-        log = outputs["report"].with_suffix(".log")
-        if run_deck(inputs["deck"].resolve(), {}, log, variables):
-            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_error_line(log.read_text())}")
+        gds, report, top = inputs["gds"].resolve(), outputs["report"].resolve(), self.parameters.top
+        variables = {"input": gds, "topcell": top, "report": report, **dict(_checks(self.parameters.pdk).defines)}
+        status, output = run_deck(inputs["deck"].resolve(), outputs["report"], variables)
+        if status:
+            raise StepError(f"foundry_drc: {inputs['deck'].name} failed: {_error_line(output)}")
         found = violations(outputs["report"])
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"foundry_drc_violations": sum(found.values())}
@@ -78,17 +73,11 @@ class MagicDrc(Step[FoundryDrcParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         folder, deck = outputs["report"].parent.resolve(), _checks(self.parameters.pdk)
-        magic = inputs["magic"].resolve()
-        root = Path(str(magic).removesuffix(deck.magic))
+        magic, gds, report = inputs["magic"].resolve(), inputs["gds"].resolve(), outputs["report"].resolve()
         script = folder / "drc.tcl"
-        script.write_text(
-            MAGIC.format(gds=inputs["gds"].resolve(), top=self.parameters.top, report=outputs["report"].resolve())
-        )
-        done = finish(
-            ["magic", "-dnull", "-noconsole", "-rcfile", magic / deck.rc, script],
-            cwd=folder,
-            env={"PDK_ROOT": str(root), "HOME": os.environ.get("HOME", "/tmp")},
-        )
+        script.write_text(MAGIC.format(gds=gds, top=self.parameters.top, report=report))
+        env = {"PDK_ROOT": str(magic).removesuffix(deck.magic), "HOME": os.environ.get("HOME", "/tmp")}
+        done = finish(["magic", *["-dnull", "-noconsole", "-rcfile"], magic / deck.rc, script], env, folder)
         lines = outputs["report"].read_text().splitlines() if outputs["report"].exists() else []
         if done.returncode or lines[-1:] != ["end"]:
             raise StepError(f"magic_drc: Magic failed: {_error_line(done.stdout + done.stderr)}")

@@ -9,16 +9,8 @@ from base.tools import run
 from platforms.coriolis import coriolis_platform, standard_cells
 from platforms.extraction import device_models, extraction_platform
 
+from .. import pdkmaster
 from ..netlist.netlist import SUPPLIES
-from ..pdkmaster import (
-    cell_area,
-    export_coriolis,
-    export_decks,
-    export_gds,
-    export_spice,
-    layout_geometry,
-    routing_rules,
-)
 from ..timing import liberty
 from .parameters import PdkParameters
 
@@ -52,15 +44,15 @@ class Library(Step[PdkParameters]):
         description = importlib.import_module(f"{tech.package}.pdkmaster")
         library = standard_cells(pdk)
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
-        rules = routing_rules(tech, description.tech.primitives)
-        outputs["geometry"].write_text(json.dumps(layout_geometry(tech), indent=1) + "\n")
+        rules = pdkmaster.routing_rules(tech, description.tech.primitives)
+        outputs["geometry"].write_text(json.dumps(pdkmaster.layout_geometry(tech), indent=1) + "\n")
         outputs["rules"].write_text(json.dumps(rules, indent=1) + "\n")
-        export_coriolis(outputs["coriolis"], description, library, tech)
-        for name, deck in export_decks(description, devices).items():
+        pdkmaster.export_coriolis(outputs["coriolis"], description, library, tech)
+        for name, deck in pdkmaster.export_decks(description, devices).items():
             outputs[name].write_text(deck)
-        export_gds(outputs["gds"], description, library)
-        outputs["spice"].write_text(export_spice(cells, devices))
-        areas = {cell.name: cell_area(cell) for cell in cells}
+        pdkmaster.export_gds(outputs["gds"], description, library)
+        outputs["spice"].write_text(pdkmaster.export_spice(cells, devices))
+        areas = {cell.name: pdkmaster.cell_area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
         logic = [name for name in ports if not name.startswith(UNUSED)]

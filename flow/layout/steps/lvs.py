@@ -5,7 +5,7 @@ from typing import Any
 from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
-from ..geometry.decks import run_deck
+from ..geometry.decks import run_exported
 from ..geometry.lvs_deck import hierarchical, with_ports
 from ..netlist.netlist import Netlist
 from .parameters import PdkParameters
@@ -27,15 +27,7 @@ class Lvs(Step[PdkParameters]):
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         deck = hierarchical(inputs["deck"].read_text(), coriolis_platform(self.parameters.pdk).active)
         outputs["deck"].write_text(with_ports(deck, Netlist.read(inputs["netlist"])))
-        log = outputs["report"].with_suffix(".log")
-        files = {
-            "SOURCE_FILE": inputs["gds"].resolve(),
-            "CELL_NAME": "",
-            "SPICE_FILE": inputs["spice"].resolve(),
-            "REPORT_FILE": outputs["report"].resolve(),
-        }
-        run_deck(outputs["deck"], files, log)
-        output = log.read_text()
+        _, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"], SPICE_FILE=inputs["spice"])
         if not outputs["report"].exists() or ("LVS OK" in output) == ("LVS Failed" in output):
             raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")
         return {"lvs_match": "LVS OK" in output}

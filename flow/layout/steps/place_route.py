@@ -19,10 +19,12 @@ from ..coriolis.log import open_segments
 from ..geometry.macro import Macro
 from ..geometry.macro_cells import OVER_UM, make_solid
 from ..netlist.names import plain_macros, plain_names
-from ..netlist.netlist import Netlist
+from ..netlist.netlist import MacroNames, Netlist
 from ..netlist.routed import placement, routed_netlist
 
 MODEL = "talbot_block"  # Coriolis works in lower case
+OPTIONS = ("effort", "density_variation", "strap_pitch_um", "events")  # in a request, as those of the technology
+OF_TECH = ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
 PHASES = ("clock_tree", "placement", "power", "routing")
 
 
@@ -114,9 +116,8 @@ class PlaceRoute(Step[PlaceRouteParameters]):
         """Run it in the folder ``work``; returns its result, {"stopped": its last message} if it gave up."""
         (work / f"{MODEL}.blif").write_text(blif)
         (work / "request.json").write_text(json.dumps(request))
-        done = finish(
-            [sys.executable, "-m", "flow.layout.coriolis", "request.json"], cwd=work, env={"PYTHONPATH": str(ROOT)}
-        )
+        command = [sys.executable, "-m", "flow.layout.coriolis", "request.json"]
+        done = finish(command, {"PYTHONPATH": str(ROOT)}, work)
         outputs["log"].write_text(done.stdout + done.stderr)
         if done.returncode or not (work / "result.json").exists():
             lines = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
@@ -126,12 +127,7 @@ class PlaceRoute(Step[PlaceRouteParameters]):
         return json.loads((work / "result.json").read_text())
 
     def request(
-        self,
-        inputs: Files,
-        plan: dict[str, Any],
-        names: Mapping[str, str],
-        netlist: Netlist,
-        macros: Mapping[str, tuple[str, Mapping[str, str]]],
+        self, inputs: Files, plan: dict[str, Any], names: Mapping[str, str], netlist: Netlist, macros: MacroNames
     ) -> dict[str, Any]:
         """What flow.layout.coriolis reads, for JSON."""
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
@@ -147,12 +143,9 @@ class PlaceRoute(Step[PlaceRouteParameters]):
             "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
             "metals": [asdict(metal) for metal in tech.metals],
             "vias": [asdict(via) for via in tech.vias],
-            **{
-                name: getattr(tech, name)
-                for name in ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
-            },
+            **{name: getattr(tech, name) for name in OF_TECH},
             "over_um": OVER_UM,
-            **{name: getattr(p, name) for name in ("effort", "density_variation", "strap_pitch_um", "events")},
+            **{name: getattr(p, name) for name in OPTIONS},
         }
 
     def macro(

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import db, write_gds
+from base.gds import read_gds, write_gds
 from base.steps import Files, Step
 from models.parameters import check_int
 from platforms.coriolis import coriolis_platform
@@ -65,17 +65,15 @@ class Reroute(Step[RerouteParameters]):
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         placement = json.loads(inputs["placement"].read_text())
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
-        layout, left = db.Layout(), open_nets(inputs["log"].read_text())
-        layout.read(str(inputs["gds"]))
+        layout, left = read_gds(inputs["gds"]), open_nets(inputs["log"].read_text())
         shapes = json.loads(inputs["shapes"].read_text())
         # Of a shape that two nets have drawn, the open one's is the short: it claims last
         order = [net for net in shapes if net in names and net not in left] + left
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
         board = Board(layout, rules, {net: shapes[net] for net in order})
         found = reroute(board, {net: shapes[net]["pins"] for net in order}, left, p.most, inputs["gds"], tech)
-        placement["segments"] |= {
-            names.get(net, f"cts_{net}"): route.listed(rules) for net, route in found.routes.items()
-        }
+        for net, route in found.routes.items():
+            placement["segments"][names.get(net, f"cts_{net}")] = route.listed(rules)
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         rerouted = set(found.routes) & set(left)

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import db, write_gds
+from base.gds import read_gds, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
@@ -60,11 +60,10 @@ class StreamOut(Step[StreamOutParameters]):
             self.inputs = {**self.inputs, **assembled}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, tech, layout = self.parameters, coriolis_platform(self.parameters.pdk), db.Layout()
+        p, tech, layout = self.parameters, coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
         netlist = Netlist.read(inputs["netlist"])
         names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         rules = json.loads(inputs["rules"].read_text())
-        layout.read(str(inputs["gds"]))
         (top,) = layout.top_cells()
         top.name = netlist.name
         relabel(layout, names, {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES), tech)

@@ -15,6 +15,8 @@ from ..netlist.pins import pins
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
 BARE_PF = 0.1  # load of an output above which it has its own buffer
 AIM = 0.25  # share of the period that the mapper aims at: it knows one corner and no parasitics
+MAPPING = "strash\nifraig\nscorr\ndc2\ndch -f\nmap -B 0.9\ntopo\n"
+LIMIT = "buffer -c -N {most}\ntopo\nupsize -D {aim:.0f}\ndnsize -D {aim:.0f}\n"  # of the fan-out
 SCRIPT = """
 read_verilog -sv {rtl}
 {blocks}
@@ -75,28 +77,15 @@ class Synthesis(Step[SynthesisParameters]):
         p, folder = self.parameters, outputs["netlist"].parent
         files = {name: folder / f"{name}.log" for name in ("mapping", "json", "registers", "script")}
         aim = AIM * p.period_ns * 1000
-        limit = (
-            [f"buffer -c -N {p.fan_out}", "topo", f"upsize -D {aim:.0f}", f"dnsize -D {aim:.0f}"] if p.fan_out else []
-        )
         files["mapping"].write_text(
-            "\n".join(["strash", "ifraig", "scorr", "dc2", "dch -f", "map -B 0.9", "topo", *limit, "print_stats"])
-            + "\n"
+            MAPPING + (LIMIT.format(most=p.fan_out, aim=aim) if p.fan_out else "") + "print_stats\n"
         )
-        files["script"].write_text(
-            SCRIPT.format(
-                rtl=inputs["rtl"],
-                top=p.top,
-                blocks="\n".join(f"blackbox {name}" for name in p.macros),
-                liberty=inputs["liberty"],
-                timing=inputs.get("timing", inputs["liberty"]),
-                aim=aim,
-                **files,
-            )
-        )
+        blocks = "\n".join(f"blackbox {name}" for name in p.macros)
+        read = {"rtl": inputs["rtl"], "liberty": inputs["liberty"], "timing": inputs.get("timing", inputs["liberty"])}
+        files["script"].write_text(SCRIPT.format(top=p.top, blocks=blocks, aim=aim, **read, **files))
         run(["yosys", "-q", "-s", files["script"]])
-        netlist = Netlist.from_yosys(
-            files["json"], p.top, BUFFER, p.macros, register_names(files["registers"], p.top)
-        ).with_input_buffers(p.macros, BUFFER)
+        names = register_names(files["registers"], p.top)
+        netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros, names).with_input_buffers(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
             netlist = buffer_outputs(netlist, DRIVER)
         if p.fan_out:
