@@ -45,10 +45,8 @@ def _circuits(folder: Path) -> list[str]:
     present = [block for block in BLOCKS if any((folder / f"{block}.{kind}").is_file() for kind in KINDS)]
     lacking = [f"{block}.{kind}" for block in present for kind in KINDS if not (folder / f"{block}.{kind}").is_file()]
     if lacking or not present:
-        raise ParameterError(
-            f"analog = {folder}: must have "
-            + (", ".join(lacking) or f"<block>.lef and <block>.gds of {', '.join(BLOCKS)}, or of some of them")
-        )
+        wanted = ", ".join(lacking) or f"<block>.lef and <block>.gds of {', '.join(BLOCKS)}, or of some of them"
+        raise ParameterError(f"analog = {folder}: must have {wanted}")
     return present
 
 
@@ -62,10 +60,8 @@ def check(path: Path, black_box: Path) -> list[str]:
         for file in (path, black_box)
     )
     if lacking := [pin for pin in wanted if pin not in own]:
-        raise ParameterError(
-            f"analog = {path}: must have the pins {', '.join(lacking[:5])}"
-            + (f" and {len(lacking) - 5} more" if len(lacking) > 5 else "")
-        )
+        more = f" and {len(lacking) - 5} more" if len(lacking) > 5 else ""
+        raise ParameterError(f"analog = {path}: must have the pins {', '.join(lacking[:5])}{more}")
     if other := [pin for pin in wanted if own[pin] != wanted[pin]]:
         raise ParameterError(f"analog = {path}: its pin {other[0]} must be of DIRECTION {wanted[other[0]]}")
     return [pin for pin in own if pin not in wanted]

@@ -36,10 +36,8 @@ def arranged(
 
     layers: see `routing.branches`. extra: see `plan.nets`. Raises ParameterError, StepError.
     """
-    return min(
-        (arranged_as_is(blocks | {CORE: blocks[CORE].turned(way)}, die, tracks, layers, extra) for way in ORIENTATIONS),
-        key=lambda made: made.wire,
-    )
+    turned = [blocks | {CORE: blocks[CORE].turned(way)} for way in ORIENTATIONS]
+    return min((arranged_as_is(found, die, tracks, layers, extra) for found in turned), key=lambda made: made.wire)
 
 
 def arranged_as_is(
@@ -58,12 +56,6 @@ def arranged_as_is(
     numbers, begin = trunks(routes, tracks), nm(die.edge_um + die.gap_um)
     count = max(numbers.values()) + 1
     height = begin + count * tracks.trunk_pitch + nm(die.gap_um)
-    return Arranged(
-        with_core(placed, blocks[CORE], die, room, height),
-        found,
-        raised(routes, height),
-        {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()},
-        len(abutted),
-        (begin, height),
-        count,
-    )
+    y = {net: begin + number * tracks.trunk_pitch for net, number in numbers.items()}
+    high = with_core(placed, blocks[CORE], die, room, height)
+    return Arranged(high, found, raised(routes, height), y, len(abutted), (begin, height), count)

@@ -26,10 +26,8 @@ def left_edge(trunks: Mapping[str, tuple[int, int]], gap: int) -> dict[str, int]
 def free(wanted: int, taken: Collection[int], pitch: int) -> int:
     """The place nearest to ``wanted`` that is ``pitch`` or more from all in ``taken``."""
     near = [wanted, *(place + way * pitch for place in taken for way in (-1, 1))]
-    return min(
-        (place for place in near if all(abs(place - other) >= pitch for other in taken)),
-        key=lambda place: (abs(place - wanted), place),
-    )
+    clear = [place for place in near if all(abs(place - other) >= pitch for other in taken)]
+    return min(clear, key=lambda place: (abs(place - wanted), place))
 
 
 def check_apart(branches: Mapping[tuple[str, str], int], pitch: int) -> None:
@@ -37,7 +35,5 @@ def check_apart(branches: Mapping[tuple[str, str], int], pitch: int) -> None:
     ranked = sorted(branches.items(), key=lambda item: item[1])
     for (one, x), (other, x_other) in zip(ranked, ranked[1:]):
         if x_other - x < pitch:
-            raise StepError(
-                f"channel: the pins {' '.join(one)} and {' '.join(other)} are {x_other - x} nm apart in x; "
-                f"{pitch} nm are needed"
-            )
+            pins = f"{' '.join(one)} and {' '.join(other)}"
+            raise StepError(f"channel: the pins {pins} are {x_other - x} nm apart in x; {pitch} nm are needed")

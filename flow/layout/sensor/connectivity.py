@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     import klayout.db as kdb
 
 
+Nets = dict[str, list[Terminal]]
+
+
 def nets(gds: Path, cells: Mapping[str, str], tech: CoriolisPlatform, top_metal: TopMetal) -> list[set[Terminal]]:
     """Terminals that each net of the top cell connects.
 
@@ -52,9 +55,7 @@ def _terminals(net: "kdb.Net", cells: Mapping[str, str]) -> set[Terminal]:
     return found
 
 
-def compare(
-    found: Sequence[set[Terminal]], wanted: Mapping[str, Sequence[Sequence[str]]]
-) -> tuple[dict[str, list[Terminal]], dict[str, list[Terminal]]]:
+def compare(found: Sequence[set[Terminal]], wanted: Mapping[str, Sequence[Sequence[str]]]) -> tuple[Nets, Nets]:
     """Opens (net -> its terminals that are not on its largest part) and shorts ('net, net' -> terminals connected).
 
     found: of `nets`. wanted: terminals of each net. A terminal of no net is a net of its own.

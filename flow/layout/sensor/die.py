@@ -32,23 +32,10 @@ from .steps.die_sta import DieSta
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given
-PARTS = {
-    "core.lef": "lef.lef",
-    "core.gds": "fill.gds",
-    "core.verilog": "stream_out.verilog",
-    "core.spef": "extraction.spef",
-    "core.sdc": "sdc",
-    "library.rules": "library.rules",
-    "library.drc": "library.drc",
-}
-RESULTS = {
-    "gds": "die_gds.gds",
-    "v": "die_plan.verilog",
-    "drc.lyrdb": "drc.report",
-    "connectivity.json": "die_connectivity.report",
-    "parasitics.json": "die_parasitics.nets",
-    "sdc": "die_parasitics.sdc",
-}
+PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.spef": "extraction.spef", "core.sdc": "sdc"}
+PARTS |= {"core.verilog": "stream_out.verilog", "library.rules": "library.rules", "library.drc": "library.drc"}
+RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "drc.report"}
+RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}
 
 
 def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list[Step]:
@@ -56,13 +43,8 @@ def die_steps(chip: Design, options: Options, extra: Iterable[str] = ()) -> list
     pdk, clock, io = options.pdk, chip.clock, chip.io
     drc = Drc(PdkParameters(pdk))
     drc.inputs = {**drc.inputs, "gds": "die_gds.gds"}
-    parasitics = DieParasiticsParameters(
-        pdk,
-        clock.port,
-        load_pf=io.load_pf,
-        input_ns=io.input_delay * clock.period_ns,
-        output_ns=io.output_delay * clock.period_ns,
-    )
+    ns = {"input_ns": io.input_delay * clock.period_ns, "output_ns": io.output_delay * clock.period_ns}
+    parasitics = DieParasiticsParameters(pdk, clock.port, load_pf=io.load_pf, **ns)
     return [
         DiePlan(DiePlanParameters(pdk, extra=tuple(extra))),
         DieGds(PdkParameters(pdk)),
@@ -88,9 +70,8 @@ def lay_out_sensor(
     core, summary = lay_out(chip, options, out, lambda text: note(f"{CHIP}: {text}"))
     if wrong := broken(summary):
         raise StepError(f"{SENSOR}: its block {CHIP} breaks a limit: {wrong[0]}")
-    given = {name: core.paths[source] for name, source in PARTS.items()} | {
-        f"timing.{corner}": core.paths[f"timing.{corner}"] for corner in options.corners
-    }
+    parts = PARTS | {f"timing.{corner}": f"timing.{corner}" for corner in options.corners}
+    given = {name: core.paths[source] for name, source in parts.items()}
     runner = Runner(folder / "steps", blocks.paths | given, note)
     return lay_out_die(chip, options, runner, blocks.black_boxes, blocks.extra)
 

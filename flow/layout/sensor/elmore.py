@@ -9,6 +9,8 @@ from platforms.coriolis import CoriolisPlatform
 from .plan import CORE, Terminal
 from .routing import BRANCH, STUB, TRUNK
 
+Branches = Sequence[Mapping[str, Any]]
+
 
 class Edge(NamedTuple):
     """A resistor between two nodes; half of its capacitance is at either end."""
@@ -43,12 +45,7 @@ def delays(edges: Iterable[Edge], root: Hashable, loads: Mapping[Hashable, float
 
 
 def net(
-    branches: Sequence[Mapping[str, Any]],
-    y: int,
-    driver: Terminal,
-    tracks: Mapping[str, int],
-    tech: CoriolisPlatform,
-    pin_pf: float,
+    branches: Branches, y: int, driver: Terminal, tracks: Mapping[str, int], tech: CoriolisPlatform, pin_pf: float
 ) -> tuple[float, dict[Terminal, float]]:
     """Capacitance of all segments (fF), and the delay (ns) to each terminal, without the driver's own resistance.
 
@@ -62,7 +59,7 @@ def net(
 
 
 def tree(
-    branches: Sequence[Mapping[str, Any]], y: int, tracks: Mapping[str, int], tech: CoriolisPlatform
+    branches: Branches, y: int, tracks: Mapping[str, int], tech: CoriolisPlatform
 ) -> tuple[list[Edge], dict[Terminal, Hashable]]:
     """Edges of a net, and the node of each terminal.
 

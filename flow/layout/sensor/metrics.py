@@ -13,6 +13,10 @@ from .plan import BLOCKS
 from .steps.die_sta import DieSta
 
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
+ROUTED = "nets", "routed", "abutted", "tracks", "wire_um"
+CHECKED = "open_nets", "shorts", "drc_violations", "lvs_match", "antenna_violations"
+LOADS = "wire_pf", "worst_load_pf", "worst_load", "worst_delay_ns", "worst_delay", "loads_over"
+SLACKS = [name for name in DieSta.metrics if name != "f_max_mhz"]  # by corner
 SHOWN = 12  # nets in the summary, those with the largest loads
 NOT_CHECKED = (
     "insides of the black boxes: outlines with pins, no circuit; they have no rule, netlist or current",
@@ -28,78 +32,41 @@ NOT_CHECKED = (
 def summarize(name: str, options: Options, runner: Runner, black_boxes: Sequence[str]) -> dict[str, Any]:
     """Content of summary.json; what a die does not have is None."""
     records = runner.records
-    metrics = {
-        key: value
-        for record in records.values()
-        for key, value in record["metrics"].items()
-        if key not in DieSta.metrics
-    }
     sta = {corner: records[f"die_sta_{corner}"]["metrics"] for corner in options.corners}
-    tools = {}
+    metrics, tools = {}, {}
     for record in records.values():
+        metrics |= record["metrics"]
         tools |= record["tools"]
     plan = json.loads(runner.paths["die_plan.plan"].read_text())
     nets = json.loads(runner.paths["die_parasitics.nets"].read_text())
+    loads = {net: found["load_pf"] for net, found in nets.items()}
     return {
         "design": name,
         "top": name,
         "backend": "channel",
         "pdk": options.pdk,
         "cells": None,
-        "area_um2": metrics["area_um2"],
-        "utilization": metrics["utilization"],
+        **{key: metrics[key] for key in ("area_um2", "utilization")},
         "attempts": [],
         "blocks": {block: placed(found) for block, found in plan["blocks"].items()},
         "black_boxes": list(black_boxes),
         "circuits": [block for block in BLOCKS if block not in black_boxes],
-        **{
-            key: metrics[key]
-            for key in (
-                "nets",
-                "routed",
-                "abutted",
-                "tracks",
-                "wire_um",
-                "open_nets",
-                "shorts",
-                "drc_violations",
-                "lvs_match",
-                "antenna_violations",
-                "wire_pf",
-                "worst_load_pf",
-                "worst_load",
-                "worst_delay_ns",
-                "worst_delay",
-                "loads_over",
-            )
-        },
-        "equivalence": None,
-        "gate_tests": None,
-        "power_uw": None,
+        **{key: metrics[key] for key in ROUTED + CHECKED + LOADS},
+        **dict.fromkeys(("equivalence", "gate_tests", "power_uw")),
         "timing_rests_on": f"the chip, its ports with the die's nets{extrapolated(sta)}; {timing_basis(options)}",
-        **{
-            key: {corner: found[key] for corner, found in sta.items()} or None
-            for key in DieSta.metrics
-            if key != "f_max_mhz"
-        },
+        **{key: {corner: found[key] for corner, found in sta.items()} or None for key in SLACKS},
         "f_max_mhz": min((found["f_max_mhz"] for found in sta.values()), default=None),
-        "largest_loads": dict(
-            sorted(((net, found["load_pf"]) for net, found in nets.items()), key=lambda item: -item[1])[:SHOWN]
-        ),
+        "largest_loads": dict(sorted(loads.items(), key=lambda item: -item[1])[:SHOWN]),
         "not_checked": list(NOT_CHECKED),
-        "wall_s": {step: record["wall_s"] for step, record in records.items()},
-        "peak_mib": {step: record["peak_mib"] for step, record in records.items()},
+        **{name: {step: record[name] for step, record in records.items()} for name in ("wall_s", "peak_mib")},
         "tools": dict(sorted(tools.items())),
     }
 
 
 def extrapolated(sta: Mapping[str, Mapping[str, Any]]) -> str:
     """Note on slacks with slews beyond the cells' tables. sta: metrics by corner."""
-    return (
-        ", delays EXTRAPOLATED where slews are beyond the cells' tables (slews_over)"
-        if any(found["slews_over"] for found in sta.values())
-        else ""
-    )
+    over = any(found["slews_over"] for found in sta.values())
+    return ", delays EXTRAPOLATED where slews are beyond the cells' tables (slews_over)" if over else ""
 
 
 def placed(block: Mapping[str, Any]) -> str:

@@ -4,14 +4,9 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-COLORS: dict[str, str] = {
-    "pixel_array": "#7fb3d5",
-    "row_driver": "#f5b041",
-    "column_amplifiers": "#82c99a",
-    "adc_lanes": "#c39bd3",
-    "core": "#e6837a",
-}
-LABELS: dict[str, str] = {"core": "digital chip"}
+from .plan import BLOCKS, CORE
+
+COLORS = dict(zip((*BLOCKS, CORE), ("#7fb3d5", "#f5b041", "#82c99a", "#c39bd3", "#e6837a"), strict=True))
 
 
 def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> None:
@@ -24,39 +19,18 @@ def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> N
     axes = figure.subplots()
     for net, _, _, *box in plan["shapes"]:
         if net not in plan["routes"] and min(box[2] - box[0], box[3] - box[1]) > 2000:
-            axes.add_patch(
-                Rectangle(
-                    (box[0] / 1e3, box[1] / 1e3),
-                    (box[2] - box[0]) / 1e3,
-                    (box[3] - box[1]) / 1e3,
-                    facecolor="0.75" if net in ("vss", "vssa") else "0.55",
-                    linewidth=0,
-                )
-            )
+            left, bottom, right, top = (size / 1e3 for size in box)
+            color = "0.75" if net in ("vss", "vssa") else "0.55"
+            axes.add_patch(Rectangle((left, bottom), right - left, top - bottom, facecolor=color, linewidth=0))
     for name, block in plan["blocks"].items():
         left, bottom, right, top = (size / 1e3 for size in block["box"])
-        axes.add_patch(
-            Rectangle(
-                (left, bottom),
-                right - left,
-                top - bottom,
-                facecolor=COLORS[name],
-                alpha=0.85,
-                edgecolor="0.3",
-                hatch="//" if name in black_boxes else None,
-                linewidth=0.6,
-            )
-        )
-        upright = top - bottom > 3 * (right - left)
-        axes.annotate(
-            f"{LABELS.get(name, str(name)).replace('_', ' ')}\n{right - left:g} x {top - bottom:g} um",
-            ((left + right) / 2, (bottom + top) / 2),
-            ha="center",
-            va="center",
-            fontsize=8,
-            rotation=90 if upright else 0,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8},
-        )
+        width, height, hatch = right - left, top - bottom, "//" if name in black_boxes else None
+        style = {"facecolor": COLORS[name], "alpha": 0.85, "edgecolor": "0.3", "hatch": hatch, "linewidth": 0.6}
+        axes.add_patch(Rectangle((left, bottom), width, height, **style))
+        label = f"{'digital chip' if name == CORE else name.replace('_', ' ')}\n{width:g} x {height:g} um"
+        style = {"ha": "center", "va": "center", "fontsize": 8, "rotation": 90 if height > 3 * width else 0}
+        box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8}
+        axes.annotate(label, ((left + right) / 2, (bottom + top) / 2), bbox=box, **style)
     lines = [line for route in plan["routes"].values() for line in _lines(route)]
     axes.add_collection(LineCollection(lines, colors="#17202a", linewidths=0.25))
     axes.set(xlim=(0, plan["die"][0] / 1e3), ylim=(0, plan["die"][1] / 1e3), aspect="equal", xlabel="um", ylabel="um")

@@ -1,7 +1,7 @@
 """Placement of the blocks on the die and their nets, in nm: analog blocks abut, the chip is west of the converters."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
 from base.lef.read import read_macro
@@ -31,19 +31,8 @@ ABUTMENTS = (
 DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vssa")
 SUPPLIES = DIGITAL + ANALOG
 # Pins of the die, beside the supplies, from the west
-SIGNALS = (
-    "clk",
-    "reset",
-    "sclk",
-    "csn",
-    "mosi",
-    "miso",
-    "busy",
-    "frame_sync",
-    *(f"link_data[{k}]" for k in range(8)),
-    "link_val",
-    "link_rdy",
-)
+LINK = *(f"link_data[{k}]" for k in range(8)), "link_val", "link_rdy"
+SIGNALS = "clk", "reset", "sclk", "csn", "mosi", "miso", "busy", "frame_sync", *LINK
 
 
 @dataclass(frozen=True)
@@ -54,24 +43,18 @@ class DieParameters:
     that do not touch. pad: pitch of the signals' pins at the die's edge. bars: of each supply over the chip.
     """
 
-    width_um: float = field(default=5000.0, metadata={"unit": "um"})
-    height_um: float = field(default=5000.0, metadata={"unit": "um"})
-    edge_um: float = field(default=10.0, metadata={"unit": "um"})
-    bar_um: float = field(default=20.0, metadata={"unit": "um"})
-    gap_um: float = field(default=10.0, metadata={"unit": "um"})
-    pad_um: float = field(default=100.0, metadata={"unit": "um"})
+    width_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
+    height_um: float = field(default=5000.0, metadata={"unit": "um", "range": (50, 3e4)})
+    edge_um: float = field(default=10.0, metadata={"unit": "um", "range": (2, 200)})
+    bar_um: float = field(default=20.0, metadata={"unit": "um", "range": (4, 30)})
+    gap_um: float = field(default=10.0, metadata={"unit": "um", "range": (4, 200)})
+    pad_um: float = field(default=100.0, metadata={"unit": "um", "range": (2, 500)})
     bars: int = 2
 
     def __post_init__(self) -> None:
-        for name, low, high in (
-            ("width_um", 50, 3e4),
-            ("height_um", 50, 3e4),
-            ("edge_um", 2, 200),
-            ("bar_um", 4, 30),
-            ("gap_um", 4, 200),
-            ("pad_um", 2, 500),
-        ):
-            check_real(name, getattr(self, name), low, high)
+        for one in fields(self):
+            if "range" in one.metadata:
+                check_real(one.name, getattr(self, one.name), *one.metadata["range"])
 
 
 # Of LEF: whether west and east, and south and north, are swapped
@@ -108,19 +91,12 @@ class Block:
     def read(cls, name: str, text: str) -> "Block":
         """Read a LEF; the block is at the origin."""
         macro = read_macro(text)
-        return cls(
-            name,
-            macro.name,
-            0,
-            0,
-            nm(macro.width_um),
-            nm(macro.height_um),
-            {
-                pin.name: tuple((layer, (nm(a), nm(b), nm(c), nm(d))) for layer, (a, b, c, d) in pin.boxes)
-                for pin in macro.pins.values()
-            },
-            {pin.name: pin.direction.lower() for pin in macro.pins.values()},
-        )
+        directions = {pin.name: pin.direction.lower() for pin in macro.pins.values()}
+        pins = {
+            pin.name: tuple((layer, (nm(a), nm(b), nm(c), nm(d))) for layer, (a, b, c, d) in pin.boxes)
+            for pin in macro.pins.values()
+        }
+        return cls(name, macro.name, 0, 0, nm(macro.width_um), nm(macro.height_um), pins, directions)
 
     @property
     def box(self) -> Box:
@@ -129,15 +105,11 @@ class Block:
 
     def moved(self, dx: int, dy: int) -> "Block":
         """The block, moved."""
-        return replace(
-            self,
-            x=self.x + dx,
-            y=self.y + dy,
-            pins={
-                pin: tuple((layer, (a + dx, b + dy, c + dx, d + dy)) for layer, (a, b, c, d) in boxes)
-                for pin, boxes in self.pins.items()
-            },
-        )
+        pins = {
+            pin: tuple((layer, (a + dx, b + dy, c + dx, d + dy)) for layer, (a, b, c, d) in boxes)
+            for pin, boxes in self.pins.items()
+        }
+        return replace(self, x=self.x + dx, y=self.y + dy, pins=pins)
 
     def turned(self, orientation: str) -> "Block":
         """The block, at the origin and in orientation N, in another one."""
@@ -151,21 +123,15 @@ class Block:
                 bottom, top = self.height - top, self.height - bottom
             return left, bottom, right, top
 
-        return replace(
-            self,
-            orientation=orientation,
-            pins={pin: tuple((layer, turn(box)) for layer, box in boxes) for pin, boxes in self.pins.items()},
-        )
+        pins = {pin: tuple((layer, turn(box)) for layer, box in boxes) for pin, boxes in self.pins.items()}
+        return replace(self, orientation=orientation, pins=pins)
 
     def at(self, side: str) -> list[PinShape]:
         """Shapes of pins that reach ``side``."""
-        place = {"west": 0, "south": 1, "east": 2, "north": 3}[side]
-        return [
-            PinShape(pin, layer, box)
-            for pin, boxes in self.pins.items()
-            for layer, box in boxes
-            if (box[place] <= self.box[place] if place < 2 else box[place] >= self.box[place])
-        ]
+        place = ("west", "south", "east", "north").index(side)
+        shapes = [PinShape(pin, layer, box) for pin, boxes in self.pins.items() for layer, box in boxes]
+        way = -1 if place < 2 else 1
+        return [shape for shape in shapes if way * shape.box[place] >= way * self.box[place]]
 
 
 def nm(um: float) -> int:
@@ -179,11 +145,8 @@ def stack(blocks: Mapping[str, Block], die: DieParameters) -> dict[str, Block]:
     The column amplifiers' bottom is at y = 0.
     """
     array, driver = blocks["pixel_array"], blocks["row_driver"]
-    placed = {
-        "pixel_array": array.moved(
-            (nm(die.width_um) - array.width + driver.width) // 2 // 5 * 5, blocks["column_amplifiers"].height
-        )
-    }
+    x = (nm(die.width_um) - array.width + driver.width) // 2 // 5 * 5
+    placed = {"pixel_array": array.moved(x, blocks["column_amplifiers"].height)}
     for there, name, side, pin in ABUTMENTS:
         placed[name] = abut(placed[there], blocks[name], side, pin)
     return placed
@@ -210,19 +173,11 @@ def with_core(
     shifted = {name: block.moved(0, bottom - columns.y) for name, block in placed.items()}
     made = shifted | {CORE: core.moved((lanes.x - gap - side_nm - core.width) // 10 * 10, channel_nm)}
     bars = nm(die.edge_um + len(SUPPLIES) * (die.bar_um + die.gap_um))
-    spans = [
-        (min(block.box[low] for block in made.values()), max(block.box[low + 2] for block in made.values()))
-        for low in (0, 1)
-    ]
-    for name, size, (begin, end), free in (
-        ("width_um", die.width_um, spans[0], 2 * bars),
-        ("height_um", die.height_um, (0, spans[1][1]), bars),
-    ):
-        if end - begin + free > nm(size):
-            raise ParameterError(
-                f"{name} = {size:g}: must be at least {(end - begin + free) / 1000:g}, for the blocks "
-                "and the supplies' bars"
-            )
+    lefts, _, rights, tops = zip(*(block.box for block in made.values()), strict=True)
+    for name, least in (("width_um", max(rights) - min(lefts) + 2 * bars), ("height_um", max(tops) + bars)):
+        if least > nm(size := getattr(die, name)):
+            why = "for the blocks and the supplies' bars"
+            raise ParameterError(f"{name} = {size:g}: must be at least {least / 1000:g}, {why}")
     return made
 
 

@@ -12,6 +12,7 @@ from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, 
 # Places in RoutingRules.layers. Branches are the highest: a net is connected only there, with its driver, so that no
 # gate has a trunk or a branch as an antenna before
 STUB, TRUNK, BRANCH = 1, 3, 4
+Nets = Mapping[str, list[Terminal]]
 
 
 @dataclass(frozen=True)
@@ -44,16 +45,12 @@ class Tracks:
         via = rules.vias[TRUNK]
         branch = 2 * max(via.above[0], -(-rules.layers[BRANCH].width // 2))
         trunk = 2 * max(via.below[1], -(-rules.layers[TRUNK].width // 2))
-        pitch_of_branch, pitch_of_trunk = (
-            -(-max(2 * width, width + rules.layers[level].space) // 10) * 10
-            for width, level in ((branch, BRANCH), (trunk, TRUNK))
-        )
-        return cls(pitch_of_branch, pitch_of_trunk, branch, trunk)
+        sizes = (branch, rules.layers[BRANCH]), (trunk, rules.layers[TRUNK])
+        branch_pitch, trunk_pitch = (-(-max(2 * width, width + layer.space) // 10) * 10 for width, layer in sizes)
+        return cls(branch_pitch, trunk_pitch, branch, trunk)
 
 
-def split_nets(
-    blocks: Mapping[str, Block], nets: Mapping[str, list[Terminal]]
-) -> tuple[dict[str, list[Terminal]], dict[str, list[Terminal]]]:
+def split_nets(blocks: Mapping[str, Block], nets: Nets) -> tuple[Nets, Nets]:
     """Nets that the channel routes, and nets whose two pins touch. Supplies are in neither."""
     signals = {net: ends for net, ends in nets.items() if net not in SUPPLIES}
     met = {net: ends for net, ends in signals.items() if touching(blocks, ends)}
@@ -66,11 +63,7 @@ def side_room(core: Block, tracks: Tracks) -> int:
 
 
 def branches(
-    blocks: Mapping[str, Block],
-    routed: Mapping[str, list[Terminal]],
-    die: DieParameters,
-    tracks: Tracks,
-    layers: Sequence[str],
+    blocks: Mapping[str, Block], routed: Nets, die: DieParameters, tracks: Tracks, layers: Sequence[str]
 ) -> dict[str, list[Branch]]:
     """Branches of the nets. layers: (stub, branch), LEF names of the layers of the pins. Raises StepError."""
     made: dict[str, list[Branch]] = {net: [] for net in routed}
@@ -87,15 +80,11 @@ def branches(
         made[net].append(branch)
     for net, branch in _pads(made, routed, die, tracks):
         made[net].append(branch)
-    check_apart(
-        {(branch.block, branch.pin): branch.x for found in made.values() for branch in found}, tracks.branch_pitch
-    )
+    check_apart({(b.block, b.pin): b.x for found in made.values() for b in found}, tracks.branch_pitch)
     return made
 
 
-def _beside(
-    core: Block, routed: Mapping[str, list[Terminal]], tracks: Tracks, layer: str
-) -> Iterator[tuple[str, Branch]]:
+def _beside(core: Block, routed: Nets, tracks: Tracks, layer: str) -> Iterator[tuple[str, Branch]]:
     """Pairs (net, Branch) of the chip's pins, from its sides outwards; the lowest pin has the nearest branch."""
     left = set(core.pins) & set(routed)
     for side, edge, way in (("west", core.x, -1), ("east", core.box[2], 1)):

@@ -61,9 +61,6 @@ def pad(branch: Branch, die: DieParameters, tracks: Tracks, rules: RoutingRules)
 def via(net: str, x: int, y: int, level: int, rules: RoutingRules) -> Iterator[Shape]:
     """A via between layers[level] and the next, with its pads."""
     own = rules.vias[level]
-    for on, (width, height) in (
-        (rules.layers[level], own.below),
-        (rules.layers[level + 1], own.above),
-        (own, (own.size // 2, own.size // 2)),
-    ):
+    low, high, half = rules.layers[level], rules.layers[level + 1], own.size // 2
+    for on, (width, height) in ((low, own.below), (high, own.above), (own, (half, half))):
         yield drawn(on, net, (x - width, y - height, x + width, y + height))

@@ -93,15 +93,12 @@ def _from_blocks(blocks: Mapping[str, Block], die: DieParameters, top: TopMetal)
             if pin in ANALOG and layer == top.metal.lef
         ]
         if lacking := set(ANALOG) - {line.net for line in found}:
-            raise StepError(
-                f"{name}: its pin {min(lacking)} reaches neither its west nor its east side on {top.metal.lef}"
-            )
+            where = f"neither its west nor its east side on {top.metal.lef}"
+            raise StepError(f"{name}: its pin {min(lacking)} reaches {where}")
         for pin, side, box in found:
             check_way(blocks, name, pin, box, side)
-            left, bottom, right, high = box
-            yield Line(
-                pin, side, (0, bottom, right, high) if side == "west" else (left, bottom, nm(die.width_um), high)
-            )
+            left, right = (0, box[2]) if side == "west" else (box[0], nm(die.width_um))
+            yield Line(pin, side, (left, box[1], right, box[3]))
 
 
 def _in_north(die: DieParameters) -> Iterator[Line]:

@@ -24,15 +24,9 @@ def top(name: str, blocks: Mapping[str, Block], nets: Mapping[str, Sequence[Term
     lines = []
     for block in blocks.values():
         if block.name != CORE:
-            pins = [pin for pin in block.pins if pin not in SUPPLIES]
-            lines += [
-                "(* blackbox *)",
-                *_module(
-                    block.cell, {bus: (bits, block.directions[_first(bus, bits)]) for bus, bits in buses(pins).items()}
-                ),
-                "endmodule",
-                "",
-            ]
+            own = buses(pin for pin in block.pins if pin not in SUPPLIES)
+            ways = {bus: (bits, block.directions[_first(bus, bits)]) for bus, bits in own.items()}
+            lines += ["(* blackbox *)", *_module(block.cell, ways), "endmodule", ""]
     lines += _module(name, {bus: (bits, _way(nets[_first(bus, bits)], blocks)) for bus, bits in ports.items()})
     lines += [f"  wire {_range(bits)}{bus};" for bus, bits in buses(nets).items() if bus not in ports]
     for block in blocks.values():
@@ -43,10 +37,8 @@ def top(name: str, blocks: Mapping[str, Block], nets: Mapping[str, Sequence[Term
 
 def _module(name: str, ports: Mapping[str, tuple[int | None, str]]) -> list[str]:
     """Lines of a module's head. ports: bus -> (bits, direction)."""
-    return [
-        f"module {name} ({', '.join(ports)});",
-        *(f"  {way} {_range(bits)}{bus};" for bus, (bits, way) in ports.items()),
-    ]
+    declared = [f"  {way} {_range(bits)}{bus};" for bus, (bits, way) in ports.items()]
+    return [f"module {name} ({', '.join(ports)});", *declared]
 
 
 def _first(bus: str, bits: int | None) -> str:
@@ -59,6 +51,5 @@ def _range(bits: int | None) -> str:
 
 def _way(ends: Sequence[Terminal], blocks: Mapping[str, Block]) -> str:
     """Direction of the die's pin: 'output' where a block drives it, else 'input'."""
-    return (
-        "output" if any(blocks[block].directions[pin] == "output" for block, pin in ends if block != "die") else "input"
-    )
+    driven = any(blocks[block].directions[pin] == "output" for block, pin in ends if block != "die")
+    return "output" if driven else "input"

@@ -38,10 +38,8 @@ class DieGds(Step[PdkParameters]):
             source.read(str(inputs[f"{name}.gds"]))
             tops = [cell.name for cell in source.top_cells()]
             if tops != [block["cell"]]:
-                raise StepError(
-                    f"die_gds: {inputs[f'{name}.gds'].name} has the top cells {', '.join(tops)}; "
-                    f"its LEF is of {block['cell']}"
-                )
+                has = f"{inputs[f'{name}.gds'].name} has the top cells {', '.join(tops)}"
+                raise StepError(f"die_gds: {has}; its LEF is of {block['cell']}")
             cells[name].copy_tree(source.top_cell())  # renames cells in it whose name is taken
             top.insert(db.CellInstArray(cells[name].cell_index(), placed(block)))
         for _, layer, datatype, *box in plan["shapes"]:
@@ -62,10 +60,5 @@ def placed(block: Mapping[str, Any]) -> "kdb.Trans":
 
     left, bottom, right, top = block["box"]
     sideways, upright = ORIENTATIONS[block["orientation"]]
-    turn = {
-        (False, False): db.Trans.R0,
-        (True, False): db.Trans.M90,
-        (False, True): db.Trans.M0,
-        (True, True): db.Trans.R180,
-    }[sideways, upright]
+    turn = ((db.Trans.R0, db.Trans.M0), (db.Trans.M90, db.Trans.R180))[sideways][upright]
     return db.Trans(turn, right if sideways else left, top if upright else bottom)

@@ -38,14 +38,8 @@ class DieParasitics(Step[DieParasiticsParameters]):
     name = "die_parasitics"
     inputs = {"plan": "die_plan.plan", "sdc": "core.sdc"}
     outputs = {"nets": "parasitics.json", "sdc": "die.sdc"}
-    metrics = {
-        "wire_pf": "pF",
-        "worst_load_pf": "pF",
-        "worst_load": "",
-        "worst_delay_ns": "ns",
-        "worst_delay": "",
-        "loads_over": "",
-    }
+    metrics = {"wire_pf": "pF", "worst_load_pf": "pF", "worst_load": "", "worst_delay_ns": "ns"}
+    metrics |= {"worst_delay": "", "loads_over": ""}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, plan = self.parameters, json.loads(inputs["plan"].read_text())
@@ -83,7 +77,5 @@ class DieParasitics(Step[DieParasiticsParameters]):
                 yield f"set_load {found['load_pf']:.6f} {port}"
                 yield f"set_output_delay {p.output_ns + max(found['delay_ns'].values()):.6f} -clock {p.clock} {port}"
             elif net != p.clock:
-                yield (
-                    f"set_input_delay {p.input_ns + found['delay_ns'][f'{CORE}.{net}']:.6f} -max -clock {p.clock} "
-                    f"{port}"
-                )
+                latest = p.input_ns + found["delay_ns"][f"{CORE}.{net}"]
+                yield f"set_input_delay {latest:.6f} -max -clock {p.clock} {port}"

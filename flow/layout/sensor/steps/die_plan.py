@@ -16,6 +16,8 @@ from ..plan import BLOCKS, CORE, Block, DieParameters, driver, nm
 from ..shapes import Shape
 
 TOP = "asp_sensor"
+COUNTS = "utilization", "nets", "routed", "abutted", "tracks"
+Shapes = Sequence[Shape]
 
 
 @dataclass(frozen=True)
@@ -36,15 +38,7 @@ class DiePlan(Step[DiePlanParameters]):
     name = "die_plan"
     inputs = {f"{block}.lef": f"{block}.lef" for block in (*BLOCKS, CORE)} | {"rules": "library.rules"}
     outputs = {"plan": "plan.json", "verilog": f"{TOP}.v"}
-    metrics = {
-        "area_um2": "um2",
-        "utilization": "",
-        "nets": "",
-        "routed": "",
-        "abutted": "",
-        "tracks": "",
-        "wire_um": "um",
-    }
+    metrics = {"area_um2": "um2", **dict.fromkeys(COUNTS, ""), "wire_um": "um"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
@@ -70,29 +64,20 @@ class DiePlan(Step[DiePlanParameters]):
 
 
 def as_json(
-    made: Arranged,
-    metal: Sequence[Shape],
-    pins: Mapping[str, Sequence[Shape]],
-    die: DieParameters,
-    tracks: routing.Tracks,
+    made: Arranged, metal: Shapes, pins: Mapping[str, Shapes], die: DieParameters, tracks: routing.Tracks
 ) -> dict[str, Any]:
     """The plan for JSON, nm. metal: all shapes. pins: those at the die's edge, by net."""
+    blocks, routes = made.blocks.items(), made.routes.items()
     return {
         "die": [nm(die.width_um), nm(die.height_um)],
-        "blocks": {
-            name: {"cell": block.cell, "orientation": block.orientation, "box": block.box}
-            for name, block in made.blocks.items()
-        },
+        "blocks": {name: {"cell": b.cell, "orientation": b.orientation, "box": b.box} for name, b in blocks},
         "nets": made.nets,
         "drivers": {net: driver(made.blocks, made.nets[net]) for net in made.routes},
         "channel": made.channel,
         "tracks": asdict(tracks),
         "pins": {net: [_plain(shape) for shape in found] for net, found in pins.items()},
         "shapes": [_plain(shape) for shape in metal],
-        "routes": {
-            net: {"y": made.y[net], "branches": [asdict(branch) for branch in found]}
-            for net, found in made.routes.items()
-        },
+        "routes": {net: {"y": made.y[net], "branches": list(map(asdict, found))} for net, found in routes},
     }
 
 
