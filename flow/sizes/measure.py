@@ -69,11 +69,7 @@ def measure(path: Path, top: str) -> Size:
     unknown = sorted(set(counts) - set(areas()))
     if unknown:
         raise ToolError(f"{top}: cells that {LIBRARY.name} does not have: {', '.join(unknown)}")
-    return Size(
-        top,
-        sum(counts.values()),
-        counts[FLIP_FLOP],
-        sum(areas()[c] * n for c, n in counts.items()),
-        areas()[FLIP_FLOP] * counts[FLIP_FLOP],
-        dict(sorted(counts.items())),
-    )
+    gates = sum(areas()[cell] * number for cell, number in counts.items())
+    flip_flops = counts[FLIP_FLOP]
+    by_type = dict(sorted(counts.items()))
+    return Size(top, sum(counts.values()), flip_flops, gates, areas()[FLIP_FLOP] * flip_flops, by_type)

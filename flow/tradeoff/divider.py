@@ -1,5 +1,5 @@
-"""The quadrature divider: variants at 4 to 16 fraction bits and CORDIC at 4 to 16 iterations. Worst and RMS phase
-error over all 2^18 inputs against latency, cycles of a time-of-flight frame at one result a pixel, and simulation time."""
+"""The quadrature divider: variants at 4 to 16 fraction bits and CORDIC at 4 to 16 iterations. Worst and RMS phase error
+over all 2^18 inputs against latency, cycles of a time-of-flight frame at one result a pixel, and simulation time."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -21,25 +21,15 @@ def measure(point: tuple[str, int]) -> dict[str, Any]:
     variant, width = point
     found = exhaustive.measure(exhaustive.Divider(variant, 8 if variant == "cordic" else width, width))
     pixels = SensorParameters().array.rows * SensorParameters().array.cols
-    return {
-        "variant": variant,
-        "width": width,
-        "latency": found.latency,
-        "interval": found.interval,
-        "worst_lsb": found.worst,
-        "rms_lsb": found.rms,
-        "cycles_a_frame": pixels * found.interval,
-        "simulation_s": found.seconds,
-        "mismatches": found.mismatches,
-    }
+    return (
+        {"variant": variant, "width": width, "latency": found.latency, "interval": found.interval}
+        | {"worst_lsb": found.worst, "rms_lsb": found.rms, "cycles_a_frame": pixels * found.interval}
+        | {"simulation_s": found.seconds, "mismatches": found.mismatches}
+    )
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
     """Worst error against latency."""
-    return curves(
-        {v: [(r["latency"], r["worst_lsb"], str(r["width"])) for r in rows if r["variant"] == v] for v in DIVIDERS},
-        "latency (cycles)",
-        "worst phase error (LSB of 8 bits)",
-        "Divider: error against latency",
-        log_y=True,
-    )
+    series = {v: [(r["latency"], r["worst_lsb"], str(r["width"])) for r in rows if r["variant"] == v] for v in DIVIDERS}
+    labels = "latency (cycles)", "worst phase error (LSB of 8 bits)", "Divider: error against latency"
+    return curves(series, *labels, log_y=True)

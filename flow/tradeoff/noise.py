@@ -11,6 +11,8 @@ from flow.frame import job
 from flow.frame.figures import summarize
 from flow.frame.request import request
 
+from .threshold import costs
+
 LEVELS = (0.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 
 
@@ -25,23 +27,10 @@ def measure(point: tuple[float, int]) -> dict[str, Any]:
     asked = request(rows=size, cols=size, noise=level)
     result = job.simulate_frame(asked)
     summary = summarize(result)
-    return {
-        "noise": level,
-        "psnr_edges_db": summary["psnr_db"],
-        "conversions": summary["conversions_made"],
-        "bytes": summary["stream_bytes"],
-        "cycles": summary["cycles"],
-        "energy_uj": summary["energy_uj"]["total"],
-        "simulation_s": result.chip.seconds,
-        "mismatches": summary["stream_mismatches"],
-    }
+    return {"noise": level, "psnr_edges_db": summary["psnr_db"], **costs(result, summary)}
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
     """PSNR against noise."""
-    return curves(
-        {"decoded differences": [(r["noise"], r["psnr_edges_db"], f"{r['bytes']:,} B") for r in rows]},
-        "noise (times physical)",
-        "PSNR (dB)",
-        "Noise: error and what it costs",
-    )
+    series = {"decoded differences": [(r["noise"], r["psnr_edges_db"], f"{r['bytes']:,} B") for r in rows]}
+    return curves(series, "noise (times physical)", "PSNR (dB)", "Noise: error and what it costs")

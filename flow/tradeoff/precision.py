@@ -1,4 +1,5 @@
-"""float32 against float64 in the capture of the default scene: largest relative error, codes that change and time."""
+"""Single against double precision (float32, float64) in the capture of the default scene: largest relative error,
+codes that change and time."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -52,28 +53,17 @@ def measure(point: tuple[str, int]) -> dict[str, Any]:
         times.append(perf_counter() - start)
     error = float(np.abs(pair - best).max() / best.max())
     changed = int((_codes(pair, sensor) != _codes(best, sensor)).sum())
-    return {
-        "dtype": dtype,
-        "rows": size,
-        "error": error,
-        "codes_changed": changed,
-        "samples": size * size,
-        "capture_ms": 1e3 * min(times),
-    }
+    found = {"error": error, "codes_changed": changed, "samples": size * size, "capture_ms": 1e3 * min(times)}
+    return {"dtype": dtype, "rows": size, **found}
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
     """Largest error against time of a capture."""
     # The reference itself has no error; it is drawn at float64's own rounding.
     floor = float(np.finfo(np.float64).eps)
-    return curves(
-        {
-            d: [(r["capture_ms"], max(r["error"], floor), f"{r['rows']}") for r in rows if r["dtype"] == d]
-            for d in ("float64", "float32")
-        },
-        "capture (ms); number: rows of the array",
-        "largest error / largest value",
-        "float32 against float64",
-        log_x=True,
-        log_y=True,
-    )
+    series = {
+        d: [(r["capture_ms"], max(r["error"], floor), f"{r['rows']}") for r in rows if r["dtype"] == d]
+        for d in ("float64", "float32")
+    }
+    labels = "capture (ms); number: rows of the array", "largest error / largest value", "float32 against float64"
+    return curves(series, *labels, log_x=True, log_y=True)

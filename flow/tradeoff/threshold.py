@@ -13,7 +13,7 @@ from base.charts import curves
 from flow.frame import hardware, job
 from flow.frame.figures import summarize
 from flow.frame.request import FrameRequest, request
-from flow.frame.result import Exposed
+from flow.frame.result import Exposed, FrameResult
 
 THRESHOLDS = (0, 1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 127)
 
@@ -38,29 +38,24 @@ def measure(point: tuple[int, int]) -> dict[str, Any]:
     asked = replace(asked, frame=replace(asked.frame, threshold=threshold))
     result = job.read_out(asked, exposed, program)
     summary = summarize(result)
-    rebuilt = result.rebuilt
+    quality = {"psnr_edges_db": summary["psnr_db"], "psnr_image_db": result.rebuilt.psnr_db}
+    return {"threshold": threshold, **quality, **costs(result, summary)}
+
+
+def costs(result: FrameResult, summary: dict[str, Any]) -> dict[str, Any]:
+    """Columns of a frame's cost: conversions, bytes, cycles, energy and simulation time."""
+    energy, seconds = summary["energy_uj"]["total"], result.chip.seconds
     return {
-        "threshold": threshold,
-        "psnr_edges_db": summary["psnr_db"],
-        "psnr_image_db": rebuilt.psnr_db,
         "conversions": summary["conversions_made"],
         "bytes": summary["stream_bytes"],
         "cycles": summary["cycles"],
-        "energy_uj": summary["energy_uj"]["total"],
-        "simulation_s": result.chip.seconds,
-        "mismatches": summary["stream_mismatches"],
-    }
+    } | {"energy_uj": energy, "simulation_s": seconds, "mismatches": summary["stream_mismatches"]}
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
     """PSNR against bytes."""
-    return curves(
-        {
-            "decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],
-            "image rebuilt from them": [(r["bytes"], r["psnr_image_db"], "") for r in rows],
-        },
-        "bytes a frame",
-        "PSNR (dB)",
-        "Threshold: error against bytes",
-        log_x=True,
-    )
+    series = {
+        "decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],
+        "image rebuilt from them": [(r["bytes"], r["psnr_image_db"], "") for r in rows],
+    }
+    return curves(series, "bytes a frame", "PSNR (dB)", "Threshold: error against bytes", log_x=True)

@@ -1,8 +1,9 @@
-"""Views and angular nodes of the capture model: photocurrents of the 48 diodes against an adaptive quadrature of Eq. 3.3,
-for uniform light and for light that ripples with angle, against the time to compute the weights."""
+"""Views and angular nodes of the capture model: photocurrents of the 48 diodes against an adaptive quadrature of
+Eq. 3.3, for uniform light and for light that ripples with angle, against the time to compute the weights."""
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -19,12 +20,7 @@ _references: dict[str, Any] = {}
 
 def points(quick: bool) -> list[tuple[str, int, int]]:
     """Light, views along an axis, and angular nodes a view."""
-    return [
-        (light, views, nodes)
-        for light in LIGHTS
-        for views in ((3, 5) if quick else VIEWS)
-        for nodes in ((1, 4) if quick else NODES)
-    ]
+    return list(product(LIGHTS, (3, 5) if quick else VIEWS, (1, 4) if quick else NODES))
 
 
 def measure(point: tuple[str, int, int]) -> dict[str, Any]:
@@ -35,32 +31,15 @@ def measure(point: tuple[str, int, int]) -> dict[str, Any]:
         _references[light] = exact(sensor.tile.types, sensor.optics, LIGHTS[light])
     optics = replace(sensor.optics, views=views, subsamples=nodes)
     found = sampling_error(sensor.tile.types, optics, LIGHTS[light], _references[light])
-    return {
-        "light": light,
-        "views": views,
-        "nodes": nodes,
-        "worst": found.worst,
-        "rms": found.rms,
-        "seconds": found.seconds,
-    }
+    errors = {name: getattr(found, name) for name in ("worst", "rms", "seconds")}
+    return {"light": light, "views": views, "nodes": nodes, **errors}
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
     """Worst error against time."""
-    return curves(
-        {
-            f"{light}, {v} x {v} views": [
-                (1e3 * r["seconds"], r["worst"], str(r["nodes"]))
-                for r in rows
-                if r["light"] == light and r["views"] == v
-            ]
-            for light in LIGHTS
-            for v in VIEWS
-            if any(r["views"] == v for r in rows)
-        },
-        "time of the weights (ms); number: nodes a view cell",
-        "worst error of a photocurrent / their mean",
-        "Views and angular nodes",
-        log_x=True,
-        log_y=True,
-    )
+    series: dict[str, list[tuple[float, float, str]]] = {}
+    for r in rows:
+        name = f"{r['light']}, {r['views']} x {r['views']} views"
+        series.setdefault(name, []).append((1e3 * r["seconds"], r["worst"], str(r["nodes"])))
+    labels = "time of the weights (ms); number: nodes a view cell", "worst error of a photocurrent / their mean"
+    return curves(series, *labels, "Views and angular nodes", log_x=True, log_y=True)
