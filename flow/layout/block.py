@@ -22,24 +22,11 @@ from .report.page import Picture, write_report
 from .report.picture import by_block, render
 from .search import lay_out_smallest
 
-RESULTS = {
-    "gds": "fill.gds",
-    "v": "stream_out.verilog",
-    "drc.lyrdb": "drc.report",
-    "lvsdb": "lvs.report",
-    "lef": "lef.lef",
-    "spef": "extraction.spef",
-    "sdc": "sdc",
-    "foundry.lyrdb": "foundry_drc.report",
-    "magic_drc.txt": "magic_drc.report",
-}
-BY_CORNER = {
-    "sdf": "sta_{}.sdf",
-    "sta.txt": "sta_{}.report",
-    "lib": "block_liberty_{}.liberty",
-    "power.json": "power_{}.instances",
-    "ir_drop.png": "ir_drop_{}.picture",
-}
+RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
+RESULTS |= {"drc.lyrdb": "drc.report", "foundry.lyrdb": "foundry_drc.report", "magic_drc.txt": "magic_drc.report"}
+RESULTS |= {"lvsdb": "lvs.report"}
+BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty"}
+BY_CORNER |= {"power.json": "power_{}.instances", "ir_drop.png": "ir_drop_{}.picture"}
 FIRST = "sdf", "lib"  # of the first corner, also under the design's name alone
 
 
@@ -66,11 +53,9 @@ def lay_out(design: Design, options: Options, out: Path, note: Callable[[str], N
 def publish(folder: Path, name: str, options: Options, runner: Runner, summary: dict[str, Any]) -> None:
     """Copy the results into ``folder``, with report and summary, under the design's ``name``."""
     tech = coriolis_platform(options.pdk)
-    results = RESULTS | {
-        f"{corner}.{suffix}": source.format(corner)
-        for corner in options.corners
-        for suffix, source in BY_CORNER.items()
-    }
+    results = dict(RESULTS)
+    for corner in options.corners:
+        results |= {f"{corner}.{suffix}": source.format(corner) for suffix, source in BY_CORNER.items()}
     for suffix in FIRST if options.corners else ():
         results[suffix] = BY_CORNER[suffix].format(options.corners[0])
     with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:
@@ -90,10 +75,8 @@ def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Pict
     step = "assemble" if "assemble.netlist" in runner.paths else "place_route"
     if f"{step}.netlist" not in runner.paths or f"ir_drop_{first}.picture" not in runner.paths:
         return []
-    placement, areas, plan = (
-        json.loads(runner.paths[key].read_text())
-        for key in (f"{step}.placement", "library.areas", "floorplan.floorplan")
-    )
+    keys = f"{step}.placement", "library.areas", "floorplan.floorplan"
+    placement, areas, plan = (json.loads(runner.paths[key].read_text()) for key in keys)
     netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), coriolis_platform(options.pdk)
     file = f"{name}.blocks.png"
     by_block(folder / file, netlist, placement["instances"], areas, tech, blocks(netlist), plan)

@@ -42,11 +42,8 @@ FAN_OUT = 12  # most cells that one signal drives, where synthesis knows the cel
 # Of the whole chip, whose netlist with delays simulates a thousand times slower than a block's
 CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 # Inputs of the steps after `assemble` in a design with macros: the flat netlist and placement
-ASSEMBLED = {
-    "place_route.netlist": "assemble.netlist",
-    "place_route.placement": "assemble.placement",
-    "reroute.placement": "assemble.placement",
-}
+ASSEMBLED = {"place_route.netlist": "assemble.netlist"}
+ASSEMBLED |= dict.fromkeys(("place_route.placement", "reroute.placement"), "assemble.placement")
 MOST_OPEN = {False: 60, True: 200}  # open nets that `reroute` takes on; around macros the router leaves more open
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
 EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second attempt has the one that its first has not
@@ -98,16 +95,11 @@ def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Plac
 
 def routing_steps(design: Design, options: Options) -> list[Step]:
     """The steps after place and route that decide whether the routing keeps the design rules; `reroute` is first."""
-    clock, macros = design.clock.port, macro_modules(design)
-    assemble = [Assemble(AssembleParameters(options.pdk, macros))] if macros else []
-    return [
-        Reroute(RerouteParameters(options.pdk, clock, MOST_OPEN[bool(macros)])),
-        *assemble,
-        StreamOut(StreamOutParameters(options.pdk, clock, bool(macros))),
-        Fill(PdkParameters(options.pdk)),
-        Drc(PdkParameters(options.pdk)),
-        Antenna(PdkParameters(options.pdk)),
-    ]
+    clock, macros, pdk = design.clock.port, macro_modules(design), options.pdk
+    reroute = Reroute(RerouteParameters(pdk, clock, MOST_OPEN[bool(macros)]))
+    assemble = [Assemble(AssembleParameters(pdk, macros))] if macros else []
+    checks = [step(PdkParameters(pdk)) for step in (Fill, Drc, Antenna)]
+    return [reroute, *assemble, StreamOut(StreamOutParameters(pdk, clock, bool(macros))), *checks]
 
 
 def signoff_steps(design: Design, options: Options) -> list[Step]:
@@ -118,29 +110,25 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         Equivalence(EquivalenceParameters(design.top, design.clock.port)),
         *netlist_tests(design),
         *foundry,
-        Lvs(PdkParameters(options.pdk)),
-        Lef(PdkParameters(options.pdk)),
-        Extraction(PdkParameters(options.pdk)),
+        *(step(PdkParameters(options.pdk)) for step in (Lvs, Lef, Extraction)),
         *timing_steps(design, options),
     ]
     if not design.macros:
         return steps
     for step in steps:
         step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
-    return steps + [
-        StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, macro_modules(design)))
-        for corner in options.corners
-    ]
+    for corner in options.corners:
+        steps.append(StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, macro_modules(design))))
+    return steps
 
 
 def netlist_tests(design: Design) -> list[Step]:
     """The block's tests on both netlists, in both simulators; of the chip, whole frames."""
     if not design.netlist_names:
         return [GateFrames()]
-    return [
-        GateTests(GateTestsParameters(design.folder, design.netlist_names, design.top, netlist, simulator))
-        for netlist, simulator in (("synthesized", "icarus"), ("final", "icarus"), ("final", "verilator"))
-    ]
+    block = design.folder, design.netlist_names, design.top
+    runs = ("synthesized", "icarus"), ("final", "icarus"), ("final", "verilator")
+    return [GateTests(GateTestsParameters(*block, netlist, simulator)) for netlist, simulator in runs]
 
 
 def timing_steps(design: Design, options: Options) -> list[Step]:
@@ -153,10 +141,8 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
     parameters = StimulusParameters(design.top, design.folder, divider=design.divider, n_frac=design.n_frac, **size)
     steps: list[Step] = [Stimulus(parameters)] if options.corners else []
     for corner in options.corners:
-        steps += [
-            Sta(StaParameters(design.top, corner, clock.period_ns)),
-            BlockLiberty(BlockLibertyParameters(corner, clock.port)),
-        ]
+        steps.append(Sta(StaParameters(design.top, corner, clock.period_ns)))
+        steps.append(BlockLiberty(BlockLibertyParameters(corner, clock.port)))
     for corner in options.corners if design.netlist_names else options.corners[:1]:
         steps += [
             GateDelays(GateDelaysParameters(corner, clock.period_ns, io.input_delay, io.output_delay)),
@@ -168,9 +154,5 @@ def timing_steps(design: Design, options: Options) -> list[Step]:
 
 def all_steps(design: Design, options: Options, signoff: Signoff = signoff_steps) -> list[Step]:
     """All steps of a layout whose first attempt closes, in order. signoff: see `search.lay_out_smallest`."""
-    return [
-        *synthesis_steps(design, options),
-        *next(attempts(design, options)),
-        *routing_steps(design, options),
-        *signoff(design, options),
-    ]
+    first = synthesis_steps(design, options) + list(next(attempts(design, options)))
+    return first + routing_steps(design, options) + signoff(design, options)

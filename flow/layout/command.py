@@ -24,24 +24,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("design", help=f"one of {', '.join((*DESIGNS, SENSOR))}")
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     add("--backend", default="coriolis", help="what places and routes: coriolis (openroad: see talbot openroad)")
-    add(
-        "--utilization",
-        type=float,
-        help="cells' area by core area where the search for the smallest area begins (default: the design's)",
-    )
-    add(
-        "--liberty",
-        type=Path,
-        action="append",
-        default=[],
-        help="characterized cells at a corner (again for further corners; default: measured now)",
-    )
+    add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
+    cells = "characterized cells at a corner (again for further corners; default: measured now)"
+    add("--liberty", type=Path, action="append", default=[], help=cells)
     add("--untimed", action="store_true", help="no timing: cells by area alone")
-    add(
-        "--analog",
-        type=Path,
-        help=f"folder with <block>.lef and .gds of analog blocks in place of {SENSOR}'s black boxes",
-    )
+    add("--analog", type=Path, help=f"folder with <block>.lef and .gds in place of {SENSOR}'s black boxes")
     add("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
 
 
@@ -50,19 +37,12 @@ def run(arguments: Namespace) -> int:
     check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
     check_choice("backend", arguments.backend, ("coriolis",))
     chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
-    options = Options(
-        arguments.pdk,
-        chosen.utilization if arguments.utilization is None else arguments.utilization,
-        tuple(arguments.liberty),
-        arguments.untimed,
-        decks=tuple(installed(arguments.pdk).items()),
-    )
+    start = chosen.utilization if arguments.utilization is None else arguments.utilization
+    decks = tuple(installed(arguments.pdk).items())
+    options = Options(arguments.pdk, start, tuple(arguments.liberty), arguments.untimed, decks=decks)
     if arguments.design == SENSOR:
-        steps = [
-            *(f"{CHIP}: {step.name}" for step in all_steps(chosen, options)),
-            *(step.name for step in die_steps(chosen, options)),
-        ]
-        with Steps(steps) as bar:
+        steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
+        with Steps([*steps, *(step.name for step in die_steps(chosen, options))]) as bar:
             summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
     else:
         summary, lines = block(chosen, options, arguments)

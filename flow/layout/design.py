@@ -70,62 +70,34 @@ class Design:
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
     """The Design of a variant of the divider with ``n_frac`` fraction bits."""
-    top = {
-        "radix2": "QuadDividerRadix2",
-        "radix4": "QuadDividerRadix4",
-        "pipelined": "QuadDividerPipelined",
-        "cordic": "Cordic",
-    }[variant]
-    return Design(
-        name,
-        top,
-        "quad_divider",
-        (f"QuadDivider_{variant}_{n_frac}_10",),
-        (f"--n-frac={n_frac}",),
-        divider=variant,
-        n_frac=n_frac,
-    )
+    top = "Cordic" if variant == "cordic" else f"QuadDivider{variant.capitalize()}"
+    names, options = (f"QuadDivider_{variant}_{n_frac}_10",), (f"--n-frac={n_frac}",)
+    return Design(name, top, "quad_divider", names, options, divider=variant, n_frac=n_frac)
 
 
+SMALL = "--rows=7", "--cols=31", "--lanes=2"
+PHASE = "PhasePath", "phase_path", ("PhasePath_8_radix4",)
+DIVIDER = MacroPlacement("divider", "quad_divider")
+# As in the thesis (B.3.2): both blocks are macros
+TWO = MacroPlacement("phase.divider", "quad_divider", (0.1, 1.0)), MacroPlacement("amp", "amp_ctrl", (0.93, 0.8))
 DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest nets of flow.layout.sensor
 DESIGNS = {
     made.name: made
     for made in (
         Design("amp_ctrl", "AmpCtrl", "amp_ctrl", ("AmpCtrl",), utilization=0.8),
-        Design(
-            "readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",), ("--rows=7", "--cols=31", "--lanes=2")
-        ),
+        Design("readout_seq", "ReadoutSeq", "readout_seq", ("ReadoutSeq_7_31_2",), SMALL),
         Design("edge_adc", "EdgeAdc", "edge_adc", ("EdgeAdc",)),
         Design("adc_bank", "AdcBank", "adc_bank", ("AdcBank8",)),
         divider("quad_divider", "radix4"),
         divider("quad_divider_radix2", "radix2"),
         divider("quad_divider_pipelined", "pipelined"),
         divider("cordic", "cordic"),
-        Design("phase_path", "PhasePath", "phase_path", ("PhasePath_8_radix4",)),
-        Design(
-            "phase_path_macros",
-            "PhasePath",
-            "phase_path",
-            ("PhasePath_8_radix4",),
-            utilization=0.8,
-            macros=(MacroPlacement("divider", "quad_divider"),),
-        ),
+        Design("phase_path", *PHASE),
+        Design("phase_path_macros", *PHASE, utilization=0.8, macros=(DIVIDER,)),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
         Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
         Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, io=DIE),
-        # As in the thesis (B.3.2): both blocks are macros
-        Design(
-            "asp_chip_macros",
-            "AspChip",
-            "asp_chip",
-            utilization=0.5,
-            density_variation=0.3,
-            io=DIE,
-            macros=(
-                MacroPlacement("phase.divider", "quad_divider", (0.1, 1.0)),
-                MacroPlacement("amp", "amp_ctrl", (0.93, 0.8)),
-            ),
-        ),
+        Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.5, density_variation=0.3, macros=TWO, io=DIE),
     )
 }
 
@@ -141,9 +113,8 @@ def flat_design(name: str) -> Design:
     """Look up a Design without macros by its name. Raises ParameterError, also for one with macros."""
     found = design(name)
     if found.macros:
-        raise ParameterError(
-            f"DESIGN = {name!r}: must be without macros: only make layout with the Coriolis backend supports these"
-        )
+        why = "only make layout with the Coriolis backend supports these"
+        raise ParameterError(f"DESIGN = {name!r}: must be without macros: {why}")
     return found
 
 

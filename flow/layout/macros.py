@@ -9,14 +9,8 @@ from .design import Design, macro_designs
 from .netlist.verilog import modules
 
 # Of a macro's run, what the design around it is given as macro.<module>.<part>
-PARTS = {
-    "lef": "lef.lef",
-    "gds": "fill.gds",
-    "verilog": "stream_out.verilog",
-    "netlist": "place_route.netlist",
-    "placement": "reroute.placement",
-    "spice": "stream_out.spice",
-}
+PARTS = {"lef": "lef.lef", "gds": "fill.gds", "verilog": "stream_out.verilog", "spice": "stream_out.spice"}
+PARTS |= {"netlist": "place_route.netlist", "placement": "reroute.placement"}
 
 
 def macro_files(design: Design, runners: Mapping[str, Runner], corners: Sequence[str] = ()) -> dict[str, Path]:
@@ -38,6 +32,5 @@ def check_same(design: Design, rtl: Path, runners: Mapping[str, Runner]) -> None
     for macro in macro_designs(design):
         for name, text in modules(runners[macro.name].paths["rtl"].read_text()).items():
             if own.get(name) != text:
-                raise StepError(
-                    f"{design.name}: its module {name} differs from that of {macro.name}, which is laid out"
-                )
+                other = f"that of {macro.name}, which is laid out"
+                raise StepError(f"{design.name}: its module {name} differs from {other}")

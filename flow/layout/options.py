@@ -36,10 +36,9 @@ class Options:
     def __post_init__(self) -> None:
         for path in self.liberty:
             if not path.is_file():
-                raise ParameterError(
-                    f"liberty = {path}: no such file; without LIBERTY the cells are measured, "
-                    "once, into build/layout/shared/timing.*/<corner>.lib"
-                )
+                place = "build/layout/shared/timing.*/<corner>.lib"
+                without = f"without LIBERTY the cells are measured, once, into {place}"
+                raise ParameterError(f"liberty = {path}: no such file; {without}")
             if not is_library(path):
                 raise ParameterError(f"liberty = {path}: must be a Liberty file: it does not begin with library (...)")
         if len({path.stem for path in self.liberty}) != len(self.liberty):

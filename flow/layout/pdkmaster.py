@@ -13,9 +13,8 @@ from platforms.coriolis import CoriolisPlatform
 from platforms.layers import Layer, Via
 
 GRID_UM = 0.005  # on which pads are drawn
-DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"} | dict.fromkeys(
-    ("q", "nq", "one", "zero", "co", "s"), "out"
-)
+DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"}
+DIRECTIONS |= dict.fromkeys(("q", "nq", "one", "zero", "co", "s"), "out")
 
 
 def layout_geometry(tech: CoriolisPlatform) -> dict[str, Any]:
@@ -36,12 +35,10 @@ def routing_rules(tech: CoriolisPlatform, primitives: Any) -> dict[str, Any]:
 
     metals = {metal.name: primitives[metal.name] for metal in tech.metals}
     vias = {}
-    for level, via in enumerate(tech.vias):
+    for via, low, high in zip(tech.vias, tech.metals, tech.metals[1:]):
         own = primitives[via.name]
-        vias[via.name] = {
-            "below": enclosure(own.bottom, own.min_bottom_enclosure, tech.metals[level]),
-            "above": enclosure(own.top, own.min_top_enclosure, tech.metals[level + 1]),
-        }
+        below = enclosure(own.bottom, own.min_bottom_enclosure, low)
+        vias[via.name] = {"below": below, "above": enclosure(own.top, own.min_top_enclosure, high)}
     return {
         "space_um": {name: float(metal.min_space) for name, metal in metals.items()},
         "metals": {
@@ -82,9 +79,8 @@ def with_narrow_top(text: str, tech: CoriolisPlatform, primitives: Any) -> str:
     begin = text.index(f"metal = tech.getLayer('{top.name}')")
     head, gauge = text[:begin], text[begin:]
     around, pitch = f"u({via.enclosure_um})", pad + float(primitives[top.name].min_space)
-    gauge, enclosures = re.subn(
-        r"setEnclosures\(via, metal, .*\)", f"setEnclosures(via, metal, ({around}, {around}))", gauge, count=1
-    )
+    both = f"setEnclosures(via, metal, ({around}, {around}))"
+    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", both, gauge, count=1)
     gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({pitch:g}), u({pad:g})", gauge, count=1)
     head, pads = with_short_pads(head, below.name, top.name, via, float(primitives[below.name].min_area or 0))
     if not enclosures or not tracks or not pads:
@@ -117,9 +113,8 @@ def export_gds(path: Path, description: Any, library: Any) -> None:
     """Write the cells as GDS."""
     from pdkmaster.io.klayout import export2db
 
-    write_gds(
-        export2db(library, gds_layers=description.gds_layers, cell_name=None, merge=False, add_pin_label=True), path
-    )
+    shapes = {"cell_name": None, "merge": False, "add_pin_label": True}
+    write_gds(export2db(library, gds_layers=description.gds_layers, **shapes), path)
 
 
 def export_decks(description: Any, devices: Any) -> dict[str, str]:

@@ -12,9 +12,11 @@ from flow.layout.options import Options
 from models.parameters import ChipParameters, EnergyParameters
 
 CHIP = "AspChip"
+BOUNDS = {"is": "", "least": "at least", "most": "at most"}  # of a rule, as words
 # Parts of the power in [Jayasuriya2017, Table 6.1] and the blocks of AspChip that do their digital work; pixels,
 # amplifiers and the converters' comparators are analog. What the sensor of Table 6.1 did not have is in none of them
 TABLE_6_1 = {"pixel_array": (), "amplifiers": ("amp",), "timing": ("seq", "regs", "balancer"), "adcs": ("bank",)}
+CHECKS = "foundry_drc", "magic_drc", "antenna"
 RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 
 
@@ -40,10 +42,12 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
     def metric(step: str, name: str) -> Any:
         return records[step]["metrics"].get(name) if step in records else None
 
+    def own(step: str, *names: str) -> dict[str, Any]:
+        return {name: metric(step, name) for name in names}
+
     def by_corner(name: str, step: str = "sta") -> dict[str, Any] | None:
-        return {
-            corner: metric(f"{step}_{corner}", name) for corner in options.corners if f"{step}_{corner}" in records
-        } or None
+        found = {corner: f"{step}_{corner}" for corner in options.corners}
+        return {corner: metric(one, name) for corner, one in found.items() if one in records} or None
 
     first = next(iter(options.corners), "")
     slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9  # factor to the chip's clock
@@ -56,23 +60,17 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "top": design.top,
         "backend": "coriolis",
         "pdk": options.pdk,
-        "cells": metric(cells, "cells"),
-        "flip_flops": metric(cells, "flip_flops"),
-        "cell_area_um2": metric(cells, "cell_area_um2"),
+        **own(cells, "cells", "flip_flops", "cell_area_um2"),
         "area_um2": metric("stream_out", "area_um2") or metric("floorplan", "core_area_um2"),
         "utilization": attempts[-1].utilization,
         "attempts": [asdict(attempt) for attempt in attempts],
         "macros": {macro.instance: macro.design for macro in design.macros} or None,
         "wire_um": metric("assemble", "wire_um") or metric("reroute", "wire_um"),
-        "open_nets": metric("reroute", "open_nets"),
-        "rerouted_nets": metric("reroute", "rerouted_nets"),
-        "antenna_jumpers": metric("reroute", "antenna_jumpers"),
+        **own("reroute", "open_nets", "rerouted_nets", "antenna_jumpers"),
         "clock_buffers": metric("place_route", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"),
         "lvs_match": metric("lvs", "lvs_match"),
-        "foundry_drc_violations": metric("foundry_drc", "foundry_drc_violations"),
-        "magic_drc_violations": metric("magic_drc", "magic_drc_violations"),
-        "antenna_violations": metric("antenna", "antenna_violations"),
+        **{f"{step}_violations": metric(step, f"{step}_violations") for step in CHECKS},
         "density": metric("fill", "after"),
         "density_violations": metric("fill", "density_violations"),
         "fill_squares": metric("fill", "squares"),
@@ -94,8 +92,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "wire_pf": metric("extraction", "wire_pf"),
         "registers": metric("equivalence", "registers"),
         "gate_tests": gate_tests(records),
-        "wall_s": {name: record["wall_s"] for name, record in records.items()},
-        "peak_mib": {name: record["peak_mib"] for name, record in records.items()},
+        **{key: {name: record[key] for name, record in records.items()} for key in ("wall_s", "peak_mib")},
         "tools": dict(sorted(tools.items())),
     }
 
@@ -112,25 +109,19 @@ def table_6_1(by_block: dict[str, float] | None, slowed: float) -> dict[str, lis
     """
     if by_block is None:
         return None
-    found = {
-        part: [
-            round(getattr(EnergyParameters(), part) * 1e6, 3),
-            round(slowed * sum(by_block.get(block, 0.0) for block in blocks), 3) if blocks else None,
-        ]
-        for part, blocks in TABLE_6_1.items()
-    }
+    found: dict[str, list[float | None]] = {}
+    for part, blocks in TABLE_6_1.items():
+        own = round(slowed * sum(by_block.get(block, 0.0) for block in blocks), 3) if blocks else None
+        found[part] = [round(getattr(EnergyParameters(), part) * 1e6, 3), own]
     counted = {block for blocks in TABLE_6_1.values() for block in blocks}
     return found | {block: [None, round(slowed * uw, 3)] for block, uw in by_block.items() if block not in counted}
 
 
 def gate_tests(records: Mapping[str, dict[str, Any]]) -> dict[str, Any] | None:
     """Tests passed and failed in all netlist simulations, then in each of them; None without one."""
-    runs = {
-        name: {kind: record["metrics"][kind] for kind in ("passed", "failed")}
-        for name, record in records.items()
-        if name.startswith("gate_")
-    }
-    return {kind: sum(run[kind] for run in runs.values()) for kind in ("passed", "failed")} | runs if runs else None
+    kinds, metrics = ("passed", "failed"), {name: record["metrics"] for name, record in records.items()}
+    runs = {name: {kind: found[kind] for kind in kinds} for name, found in metrics.items() if name.startswith("gate_")}
+    return {kind: sum(run[kind] for run in runs.values()) for kind in kinds} | runs if runs else None
 
 
 def timing_basis(options: Options) -> str:
@@ -158,12 +149,8 @@ def broken(summary: dict[str, Any], rules: Mapping[str, dict[str, Any]] = RULES)
         if value is None and rule.get("if_measured"):
             continue
         if not all(_keeps(one, rule) for one in (value.values() if isinstance(value, dict) else [value])):
-            wanted = " and ".join(
-                f"{'at ' if word != 'is' else ''}{word} {rule[word]}".removeprefix("is ")
-                for word in ("is", "least", "most")
-                if word in rule
-            )
-            found.append(f"{name} = {value}: must be {wanted}")
+            wanted = [f"{word} {rule[key]}".lstrip() for key, word in BOUNDS.items() if key in rule]
+            found.append(f"{name} = {value}: must be {' and '.join(wanted)}")
     return found
 
 

@@ -8,29 +8,14 @@ from typing import Any, NamedTuple
 from base.page import render
 from platforms.coriolis import CoriolisPlatform
 
-from .history import Run, history, table
+from .history import history, table
 from .picture import PALETTE
 from .text import as_text
 
-NOT_FIGURES = (
-    "design",
-    "top",
-    "backend",
-    "pdk",
-    "attempts",
-    "wall_s",
-    "peak_mib",
-    "tools",
-    "timing_rests_on",
-    "table_6_1",
-    "not_checked",
-)
-PARTS = {
-    "pixel_array": "pixel array",
-    "amplifiers": "amplifiers; here: their control",
-    "timing": "timing, addressing",
-    "adcs": "converters; here: their logic",
-}
+NOT_FIGURES = {"design", "top", "backend", "pdk", "attempts", "wall_s", "peak_mib", "tools", "timing_rests_on"}
+NOT_FIGURES |= {"table_6_1", "not_checked", "power_by_block_uw"}
+PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control"}
+PARTS |= {"timing": "timing, addressing", "adcs": "converters; here: their logic"}
 BY_CORNER = (
     ("wns_ns", "setup slack, ns"),
     ("whs_ns", "hold slack, ns"),
@@ -73,40 +58,19 @@ def write_report(
     picture: str | None = None,
     pictures: Sequence[Picture] = (),
 ) -> None:
-    """Write summary, history and page into ``part``, whose files will be in ``folder``. Other arguments: see `page`."""
-    runs = history(folder / "history.jsonl", summary)
-    (part / "history.jsonl").write_text("".join(run.line() for run in runs))
-    (part / "report.html").write_text(page(summary, broken, tech, runs, picture, pictures))
-    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
-
-
-def page(
-    summary: dict[str, Any],
-    broken: Sequence[str],
-    tech: CoriolisPlatform,
-    runs: Sequence[Run],
-    picture: str | None = None,
-    pictures: Sequence[Picture] = (),
-) -> str:
-    """Render the report as HTML.
+    """Write summary, history and page into ``part``, whose files will be in ``folder``.
 
     broken: lines of `metrics.broken`. picture: file name of the layout's, beside the page. pictures: further ones.
     """
-    key = [(wire.name, f"#{color:06x}") for wire, color in zip(tech.metals, PALETTE)]
-    return render(
-        Path(__file__).with_name("page.html"),
-        s=summary,
-        broken=broken,
-        tiles=_tiles(summary, broken),
-        figures=_figures(summary),
-        picture=picture,
-        key=key,
-        pictures=pictures,
-        corners=_corners(summary),
-        blocks=_blocks(summary),
-        table=_table(summary),
-        history=table(runs),
-    )
+    runs = history(folder / "history.jsonl", summary)
+    (part / "history.jsonl").write_text("".join(run.line() for run in runs))
+    (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+    key = [(metal.name, f"#{color:06x}") for metal, color in zip(tech.metals, PALETTE)]
+    shown = {"picture": picture, "key": key, "pictures": pictures, "history": table(runs)}
+    tables = {"corners": _corners(summary), "blocks": _blocks(summary), "table": _table(summary)}
+    tables |= {"tiles": _tiles(summary, broken), "figures": _figures(summary)}
+    page = render(Path(__file__).with_name("page.html"), s=summary, broken=broken, **tables, **shown)
+    (part / "report.html").write_text(page)
 
 
 def _tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
@@ -161,8 +125,4 @@ def _figures(s: dict[str, Any]) -> list[tuple[str, str]]:
             return ", ".join(f"{name}: {text(v)}" for name, v in value.items())
         return ", ".join(map(str, value)) or "-" if isinstance(value, list) else as_text(value)
 
-    return [
-        (name, text(value))
-        for name, value in s.items()
-        if name not in NOT_FIGURES and name not in dict(BY_CORNER) and name != "power_by_block_uw"
-    ]
+    return [(name, text(value)) for name, value in s.items() if name not in NOT_FIGURES | dict(BY_CORNER).keys()]

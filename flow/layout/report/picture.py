@@ -15,9 +15,8 @@ def render(gds: Path, png: Path, tech: CoriolisPlatform, side: int = 2400) -> No
     import klayout.lay as lay
 
     view = lay.LayoutView()
-    view.set_config("background-color", BACKGROUND)
-    view.set_config("grid-visible", "false")
-    view.set_config("text-visible", "false")
+    for name, value in (("background-color", BACKGROUND), ("grid-visible", "false"), ("text-visible", "false")):
+        view.set_config(name, value)
     view.load_layout(str(gds), False)
     view.max_hier()
     colors = {wire.gds: color for wire, color in zip(tech.metals, PALETTE)}
@@ -60,9 +59,8 @@ def by_block(
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if instance.name in found and instance.pins:
             width, down, left = areas[cell] / tech.row_um, orientation in ("6", "2"), orientation in ("4", "2")
-            groups.setdefault(found[instance.name], []).append(
-                Rectangle((x - width * left, y - tech.row_um * down), width, tech.row_um)
-            )
+            box = Rectangle((x - width * left, y - tech.row_um * down), width, tech.row_um)
+            groups.setdefault(found[instance.name], []).append(box)
     for k, (block, boxes) in enumerate(sorted(groups.items(), key=lambda item: -len(item[1]))):
         axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))
         axes.plot([], [], "s", color=f"C{k % 10}", label=f"{block} ({len(boxes)})")

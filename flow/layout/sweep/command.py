@@ -3,6 +3,7 @@
 import json
 from argparse import ArgumentParser, Namespace
 from dataclasses import asdict
+from itertools import product
 from pathlib import Path
 
 from base.charts import save
@@ -23,13 +24,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout-sweep`."""
     add = parser.add_argument
     add("what", choices=("pareto", "effort"), help="variants of the divider; effort of the placer")
-    add(
-        "--liberty",
-        type=Path,
-        action="append",
-        required=True,
-        help="characterized cells at a corner (again for further corners)",
-    )
+    cells = "characterized cells at a corner (again for further corners)"
+    add("--liberty", type=Path, action="append", required=True, help=cells)
     add("--only", action="append", help="of pareto: names of points, radix4_8 (again for more)")
     add("--design", default="quad_divider", help="of effort")
     utilizations = ", ".join(map(str, UTILIZATIONS))
@@ -43,18 +39,12 @@ def jobs(options: Namespace) -> list[Job]:
     liberty = tuple(str(path.resolve()) for path in options.liberty)
     inputs = tuple(options.liberty)
     if options.what == "effort":
-        chosen = flat_design(options.design)
-        return [
-            Job(
-                f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}",
-                effort_point,
-                (chosen, liberty, str(options.out), effort, variation, utilization),
-                inputs,
-            )
-            for utilization in options.utilization or UTILIZATIONS
-            for effort in EFFORTS
-            for variation in VARIATIONS
-        ]
+        chosen, made = flat_design(options.design), []
+        for utilization, effort, variation in product(options.utilization or UTILIZATIONS, EFFORTS, VARIATIONS):
+            name = f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}"
+            arguments = chosen, liberty, str(options.out), effort, variation, utilization
+            made.append(Job(name, effort_point, arguments, inputs))
+        return made
     found = {made.name: made for made in candidates()}
     for name in options.only or ():
         if name not in found:

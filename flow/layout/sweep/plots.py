@@ -16,17 +16,11 @@ Point = dict[str, Any]  # of points.py, for JSON
 
 def front(points: Iterable[Point], small: str, large: str) -> list[Point]:
     """The Pareto front, sorted by ``small``: no other point has a smaller ``small`` and a larger ``large``."""
-    best = [
-        p
-        for p in points
-        if not any(
-            q is not p
-            and q[small] <= p[small]
-            and q[large] >= p[large]
-            and (q[small], q[large]) != (p[small], p[large])
-            for q in points
-        )
-    ]
+
+    def beats(q: Point, p: Point) -> bool:
+        return q[small] <= p[small] and q[large] >= p[large] and (q[small], q[large]) != (p[small], p[large])
+
+    best = [p for p in points if not any(beats(q, p) for q in points)]
     return sorted(best, key=lambda p: p[small])
 
 
@@ -42,9 +36,8 @@ def pareto_plot(points: Sequence[Point]) -> Figure:
             mine = [point for point in shown if point["variant"] == name]
             axes.plot([p["area_um2"] for p in mine], [p[key] for p in mine], "o", color=colour[name], label=name)
         for point in shown:
-            axes.annotate(
-                point["bits"], (point["area_um2"], point[key]), fontsize=8, xytext=(5, 3), textcoords="offset points"
-            )
+            at = point["area_um2"], point[key]
+            axes.annotate(point["bits"], at, fontsize=8, xytext=(5, 3), textcoords="offset points")
         line = front(shown, "area_um2", "f_max_mhz" if axes is left else "results_uj")
         axes.plot([p["area_um2"] for p in line], [p[key] for p in line], color="0.6", linewidth=1, zorder=0)
         axes.set_xlabel("routed area, um2")
@@ -67,40 +60,19 @@ def effort_plot(points: Sequence[Point]) -> Figure:
     for axes, (key, words) in zip(figure.subplots(1, 3), QUALITY, strict=True):
         for point in points:
             if not point["closed"]:
-                axes.plot(
-                    point["seconds"],
-                    0,
-                    "x",
-                    color=colour[point["utilization"]],
-                    transform=axes.get_xaxis_transform(),
-                    clip_on=False,
-                )
+                bottom = {"transform": axes.get_xaxis_transform(), "clip_on": False}
+                axes.plot(point["seconds"], 0, "x", color=colour[point["utilization"]], **bottom)
         for (value, effort, share), same in alike(points, key).items():
             axes.plot([point["seconds"] for point in same], [value] * len(same), MARKS[effort], color=colour[share])
             if key != "area_um2":  # which follows from the utilization
-                axes.annotate(
-                    ", ".join(f"{point['variation']:g}" for point in same),
-                    (same[-1]["seconds"], value),
-                    fontsize=7,
-                    xytext=(6, -3),
-                    textcoords="offset points",
-                )
+                label, at = ", ".join(f"{point['variation']:g}" for point in same), (same[-1]["seconds"], value)
+                axes.annotate(label, at, fontsize=7, xytext=(6, -3), textcoords="offset points")
         axes.set(xlabel="seconds of placement, routing and rerouting", ylabel=words)
         axes.margins(0.08)
-    marks = [
-        Line2D([], [], linestyle="", marker=mark, color="0.5", label=f"effort {effort}")
-        for effort, mark in MARKS.items()
-    ]
-    marks += [
-        Line2D([], [], linestyle="", marker="o", color=colour[share], label=f"utilization {share:g}")
-        for share in shares
-    ]
-    figure.legend(
-        handles=[*marks, Line2D([], [], linestyle="", marker="x", color="0.5", label="did not close")],
-        loc="outside upper center",
-        ncols=len(marks) + 1,
-        fontsize=8,
-    )
+    marks = [(mark, "0.5", f"effort {effort}") for effort, mark in MARKS.items()]
+    marks += [("o", colour[share], f"utilization {share:g}") for share in shares] + [("x", "0.5", "did not close")]
+    handles = [Line2D([], [], linestyle="", marker=mark, color=c, label=label) for mark, c, label in marks]
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles), fontsize=8)
     return figure
 
 

@@ -19,11 +19,8 @@ WIDTHS = 4, 8, 12  # fraction bits; CORDIC has none
 
 def candidates() -> list[Design]:
     """Designs of the divider: every variant, and all but CORDIC at every width."""
-    return [
-        divider(f"{variant}_{bits}", variant, bits)
-        for variant in VARIANTS
-        for bits in (WIDTHS if variant != "cordic" else (8,))
-    ]
+    points = [(variant, bits) for variant in VARIANTS for bits in (WIDTHS if variant != "cordic" else (8,))]
+    return [divider(f"{variant}_{bits}", variant, bits) for variant, bits in points]
 
 
 def variant_point(design: Design, liberty: Sequence[str], out: str, pdk: str = "sky130") -> dict[str, Any]:
@@ -35,14 +32,8 @@ def variant_point(design: Design, liberty: Sequence[str], out: str, pdk: str = "
     options = Options(pdk, design.utilization, tuple(map(Path, liberty)))
     runner = _runner(design, options, out)
     tried = lay_out_smallest(design, options, runner, _signoff)
-    made = {
-        "name": design.name,
-        "variant": design.divider,
-        "bits": design.n_frac,
-        "tries": len(tried),
-        "utilization": tried[-1].utilization,
-        "closed": tried[-1].rules_broken == 0,
-    }
+    made = {"name": design.name, "variant": design.divider, "bits": design.n_frac, "tries": len(tried)}
+    made |= {"utilization": tried[-1].utilization, "closed": tried[-1].rules_broken == 0}
     if not made["closed"]:
         return made
     first, metric = next(iter(options.corners)), {name: record["metrics"] for name, record in runner.records.items()}
@@ -65,33 +56,21 @@ def _signoff(design: Design, options: Options) -> list[Step]:
 
 
 def effort_point(
-    design: Design,
-    liberty: Sequence[str],
-    out: str,
-    effort: int,
-    variation: float,
-    utilization: float,
-    pdk: str = "sky130",
+    design: Design, liberty: Sequence[str], out: str, effort: int, variation: float, utilization: float
 ) -> dict[str, Any]:
     """Place and route a design once; quality where it closes, and the seconds of place and route.
 
     effort: of the placer. variation: of density. closed: every net is routed and no rule broken.
     """
-    options = Options(pdk, utilization, tuple(map(Path, liberty)), effort=effort)
+    options = Options("sky130", utilization, tuple(map(Path, liberty)), effort=effort)
     design = replace(design, density_variation=variation)
     runner = _runner(design, options, out)
     floorplan, place_route = next(attempts(design, options))
     for step in (*synthesis_steps(design, options), floorplan):
         runner.run(step)
     found = runner.run(place_route)
-    made = {
-        "effort": effort,
-        "variation": variation,
-        "utilization": utilization,
-        "seconds": found["wall_s"],
-        "stopped": found["metrics"]["stopped"],
-        "closed": False,
-    }
+    made: dict[str, Any] = {"effort": effort, "variation": variation, "utilization": utilization, "closed": False}
+    made |= {"seconds": found["wall_s"], "stopped": found["metrics"]["stopped"]}
     if found["metrics"]["stopped"] is not None:
         return made
     reroute, *others = routing_steps(design, options)
@@ -100,16 +79,11 @@ def effort_point(
     if wires["metrics"]["open_nets"]:
         return made
     broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)
-    runner.run(Extraction(PdkParameters(pdk)))
-    slack = [
-        runner.run(step)["metrics"]["wns_ns"] for step in timing_steps(design, options) if step.name.startswith("sta_")
-    ]
-    return made | {
-        "closed": not broken,
-        "wns_ns": min(slack),
-        "wire_um": wires["metrics"]["wire_um"],
-        "area_um2": runner.records["stream_out"]["metrics"]["area_um2"],
-    }
+    runner.run(Extraction(PdkParameters(options.pdk)))
+    sta = [step for step in timing_steps(design, options) if step.name.startswith("sta_")]
+    slack = min(runner.run(step)["metrics"]["wns_ns"] for step in sta)
+    area = runner.records["stream_out"]["metrics"]["area_um2"]
+    return made | {"closed": not broken, "wns_ns": slack, "wire_um": wires["metrics"]["wire_um"], "area_um2": area}
 
 
 def _runner(design: Design, options: Options, out: str) -> Runner:
