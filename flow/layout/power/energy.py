@@ -17,6 +17,8 @@ from flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_regis
 
 SLEW_NS = 0.1  # of a pin that OpenSTA has no slew for: constants
 Energy = Callable[[float, float], float]  # (slew ns, load pF) -> pJ
+Activity = Mapping[str, tuple[float, float]]  # net -> (transitions a cycle, share of time at 1)
+Slews = Mapping[tuple[str, str], float]  # (instance, pin) -> ns
 
 
 @dataclass(frozen=True)
@@ -53,10 +55,8 @@ class Cells:
         """Pairs (related pin or '', energy of a transition, the mean of both edges) of a pin."""
         key = cell, pin
         if key not in self._energies:
-            group = self.pins.get(key)
-            self._energies[key] = [
-                (power.text("related_pin"), _mean(power)) for power in (group.all("internal_power") if group else ())
-            ]
+            tables = self.pins[key].all("internal_power") if key in self.pins else ()
+            self._energies[key] = [(power.text("related_pin"), _mean(power)) for power in tables]
         return self._energies[key]
 
     @cached_property
@@ -100,17 +100,11 @@ class Power:
 
 
 def powers(
-    netlist: Netlist,
-    cells: Cells,
-    activity: Mapping[str, tuple[float, float]],
-    wire_pf: Mapping[str, float],
-    slews: Mapping[tuple[str, str], float],
-    period_ns: float,
+    netlist: Netlist, cells: Cells, activity: Activity, wire_pf: Mapping[str, float], slews: Slews, period_ns: float
 ) -> dict[str, Power]:
     """Power of every instance with pins, by name.
 
-    activity: net -> (transitions a cycle, share of time at 1). wire_pf: net -> pF. slews: (instance, pin) -> ns.
-    Raises StepError for a net without activity.
+    wire_pf: net -> pF. Raises StepError for a net without activity.
     """
     load = dict(wire_pf)
     for instance in netlist.instances:
@@ -120,20 +114,11 @@ def powers(
     if lost:
         raise StepError(f"power: no activity of the nets {', '.join(lost[:5])}")
     mega = 1000 / period_ns  # cycles a us: pJ a cycle to uW
-    return {
-        instance.name: _power(instance, cells, activity, load, slews, mega)
-        for instance in netlist.instances
-        if instance.pins
-    }
+    return {i.name: _power(i, cells, activity, load, slews, mega) for i in netlist.instances if i.pins}
 
 
 def _power(
-    instance: Instance,
-    cells: Cells,
-    activity: Mapping[str, tuple[float, float]],
-    load: Mapping[str, float],
-    slews: Mapping[tuple[str, str], float],
-    mega: float,
+    instance: Instance, cells: Cells, activity: Activity, load: Mapping[str, float], slews: Slews, mega: float
 ) -> Power:
     internal = switching = 0.0
     for pin, net in instance.pins.items():
@@ -163,9 +148,8 @@ def blocks(netlist: Netlist) -> dict[str, str]:
         for pin, net in instance.pins.items():
             if pin not in OUTPUT_PINS:
                 sinks.setdefault(net, []).append((instance, pin))
-    found = {
-        i.name: i.name.partition(".")[0] if "." in i.name else "top" for i in netlist.instances if is_register(i.cell)
-    }
+    registers = [i.name for i in netlist.instances if is_register(i.cell)]
+    found = {name: name.partition(".")[0] if "." in name else "top" for name in registers}
     for start in netlist.instances:
         stack = [start] if start.pins else []
         while stack:

@@ -77,10 +77,8 @@ def drops(
         pads += [(own[0], metal.strap * max(0.5, rails[0])), (own[-1], metal.strap * max(0.5, height - rails[-1]))]
     nodes = crossing.size
     for r, y in enumerate(rails):  # along a rail: its taps, and where straps cross it
-        found = sorted(
-            [(tap.x_um, "tap", k) for k, tap in enumerate(taps) if tap.rail == r]
-            + [(x, "strap", k) for k, x in enumerate(straps)]
-        )
+        own = [(tap.x_um, "tap", k) for k, tap in enumerate(taps) if tap.rail == r]
+        found = sorted(own + [(x, "strap", k) for k, x in enumerate(straps)])
         ohm = metal.rail * (2 if y in (0, height) else 1)  # half a rail at the edge of the block
         before = None
         for x, kind, k in found:
@@ -88,9 +86,7 @@ def drops(
                 edges.append((nodes, int(crossing[k][r]), metal.stack))
             else:
                 where[k] = nodes
-            if before is not None and not any(
-                bottom <= y <= top and before <= left and right <= x for left, bottom, right, top in breaks
-            ):
+            if before is not None and not any(b[1] <= y <= b[3] and before <= b[0] and b[2] <= x for b in breaks):
                 edges.append((nodes - 1, nodes, ohm * max(x - before, 1e-3)))
             before, nodes = x, nodes + 1
     drawn = np.zeros(nodes)

@@ -22,8 +22,5 @@ class Extraction(Step[PdkParameters]):
         netlist = Netlist.read(inputs["netlist"])
         nets = extract(netlist, inputs["placement"], coriolis_platform(self.parameters.pdk))
         outputs["spef"].write_text(spef(netlist, nets))
-        return {
-            "wire_pf": round(sum(net.femtofarad for net in nets.values()) / 1000, 3),
-            "largest_ff": round(max(net.femtofarad for net in nets.values()), 2),
-            "largest_ohm": round(max(net.ohm for net in nets.values()), 1),
-        }
+        ff, ohm = [net.femtofarad for net in nets.values()], max(net.ohm for net in nets.values())
+        return {"wire_pf": round(sum(ff) / 1000, 3), "largest_ff": round(max(ff), 2), "largest_ohm": round(ohm, 1)}

@@ -42,15 +42,10 @@ class GateFrames(Step[NoParameters]):
                 frame = FrameParameters(Window(3, 4, 5, 8), mode, phase=phase)
                 chip = simulate(program, sensor, frame, samples, front_end)
                 golden = golden_frame(samples, sensor, frame, front_end)
-                same = (
-                    chip.stream == golden.stream
-                    and chip.status["conversions_made"] == golden.made
-                    and not chip.status["cfg_err"]
-                )
+                made, wrong = chip.status["conversions_made"], chip.status["cfg_err"]
+                same = "equal" if chip.stream == golden.stream and made == golden.made and not wrong else "DIFFERENT"
                 cycles, sent = cycles + chip.cycles, sent + len(chip.stream)
-                lines.append(
-                    f"{mode}: {len(chip.stream)} bytes in {chip.cycles} cycles: {'equal' if same else 'DIFFERENT'}"
-                )
+                lines.append(f"{mode}: {len(chip.stream)} bytes in {chip.cycles} cycles: {same}")
         outputs["log"].write_text("\n".join(lines) + "\n")
         failed = sum(line.endswith("DIFFERENT") for line in lines)
         return {"passed": len(lines) - failed, "failed": failed, "cycles": cycles, "bytes": sent}

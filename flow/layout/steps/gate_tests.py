@@ -55,24 +55,9 @@ class GateTests(Step[GateTestsParameters]):
         p = self.parameters
         netlists = [f"--netlist={name}={inputs['verilog'].resolve()}:{p.top}" for name in p.names]
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
-            done = finish(
-                [
-                    sys.executable,
-                    "-m",
-                    "pytest",
-                    f"rtl/{p.folder}",
-                    "-p",
-                    "no:xdist",
-                    "-p",
-                    "no:cacheprovider",
-                    f"--basetemp={folder}/tmp",
-                    f"--junitxml={folder}/tests.xml",
-                    *netlists,
-                    f"--netlist-in={p.simulator}",
-                    f"--cells={inputs['cells'].resolve()}",
-                ],
-                cwd=ROOT,
-            )
+            pytest = [sys.executable, "-m", "pytest", f"rtl/{p.folder}", "-p", "no:xdist", "-p", "no:cacheprovider"]
+            files = f"--basetemp={folder}/tmp", f"--junitxml={folder}/tests.xml", f"--cells={inputs['cells'].resolve()}"
+            done = finish([*pytest, *files, *netlists, f"--netlist-in={p.simulator}"], cwd=ROOT)
             outputs["report"].with_suffix(".log").write_text(done.stdout + done.stderr)
             report = Path(folder) / "tests.xml"
             if done.returncode not in (0, 1) or not report.exists():

@@ -84,7 +84,7 @@ class Stimulus(Step[StimulusParameters]):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
             export_verilog(folder, [CHIP], self.parameters.options)
-            chip, own = ((folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text())
+            chip, own = (folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text()
             if set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])
             else:
@@ -103,43 +103,31 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     design = folder / "hierarchy.json"
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
-    top = parameters.top
-    path = instance_of(tree, CHIP, top) or ()
+    path = instance_of(tree, CHIP, parameters.top) or ()
+    module = next(found for name, found in tree.items() if name.lstrip("\\") == parameters.top)
     ports = [
         {"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
-        for name, port in tree[next(name for name in tree if name.lstrip("\\") == top)]["ports"].items()
+        for name, port in module["ports"].items()
         if name != "clk"
     ]
-    names = {
-        out: ", ".join(
-            ".".join(("Clock.bench.chip", *path, port["path"])) for port in reversed(ports) if port["output"] == out
-        )
-        for out in (False, True)
-    }
-    (folder / "tap.v").write_text(TAP.format(inputs=names[False], outputs=names[True]))
+    names = [(".".join(("Clock.bench.chip", *path, port["path"])), port["output"]) for port in reversed(ports)]
+    inputs, outputs = (", ".join(name for name, output in names if output == wanted) for wanted in (False, True))
+    (folder / "tap.v").write_text(TAP.format(inputs=inputs, outputs=outputs))
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
     asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True, window=window)
     chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
-    scene, todo = see(asked)
-    exposed = expose(asked, scene, todo)
+    exposed = expose(asked, *see(asked))
     program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
-    seen = simulate(
-        program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=(f"+tap={folder / 'tap.trace'}",)
-    )
+    more = (f"+tap={folder / 'tap.trace'}",)
+    seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
         raise StepError("stimulus: the chip's frame is not the golden chip's")
     lines = [line for line in (folder / "tap.trace").read_text().splitlines() if "x" not in line.partition(" ")[2]]
     lines[0] = "1" + lines[0][1:]
     trace.write_text("\n".join(lines) + "\n")
-    return {
-        "source": "frame",
-        "scene": SCENE,
-        "instance": ".".join(path),
-        "ports": ports,
-        "cycles": len(lines),
-        "results": results(lines, ports),
-    }
+    head = {"source": "frame", "scene": SCENE, "instance": ".".join(path)}
+    return head | {"ports": ports, "cycles": len(lines), "results": results(lines, ports)}
 
 
 def middle(full: "Window", tiles: int) -> "Window":
@@ -183,10 +171,6 @@ def in_tests(top: str, own: str, folder: Path, trace: Path) -> dict[str, Any]:
         if modules(text) == modules(own):
             trace.write_bytes(path.with_suffix(".trace").read_bytes())
             head = json.loads(path.read_text())
-            return {
-                "source": "tests",
-                "ports": head["ports"],
-                "cycles": head["cycles"],
-                "results": results(trace.read_text().splitlines(), head["ports"]),
-            }
+            found = results(trace.read_text().splitlines(), head["ports"])
+            return {"source": "tests", "ports": head["ports"], "cycles": head["cycles"], "results": found}
     raise StepError(f"stimulus: no test of {top} builds it with the parameters that are laid out")

@@ -52,56 +52,29 @@ class Timing(Step[TimingParameters]):
 
         p = self.parameters
         models, sources = device_models(p.pdk), sources_of(inputs, extraction_platform(p.pdk))
-        conditions = [
-            Conditions(
-                Corner.parse(corner),
-                p.models,
-                extra=0,
-                loads=p.loads,
-                slews=tuple(NS * slew for slew in p.slews_ns),
-                constraint_slews=tuple(NS * slew for slew in p.constraint_slews_ns),
-            )
-            for corner in p.corners
-        ]
+        slews, constraint_slews = (tuple(NS * slew for slew in ns) for ns in (p.slews_ns, p.constraint_slews_ns))
+        grid = {"extra": 0, "loads": p.loads, "slews": slews, "constraint_slews": constraint_slews}
+        conditions = [Conditions(Corner.parse(corner), p.models, **grid) for corner in p.corners]
         todo = [(source, condition) for condition in conditions for source in sources]
         todo.sort(key=lambda pair: -len(pair[0].netlist))  # the longest first
         store = next(iter(outputs.values())).parents[1] / "cells"
-        measured = dict(
-            zip(
-                ((s.name, c.corner.name) for s, c in todo),
-                jobs.run([job(source, condition, models) for source, condition in todo], store, "cells"),
-                strict=True,
-            )
-        )
-        failed = [
-            f"{name} {corner}: {f['what']}: {f['why']}"
-            for (name, corner), made in measured.items()
-            for f in made["failed"]
-        ]
+        names = [(source.name, condition.corner.name) for source, condition in todo]
+        made = jobs.run([job(source, condition, models) for source, condition in todo], store, "cells")
+        measured = dict(zip(names, made, strict=True))
+        failed = [f"{' '.join(n)}: {f['what']}: {f['why']}" for n, one in measured.items() for f in one["failed"]]
         if failed:
             raise StepError(f"timing: {len(failed)} measurements failed, first {failed[0]}")
         cells, areas = [cell_of(source, models) for source in sources], json.loads(inputs["areas"].read_text())
-        constants = {
-            cell.name: build.Constant(
-                {pin.name: int(pin.text("function")) for pin in cell.all("pin")}, areas[cell.name]
-            )
-            for cell in read(inputs["functions"]).all("cell")
-            if not cell.all("pin", direction="input")
-        }
+        constants = {}
+        for cell in read(inputs["functions"]).all("cell"):
+            if not cell.all("pin", direction="input"):
+                levels = {pin.name: int(pin.text("function")) for pin in cell.all("pin")}
+                constants[cell.name] = build.Constant(levels, areas[cell.name])
         for condition in conditions:
-            corner = condition.corner.name
-            tree = build.library(
-                f"{p.pdk}__{corner}",
-                condition,
-                [
-                    build.Entry(cell, measured[source.name, corner], source.area)
-                    for cell, source in zip(cells, sources, strict=True)
-                ],
-                models,
-                constants,
-            )
-            outputs[corner].write_text(text(tree))
-        return {"cells": len(cells), "simulations": sum(made["simulations"] for made in measured.values()), "failed": 0}
+            corner, pairs = condition.corner.name, zip(cells, sources, strict=True)
+            entries = [build.Entry(cell, measured[source.name, corner], source.area) for cell, source in pairs]
+            outputs[corner].write_text(text(build.library(f"{p.pdk}__{corner}", condition, entries, models, constants)))
+        return {"cells": len(cells), "simulations": sum(one["simulations"] for one in made), "failed": 0}
 
 
 def sources_of(inputs: Files, tech: ExtractionPlatform) -> "list[Source]":

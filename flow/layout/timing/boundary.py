@@ -142,17 +142,10 @@ def measure(netlist: Netlist, clock: str, files: Sources, slews: Sequence[float]
     """Measure ``netlist`` on the grid of ``slews`` (ns) and ``loads`` (pF). Raises StepError, ToolError."""
     pairs, registered = reach(netlist, clock)
     inputs, outputs = _nets(netlist, "input"), _nets(netlist, "output")
-    words = {
-        "clock": clock,
-        "top": files.top or netlist.name,
-        "period": FAR_NS,
-        "liberty": files.liberty,
-        "verilog": files.verilog,
-        "spef": f"read_spef {files.spef}" if files.spef else "",
-        "slews": " ".join(map(str, slews)),
-        "loads": " ".join(map(str, loads)),
-        "pairs": " ".join(f"{{{a}}} {{{b}}}" for a, b in pairs),
-    }
+    words = {"liberty": files.liberty, "verilog": files.verilog, "top": files.top or netlist.name}
+    words |= {"clock": clock, "period": FAR_NS, "spef": f"read_spef {files.spef}" if files.spef else ""}
+    words |= {"slews": " ".join(map(str, slews)), "loads": " ".join(map(str, loads))}
+    words["pairs"] = " ".join(f"{{{a}}} {{{b}}}" for a, b in pairs)
     runs = [(OUTPUTS, {"outputs": outputs, "inputs": [net for net in inputs if net != clock]})]
     if pairs:
         runs.append((THROUGH, {"inputs": sorted({a for a, _ in pairs})}))
@@ -176,9 +169,8 @@ def _boundary(printed: str) -> Boundary:
             found.delays.setdefault((source, output, edge), {})[float(slew), float(load)] = FAR_NS - float(slack)
         elif word == "CHECK" and rest[-1] != "none":
             source, kind, edge, clock_slew, slew, slack = rest
-            found.checks.setdefault((source, kind, edge), {})[float(clock_slew), float(slew)] = (
-                FAR_NS - float(slack) if kind == "max" else -float(slack)
-            )
+            table = found.checks.setdefault((source, kind, edge), {})
+            table[float(clock_slew), float(slew)] = FAR_NS - float(slack) if kind == "max" else -float(slack)
         elif word == "SLEW":
             at = float(rest[0]), float(rest[1])
         elif word == "PORT":

@@ -6,20 +6,16 @@ from flow.layout.design import Design
 def sdc(design: Design, propagated: bool = True) -> str:
     """Text of the SDC (ns, pF). propagated: whether the clock has the delays of its tree, once there is one."""
     clock, io = design.clock, design.io
-    return "\n".join(
-        [
-            f"create_clock -name {clock.port} -period {clock.period_ns:g} [get_ports {{{clock.port}}}]",
-            f"set_clock_uncertainty -setup {clock.uncertainty_ns:g} [get_clocks {{{clock.port}}}]",
-            f"set_clock_uncertainty -hold {clock.hold_uncertainty_ns:g} [get_clocks {{{clock.port}}}]",
-            *([f"set_propagated_clock [get_clocks {{{clock.port}}}]"] if propagated else []),
-            "set data_inputs {}",
-            "foreach port [all_inputs] {",
-            f'  if {{[get_property $port full_name] ne "{clock.port}"}} {{ lappend data_inputs $port }}',
-            "}",
-            f"set_input_delay {io.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs",
-            f"set_output_delay {io.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]",
-            f"set_input_transition {io.input_slew_ns:g} [all_inputs]",
-            f"set_load {io.load_pf:g} [all_outputs]",
-            "",
-        ]
-    )
+    tree = f"set_propagated_clock [get_clocks {{{clock.port}}}]\n" if propagated else ""
+    return f"""create_clock -name {clock.port} -period {clock.period_ns:g} [get_ports {{{clock.port}}}]
+set_clock_uncertainty -setup {clock.uncertainty_ns:g} [get_clocks {{{clock.port}}}]
+set_clock_uncertainty -hold {clock.hold_uncertainty_ns:g} [get_clocks {{{clock.port}}}]
+{tree}set data_inputs {{}}
+foreach port [all_inputs] {{
+  if {{[get_property $port full_name] ne "{clock.port}"}} {{ lappend data_inputs $port }}
+}}
+set_input_delay {io.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs
+set_output_delay {io.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]
+set_input_transition {io.input_slew_ns:g} [all_inputs]
+set_load {io.load_pf:g} [all_outputs]
+"""

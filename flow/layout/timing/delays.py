@@ -74,14 +74,9 @@ def icarus(delays: Delays, netlist: Netlist, names: Mapping[str, str]) -> str:
     """SDF that Icarus annotates to the last digit. names: instance of ``netlist`` -> its name in the bench."""
     lines = ["(DELAYFILE", ' (SDFVERSION "3.0")', " (DIVIDER /)", " (TIMESCALE 1ns)"]
     for instance in netlist.instances:
-        paths = delays.paths.get(instance.name)
-        if paths:
-            lines += [
-                " (CELL",
-                f'  (CELLTYPE "{instance.cell}")',
-                f"  (INSTANCE {names[instance.name]})",
-                "  (DELAY (ABSOLUTE",
-            ]
+        if paths := delays.paths.get(instance.name):
+            lines += [" (CELL", f'  (CELLTYPE "{instance.cell}")']
+            lines += [f"  (INSTANCE {names[instance.name]})", "  (DELAY (ABSOLUTE"]
             for source, target, rise, fall in paths:
                 more = delays.nets.get((instance.name, target), (0.0, 0.0))
                 triples = (f"({value:.4f}:{value:.4f}:{value:.4f})" for value in (rise + more[0], fall + more[1]))
@@ -94,9 +89,8 @@ def specified(cells: str, delays: Delays, netlist: Netlist) -> str:
     """Add a specify block to every cell of the Verilog ``cells`` that has paths: the annotation requires it."""
     paths: dict[str, dict[tuple[str, str], None]] = {}
     for instance in netlist.instances:
-        paths.setdefault(instance.cell, {}).update(
-            dict.fromkeys((arc.source, arc.target) for arc in delays.paths.get(instance.name, ()))
-        )
+        arcs = delays.paths.get(instance.name, ())
+        paths.setdefault(instance.cell, {}).update(dict.fromkeys((arc.source, arc.target) for arc in arcs))
 
     def add(match: re.Match[str]) -> str:
         arcs = "".join(f" ({source} => {target}) = (0, 0);" for source, target in paths.get(match[1], ()))

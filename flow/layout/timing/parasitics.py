@@ -51,39 +51,17 @@ def spef(netlist: Netlist, nets: Mapping[str, tuple[float, float]]) -> str:
         for pin, net in instance.pins.items():
             pins.setdefault(net, []).append((f"{_name(instance.name, ())}:{pin}", pin))
     ports = {net: port.direction for port in netlist.ports for net in port.bits()}
-    lines = [
-        '*SPEF "IEEE 1481-1998"',
-        f'*DESIGN "{netlist.name}"',
-        '*DATE ""',
-        '*VENDOR ""',
-        '*PROGRAM "talbot"',
-        '*VERSION ""',
-        '*DESIGN_FLOW ""',
-        "*DIVIDER /",
-        "*DELIMITER :",
-        "*BUS_DELIMITER [ ]",
-        "*T_UNIT 1 NS",
-        "*C_UNIT 1 FF",
-        "*R_UNIT 1 OHM",
-        "*L_UNIT 1 HENRY",
-    ]
+    lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.name}"', '*DATE ""', '*VENDOR ""', '*PROGRAM "talbot"']
+    lines += ['*VERSION ""', '*DESIGN_FLOW ""', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER [ ]"]
+    lines += ["*T_UNIT 1 NS", "*C_UNIT 1 FF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY"]
     for net, (femtofarad, ohm) in sorted(nets.items()):
         ends = [f"*I {pin} {'O' if name in OUTPUT_PINS else 'I'}" for pin, name in pins.get(net, [])]
         if net in ports:
             ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
         center = f"{_name(net, ports)}:1"
         branches = (f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1))
-        lines += [
-            "",
-            f"*D_NET {_name(net, ports)} {femtofarad:.4f}",
-            "*CONN",
-            *ends,
-            "*CAP",
-            f"1 {center} {femtofarad:.4f}",
-            "*RES",
-            *branches,
-            "*END",
-        ]
+        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends]
+        lines += ["*CAP", f"1 {center} {femtofarad:.4f}", "*RES", *branches, "*END"]
     return "\n".join(lines) + "\n"
 
 

@@ -87,6 +87,7 @@ endmodule
 """
 SETTLED = 8  # cycles after which a reset has been taken, and transitions count
 CLOCK_PIN = "clk"  # of the library's registers
+CARE = "1'b1"
 
 
 @dataclass(frozen=True)
@@ -138,18 +139,8 @@ def replay(
     if delays:
         (folder / "delays.log").write_text(icarus(delays, netlist, names))
     program = folder / "replay.log"
-    run(
-        [
-            "iverilog",
-            "-g2012",
-            "-gspecify",
-            "-s",
-            "Replay",
-            "-o",
-            program,
-            *(folder / f"{name}.log" for name in ("bench", "netlist", "cells")),
-        ]
-    )
+    sources = [folder / f"{name}.log" for name in ("bench", "netlist", "cells")]
+    run(["iverilog", "-g2012", "-gspecify", "-s", "Replay", "-o", program, *sources])
     done = finish(["vvp", "-n", program, f"+trace={trace.with_suffix('.trace')}"])
     program.unlink()
     output = done.stdout + done.stderr
@@ -178,23 +169,17 @@ def _netlist(
     """Verilog of the netlist with short names, the checks of its registers and counters of its nets."""
     ports = {net for port in netlist.ports for net in port.bits()}
     short = {net: net if net in ports else plain for net, plain in nets.items()}
-    renamed = Netlist(
-        netlist.name,
-        netlist.ports,
-        tuple(
-            Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}) for i in netlist.instances
-        ),
-    )
-    lines = []
+    renamed, lines = [], []
+    for i in netlist.instances:
+        renamed.append(Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}))
     for k, check in enumerate(constrained(delays, netlist) if delays else ()):
-        pins = check.instance.pins
-        lines.append(
-            f"  Check #(.SETUP({check.setup:.4f}), .HOLD({check.hold:.4f})) k{k} (.clk({short[pins[CLOCK_PIN]]}), "
-            f".d({short[pins[check.pin]]}));"
-        )
+        clock, data = (short[check.instance.pins[pin]] for pin in (CLOCK_PIN, check.pin))
+        times = f".SETUP({check.setup:.4f}), .HOLD({check.hold:.4f})"
+        lines.append(f"  Check #({times}) k{k} (.clk({clock}), .d({data}));")
     if count:
         lines += [f"  Count n{plain} (.a({short[net]}));" for net, plain in nets.items()]
-    return renamed.verilog().replace("endmodule", "\n".join([*lines, "endmodule"]))
+    text = Netlist(netlist.name, netlist.ports, tuple(renamed)).verilog()
+    return text.replace("endmodule", "\n".join([*lines, "endmodule"]))
 
 
 def _bench(top: str, ports: Sequence[dict[str, Any]], timing: Timing, folder: Path | None) -> str:
@@ -204,28 +189,15 @@ def _bench(top: str, ports: Sequence[dict[str, Any]], timing: Timing, folder: Pa
         name, vector = port["path"].replace(".", "__"), "got" if port["output"] else "in"
         pins.append(f".{name}({vector}[{widths[vector]} +: {port['width']}])")
         if port["output"]:
-            valid[name] = widths[vector]
+            valid[name] = f"want[{widths[vector]}]"
             cares.append((name, port["width"]))
         widths[vector] += port["width"]
-    care = [
-        f"{{{width}{{want[{valid[name[:-3] + 'val']}]}}}}"
-        if name.endswith("__msg") and name[:-3] + "val" in valid
-        else f"{{{width}{{1'b1}}}}"
-        for name, width in reversed(cares)
-    ]
-    period = timing.period_ns
-    arrive, sample = period * timing.input_delay, period * (1 - timing.output_delay)
-    return BENCH.format(
-        top=top,
-        pins=", ".join(pins),
-        in_top=widths["in"] - 1,
-        out_top=widths["got"] - 1,
-        out_bits=widths["got"],
-        care=", ".join(care),
-        annotate=f'$sdf_annotate("{folder / "delays.log"}", dut);' if folder else "",
-        input_ns=f"{arrive:.4f}",
-        fall_ns=f"{period / 2 - arrive:.4f}",
-        sample_ns=f"{sample - period / 2:.4f}",
-        edge_ns=f"{period - sample:.4f}",
-        settled=SETTLED,
-    )
+    valid = {name.removesuffix("val") + "msg": bit for name, bit in valid.items() if name.endswith("__val")}
+    care = ", ".join(f"{{{width}{{{valid.get(name, CARE)}}}}}" for name, width in reversed(cares))
+    half, arrive = timing.period_ns / 2, timing.period_ns * timing.input_delay
+    sample = timing.period_ns * (1 - timing.output_delay)
+    waits = {"input": arrive, "fall": half - arrive, "sample": sample - half, "edge": timing.period_ns - sample}
+    words = {f"{name}_ns": f"{ns:.4f}" for name, ns in waits.items()} | {"top": top, "pins": ", ".join(pins)}
+    words |= {"in_top": widths["in"] - 1, "out_top": widths["got"] - 1, "out_bits": widths["got"], "care": care}
+    annotate = f'$sdf_annotate("{folder / "delays.log"}", dut);' if folder else ""
+    return BENCH.format(annotate=annotate, settled=SETTLED, **words)
