@@ -2,14 +2,8 @@
 
 from models.parameters import ALL_TYPES, ParameterError, Window
 
-TYPE_GROUPS = {
-    "all": ALL_TYPES,
-    "low": 0x0000FF,
-    "mid": 0x00FF00,
-    "high": 0xFF0000,
-    "cosine": 0x555555,
-    "sine": 0xAAAAAA,
-}
+BETAS = {"low": 0x0000FF, "mid": 0x00FF00, "high": 0xFF0000}
+TYPE_GROUPS = {"all": ALL_TYPES, **BETAS, "cosine": 0x555555, "sine": 0xAAAAAA}
 
 
 def pixel_types(text: str) -> int:
@@ -20,9 +14,9 @@ def pixel_types(text: str) -> int:
         if word in TYPE_GROUPS:
             mask |= TYPE_GROUPS[word]
         elif word.startswith("0x"):
-            mask |= _number("types", word, 1, ALL_TYPES, base=16)
+            mask |= integer("types", word, 1, ALL_TYPES, base=16)
         else:
-            mask |= 1 << _number("types", word, 0, 23, also=f", 0x<mask> or one of {', '.join(TYPE_GROUPS)}")
+            mask |= 1 << integer("types", word, 0, 23, also=f", 0x<mask> or one of {', '.join(TYPE_GROUPS)}")
     return mask
 
 
@@ -41,16 +35,11 @@ def window(text: str, full: Window) -> Window:
 def span(field: str, text: str, low: int, high: int) -> tuple[int, int]:
     """Two integers 'a:b' (or one, 'a'), each in low..high, not inverted."""
     first, colon, last = text.partition(":")
-    a = _number(field, first, low, high)
-    b = _number(field, last, low, high) if colon else a
+    a = integer(field, first, low, high)
+    b = integer(field, last, low, high) if colon else a
     if a > b:
         raise ParameterError(f"{field} = {text!r}: must not be inverted, {low} <= first <= last <= {high}")
     return a, b
-
-
-def integer(field: str, text: str, low: int, high: int) -> int:
-    """An integer in low..high."""
-    return _number(field, text, low, high)
 
 
 def real(field: str, text: str, low: float, high: float) -> float:
@@ -64,7 +53,8 @@ def real(field: str, text: str, low: float, high: float) -> float:
     return value
 
 
-def _number(field: str, text: str, low: int, high: int, base: int = 10, also: str = "") -> int:
+def integer(field: str, text: str, low: int, high: int, base: int = 10, also: str = "") -> int:
+    """An integer in low..high; also: what else the field may be, for the error."""
     try:
         value = int(text, base)
     except ValueError:

@@ -6,6 +6,7 @@ from models.parameters import FrameParameters, SensorParameters
 
 DIE = 5e-3  # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
 BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}
+GRAY = "#b0b0b0"
 
 
 def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 360) -> str:
@@ -18,12 +19,8 @@ def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 36
     parts = [_rect(0, 0, width, width, "#20262f", rx=6), _rect(x, y, w, h, "#3b4656")]
     parts += _window(sensor, frame, x, y, w, h)
     parts += _lanes(sensor, x, y + h + 5, w)
-    parts += [
-        _rect(x - 20, y, 14, h, "#5f8f6a"),
-        _text(x - 13, y + h / 2, "rows", 9, -90),
-        _rect(x, y + h + 32, w, 12, "#6b7b8d"),
-        _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9),
-    ]
+    parts += [_rect(x - 20, y, 14, h, "#5f8f6a"), _text(x - 13, y + h / 2, "rows", 9, -90)]
+    parts += [_rect(x, y + h + 32, w, 12, "#6b7b8d"), _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9)]
     parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} um", 10))
     tile = _tile(sensor, frame, width + 24, 24, 46)
     return (
@@ -39,10 +36,9 @@ def _rect(x: float, y: float, w: float, h: float, fill: str, rx: float = 1, extr
 def _text(
     x: float, y: float, text: object, size: float, turn: float = 0, fill: str = "#fff", anchor: str = "middle"
 ) -> str:
+    place = f'x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" text-anchor="{anchor}"'
     rotate = f' transform="rotate({turn} {x:.1f} {y:.1f})"' if turn else ""
-    return (
-        f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" text-anchor="{anchor}"{rotate}>{text}</text>'
-    )
+    return f"<text {place}{rotate}>{text}</text>"
 
 
 def _window(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, w: float, h: float) -> list[str]:
@@ -66,24 +62,13 @@ def _lanes(sensor: SensorParameters, x: float, y: float, w: float) -> list[str]:
 
 def _tile(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, cell: float) -> list[str]:
     tile = sensor.tile
-    parts = [
-        _text(x, y - 8, "one tile: grating orientation and type; faded = not read", 11, fill="#333", anchor="start")
-    ]
+    title = "one tile: grating orientation and type; faded = not read"
+    parts = [_text(x, y - 8, title, 11, fill="#333", anchor="start")]
     for position, number in enumerate(tile.order):
         kind = tile.types[number]
         px, py = x + position % tile.cols * cell, y + position // tile.cols * cell
-        used = frame.mask >> number & 1
-        parts.append(
-            _rect(
-                px + 1,
-                py + 1,
-                cell - 2,
-                cell - 2,
-                BETA_COLOURS.get(kind.beta, "#b0b0b0"),
-                3,
-                f'opacity="{1 if used else 0.2}"',
-            )
-        )
+        colour, opacity = BETA_COLOURS.get(kind.beta, GRAY), f'opacity="{1 if frame.mask >> number & 1 else 0.2}"'
+        parts.append(_rect(px + 1, py + 1, cell - 2, cell - 2, colour, 3, opacity))
         # Grating lines run across the direction gamma in which the response oscillates.
         angle = kind.gamma + np.pi / 2
         for shift in (-0.22, 0, 0.22):
@@ -92,13 +77,11 @@ def _tile(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, 
             dx, dy = 0.24 * cell * np.cos(angle), -0.24 * cell * np.sin(angle)
             parts.append(
                 f'<line x1="{cx - dx:.1f}" y1="{cy - dy:.1f}" x2="{cx + dx:.1f}" y2="{cy + dy:.1f}" '
-                f'stroke="#333" stroke-width="1.6" opacity="{1 if used else 0.2}"/>'
+                f'stroke="#333" stroke-width="1.6" {opacity}/>'
             )
         parts.append(_text(px + 5, py + 12, number, 9, fill="#222", anchor="start"))
     legend = y + tile.rows * cell + 20
     for i, beta in enumerate(sorted({t.beta for t in tile.types})):
-        parts += [
-            _rect(x + 88 * i, legend, 12, 12, BETA_COLOURS.get(beta, "#b0b0b0")),
-            _text(x + 88 * i + 17, legend + 10, f"beta {beta:g}", 11, fill="#333", anchor="start"),
-        ]
+        parts.append(_rect(x + 88 * i, legend, 12, 12, BETA_COLOURS.get(beta, GRAY)))
+        parts.append(_text(x + 88 * i + 17, legend + 10, f"beta {beta:g}", 11, fill="#333", anchor="start"))
     return parts

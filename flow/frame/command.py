@@ -1,6 +1,7 @@
 """A scene through the golden models and the Verilog of the whole chip."""
 
 from argparse import ArgumentParser, Namespace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,10 @@ from . import arguments as text
 
 if TYPE_CHECKING:
     from .request import FrameRequest
+
+
+INTEGERS = {"rows": (1, 1024), "cols": (1, 1536), "lanes": (min(LANES), max(LANES)), "threshold": (0, 127)}
+INTEGERS |= {"decimation": (0, 3), "seed": (0, 2**32 - 1)}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -54,27 +59,13 @@ def _request(a: Namespace) -> "FrameRequest":
     """The FrameRequest of the options ``a``. Raises ParameterError."""
     from .request import request
 
-    rows, cols = text.integer("rows", a.rows, 1, 1024), text.integer("cols", a.cols, 1, 1536)
+    numbers: dict[str, Any] = {name: text.integer(name, getattr(a, name), *ends) for name, ends in INTEGERS.items()}
+    rows, focus = numbers["rows"], None if a.focus is None else text.real("focus", a.focus, -100, 100)
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
-    focus = None if a.focus is None else text.real("focus", a.focus, -100, 100)
-    return request(
-        rows=rows,
-        cols=cols,
-        lanes=text.integer("lanes", a.lanes, min(LANES), max(LANES)),
-        window=lambda full: text.window(a.window, full),
-        mask=text.pixel_types(a.types),
-        scene=a.scene,
-        depth=a.depth,
-        focus=focus,
-        mode=a.mode,
-        threshold=text.integer("threshold", a.threshold, 0, 127),
-        decimation=text.integer("decimation", a.decimation, 0, 3),
-        phase=a.phase,
-        noise=text.real("noise", a.noise, 0, 100),
-        seed=text.integer("seed", a.seed, 0, 2**32 - 1),
-        out=a.out,
-        waves=waves,
-    )
+    plain = {name: getattr(a, name) for name in ("scene", "depth", "mode", "phase", "out")}
+    mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
+    window = partial(text.window, a.window)
+    return request(**plain, **numbers, window=window, mask=mask, focus=focus, noise=noise, waves=waves)
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:

@@ -21,6 +21,7 @@ from . import hardware
 from .figures import decoding_error, psnr
 from .result import FrameResult
 
+Field = npt.NDArray[np.floating]
 LADDER = (0, 1, 2, 4, 8, 16, 32, 64, 127)
 
 
@@ -46,14 +47,8 @@ def _threshold(result: FrameResult, summary: dict[str, Any]) -> Figure:
         labelled = len(chip.stream) if apart else labelled
         points.append((len(chip.stream), quality, label))
     here = summary["stream_bytes"], summary["psnr_db"]
-    return curves(
-        {"differences": points},
-        "bytes a frame",
-        "PSNR (dB)",
-        "Threshold: error against bytes, and the chip's frame time",
-        log_x=True,
-        mark=here if None not in here else None,
-    )
+    mark, title = None if None in here else here, "Threshold: error against bytes, and the chip's frame time"
+    return curves({"differences": points}, "bytes a frame", "PSNR (dB)", title, log_x=True, mark=mark)
 
 
 def _capture(result: FrameResult) -> Figure:
@@ -68,22 +63,15 @@ def _capture(result: FrameResult) -> Figure:
             pair, seconds = _captured(_with_nodes(sensor, nodes), field.astype(dtype), dtype)
             error = float(np.abs(pair - best).max() / max(float(best.max()), np.finfo(float).tiny))
             series[dtype].append((1e3 * seconds, max(error, 1e-17), str(nodes)))
-    return curves(
-        series,
-        "weights and capture (ms); number: nodes a view cell",
-        "largest error / largest value",
-        "Capture model: error against run time",
-        log_y=True,
-    )
+    labels = "weights and capture (ms); number: nodes a view cell", "largest error / largest value"
+    return curves(series, *labels, "Capture model: error against run time", log_y=True)
 
 
 def _with_nodes(sensor: SensorParameters, nodes: int) -> SensorParameters:
     return replace(sensor, optics=replace(sensor.optics, subsamples=nodes))
 
 
-def _captured(
-    sensor: SensorParameters, field: npt.NDArray[np.floating], dtype: str
-) -> tuple[npt.NDArray[np.floating], float]:
+def _captured(sensor: SensorParameters, field: Field, dtype: str) -> tuple[Field, float]:
     raw_weights.cache_clear()
     start = perf_counter()
     operator = CaptureOperator(sensor, dtype, angular=field.shape[0] > 1 or sensor.optics.views == 1)

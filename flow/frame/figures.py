@@ -13,6 +13,7 @@ from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 from .result import FrameResult
 
+Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 PEAK = 255.0  # span of the 8-bit codes
 
 
@@ -23,7 +24,7 @@ def mismatches(first: bytes, second: bytes) -> int:
     return int((a[:common] != b[:common]).sum()) + abs(a.size - b.size)
 
 
-def ideal_samples(ideal: npt.NDArray[np.float64], frame: FrameParameters) -> npt.NDArray[np.float64]:
+def ideal_samples(ideal: Values, frame: FrameParameters) -> Values:
     """What a perfect chip would send, in codes, (rows, cols, subs).
 
     The analog values, or, of the four taps, their phase (256 = a turn) and amplitude.
@@ -35,12 +36,7 @@ def ideal_samples(ideal: npt.NDArray[np.float64], frame: FrameParameters) -> npt
     return np.stack([phase, np.maximum(np.abs(x), np.abs(y))], -1)
 
 
-def decoding_error(
-    samples: npt.NDArray[np.integer],
-    ideal: npt.NDArray[np.float64],
-    read: npt.NDArray[np.bool_],
-    frame: FrameParameters,
-) -> npt.NDArray[np.float64]:
+def decoding_error(samples: Codes, ideal: Values, read: npt.NDArray[np.bool_], frame: FrameParameters) -> Values:
     """Decoded less ideal for every sample read, in codes, (n, subs).
 
     The error of a phase is the short way round, and 0 where the chip marks it as not valid (amplitude 0).
@@ -52,7 +48,7 @@ def decoding_error(
     return error
 
 
-def psnr(error: npt.NDArray[np.float64]) -> float | None:
+def psnr(error: Values) -> float | None:
     """10 log10(255^2 / mean square) in dB, or None where there is no error at all (JSON has no infinity)."""
     mean_square = float(np.mean(np.square(error))) if error.size else 0.0
     return 10 * float(np.log10(PEAK**2 / mean_square)) if mean_square else None
@@ -63,12 +59,9 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     frame, sensor, golden = result.request.frame, result.request.sensor, result.golden
     taps = 4 if frame.mode == "tof" else 1
     rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
-    parts = EnergyParameters().frame(
-        resets=rows * sensor.array.cols * taps,
-        amplified=rows * columns * taps,
-        seconds=result.chip.status["cycles"] / sensor.chip.f_clk,
-        decisions=golden.decisions,
-    )
+    resets, amplified = rows * sensor.array.cols * taps, rows * columns * taps
+    seconds = result.chip.status["cycles"] / sensor.chip.f_clk
+    parts = EnergyParameters().frame(resets, amplified, seconds=seconds, decisions=golden.decisions)
     micro = {name: 1e6 * value for name, value in parts.items()}
     return {**micro, "total": sum(micro.values())}
 
@@ -81,50 +74,28 @@ def summarize(result: FrameResult) -> dict[str, Any]:
     raw_bytes: one byte a sample. psnr_db: decoded samples against the noiseless analog values, peak 255 codes.
     """
     asked, golden, chip, decoded = result.request, result.golden, result.chip, result.decoded
-    sensor, frame = asked.sensor, asked.frame
-    sent = golden.read.sum() * golden.sent.shape[2]
-    error = decoding_error(decoded.samples, result.exposed.ideal, golden.read, frame)
-    span = np.ptp(ideal_samples(result.exposed.ideal, frame)[golden.read]) if golden.read.any() else 0.0
-    body = len(chip.stream) - HEADER_BYTES - TRAILER_BYTES
-    marks = 2 * int(golden.read.any(1).sum())
-    return {
-        "scene": asked.name,
-        "mode": frame.mode,
-        "rows": sensor.array.rows,
-        "cols": sensor.array.cols,
-        "threshold": frame.threshold,
-        "lanes": sensor.chip.lanes,
-        "noise": asked.noise,
-        "seed": asked.seed,
-        "window": vars(frame.window),
-        "mask": f"{frame.mask:#08x}",
-        "decimation": frame.decimation,
-        "phase": frame.phase,
-        "focus": asked.focus,
-        "pixels": int(golden.read.sum()),
-        "samples": golden.samples,
-        "conversions_made": chip.status["conversions_made"],
-        "conversions_left_out": chip.status["conversions_left_out"],
-        "comparator_decisions": golden.decisions,
-        "cycles": chip.status["cycles"],
-        "frame_s_at_clock": chip.status["cycles"] / sensor.chip.f_clk,
-        "cycles_by_pin": chip.activity,
-        "stream_bytes": len(chip.stream),
-        "raw_bytes": int(sent),
-        "bytes": {"header": HEADER_BYTES, "tokens": body - marks, "row marks": marks, "trailer": TRAILER_BYTES},
-        "compression_ratio": float(sent) / max(len(chip.stream), 1),
-        "stream_mismatches": mismatches(chip.stream, golden.stream),
-        "decoded_mismatches": int((decoded.samples != golden.sent).sum()),
-        "psnr_db": psnr(error),
-        "peak": PEAK,
-        "signal_span": float(span),
-        "energy_uj": energy_of(result),
-        "left_out": [entry._asdict() for entry in result.exposed.plan.left_out],
-        "rtl_cycles_per_s": chip.cycles / chip.seconds,
-        "rtl_simulated_cycles": chip.cycles,
-        "tools": {
-            "python": sys.version.split()[0],
-            "verilator": verilator_version(),
-            **{name: version(name) for name in ("pymtl3", "numpy", "numba")},
-        },
-    }
+    sensor, frame, status = asked.sensor, asked.frame, chip.status
+    ideal, marks = result.exposed.ideal, 2 * int(golden.read.any(1).sum())
+    sent, size = golden.read.sum() * golden.sent.shape[2], len(chip.stream)
+    span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
+    tokens = size - HEADER_BYTES - TRAILER_BYTES - marks
+    parts = {"header": HEADER_BYTES, "tokens": tokens, "row marks": marks, "trailer": TRAILER_BYTES}
+    ratio = float(sent) / max(size, 1)
+    tools = {name: version(name) for name in ("pymtl3", "numpy", "numba")}
+    return (
+        {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
+        | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed}
+        | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
+        | {"phase": frame.phase, "focus": asked.focus, "pixels": int(golden.read.sum()), "samples": golden.samples}
+        | {name: status[name] for name in ("conversions_made", "conversions_left_out")}
+        | {"comparator_decisions": golden.decisions, "cycles": status["cycles"]}
+        | {"frame_s_at_clock": status["cycles"] / sensor.chip.f_clk, "cycles_by_pin": chip.activity}
+        | {"stream_bytes": size, "raw_bytes": int(sent), "bytes": parts, "compression_ratio": ratio}
+        | {"stream_mismatches": mismatches(chip.stream, golden.stream)}
+        | {"decoded_mismatches": int((decoded.samples != golden.sent).sum())}
+        | {"psnr_db": psnr(decoding_error(decoded.samples, ideal, golden.read, frame)), "peak": PEAK}
+        | {"signal_span": float(span), "energy_uj": energy_of(result)}
+        | {"left_out": [entry._asdict() for entry in result.exposed.plan.left_out]}
+        | {"rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles}
+        | {"tools": {"python": sys.version.split()[0], "verilator": verilator_version(), **tools}}
+    )

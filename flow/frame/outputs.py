@@ -13,25 +13,15 @@ from models.reconstruct import edge_images, light_field_estimate, sum_image
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
+from .figures import Values
 from .report import Picture, render
 from .result import FrameResult
 
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
+PICTURES = ("overview", "scene", "differences", "image", "conversions", "phase", "edges", "views", "views_decoded")
 NAMES = (
-    "stream.bin",
-    "decoded.npz",
-    "report.html",
-    "summary.json",
-    "waves.vcd",
-    "overview.png",
-    "scene.png",
-    "differences.png",
-    "image.png",
-    "conversions.png",
-    "phase.png",
-    "edges.png",
-    "views.png",
-    "views_decoded.png",
+    *("stream.bin", "decoded.npz", "report.html", "summary.json", "waves.vcd"),
+    *(f"{name}.png" for name in PICTURES),
 )
 PHASE_TURN = 2 * np.pi / 256  # rad a code
 
@@ -44,15 +34,10 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     for picture in (*shown, *sheets):
         picture.image.save(folder / f"{picture.name}.png")
     pictures.overview([(picture.name, picture.image) for picture in shown]).save(folder / "overview.png")
-    page = render(
-        summary,
-        pictures=[picture._replace(image=pictures.enlarge(picture.image, 384)) for picture in shown],
-        chip=chip_svg(result.request.sensor, result.request.frame),
-        sheets=sheets,
-        where=_where(summary),
-        errors=[svg(figure) for figure in error_plots.figures(result, summary)],
-    )
-    (folder / "report.html").write_text(page)
+    large = [picture._replace(image=pictures.enlarge(picture.image, 384)) for picture in shown]
+    chip = chip_svg(result.request.sensor, result.request.frame)
+    errors = [svg(figure) for figure in error_plots.figures(result, summary)]
+    (folder / "report.html").write_text(render(summary, large, chip, sheets, _where(summary), errors))
 
 
 def _pictures(result: FrameResult) -> list[Picture]:
@@ -88,9 +73,7 @@ def _top(values: npt.NDArray[np.floating]) -> float:
     return max(float(np.quantile(values, 0.999)), 1e-6)
 
 
-def _phase(
-    samples: npt.NDArray[np.float64], frame: FrameParameters
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _phase(samples: Values, frame: FrameParameters) -> tuple[Values, Values]:
     """Phase (rad) and amplitude of a time-of-flight frame, both (rows, cols)."""
     if frame.phase:
         return samples[..., 0] * PHASE_TURN, samples[..., 1]
@@ -106,10 +89,8 @@ def _sheets(result: FrameResult) -> list[Picture]:
         samples = decoded.samples.astype(float)
         difference = samples[..., 0] if frame.mode == "edge" else samples[..., 0] - samples[..., 1]
         edges = edge_images(difference, sensor.tile)
-        caption = (
-            "one a pixel type, every sample of the tile grid: beta and gamma of the "
-            "grating, cosine or sine analyzer; blue negative, red positive"
-        )
+        caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "
+        caption += "cosine or sine analyzer; blue negative, red positive"
         sheet = pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))
         out.append(Picture("edges", "The 24 edge images", caption, sheet))
     if scene.angular:
@@ -127,9 +108,8 @@ def _sheets(result: FrameResult) -> list[Picture]:
 def _where(s: dict[str, Any]) -> list[str]:
     """Charts of cycles, energy and bytes, as SVG."""
     pins = s["cycles_by_pin"]
-    cycles = {
-        name.replace("_", " "): pins[name] for name in ("pixel_reset", "integrate", "cm_reset", "read", "waiting")
-    }
+    phases = ("pixel_reset", "integrate", "cm_reset", "read", "waiting")
+    cycles = {name.replace("_", " "): pins[name] for name in phases}
     energy = {name.replace("_", " "): value for name, value in s["energy_uj"].items() if name != "total"}
     return [
         svg(bars(cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)")),

@@ -39,16 +39,12 @@ class Tile(NamedTuple):
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
     right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
+    equal = ("byte for byte", "good") if right else (f"{s['stream_mismatches']} bytes differ", "bad")
+    psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.1f} dB"
     return [
-        Tile(
-            "byte for byte" if right else f"{s['stream_mismatches']} bytes differ",
-            "chip against golden model",
-            "good" if right else "bad",
-        ),
+        Tile(equal[0], "chip against golden model", equal[1]),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
-        Tile(
-            "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.1f} dB", "decoded samples against the analog values"
-        ),
+        Tile(psnr, "decoded samples against the analog values"),
         Tile(f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out"),
         Tile(f"{1e3 * s['frame_s_at_clock']:.1f} ms", f"a frame, {s['cycles']:,} cycles"),
         Tile(f"{s['energy_uj']['total']:.1f} uJ", "a frame"),
@@ -64,13 +60,6 @@ def render(
     errors: Sequence[str],
 ) -> str:
     """The page as HTML. chip, where, errors: SVG texts of the chip, of where cycles went, of error against time."""
-    return page.render(
-        Path(__file__).with_name("report.html"),
-        s=summary,
-        tiles=headline(summary),
-        chip=Markup(chip),
-        pictures=pictures,
-        sheets=sheets,
-        where=[Markup(svg) for svg in where],
-        errors=[Markup(svg) for svg in errors],
-    )
+    drawn = {"chip": Markup(chip), "where": [Markup(svg) for svg in where], "errors": [Markup(svg) for svg in errors]}
+    template = Path(__file__).with_name("report.html")
+    return page.render(template, s=summary, tiles=headline(summary), pictures=pictures, sheets=sheets, **drawn)

@@ -1,7 +1,7 @@
 """The parameters of one run, validated before anything is computed."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -45,9 +45,8 @@ class FrameRequest:
         if self.focus is not None:
             check_real("focus", self.focus, -100, 100)
         if self.waves and self.waves[1] >= self.sensor.array.rows:
-            raise ParameterError(
-                f"waves = {self.waves[0]}:{self.waves[1]}: rows must be in 0..{self.sensor.array.rows - 1}"
-            )
+            first, last = self.waves
+            raise ParameterError(f"waves = {first}:{last}: rows must be in 0..{self.sensor.array.rows - 1}")
 
     @property
     def name(self) -> str:
@@ -75,8 +74,6 @@ def request(
     """
     sensor = SensorParameters(array=ArrayParameters(rows=rows, cols=cols), chip=ChipParameters(lanes=lanes))
     full = sensor.full_window
-    own = {
-        name: rest.pop(name) for name in ("scene", "depth", "focus", "noise", "seed", "waves", "out") if name in rest
-    }
+    own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)
     return FrameRequest(sensor=sensor, frame=frame, **own)

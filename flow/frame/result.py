@@ -48,11 +48,6 @@ class FrameResult:
     @cached_property
     def rebuilt(self) -> Rebuilt:
         """The 2-D image rebuilt from the decoded edges alone."""
-        return rebuild(
-            self.decoded.samples[..., 0],
-            self.decoded.read,
-            self.exposed.scene,
-            self.request.sensor,
-            self.exposed.front_end.trim,
-            self.request.frame.timing,
-        )
+        asked, exposed, edges = self.request, self.exposed, self.decoded.samples[..., 0]
+        trim, timing = exposed.front_end.trim, asked.frame.timing
+        return rebuild(edges, self.decoded.read, exposed.scene, asked.sensor, trim, timing)
