@@ -34,6 +34,18 @@ def verilate(
     return sorted(folder.glob("*.cpp"))
 
 
+def compile_runtime(
+    folder: Path, options: Sequence[object], names: Sequence[str] = ("verilated", "verilated_threads")
+) -> None:
+    """Compile the files ``names`` of Verilator's run time to <name>.o in ``folder``. Raises ToolError.
+
+    options: of g++; their include folders come before Verilator's.
+    """
+    include = verilator_folder() / "include"
+    for name in names:
+        run([*CXX, *options, "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"])
+
+
 def compile_program(program: Path, sources: Sequence[Path], options: Sequence[object] = ()) -> None:
     """Compile the C++ files ``sources`` as one unit, so that model and clock loop are optimized together.
 

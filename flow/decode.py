@@ -13,9 +13,7 @@ from models.parameters import TileParameters
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot decode`."""
     parser.add_argument("file", type=Path, help="stream.bin of a run, or captured from a chip")
-    parser.add_argument(
-        "--out", type=Path, help="the .npz to write; further frames: X-1.npz ... (default: beside FILE)"
-    )
+    parser.add_argument("--out", type=Path, help="the .npz; further frames: X-1.npz ... (default: beside FILE)")
 
 
 def run(options: Namespace) -> int:

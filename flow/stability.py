@@ -11,14 +11,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from tqdm import tqdm
 
 from base.files import check_folder, staged
 from flow.frame import job
 from flow.frame.figures import summarize
 from flow.frame.request import request
-from models.digital.divider import quad_divide
+from models.digital.divider import phase_error, quad_divide
 from models.stability import Case, optical_cases, table
 
 SINGLE_TYPE = 1 << 13
@@ -73,9 +72,8 @@ def frame_case(name: str, arguments: dict[str, Any]) -> Case:
     exposed, summary = result.exposed, summarize(result)
     wrong = summary["stream_mismatches"] + summary["decoded_mismatches"]
     finite = bool(np.isfinite(exposed.samples).all() and np.isfinite(exposed.ideal).all())
-    return Case(
-        name, "0 bytes or samples differ", f"{wrong} differ, {len(result.chip.stream)} bytes", wrong == 0 and finite
-    )
+    measured = f"{wrong} differ, {len(result.chip.stream)} bytes"
+    return Case(name, "0 bytes or samples differ", measured, wrong == 0 and finite)
 
 
 def divider_cases() -> list[Case]:
@@ -93,17 +91,9 @@ def divider_cases() -> list[Case]:
     }
     out = []
     for name, (x, y) in sets.items():
-        worst = float(np.abs(phase_error(x, y)).max())
+        worst = float(np.abs(phase_error(quad_divide(x, y).phase, x, y)).max())
         out.append(Case(f"divider: {name}", "phase within 0.75 LSB of atan2", f"{worst:.3f} LSB", worst <= 0.75))
     zero = quad_divide(np.array([0]), np.array([0]))
     right = bool(zero.zero[0]) and not (zero.ratio[0] or zero.octant[0] or zero.phase[0] or zero.amp_valid[0])
-    out.append(
-        Case("divider: x = y = 0", "zero flag, every other output 0", "they are" if right else "they are not", right)
-    )
-    return out
-
-
-def phase_error(x: npt.NDArray[np.integer], y: npt.NDArray[np.integer]) -> npt.NDArray[np.float64]:
-    """Phase of the divider less atan2, the short way round, in LSB."""
-    exact = np.arctan2(y, x) * 256 / (2 * np.pi)
-    return np.mod(quad_divide(x, y).phase - exact + 128, 256) - 128
+    measured = "they are" if right else "they are not"
+    return [*out, Case("divider: x = y = 0", "zero flag, every other output 0", measured, right)]

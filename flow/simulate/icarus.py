@@ -16,12 +16,8 @@ def icarus_program(build: Build, folder: Path, chip: Sequence[Path] = (), tops: 
     chip: Verilog files of it, a netlist's and its cells' too; exported now if empty. tops: modules beside the bench.
     """
     program = folder / "bench.vvp"
-    sources = [
-        *(chip or [build.chip_verilog(folder)]),
-        ROOT / "pixels" / "afe.sv",
-        FRAME / "bench.sv",
-        FRAME / "clock.sv",
-    ]
+    bench = [ROOT / "pixels" / "afe.sv", FRAME / "bench.sv", FRAME / "clock.sv"]
+    sources = [*(chip or [build.chip_verilog(folder)]), *bench]
     roots = [word for top in ("Clock", *tops) for word in ("-s", top)]
     run(["iverilog", "-g2012", *roots, *build.parameters("-PClock."), "-o", program, *sources])
     return program

@@ -14,20 +14,8 @@ FRAME = Path(__file__).parent
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
 CXX_FLAGS = ("-O2", "-ffp-contract=off")
-VERILATOR_FLAGS = (
-    "-O3",
-    "-fno-split",
-    "--x-assign",
-    "fast",
-    "--x-initial",
-    "fast",
-    "--noassert",
-    "--output-split",
-    "0",
-    "--no-timing",
-    "-Wno-fatal",
-    "-Wno-lint",
-)
+FAST = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
+VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
 
 
 def bench_program(build: Build, note: Callable[[str], None] = lambda text: None) -> Path:

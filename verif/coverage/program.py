@@ -8,27 +8,15 @@ from pathlib import Path
 from base.cache import cached, digest
 from base.sources import code
 from base.tools import run
-from base.verilator import verilator_folder
+from base.verilator import CXX, compile_runtime, verilator_folder
 from rtl.harness.ports import Port, places, split, total_width, validity
 from verif.results import ROOT
 
 CACHE = ROOT / "build" / "replay"
 MAIN = Path(__file__).parent / "main.cpp"
-VERILATE = (
-    "--cc",
-    "--prefix",
-    "VDut",
-    "--x-assign",
-    "fast",
-    "--x-initial",
-    "unique",
-    "--noassert",
-    "--no-timing",
-    "-Wno-lint",
-    "-Wno-fatal",
-)
+VALUES = ("--x-assign", "fast", "--x-initial", "unique")  # of X
+VERILATE = ("--cc", "--prefix", "VDut", *VALUES, "--noassert", "--no-timing", "-Wno-lint", "-Wno-fatal")
 COVERAGE = ("--coverage-line", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
-CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
 SECONDS = 900  # limit of a tool
 
@@ -150,19 +138,9 @@ def compile_program(
         unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(model.glob("*.cpp")), MAIN]))
         include = verilator_folder() / "include"
         includes = [option for path in (runtime, model, folder, include, include / "vltstd") for option in ("-I", path)]
-        tool(
-            [
-                *CXX,
-                "-O0" if coverage else "-O1",
-                f"-DVM_COVERAGE={int(coverage)}",
-                *includes,
-                unit,
-                *(runtime / f"{name}.o" for name in RUNTIME),
-                "-pthread",
-                "-o",
-                folder / "replay",
-            ]
-        )
+        objects = (runtime / f"{name}.o" for name in RUNTIME)
+        options = ["-O0" if coverage else "-O1", f"-DVM_COVERAGE={int(coverage)}", *includes]
+        tool([*CXX, *options, unit, *objects, "-pthread", "-o", folder / "replay"])
         shutil.rmtree(model)
         unit.unlink()
 
@@ -180,21 +158,6 @@ def _runtime(version: str) -> Path:
         (folder / "verilated_cov.h").write_text(
             text.replace("j < width - i * VL_EDATASIZE;", "j < VL_EDATASIZE && j < width - i * VL_EDATASIZE;")
         )
-        for name in RUNTIME:
-            tool(
-                [
-                    *CXX,
-                    "-O1",
-                    "-DVM_COVERAGE=1",
-                    "-I",
-                    folder,
-                    "-I",
-                    include,
-                    "-c",
-                    include / f"{name}.cpp",
-                    "-o",
-                    folder / f"{name}.o",
-                ]
-            )
+        compile_runtime(folder, ["-O1", "-DVM_COVERAGE=1", "-I", folder], RUNTIME)
 
     return cached(CACHE / f"runtime-{digest(code(__name__), version)}", make)

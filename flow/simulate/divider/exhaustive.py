@@ -25,17 +25,8 @@ from .simulator import DividerRun, program, simulate
 
 SEED, NOISE_FLOOR = 2**62 + 5, 100  # of the second run
 SCRAMBLE = 0x2545F  # odd: i -> i * SCRAMBLE mod 2^18 visits every input once
-COLUMNS = {
-    "variant": "{}",
-    "n_frac": "{}",
-    "iterations": "{}",
-    "latency": "{}",
-    "interval": "{}",
-    "mismatches": "{}",
-    "worst": "{:.4f}",
-    "rms": "{:.4f}",
-    "mega_cycles_per_s": "{:.1f}",
-}
+COLUMNS: dict[str, str] = dict.fromkeys(("variant", "n_frac", "iterations", "latency", "interval", "mismatches"), "{}")
+COLUMNS |= {"worst": "{:.4f}", "rms": "{:.4f}", "mega_cycles_per_s": "{:.1f}"}
 Inputs = npt.NDArray[np.int64]
 
 
@@ -82,7 +73,7 @@ class Figures:
 
 
 def every_input() -> tuple[Inputs, Inputs]:
-    """x and y of all 2^18 pairs."""
+    """Return x and y of all 2^18 pairs."""
     samples = np.arange(SAMPLE_MIN, SAMPLE_MAX + 1)
     x, y = np.meshgrid(samples, samples, indexing="ij")
     return x.ravel(), y.ravel()
@@ -157,9 +148,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot divider`."""
     chip = ChipParameters()
     several: dict[str, Any] = {"nargs": "+", "type": int, "metavar": "N"}
-    parser.add_argument(
-        "--variant", nargs="+", choices=DIVIDERS, default=DIVIDERS, metavar="NAME", help=f"of {', '.join(DIVIDERS)}"
-    )
+    names: dict[str, Any] = {"nargs": "+", "choices": DIVIDERS, "metavar": "NAME"}
+    parser.add_argument("--variant", default=DIVIDERS, help=f"of {', '.join(DIVIDERS)}", **names)
     parser.add_argument("--n-frac", default=[chip.n_frac], help="fraction bits of the ratio, 4..16", **several)
     parser.add_argument("--iterations", default=[chip.cordic_iterations], help="of CORDIC, 4..16", **several)
     parser.add_argument("--golden", action="store_true", help="the golden model alone, without Verilog")

@@ -13,12 +13,11 @@ from base.cache import cached, digest
 from base.paths import BUILD
 from base.sources import code
 from base.tools import run
-from base.verilator import CXX, compile_program, verilate, verilator_folder, verilator_version
+from base.verilator import compile_program, compile_runtime, verilate, verilator_version
+from flow.simulate.verilator import FAST
 
 CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"
-VERILATE = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
-RUNTIME = ("verilated", "verilated_threads")
 
 
 @dataclass(frozen=True)
@@ -38,14 +37,8 @@ class DividerRun:
 
 def _runtime() -> list[Path]:
     """Object files of Verilator's run time; no cycle is spent there, so they are compiled fast."""
-    include = verilator_folder() / "include"
-
-    def make(folder: Path) -> None:
-        for name in RUNTIME:
-            run([*CXX, "-O0", "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"])
-
-    folder = cached(CACHE / f"runtime-{digest(code(__name__), verilator_version())}", make)
-    return [folder / f"{name}.o" for name in RUNTIME]
+    content = digest(code(__name__), verilator_version())
+    return sorted(cached(CACHE / f"runtime-{content}", lambda folder: compile_runtime(folder, ["-O0"])).glob("*.o"))
 
 
 def program(verilog: str, top: str) -> Path:
@@ -54,7 +47,7 @@ def program(verilog: str, top: str) -> Path:
     def make(folder: Path) -> None:
         source = folder / "divider.v"
         source.write_text(verilog)
-        model = verilate(folder / "model", top, [source], VERILATE, "VQuadDivider")
+        model = verilate(folder / "model", top, [source], FAST, "VQuadDivider")
         compile_program(folder / "bench", [*model, MAIN], ["-O2", *_runtime()])
         shutil.rmtree(folder / "model")
 
