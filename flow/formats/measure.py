@@ -41,12 +41,8 @@ def measure(
     rows = []
     for threshold in progress(thresholds):
         sent = thresholded(codes, threshold)
-        known = {
-            "threshold": threshold,
-            "psnr_db": psnr_db(sent, ideal, 255),
-            "not_zero": float((sent != 0).mean()),
-            "entropy_ratio": codes.size / entropy_bytes(sent),
-        }
+        quality = {"psnr_db": psnr_db(sent, ideal, 255), "not_zero": float((sent != 0).mean())}
+        known = {"threshold": threshold, **quality, "entropy_ratio": codes.size / entropy_bytes(sent)}
         for order, segments in cut.items():
             for name, (encoder, _) in FORMATS.items():
                 size = frame_bytes(sent, threshold, encoder, segments)

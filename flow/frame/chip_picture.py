@@ -23,10 +23,8 @@ def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 36
     parts += [_rect(x, y + h + 32, w, 12, "#6b7b8d"), _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9)]
     parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} um", 10))
     tile = _tile(sensor, frame, width + 24, 24, 46)
-    return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width + 320} {width}" '
-        f'font-family="sans-serif">{"".join(parts + tile)}</svg>'
-    )
+    view = f'viewBox="0 0 {width + 320} {width}" font-family="sans-serif"'
+    return f'<svg xmlns="http://www.w3.org/2000/svg" {view}>{"".join(parts + tile)}</svg>'
 
 
 def _rect(x: float, y: float, w: float, h: float, fill: str, rx: float = 1, extra: str = "") -> str:
@@ -34,7 +32,7 @@ def _rect(x: float, y: float, w: float, h: float, fill: str, rx: float = 1, extr
 
 
 def _text(
-    x: float, y: float, text: object, size: float, turn: float = 0, fill: str = "#fff", anchor: str = "middle"
+    x: float, y: float, text: object, size: int, turn: int = 0, fill: str = "#fff", anchor: str = "middle"
 ) -> str:
     place = f'x="{x:.1f}" y="{y:.1f}" font-size="{size}" fill="{fill}" text-anchor="{anchor}"'
     rotate = f' transform="rotate({turn} {x:.1f} {y:.1f})"' if turn else ""
@@ -75,10 +73,8 @@ def _tile(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, 
             cx = px + cell / 2 + shift * cell * np.cos(kind.gamma)
             cy = py + cell / 2 - shift * cell * np.sin(kind.gamma)
             dx, dy = 0.24 * cell * np.cos(angle), -0.24 * cell * np.sin(angle)
-            parts.append(
-                f'<line x1="{cx - dx:.1f}" y1="{cy - dy:.1f}" x2="{cx + dx:.1f}" y2="{cy + dy:.1f}" '
-                f'stroke="#333" stroke-width="1.6" {opacity}/>'
-            )
+            ends = f'x1="{cx - dx:.1f}" y1="{cy - dy:.1f}" x2="{cx + dx:.1f}" y2="{cy + dy:.1f}"'
+            parts.append(f'<line {ends} stroke="#333" stroke-width="1.6" {opacity}/>')
         parts.append(_text(px + 5, py + 12, number, 9, fill="#222", anchor="start"))
     legend = y + tile.rows * cell + 20
     for i, beta in enumerate(sorted({t.beta for t in tile.types})):

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flow.simulate.build import Build
-from flow.simulate.frame import Waves, host_script, run_frame
+from flow.simulate.frame import FrameRun, Waves, host_script, run_frame
 from flow.simulate.verilator import bench_program
 from models.afe import FrontEnd, write_converter, write_samples
 from models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
@@ -18,18 +18,10 @@ from models.parameters import FrameParameters, SensorParameters
 
 
 @dataclass(frozen=True)
-class HardwareFrame:
-    """What one frame gave.
+class HardwareFrame(FrameRun):
+    """A run of the bench and the chip's ``status``: its counters and flags, by name."""
 
-    stream: bytes that left the chip. status: its counters and flags, by name. activity: cycles that each pin of the
-    front end was high, by pin. cycles: simulated, host included. seconds: of the clock loop.
-    """
-
-    stream: bytes
     status: dict[str, Any]
-    activity: dict[str, int]
-    cycles: int
-    seconds: float
 
 
 def program(
@@ -65,4 +57,4 @@ def simulate(
     for transfer in reversed(after):
         replies.insert(0, run.miso[end - len(transfer) : end])
         end -= len(transfer)
-    return HardwareFrame(run.stream, decode_status(replies), run.activity, run.cycles, run.seconds)
+    return HardwareFrame(**vars(run), status=decode_status(replies))

@@ -59,8 +59,7 @@ def contact_sheet(
     font = ImageFont.load_default(13)
     width, height = images[0].size
     size = (cell, max(1, round(cell * height / (width * aspect))))
-    gap, caption = 8, 18
-    rows = -(-len(images) // columns)
+    gap, caption, rows = 8, 18, -(-len(images) // columns)
     sheet = pillow.new("RGB", (columns * (size[0] + gap) + gap, rows * (size[1] + caption + gap) + gap), PAPER)
     draw = ImageDraw.Draw(sheet)
     for i, (image, label) in enumerate(zip(images, labels, strict=True)):

@@ -5,17 +5,10 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from models.parameters import (
-    ALL_TYPES,
-    ArrayParameters,
-    ChipParameters,
-    FrameParameters,
-    ParameterError,
-    SensorParameters,
-    Window,
-    check_int,
-    check_real,
-)
+from models import parameters
+from models.parameters import ALL_TYPES, FrameParameters, ParameterError, SensorParameters, Window
+
+Cut = Callable[[Window], Window]  # of the full window
 
 
 @dataclass(frozen=True)
@@ -40,10 +33,10 @@ class FrameRequest:
 
     def __post_init__(self) -> None:
         self.sensor.check_window(self.frame.window)
-        check_real("noise", self.noise, 0, 100)
-        check_int("seed", self.seed, 0, 2**32 - 1)
+        parameters.check_real("noise", self.noise, 0, 100)
+        parameters.check_int("seed", self.seed, 0, 2**32 - 1)
         if self.focus is not None:
-            check_real("focus", self.focus, -100, 100)
+            parameters.check_real("focus", self.focus, -100, 100)
         if self.waves and self.waves[1] >= self.sensor.array.rows:
             first, last = self.waves
             raise ParameterError(f"waves = {first}:{last}: rows must be in 0..{self.sensor.array.rows - 1}")
@@ -60,19 +53,15 @@ class FrameRequest:
 
 
 def request(
-    rows: int = 384,
-    cols: int = 384,
-    lanes: int = 8,
-    window: Callable[[Window], Window] | None = None,
-    mask: int = ALL_TYPES,
-    **rest: Any,
+    rows: int = 384, cols: int = 384, lanes: int = 8, window: Cut | None = None, mask: int = ALL_TYPES, **rest: Any
 ) -> FrameRequest:
     """A FrameRequest for an array of ``rows`` x ``cols`` pixels.
 
     window: the window to read, from the full one (all of it). rest: fields of FrameRequest and FrameParameters. Raises
     ParameterError.
     """
-    sensor = SensorParameters(array=ArrayParameters(rows=rows, cols=cols), chip=ChipParameters(lanes=lanes))
+    array, chip = parameters.ArrayParameters(rows=rows, cols=cols), parameters.ChipParameters(lanes=lanes)
+    sensor = SensorParameters(array=array, chip=chip)
     full = sensor.full_window
     own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)

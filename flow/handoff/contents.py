@@ -64,26 +64,20 @@ def contents(
     }
     if (page := sources["reports/report.html"]).is_file():
         sources |= {f"reports/{name}": folder / name for name in SHOWN.findall(page.read_text())}
-    missing = sorted(
-        path.name if path.parent == folder else f"rtl/{path.name}" for path in sources.values() if not path.is_file()
-    )
-    if missing:
-        raise ParameterError(
-            f"{folder} = without {', '.join(missing)}: must be a finished layout (make layout DESIGN={design.name})"
-        )
+    if missing := sorted(str(path.relative_to(folder)) for path in sources.values() if not path.is_file()):
+        must = f"must be a finished layout (make layout DESIGN={design.name})"
+        raise ParameterError(f"{folder} = without {', '.join(missing)}: {must}")
     summary = json.loads(sources["reports/summary.json"].read_text())
     rules = {waiver["rule"] for waiver in waivers}
-    lines = [line for line in broken(summary) if line.partition(" = ")[0] not in rules]
-    if lines:
+    if lines := [line for line in broken(summary) if line.partition(" = ")[0] not in rules]:
         raise Broken("\n".join(lines))
     files, substitutes = {name: plain(path.read_bytes(), folder) for name, path in sources.items()}, {}
     files["reports/summary.json"] = _json({name: value for name, value in summary.items() if name not in OF_A_RUN})
     corners = summary["wns_ns"] if isinstance(summary.get("wns_ns"), dict) else {}
     for suffix, (place, substitute) in OPTIONAL.items():
         paths = [folder / f"{design.name}.{part}" for part in (suffix, *(f"{corner}.{suffix}" for corner in corners))]
-        found = {f"{place}/{path.name}": plain(path.read_bytes(), folder) for path in paths if path.is_file()}
-        files |= found
-        if not found:
+        files |= {f"{place}/{path.name}": plain(path.read_bytes(), folder) for path in paths if path.is_file()}
+        if not any(path.is_file() for path in paths):
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
     lef = files[f"layout/{design.name}.lef"].decode()

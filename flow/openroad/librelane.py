@@ -16,22 +16,14 @@ PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPEN
 def librelane(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]:
     """Files of the design: text by path."""
     utilization = round(100 * design.utilization * tech.utilization_share)
-    values = {
-        "DESIGN_NAME": design.top,
-        "VERILOG_FILES": f"[dir::{design.top}.v]",
-        "CLOCK_PORT": design.clock.port,
-        "CLOCK_PERIOD": design.clock.period_ns,
-        "PNR_SDC_FILE": "dir::pnr.sdc",
-        "SIGNOFF_SDC_FILE": "dir::signoff.sdc",
-        "FP_SIZING": "relative",
-        "FP_CORE_UTIL": utilization,
-        "FP_ASPECT_RATIO": 1,
-        "PL_TARGET_DENSITY_PCT": min(95, utilization + 15),
-    }
+    values = (
+        {"DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.v]"}
+        | {"CLOCK_PORT": design.clock.port, "CLOCK_PERIOD": design.clock.period_ns}
+        | {"PNR_SDC_FILE": "dir::pnr.sdc", "SIGNOFF_SDC_FILE": "dir::signoff.sdc"}
+        | {"FP_SIZING": "relative", "FP_CORE_UTIL": utilization, "FP_ASPECT_RATIO": 1}
+        | {"PL_TARGET_DENSITY_PCT": min(95, utilization + 15)}
+    )
     config = "meta:\n  version: 2\n  flow: Classic\n" + "".join(f"{key}: {value}\n" for key, value in values.items())
-    return {
-        "librelane/config.yaml": config,
-        "librelane/pnr.sdc": sdc(design, propagated=False) + PROPAGATE,
-        "librelane/signoff.sdc": sdc(design),
-        f"librelane/{design.top}.v": verilog,
-    }
+    constraints = {"pnr.sdc": sdc(design, propagated=False) + PROPAGATE, "signoff.sdc": sdc(design)}
+    files = {"config.yaml": config, **constraints, f"{design.top}.v": verilog}
+    return {f"librelane/{name}": text for name, text in files.items()}

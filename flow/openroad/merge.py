@@ -14,11 +14,8 @@ def layer_map(tech: OpenRoadPlatform) -> str:
     """Text of a KLayout layer map: shapes to a layer's own datatype, pins and labels to those of the process."""
     lines = ["DIEAREA ALL {} {}".format(*tech.outline)]
     for name, (layer, datatype) in tech.gds.items():
-        lines += [
-            f"{name} {ROUTED} {layer} {datatype}",
-            f"{name} PIN {layer} {tech.pin_datatype}",
-            f"NAME {name}/PIN {layer} {tech.label_datatype}",
-        ]
+        lines += [f"{name} {ROUTED} {layer} {datatype}", f"{name} PIN {layer} {tech.pin_datatype}"]
+        lines.append(f"NAME {name}/PIN {layer} {tech.label_datatype}")
     return "\n".join([*lines, ""])
 
 

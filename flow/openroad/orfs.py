@@ -37,9 +37,7 @@ def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]
     }
     config = "".join(f"export {key} = {value}\n" for key, value in values.items())
     rules = {key: {"value": value, "compare": compare} for key, (value, compare) in RULES.items()}
-    return {
-        f"orfs/{platform}/{name}/config.mk": config,
-        f"orfs/{platform}/{name}/constraint.sdc": sdc(design, propagated=False),
-        f"orfs/{platform}/{name}/rules-base.json": json.dumps(rules, indent=4) + "\n",
-        f"orfs/src/{name}/{design.top}.v": verilog,
-    }
+    files = {"config.mk": config, "constraint.sdc": sdc(design, propagated=False)}
+    files["rules-base.json"] = json.dumps(rules, indent=4) + "\n"
+    ours = {f"orfs/{platform}/{name}/{file}": text for file, text in files.items()}
+    return ours | {f"orfs/src/{name}/{design.top}.v": verilog}

@@ -10,11 +10,8 @@ from platforms.openroad import CORNERS, OpenRoadPlatform
 
 from .stat import counted
 
-RULES = {
-    "drc_violations": {"is": 0},
-    "antenna_violations": {"is": 0},
-    **{f"{slack}.{corner}": {"least": 0} for slack in ("wns_ns", "whs_ns") for corner in CORNERS},
-}
+RULES = {name: {"is": 0} for name in ("drc_violations", "antenna_violations")}
+RULES |= {f"{slack}.{corner}": {"least": 0} for slack in ("wns_ns", "whs_ns") for corner in CORNERS}
 
 
 def summarize(

@@ -46,10 +46,8 @@ def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ
     """The folder PDK_ROOT, every file of the process there. Raises ParameterError."""
     root = environment.get("PDK_ROOT", "")
     if not root:
-        raise ParameterError(
-            "PDK_ROOT = '': must be the folder of an installed PDK "
-            f"(pip install ciel; ciel enable --pdk-family {tech.name} <version>)"
-        )
+        install = f"pip install ciel; ciel enable --pdk-family {tech.name} <version>"
+        raise ParameterError(f"PDK_ROOT = '': must be the folder of an installed PDK ({install})")
     needed = [(path,) for path in (*tech.liberty.values(), tech.tech_lef, tech.cell_lef, tech.cell_gds)]
     for paths in (*needed, tech.rcx_rules):
         if not any((Path(root) / path).is_file() for path in paths):

@@ -13,6 +13,8 @@ from base.paths import ROOT
 from base.tools import ToolError, finish
 
 LIBRARY = ROOT / "cells" / "gates.lib"
+TIES = "hilomap -hicell TIE1 Y -locell TIE0 Y -singleton"
+MAP = f"dfflibmap -liberty {LIBRARY}; abc -liberty {LIBRARY}; {TIES}; opt_clean -purge"
 FLIP_FLOP = "DFF"
 YOSYS_MISSING = "yosys: not found; install it (Debian and Ubuntu: apt-get install yosys; make tools)"
 
@@ -51,11 +53,7 @@ def synthesize(path: Path, top: str) -> Counter[str]:
         raise ToolError(YOSYS_MISSING)
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         report = Path(folder) / "stat.json"
-        script = (
-            f"read_verilog -sv {path}; synth -flatten -top {top}; dfflibmap -liberty {LIBRARY}; "
-            f"abc -liberty {LIBRARY}; hilomap -hicell TIE1 Y -locell TIE0 Y -singleton; opt_clean -purge; "
-            f"tee -q -o {report} stat -json"
-        )
+        script = f"read_verilog -sv {path}; synth -flatten -top {top}; {MAP}; tee -q -o {report} stat -json"
         result = finish(["yosys", "-q", "-p", script])
         if result.returncode:
             tail = "\n".join((result.stdout + result.stderr).strip().splitlines()[-5:])
