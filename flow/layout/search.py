@@ -41,10 +41,8 @@ def lay_out_smallest(
         attempt.open_segments = found["open_segments"]
         reroute, *checks = routing_steps(design, options)
         if found["stopped"] is None and not runner.run(reroute)["metrics"]["open_nets"]:
-            attempt.rules_broken = sum(
-                record["metrics"].get(f"{step.name}_violations", 0)
-                for step, record in zip(checks, runner.run_all(checks), strict=True)
-            )
+            pairs = zip(checks, runner.run_all(checks), strict=True)
+            attempt.rules_broken = sum(made["metrics"].get(f"{step.name}_violations", 0) for step, made in pairs)
             if not attempt.rules_broken:
                 runner.run_all(signoff(design, options))
                 return tried

@@ -48,25 +48,18 @@ class DieParasitics(Step[DieParasiticsParameters]):
         for net, route in plan["routes"].items():
             block, pin = plan["drivers"][net]
             femto, found = elmore.net(route["branches"], route["y"], (block, pin), plan["tracks"], tech, p.pin_pf)
-            nets[net] = {
-                "driver": block,
-                "wire_ff": round(femto, 3),
-                "load_pf": round(femto / 1000 + len(found) * p.pin_pf, 6),
-                "delay_ns": {f"{block}.{pin}": round(ns, 6) for (block, pin), ns in found.items()},
-            }
+            load_pf = round(femto / 1000 + len(found) * p.pin_pf, 6)
+            delays = {".".join(end): round(ns, 6) for end, ns in found.items()}
+            nets[net] = {"driver": block, "wire_ff": round(femto, 3), "load_pf": load_pf, "delay_ns": delays}
         outputs["nets"].write_text(json.dumps(nets, indent=1) + "\n")
         outputs["sdc"].write_text(inputs["sdc"].read_text() + "\n".join(self.constraints(nets)) + "\n")
         driven = {net: found["load_pf"] for net, found in nets.items() if found["driver"] == CORE}
         slow = {net: max(found["delay_ns"].values()) for net, found in nets.items()}
         load, delay = max(driven, key=driven.__getitem__), max(slow, key=slow.__getitem__)
-        return {
-            "wire_pf": round(sum(found["wire_ff"] for found in nets.values()) / 1000, 3),
-            "worst_load_pf": round(driven[load], 4),
-            "worst_load": load,
-            "worst_delay_ns": round(slow[delay], 4),
-            "worst_delay": delay,
-            "loads_over": sum(pf > p.load_pf for pf in driven.values()),
-        }
+        worst = {"worst_load_pf": round(driven[load], 4), "worst_load": load}
+        worst |= {"worst_delay_ns": round(slow[delay], 4), "worst_delay": delay}
+        wire_pf = round(sum(found["wire_ff"] for found in nets.values()) / 1000, 3)
+        return {"wire_pf": wire_pf, **worst, "loads_over": sum(pf > p.load_pf for pf in driven.values())}
 
     def constraints(self, nets: Mapping[str, Mapping[str, Any]]) -> Iterator[str]:
         """Lines of SDC: loads and I/O delays of the chip's ports with the die's nets."""
