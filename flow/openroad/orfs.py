@@ -22,19 +22,14 @@ def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]
     """Files of the design: text by path. Run: make DESIGN_HOME=<folder>/orfs DESIGN_CONFIG=.../config.mk."""
     name, platform = design.name, tech.orfs_platform
     utilization = round(100 * design.utilization * tech.utilization_share)
-    values = {
-        "DESIGN_NAME": design.top,
-        "DESIGN_NICKNAME": name,
-        "PLATFORM": platform,
-        "VERILOG_FILES": f"$(DESIGN_HOME)/src/{name}/{design.top}.v",
-        "SDC_FILE": f"$(DESIGN_HOME)/{platform}/{name}/constraint.sdc",
-        "CORE_UTILIZATION": utilization,
-        "CORE_ASPECT_RATIO": 1,
-        "CORE_MARGIN": 10,
-        "PLACE_DENSITY_LB_ADDON": 0.1,
-        # the default is the number in the SDC, which is in ns
-        "ABC_CLOCK_PERIOD_IN_PS": round(1000 * design.clock.period_ns),
-    }
+    period_ps = round(1000 * design.clock.period_ns)  # the default is the number in the SDC, which is in ns
+    values = (
+        {"DESIGN_NAME": design.top, "DESIGN_NICKNAME": name, "PLATFORM": platform}
+        | {"VERILOG_FILES": f"$(DESIGN_HOME)/src/{name}/{design.top}.v"}
+        | {"SDC_FILE": f"$(DESIGN_HOME)/{platform}/{name}/constraint.sdc"}
+        | {"CORE_UTILIZATION": utilization, "CORE_ASPECT_RATIO": 1, "CORE_MARGIN": 10}
+        | {"PLACE_DENSITY_LB_ADDON": 0.1, "ABC_CLOCK_PERIOD_IN_PS": period_ps}
+    )
     config = "".join(f"export {key} = {value}\n" for key, value in values.items())
     rules = {key: {"value": value, "compare": compare} for key, (value, compare) in RULES.items()}
     files = {"config.mk": config, "constraint.sdc": sdc(design, propagated=False)}
