@@ -31,18 +31,9 @@ def main(path: str) -> int:
     print(f"short segments drawn: {draw_short(cell)}")
     block.save()
     Path("shapes.json").write_text(json.dumps(shapes(cell)))
-    Path("result.json").write_text(
-        json.dumps(
-            {
-                "routed": bool(routed),
-                "straps": block.straps,
-                "pins": block.pins,
-                "instances": instances(cell),
-                "segments": segments(cell),
-                "times": times | {"save": time.perf_counter() - begin},
-            }
-        )
-    )
+    result = {"routed": bool(routed), "straps": block.straps, "pins": block.pins, "instances": instances(cell)}
+    result |= {"segments": segments(cell), "times": times | {"save": time.perf_counter() - begin}}
+    Path("result.json").write_text(json.dumps(result))
     return 0
 
 

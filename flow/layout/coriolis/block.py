@@ -36,9 +36,8 @@ def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
     cfg.etesian.antennaGateMaxWL = u(40000.0)
     cfg.etesian.antennaDiodeMaxWL = u(80000.0)
     # of the global router around a net's pins, in heights of a row: there must be a path around a macro
-    cfg.katana.searchHalo = 1 + ceil(
-        max((max(macro["width_um"], macro["height_um"]) for macro in request["macros"]), default=0) / request["row_um"]
-    )
+    sides = (max(macro["width_um"], macro["height_um"]) for macro in request["macros"])
+    cfg.katana.searchHalo = 1 + ceil(max(sides, default=0) / request["row_um"])
     cfg.anabatic.globalIterations = 20
     cfg.anabatic.topRoutingLayer = request["metals"][-1]["name"]
     local, least = RESERVED[bool(request["macros"])]
@@ -111,11 +110,8 @@ def spread(side: str, nets: Sequence[str], request: dict[str, Any], straps: Sequ
     across = side in ("west", "east")
     length = request["height_um" if across else "width_um"]
     pitch = request["pin_pitch_um"]["horizontal" if across else "vertical"]
-    tracks = [
-        k
-        for k in range(6, int(length / pitch) - 6)
-        if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)
-    ][::2]
+    tracks = range(6, int(length / pitch) - 6)
+    tracks = [k for k in tracks if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)][::2]
     if len(nets) > len(tracks):
         raise SystemExit(f"coriolis: {len(nets)} pins do not fit on the {side} side of {length:.1f} um")
     step = len(tracks) / max(1, len(nets))

@@ -14,21 +14,10 @@ def instances(cell: Any) -> list[list[Any]]:
     made = []
     for instance in cell.getInstances():
         where = instance.getTransformation()
-        pins = {
-            plug.getMasterNet().getName(): plug.getNet().getName()
-            for plug in instance.getPlugs()
-            if plug.getNet() is not None
-        }
-        made.append(
-            [
-                instance.getName(),
-                instance.getMasterCell().getName(),
-                _um(where.getTx()),
-                _um(where.getTy()),
-                str(where.getOrientation()),
-                pins,
-            ]
-        )
+        plugs = [plug for plug in instance.getPlugs() if plug.getNet() is not None]
+        pins = {plug.getMasterNet().getName(): plug.getNet().getName() for plug in plugs}
+        place = _um(where.getTx()), _um(where.getTy()), str(where.getOrientation())
+        made.append([instance.getName(), instance.getMasterCell().getName(), *place, pins])
     return made
 
 
@@ -49,10 +38,8 @@ def _segment(component: Any) -> list[Any] | None:
     if layer.endswith(".block"):  # the router's blockages
         return None
     if isinstance(component, (Horizontal, Vertical)):
-        length = abs(component.getTargetX() - component.getSourceX()) + abs(
-            component.getTargetY() - component.getSourceY()
-        )
-        return [layer, _um(length), _um(component.getWidth())]
+        dx, dy = component.getTargetX() - component.getSourceX(), component.getTargetY() - component.getSourceY()
+        return [layer, _um(abs(dx) + abs(dy)), _um(component.getWidth())]
     return [layer, 0, 0] if isinstance(component, Contact) and "_" in layer else None
 
 
@@ -76,12 +63,8 @@ def shapes(cell: Any) -> dict[str, dict[str, list[Any]]]:
                 made["vias"].append([component.getLayer().getName(), _um(component.getX()), _um(component.getY())])
         for plug in net.getPlugs():
             place = plug.getInstance().getTransformation()
-            made["pins"].append(
-                [
-                    _box(part.getLayer(), place.getBox(part.getBoundingBox()))
-                    for part in plug.getMasterNet().getExternalComponents()
-                ]
-            )
+            parts = plug.getMasterNet().getExternalComponents()
+            made["pins"].append([_box(part.getLayer(), place.getBox(part.getBoundingBox())) for part in parts])
     return nets
 
 

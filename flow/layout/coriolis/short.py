@@ -15,13 +15,9 @@ def draw_short(cell: Any) -> int:
         if not net.isSupply():
             parts = list(net.getComponents())
             contacts = [part for part in parts if isinstance(part, Contact) and part.getLayer() is not None]
-            found += [
-                (net, segment, box)
-                for segment in parts
-                if isinstance(segment, (Horizontal, Vertical))
-                for box in [_joined(segment, contacts)]
-                if box
-            ]
+            for segment in parts:
+                if isinstance(segment, (Horizontal, Vertical)) and (box := _joined(segment, contacts)):
+                    found.append((net, segment, box))
     UpdateSession.open()
     for net, segment, box in found:
         Pad.create(net, segment.getLayer(), Box(*box))

@@ -25,9 +25,8 @@ class Straps:
         self.layer = DataBase.getDB().getTechnology().getLayer
         self.names = [metal["name"] for metal in request["metals"]]
         self.outer = sorted(macro["outer"] for macro in request["macros"])
-        self.inner = [
-            (m["x_um"], m["y_um"], m["x_um"] + m["width_um"], m["y_um"] + m["height_um"]) for m in request["macros"]
-        ]
+        sizes = [(m["x_um"], m["y_um"], m["width_um"], m["height_um"]) for m in request["macros"]]
+        self.inner = [(x, y, x + width, y + height) for x, y, width, height in sizes]
         self.through = [(net, macro["x_um"] + x) for macro in request["macros"] for net, x in macro["straps"]]
 
     def even(self) -> list[tuple[str, float, float]]:
@@ -36,10 +35,8 @@ class Straps:
         found = []
         for left, right in zip(edges[::2], edges[1::2], strict=True):
             count = 2 * max(1, round((right - left) / self.request["strap_pitch_um"]))
-            found += [
-                (SUPPLIES[k % 2], left + (right - left) * (k + 0.5) / count, (right - left) / count)
-                for k in range(count)
-            ]
+            for k in range(count):
+                found.append((SUPPLIES[k % 2], left + (right - left) * (k + 0.5) / count, (right - left) / count))
         return found
 
     def positions(self, pins: Sequence[float]) -> list[Strap]:
@@ -48,7 +45,8 @@ class Straps:
         gaps: (bottom, top) where one of a macro, which stays at its x, has room for the clock trunk.
         """
         half = self.request["strap_um"] / 2
-        taken = [(a - CLEARANCE_UM - half, b + CLEARANCE_UM + half) for a, _, b, _ in self._signals(self.names[-1])]
+        signals = [_enlarged(box) for box in self._signals(self.names[-1])]
+        taken = [(left - half, right + half) for left, _, right, _ in signals]
         taken += [(x - PIN_CLEARANCE_UM, x + PIN_CLEARANCE_UM) for x in pins]
         for net, ideal, pitch in self.even():
             moves = (step * 0.5 * sign for step in range(int(pitch)) for sign in (1, -1))
@@ -57,17 +55,8 @@ class Straps:
                 raise SystemExit(f"coriolis: no place for a strap near x = {ideal:.1f} um")
             self.x.append((net, round(self._on_grid(x), 3), []))
         for net, x in self.through:
-            self.x.append(
-                (
-                    net,
-                    x,
-                    _merged(
-                        (bottom - CLEARANCE_UM, top + CLEARANCE_UM)
-                        for left, bottom, right, top in self._signals(self.names[-1])
-                        if left - CLEARANCE_UM < x + half and x - half < right + CLEARANCE_UM
-                    ),
-                )
-            )
+            gaps = [(low, high) for left, low, right, high in signals if left < x + half and x - half < right]
+            self.x.append((net, x, _merged(gaps)))
         self.x.sort(key=lambda strap: strap[1])
         return self.x
 
@@ -82,9 +71,8 @@ class Straps:
             ends = [0.0, *(y for gap in gaps for y in gap), height]
             for low, high in zip(ends[::2], ends[1::2], strict=True):
                 if high > low:
-                    Vertical.create(
-                        net, self.layer(self.names[-1]), u(x), u(width), u(self._on_grid(low)), u(self._on_grid(high))
-                    )
+                    low, high = u(self._on_grid(low)), u(self._on_grid(high))
+                    Vertical.create(net, self.layer(self.names[-1]), u(x), u(width), low, high)
             for row in range(odd, rows + 1, 2):
                 y, overlap = row * self.request["row_um"], self.request["rail_overlap_um"]
                 if any(left < x < right and low - 1e-6 <= y <= high + 1e-6 for left, low, right, high in self.inner):
@@ -105,9 +93,8 @@ class Straps:
                 Vertical.create(net, self.layer(name), u(x), u(width), u(y - height / 2), u(y + height / 2))
         for via in self.request["vias"]:
             size, pitch = via["size_um"], via["size_um"] + via["space_um"]
-            across, along = (
-                int((side - 2 * via["enclosure_um"] + via["space_um"]) / pitch + 1e-9) for side in (width, height)
-            )
+            room = via["space_um"] - 2 * via["enclosure_um"]
+            across, along = (int((side + room) / pitch + 1e-9) for side in (width, height))
             for i in range(across):
                 for j in range(along):
                     left = u(self._on_grid(x + (i - (across - 1) / 2) * pitch - size / 2))
@@ -127,22 +114,18 @@ class Straps:
                 layer = component.getLayer()
                 if layer is not None and layer.getMask().intersect(wanted):
                     box = component.getBoundingBox()
-                    boxes.append(
-                        tuple(
-                            DbU.toPhysical(v, DbU.UnitPowerMicro)
-                            for v in (box.getXMin(), box.getYMin(), box.getXMax(), box.getYMax())
-                        )
-                    )
+                    ends = box.getXMin(), box.getYMin(), box.getXMax(), box.getYMax()
+                    boxes.append(tuple(DbU.toPhysical(end, DbU.UnitPowerMicro) for end in ends))
         return boxes
 
 
+def _enlarged(box: Box_um) -> Box_um:
+    return box[0] - CLEARANCE_UM, box[1] - CLEARANCE_UM, box[2] + CLEARANCE_UM, box[3] + CLEARANCE_UM
+
+
 def _meet(a: Box_um, b: Box_um) -> bool:
-    return (
-        a[0] - CLEARANCE_UM < b[2]
-        and b[0] < a[2] + CLEARANCE_UM
-        and a[1] - CLEARANCE_UM < b[3]
-        and b[1] < a[3] + CLEARANCE_UM
-    )
+    left, bottom, right, top = _enlarged(a)
+    return left < b[2] and b[0] < right and bottom < b[3] and b[1] < top
 
 
 def _merged(intervals: Iterable[tuple[float, float]]) -> list[tuple[float, float]]:

@@ -60,18 +60,12 @@ def abstract(gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform) -
     if lacking:
         raise ParameterError(f"gds = {gds}: must have metal for the pins {', '.join(lacking[:5])}")
     charges = antennas(layout, top, tech, found, set(directions))
-    pins = [
-        write.Pin(
-            name,
-            [
-                f"DIRECTION {directions.get(name, 'inout').upper()}",
-                f"USE {USES.get(name, 'SIGNAL')}",
-                *(_antenna(charges[name]) if name in charges else ()),
-            ],
-            [Rectangles(metal.lef, [write.um(pin, layout.dbu)]) for metal, pin in found[name]],
-        )
-        for name in sorted(found)
-    ]
+    pins = []
+    for name in sorted(found):
+        lines = [f"DIRECTION {directions.get(name, 'inout').upper()}", f"USE {USES.get(name, 'SIGNAL')}"]
+        lines += _antenna(charges[name]) if name in charges else ()
+        boxes = [Rectangles(metal.lef, [write.um(pin, layout.dbu)]) for metal, pin in found[name]]
+        pins.append(write.Pin(name, lines, boxes))
     distance, obstructions = round(max(tech.pin_pitch_um.values()) / layout.dbu), []
     for metal in tech.metals:
         near = db.Region()
@@ -99,13 +93,12 @@ def antennas(
         metal, pin = found[name][0]
         net = nets.l2n.probe_net(nets.metals[tech.metals.index(metal)], pin.center())
         if net is not None:
-            sides = [
-                (of, nets.l2n.shapes_of_net(net, region, True).merged().perimeter() * layout.dbu * of.thickness_um)
-                for of, region in zip(tech.metals, nets.metals, strict=True)
-            ]
-            charges[name] = Charge(
-                area(net, nets.gate), area(net, nets.diffusion), [(of, side) for of, side in sides if side]
-            )
+            sides = []
+            for of, region in zip(tech.metals, nets.metals, strict=True):
+                perimeter = nets.l2n.shapes_of_net(net, region, True).merged().perimeter()
+                if side := perimeter * layout.dbu * of.thickness_um:
+                    sides.append((of, side))
+            charges[name] = Charge(area(net, nets.gate), area(net, nets.diffusion), sides)
     return charges
 
 

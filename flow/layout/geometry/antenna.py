@@ -28,13 +28,11 @@ def connected(
 ) -> Iterator[Connected]:
     """Yield the nets joined by the layers up to each of ``levels``. One is void as soon as the next is asked for."""
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, top, []))
-    poly, active, contact = (
-        l2n.make_polygon_layer(layout.layer(*pair), name)
-        for name, pair in (("poly", tech.poly), ("active", tech.active), ("contact", tech.contact))
-    )
+    named = (("poly", tech.poly), ("active", tech.active), ("contact", tech.contact))
+    poly, active, contact = (l2n.make_polygon_layer(layout.layer(*pair), name) for name, pair in named)
     gate, diffusion = poly & active, active - poly
-    for name, made in (("gate", gate), ("diffusion", diffusion)):
-        l2n.register(made, name)
+    l2n.register(gate, "gate")
+    l2n.register(diffusion, "diffusion")
     joined = (poly, poly), (contact, contact), (poly, contact), (gate, gate), (diffusion, diffusion), (poly, gate)
     for a, b in (*joined, (diffusion, contact)):
         l2n.connect(a, b)
@@ -66,8 +64,7 @@ def violations(
         factors = (0.0, metal.thickness_um) if tech.antenna_walls else (1.0, 0.0)  # of the metal's area, its edges
         bad = db.Region()
         for ratio, by_diffusion in ((metal.antenna_ratio, SAFE), (base, more)):
-            bad += nets.l2n.antenna_check(
-                nets.gate, 1.0, 0.0, nets.metals[-1], *factors, ratio, [[nets.diffusion, by_diffusion]]
-            )
+            diodes = [[nets.diffusion, by_diffusion]]
+            bad += nets.l2n.antenna_check(nets.gate, 1.0, 0.0, nets.metals[-1], *factors, ratio, diodes)
         found[level] = db.Region(list(bad.each()))  # no longer of the extraction, which goes on
     return found

@@ -11,9 +11,8 @@ Boxes = npt.NDArray[np.int64]  # (n, 4) of the same, further columns possible
 
 def boxes(region: "db.Region") -> Boxes:
     """The merged ``region`` in boxes: array (n, 4)."""
-    found = [
-        part.bbox()
-        for polygon in region.merged().each()
-        for part in ([polygon] if polygon.is_box() else polygon.decompose_trapezoids())
-    ]
+    found = []
+    for polygon in region.merged().each():
+        parts = [polygon] if polygon.is_box() else polygon.decompose_trapezoids()
+        found += [part.bbox() for part in parts]
     return np.array([(p.left, p.bottom, p.right, p.top) for p in found], int).reshape(-1, 4)

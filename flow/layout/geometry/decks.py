@@ -58,7 +58,5 @@ def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
     for metal in tech.metals:
         if metal.min_hole_um2:
             yield f"{metal.name} = input({metal.layer}, {metal.datatype})"
-            yield (
-                f'{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output("{metal.name} hole", '
-                f'"{metal.name} minimum area of a hole")'
-            )
+            report = f'"{metal.name} hole", "{metal.name} minimum area of a hole"'
+            yield f"{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output({report})"

@@ -46,10 +46,8 @@ class Room:
 
     def take(self, places: Boxes, around: int) -> None:
         """Take the boxes ``places`` and what is nearer to them than ``around``."""
-        first, last = (
-            np.clip(at, 0, self.taken.shape)
-            for at in self._pixels(places + np.array((-around, -around, around, around)))
-        )
+        pixels = self._pixels(places + np.array((-around, -around, around, around)))
+        first, last = (np.clip(at, 0, self.taken.shape) for at in pixels)
         change = np.zeros(np.array(self.taken.shape) + 1, np.int32)
         for (x, y), sign in (((first, first), 1), ((last, first), -1), ((first, last), -1), ((last, last), 1)):
             np.add.at(change, (x[:, 0], y[:, 1]), sign)
@@ -58,10 +56,8 @@ class Room:
     def squares(self, side: int, pitch: int, margin: int) -> Boxes:
         """Boxes of the free squares on a grid of ``pitch``, ``margin`` from the edge, in rows from below."""
         sums = np.pad(self.taken.cumsum(0, np.int32).cumsum(1, np.int32), ((1, 0), (1, 0)))
-        x, y = (
-            np.arange(-(-margin // pitch) * pitch, end - begin - side - margin + 1, pitch) + begin
-            for begin, end in ((self.box[0], self.box[2]), (self.box[1], self.box[3]))
-        )
+        begin, sides, first = self.corner, np.array(self.box[2:]) - self.corner, -(-margin // pitch) * pitch
+        x, y = (np.arange(first, sides[k] - side - margin + 1, pitch) + begin[k] for k in (0, 1))
         x, y = (at.ravel() for at in np.meshgrid(x, y))
         places = np.stack((x, y, x + side, y + side), 1)
         (left, bottom), (right, top) = (at.T for at in self._pixels(places))

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise, product
 from typing import Any
 
 from models.parameters import ParameterError
@@ -43,23 +43,13 @@ def place_macros(
         bottom = round(along * (height - macro.height_um) / row / 2) * 2 * row  # even: rails in line with rows'
         top = bottom + macro.height_um
         if left < 0 or bottom < 0 or top > height + 1e-6:
-            raise ParameterError(
-                f"utilization: {name} of {macro.width_um} x {macro.height_um} um does not fit into "
-                f"{width} x {height} um"
-            )
+            size = f"{macro.width_um} x {macro.height_um} um"
+            raise ParameterError(f"utilization: {name} of {size} does not fit into {width} x {height} um")
         beside, above = (rows * row for rows in HALO_ROWS)
         outer = left, max(0, bottom - above), left + wide, min(height, top + above)
-        made.append(
-            {
-                "instance": name,
-                "cell": macro.name,
-                "x_um": round(left + beside, 4),
-                "y_um": round(bottom, 4),
-                "width_um": macro.width_um,
-                "height_um": macro.height_um,
-                "outer": [round(value, 4) for value in outer],
-            }
-        )
+        place = {"instance": name, "cell": macro.name, "x_um": round(left + beside, 4), "y_um": round(bottom, 4)}
+        size = {"width_um": macro.width_um, "height_um": macro.height_um}
+        made.append(place | size | {"outer": [round(value, 4) for value in outer]})
     ends = sorted((block["outer"][0], block["outer"][2], block["instance"]) for block in made)
     edges = [(0, 0, "the west edge"), *ends, (width, 0, "the east edge")]
     for (_, end, name), (begin, _, other) in pairwise(edges):
@@ -72,17 +62,11 @@ def largest_free(width: float, height: float, outers: Sequence[Sequence[float]])
     """The largest box of the core that meets none of ``outers``, no longer than TREE_ASPECT times its other side."""
     x = sorted({0.0, width, *(v for box in outers for v in (box[0], box[2]))})
     y = sorted({0.0, height, *(v for box in outers for v in (box[1], box[3]))})
-    boxes = [
-        _shorter(a, b, c, d)
-        for a in x
-        for c in x
-        if c > a
-        for b in y
-        for d in y
-        if d > b
-        if not any(a < o[2] and o[0] < c and b < o[3] and o[1] < d for o in outers)
-    ]
-    return max(boxes, key=lambda box: (box[2] - box[0]) * (box[3] - box[1]))
+    free = []
+    for (left, right), (low, high) in product(combinations(x, 2), combinations(y, 2)):
+        if not any(left < o[2] and o[0] < right and low < o[3] and o[1] < high for o in outers):
+            free.append(_shorter(left, low, right, high))
+    return max(free, key=lambda box: (box[2] - box[0]) * (box[3] - box[1]))
 
 
 def _shorter(left: float, bottom: float, right: float, top: float) -> list[float]:

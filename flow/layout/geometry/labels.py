@@ -52,11 +52,8 @@ def _clear_pins(shapes: "db.Shapes", places: Iterable["db.Vector"]) -> None:
     Coriolis marks all segments of a port's net as pins, also those that `reroute` moved; decks take a pin for metal.
     """
     boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]
-    smallest = [
-        min((box for box in boxes if box.contains(db.Point() + place)), key=db.Box.area, default=None)
-        for place in places
-    ]
     for shape in list(shapes.each(db.Shapes.SAll - db.Shapes.STexts)):
         shape.delete()
-    for box in filter(None, smallest):
-        shapes.insert(box)
+    for place in places:
+        if around := [box for box in boxes if box.contains(db.Point() + place)]:
+            shapes.insert(min(around, key=db.Box.area))

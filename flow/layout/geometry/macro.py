@@ -41,17 +41,13 @@ class Macro:
         names = {metal.lef: metal.name for metal in tech.metals}
         straps = sorted(((box[0] + box[2]) / 2, net) for net in SUPPLIES for _, box in found.pins[net].boxes)
         pins = {name: pin for name, pin in found.pins.items() if name not in SUPPLIES}
-        best = {
-            name: _best(pin.boxes, [box for other, of in pins.items() if other != name for _, box in of.boxes])
-            for name, pin in pins.items()
-        }
-        return cls(
-            found.name,
-            found.width_um,
-            found.height_um,
-            {name: MacroPin(pins[name].direction.lower(), names[layer], box) for name, (layer, box) in best.items()},
-            tuple((net, round(x, 4)) for x, net in straps),
-        )
+        best = {}
+        for name, pin in pins.items():
+            others = [box for other, of in pins.items() if other != name for _, box in of.boxes]
+            layer, box = _best(pin.boxes, others)
+            best[name] = MacroPin(pin.direction.lower(), names[layer], box)
+        supplies = tuple((net, round(x, 4)) for x, net in straps)
+        return cls(found.name, found.width_um, found.height_um, best, supplies)
 
 
 def _best(pieces: Sequence[tuple[str, Box]], others: Sequence[Box]) -> tuple[str, Box]:
@@ -59,10 +55,7 @@ def _best(pieces: Sequence[tuple[str, Box]], others: Sequence[Box]) -> tuple[str
 
     def rank(piece: tuple[str, Box]) -> tuple[bool, float, float]:
         left, bottom, right, top = piece[1]
-        away = min(
-            (abs(bottom + top - low - high) for west, low, east, high in others if (west <= 0) == (left <= 0)),
-            default=0,
-        )
-        return top - bottom < 2 * EDGE_UM, round(away, 3), right - left
+        gaps = (abs(bottom + top - low - high) for west, low, _, high in others if (west <= 0) == (left <= 0))
+        return top - bottom < 2 * EDGE_UM, round(min(gaps, default=0), 3), right - left
 
     return max(pieces, key=rank)

@@ -47,9 +47,8 @@ def insert_macros(
         box, (left, bottom, *_) = layout.cell(f"{MACRO}{number}"), macro["outer"]
         for part in (*tech.metals, *tech.vias):
             layer = layout.layer(*part.gds)
-            top.shapes(layer).insert(
-                db.Region(box.shapes(layer)).moved(round(left / layout.dbu), round(bottom / layout.dbu))
-            )
+            x, y = round(left / layout.dbu), round(bottom / layout.dbu)
+            top.shapes(layer).insert(db.Region(box.shapes(layer)).moved(x, y))
         layout.prune_cell(box.cell_index(), -1)
         if layout.cell(macro["cell"]) is None:
             layout.read(str(path), options)

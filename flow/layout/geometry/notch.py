@@ -16,15 +16,10 @@ def fill(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: M
     for of in metals:
         layer = layout.layer(*of.gds)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
-        found = [
-            db.Polygon(pair.bbox())
-            for pair in metal.notch_check(round(spaces[of.name] / layout.dbu), False, db.Region.Projection).each()
-        ]
-        found += [
-            hole
-            for hole in (metal + db.Region(found)).merged().holes().each()
-            if hole.area() * layout.dbu**2 < of.min_hole_um2
-        ]
+        narrow = metal.notch_check(round(spaces[of.name] / layout.dbu), False, db.Region.Projection)
+        found = [db.Polygon(pair.bbox()) for pair in narrow.each()]
+        holes = (metal + db.Region(found)).merged().holes()
+        found += [hole for hole in holes.each() if hole.area() * layout.dbu**2 < of.min_hole_um2]
         for polygon in found:
             top.shapes(layer).insert(polygon)
         filled += len(found)

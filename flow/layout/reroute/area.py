@@ -56,14 +56,8 @@ def _longer(view: NetView, level: int, box: "db.Box", lack: int, alone: bool) ->
     ``alone``, must; else of what is fixed. None without one."""
     wide = -(-lack // box.height()) // 10 * 10 + 10
     high = -(-lack // box.width()) // 10 * 10 + 10
-    made = [
-        _corners(box, left=wide),
-        _corners(box, right=wide),
-        _corners(box, left=wide // 2, right=wide // 2),
-        _corners(box, bottom=high),
-        _corners(box, top=high),
-        _corners(box, bottom=high // 2, top=high // 2),
-    ]
-    return next(
-        (one for others in ([True] if alone else [True, False]) for one in made if view.clear(level, one, others)), None
-    )
+    across = [(wide, 0, 0, 0), (0, 0, wide, 0), (wide // 2, 0, wide // 2, 0)]
+    along = [(0, high, 0, 0), (0, 0, 0, high), (0, high // 2, 0, high // 2)]
+    made = [_corners(box, *sides) for sides in across + along]
+    allowed = (one for others in ([True] if alone else [True, False]) for one in made if view.clear(level, one, others))
+    return next(allowed, None)

@@ -1,7 +1,7 @@
 """A routed layout whose nets can be ripped up and rerouted, net by net."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, TypedDict
+from typing import Any, TypedDict, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,11 @@ from .route import Point, Route
 from .rules import RoutingRules
 
 BOX_AND_NET = 5  # columns
+Key = TypeVar("Key")
 Layers = dict[int, Boxes]  # boxes by level of RoutingRules.layers
+
+
+Owners = dict[tuple[str, Key], str]  # nets by layer and box or point
 
 
 class NetShapes(TypedDict):
@@ -103,10 +107,8 @@ class Board:
         layout, found = self.layout.dup(), {}
         top, reach = layout.top_cell(), max(layer.space for layer in self.rules.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
-        outlines = [inst.bbox() for inst in top.each_inst()]
-        places = np.array(
-            [(box.left, box.bottom, box.right, box.top, number) for number, box in enumerate(outlines)], int
-        ).reshape(-1, BOX_AND_NET)
+        outlines = [(box.left, box.bottom, box.right, box.top) for box in (inst.bbox() for inst in top.each_inst())]
+        places = np.array([(*box, number) for number, box in enumerate(outlines)], int).reshape(-1, BOX_AND_NET)
         kept = set()
         for name, box in (made for net in nets for made in self.boxes[net]):
             around = box[0] - reach, box[1] - reach, box[2] + reach, box[3] + reach
@@ -127,13 +129,8 @@ class Board:
 
     def touching(self, nets: Iterable[str]) -> set[str]:
         """Names of all nets with a segment that touches one of ``nets``, these too."""
-        return {
-            self.nets[number]
-            for net in nets
-            for name, box in self.boxes[net]
-            if name in self.levels
-            for number in self.owners(self.routed, self.levels[name], box)
-        }
+        boxes = [(self.levels[name], box) for net in nets for name, box in self.boxes[net] if name in self.levels]
+        return {self.nets[number] for level, box in boxes for number in self.owners(self.routed, level, box)}
 
     def owners(self, routed: Layers, level: int, box: Box) -> list[int]:
         """Numbers of the nets with a segment that touches ``box``; routed: this board's, now or earlier."""
@@ -143,11 +140,8 @@ class Board:
         """Names of the nets with a box whose middle is in ``polygon``, KLayout's text; routed: see `owners`."""
         outline = db.Polygon.from_s(polygon)
         box = outline.bbox()
-        return {
-            self.nets[number]
-            for *ends, number in overlapping(routed[level], (box.left, box.bottom, box.right, box.top)).tolist()
-            if outline.inside(db.Point(*middle(ends)))
-        }
+        found = overlapping(routed[level], (box.left, box.bottom, box.right, box.top)).tolist()
+        return {self.nets[number] for *ends, number in found if outline.inside(db.Point(*middle(ends)))}
 
 
 def overlapping(boxes: Boxes, box: Box) -> Boxes:
@@ -167,9 +161,7 @@ def _touching(boxes: Boxes, left: int, bottom: int, right: int, top: int) -> npt
     return found[:count]
 
 
-def _claims(
-    shapes: Mapping[str, NetShapes],
-) -> tuple[dict[tuple[str, Box], str], dict[tuple[str, Point], str], set[tuple[str, Box]]]:
+def _claims(shapes: Mapping[str, NetShapes]) -> tuple[Owners[Box], Owners[Point], set[tuple[str, Box]]]:
     """Return who owns a shape: nets by (layer, box) of a segment and by (layer, middle) of a pad or via; the pins.
 
     Pads are in the middles of vias and at the ends of segments.

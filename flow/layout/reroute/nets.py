@@ -75,9 +75,8 @@ def _connected(view: NetView, accesses: Sequence[Accesses], margin: int, jumpers
         route.draw(view.rules, path)
         tree |= dict.fromkeys(path)
         for other in left:
-            nearest[other] = min(
-                nearest[other], _nearest(view, waiting[other], np.array(path)), key=lambda found: found[0]
-            )
+            closer = _nearest(view, waiting[other], np.array(path))
+            nearest[other] = closer if closer[0] < nearest[other][0] else nearest[other]
     return route
 
 
@@ -110,20 +109,16 @@ def _jumper(window: Window, accesses: Accesses) -> Accesses:
     """
     top = len(window.rules.layers) - 1
     free, vias = window.metals[top] == 0, window.vias[top - 1] == 0
-    right, up = (
-        (-(-JUMPER_NM // window.dx), 0) if window.rules.layers[top].horizontal else (0, -(-JUMPER_NM // window.dy))
-    )
-    places = {}
+    right, up = -(-JUMPER_NM // window.dx), -(-JUMPER_NM // window.dy)
+    right, up = (right, 0) if window.rules.layers[top].horizontal else (0, up)
+    places, (west, south) = {}, window.first
     for _, i, j in list(accesses)[:1]:
-        i, j = i - window.first[0], j - window.first[1]
+        i, j = i - west, j - south
         for column in range(max(right, i - REACH), min(window.shape[0] - right, i + REACH)):
             for row in range(max(up, j - REACH), min(window.shape[1] - up, j + REACH)):
                 for x, y in ((column + right, row + up), (column - right, row - up)) if vias[column, row] else ():
                     if vias[x, y] and free[min(x, column) : max(x, column) + 1, min(y, row) : max(y, row) + 1].all():
-                        here, end = (
-                            (top, a + window.first[0], b + window.first[1]) for a, b in ((column, row), (x, y))
-                        )
-                        places[here] = end
+                        places[top, column + west, row + south] = top, x + west, y + south
     path = search(window, accesses, places) if places else None
     if path is None:
         return {}
@@ -156,9 +151,8 @@ def _accesses(window: Window, pin: Pin) -> Accesses:
                 place = max(level, CELL_PINS + 1), i, j
                 access = _access(window, level, point, window.at(i, j)) if window.inside(place) else None
                 if access:
-                    congestion = sum(
-                        window.congestion(at, box) for at, boxes in access.segments.items() for box in boxes
-                    )
+                    boxes = [(at, box) for at, boxes in access.segments.items() for box in boxes]
+                    congestion = sum(window.congestion(at, box) for at, box in boxes)
                     found.setdefault(congestion, {})[place] = access
     return found[min(found)] if found else {}
 

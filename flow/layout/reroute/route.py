@@ -56,11 +56,9 @@ class Route:
         """(layer, length_um, width_um) of the segments and vias, as coriolis.dump.segments has them."""
         layers = rules.layers
         made = [(layers[level].name, nm / 1000, layers[level].width / 1000) for level, nm in self.lengths.items()]
-        return made + [
-            (f"{layers[level].name}_{rules.vias[level].name}_{layers[level + 1].name}", 0, 0)
-            for level, points in self.vias.items()
-            for _ in points
-        ]
+        for level, points in self.vias.items():
+            made += [(f"{layers[level].name}_{rules.vias[level].name}_{layers[level + 1].name}", 0, 0)] * len(points)
+        return made
 
 
 def around(low: Point, high: Point, half: tuple[int, int]) -> Box:

@@ -13,6 +13,7 @@ from .window import Costs, Window
 WRONG_WAY = 3  # cost of a step against the preferred direction of a layer, in steps along it
 VIA_NM = 2000  # cost of a via, as that of so long a segment
 Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
 
 
 def search(
@@ -41,30 +42,15 @@ def search(
     wanted = np.zeros(metals.size, np.bool_)
     wanted[np.ravel_multi_index(tuple(ends.T), shape)] = True
     box = np.array((ends[:, 1].min(), ends[:, 1].max(), ends[:, 2].min(), ends[:, 2].max()))
-    path = _search(
-        metals.ravel(),
-        vias.ravel(),
-        np.array(shape),
-        np.ravel_multi_index(tuple(begins.T), shape),
-        wanted,
-        box,
-        steps,
-        np.array((window.dx, window.dy)),
-    )
+    starts, pitch = np.ravel_multi_index(tuple(begins.T), shape), np.array((window.dx, window.dy))
+    path = _search(metals.ravel(), vias.ravel(), np.array(shape), starts, wanted, box, steps, pitch)
     places = np.transpose(np.unravel_index(path[::-1], shape)) + corner
     return [(int(level), int(i), int(j)) for level, i, j in places] or None
 
 
 @njit(cache=True)
 def _search(
-    metals: Costs,
-    vias: Costs,
-    shape: Ints,
-    sources: Ints,
-    ends: npt.NDArray[np.bool_],
-    box: Ints,
-    steps: Ints,
-    pitch: Ints,
+    metals: Costs, vias: Costs, shape: Ints, sources: Ints, ends: Flags, box: Ints, steps: Ints, pitch: Ints
 ) -> Ints:
     """Numbers of the places of the path, from its end to its begin; none without one."""
     levels, columns, rows = shape

@@ -51,9 +51,8 @@ def find(
         layer = rules.layers[level]
         metal = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype)))
         spacing += [(level, _ends(pair.first), _ends(pair.second)) for pair in metal.space_check(layer.space).each()]
-    charged = [
-        (level, str(polygon)) for level, bad in antennas(layout, top, tech, levels).items() for polygon in bad.each()
-    ]
+    bad = antennas(layout, top, tech, levels).items()
+    charged = [(level, str(polygon)) for level, region in bad for polygon in region.each()]
     return Violations(tuple(spacing), tuple(charged))
 
 

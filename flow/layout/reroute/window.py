@@ -23,10 +23,8 @@ class NetView:
         self.board, self.rules, self.fixed = board, board.rules, dict(board.fixed)
         for level, boxes in own.items():
             for left, bottom, right, top in boxes:
-                fixed = self.fixed[level]
-                self.fixed[level] = fixed[
-                    (fixed[:, 0] >= right) | (fixed[:, 2] <= left) | (fixed[:, 1] >= top) | (fixed[:, 3] <= bottom)
-                ]
+                a, b, c, d = self.fixed[level].T
+                self.fixed[level] = self.fixed[level][(a >= right) | (c <= left) | (b >= top) | (d <= bottom)]
 
     def block(self, level: int, box: Box) -> None:
         """Let ``box`` (nm), the net's own, be an obstacle to its other segments."""
@@ -35,25 +33,21 @@ class NetView:
     def clear(self, level: int, box: Box, others: bool = False) -> bool:
         """Whether nothing fixed, nor any net with ``others``, is nearer to ``box`` (nm) than the least space."""
         reach = self.reach(level, box)
-        return not len(overlapping(self.fixed[level], reach)) and not (
-            others and len(overlapping(self.board.routed[level], reach))
-        )
+        layers = (self.fixed, self.board.routed) if others else (self.fixed,)
+        return not any(len(overlapping(boxes[level], reach)) for boxes in layers)
 
     def conflicts(self, route: Route) -> tuple[set[str], list[tuple[int, Box]]]:
         """Return the board's nets that are nearer to ``route`` than the least space, and (level, box) of where."""
         nets, places = set(), []
         for level, boxes in route.segments.items():
             ends = np.array(boxes)
-            routed = overlapping(
-                self.board.routed[level], self.reach(level, (*ends[:, :2].min(0), *ends[:, 2:].max(0)))
-            )
+            around = self.reach(level, (*ends[:, :2].min(0), *ends[:, 2:].max(0)))
+            routed = overlapping(self.board.routed[level], around)
             for box in boxes:
-                reach = self.reach(level, box)
+                a, b, c, d = reach = self.reach(level, box)
                 for left, bottom, right, top, number in overlapping(routed, reach).tolist():
                     nets.add(self.board.nets[number])
-                    places.append(
-                        (level, (max(left, reach[0]), max(bottom, reach[1]), min(right, reach[2]), min(top, reach[3])))
-                    )
+                    places.append((level, (max(left, a), max(bottom, b), min(right, c), min(top, d))))
         return nets, places
 
     def reach(self, level: int, box: Box) -> Box:
@@ -81,15 +75,11 @@ class Window:
         levels = range(1, len(self.rules.layers))
         board = view.board
         self._fixed: Layers = {level: overlapping(view.fixed[level], reach) for level in levels}
-        self._others: Layers = {
-            level: overlapping(np.vstack([board.routed[level][:, :4], board.history[level]]), reach) for level in levels
-        }
+        others = {level: np.vstack([board.routed[level][:, :4], board.history[level]]) for level in levels}
+        self._others: Layers = {level: overlapping(boxes, reach) for level, boxes in others.items()}
         self.metals = {level: self._costs([(level, self.rules.layers[level].half)]) for level in levels}
-        self.vias = {
-            level: self._costs([(level, via.below), (level + 1, via.above)])
-            for level, via in enumerate(self.rules.vias)
-            if level
-        }
+        vias = list(enumerate(self.rules.vias))[1:]
+        self.vias = {level: self._costs([(level, via.below), (level + 1, via.above)]) for level, via in vias}
 
     def clear(self, level: int, box: Box) -> bool:
         """Whether nothing fixed is nearer to ``box`` (nm), which is in the window, than the least space."""
@@ -109,11 +99,8 @@ class Window:
 
     def near(self, x: int, y: int) -> list[tuple[int, int]]:
         """Places (i, j) around a point: at most four."""
-        return [
-            (x // self.dx + a, y // self.dy + b)
-            for a in range(1 + bool(x % self.dx))
-            for b in range(1 + bool(y % self.dy))
-        ]
+        columns = range(x // self.dx, -(-x // self.dx) + 1)
+        return [(i, j) for i in columns for j in range(y // self.dy, -(-y // self.dy) + 1)]
 
     def _costs(self, parts: Sequence[tuple[int, tuple[int, int]]]) -> Costs:
         """Cost of each place for boxes there, ``parts``: list of (level, half of the box's size)."""
