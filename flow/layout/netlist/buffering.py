@@ -93,12 +93,8 @@ def estimated(
     """
     ports = {n: (x, (k + 0.5) / len(nets)) for x, nets in enumerate(sides.values()) for k, n in enumerate(nets)}
     nets: dict[str, int] = {}
-    branches = [
-        (number, len(instances) + nets.setdefault(net, len(nets)))
-        for number, instance in enumerate(instances)
-        for net in instance.pins.values()
-        if net not in left_out
-    ]
+    pins = [(k, net) for k, i in enumerate(instances) for net in i.pins.values() if net not in left_out]
+    branches = [(k, len(instances) + nets.setdefault(net, len(nets))) for k, net in pins]
     size = len(instances) + len(nets)
     held = {len(instances) + number: ports[net] for net, number in nets.items() if net in ports}
     one, other = np.array(branches).T

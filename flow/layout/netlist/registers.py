@@ -17,6 +17,8 @@ from base.steps import StepError
 from .netlist import named_bits
 
 Bit = int | str  # of Yosys's JSON: a net, or a constant '0', '1', 'x'
+Given = Mapping[Bit, Bit]  # by Q bit what a register is assumed to hold: '0', '1' or a Q bit
+Fixed = Mapping[str, str] | None  # '0' or '1' by the name of the input
 
 # Yosys's simple gates: their pins, rows of BLIF's .names, and what they compute with all lanes of a number at once
 GATES: dict[str, tuple[str, list[str], Callable[..., int]]] = {
@@ -182,12 +184,7 @@ class Cut:
         return {name for name, cone in cones.items() if any(isinstance(bit, str) for bit in cone)}
 
     def network(
-        self,
-        states: Mapping[Bit, str],
-        given: Mapping[Bit, Bit],
-        fixed: Mapping[str, str] | None = None,
-        prefix: str = "",
-        x: str | None = None,
+        self, states: Mapping[Bit, str], given: Given, fixed: Fixed = None, prefix: str = "", x: str | None = None
     ) -> tuple[list[str], Callable[[Bit], str], int]:
         """Return (lines of BLIF, function bit -> net, number of x) of the cut design; other arguments: see `blif`.
 
@@ -215,17 +212,16 @@ class Cut:
     def blif(
         self,
         states: Mapping[Bit, str],
-        given: Mapping[Bit, Bit],
+        given: Given,
         checked: Mapping[str, Bit],
-        fixed: Mapping[str, str] | None = None,
+        fixed: Fixed = None,
         unknown: int = 0,
         more: Sequence[tuple[str, Sequence[str]]] = (),
     ) -> tuple[int, str]:
         """Return (number of x, the cut design as BLIF). Its inputs: those of the design, ``states``, ``unknown`` x.
 
-        states: names by Q bit. given: by Q bit '0', '1' or a Q bit, what a register is assumed to hold. checked: bits
-        or constants by the name of the output. fixed: '0' or '1' by the name of the input. more: (name, lines) of
-        further outputs.
+        states: names by Q bit. checked: bits or constants by the name of the output. more: (name, lines) of further
+        outputs.
         """
         lines, net, used = self.network(states, given, fixed)
         for name, bit in checked.items():

@@ -9,7 +9,7 @@ from numba import njit
 
 from base.gds import db
 
-from ..geometry.boxes import Box, Boxes, boxes
+from ..geometry.boxes import Box, Boxes, boxes, corners
 from .route import Point, Route
 from .rules import RoutingRules
 
@@ -47,15 +47,15 @@ class Board:
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*rules.layers, *rules.vias)}
         self._lift(shapes)
         self.routed: Layers = {level: self._owned(name) for name, level in self.levels.items()}
-        self.fixed: Layers = {level: self._fixed(name) for name, level in self.levels.items() if level}
+        left = {level: self.top.begin_shapes_rec(self.layers[name]) for name, level in self.levels.items() if level}
+        self.fixed: Layers = {level: boxes(db.Region(shapes)) for level, shapes in left.items()}
         self.history: Layers = {level: np.empty((0, 4), int) for level in self.fixed}
 
     def _lift(self, shapes: Mapping[str, NetShapes]) -> None:
         exact, middles, ports = _claims(shapes)
         for name, layer in self.layers.items():
             for shape in list(self.top.shapes(layer).each()):
-                drawn = shape.bbox()
-                box = drawn.left, drawn.bottom, drawn.right, drawn.top
+                box = corners(shape.bbox())
                 net = exact.get((name, box)) or middles.get((name, middle(box)))
                 if net and not shape.is_text() and (name, box) not in ports:
                     self.boxes[net].append((name, box))
@@ -65,10 +65,6 @@ class Board:
         """Boxes of all nets on a layer, each with the net's number: (n, 5)."""
         found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
         return np.array(found, int).reshape(-1, BOX_AND_NET)
-
-    def _fixed(self, name: str) -> Boxes:
-        """Boxes (n, 4) of what is left on a layer, in the cells, too."""
-        return boxes(db.Region(self.top.begin_shapes_rec(self.layers[name])))
 
     def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
         """Raise the history cost of ``places``, pairs (level, Box)."""
@@ -107,7 +103,7 @@ class Board:
         layout, found = self.layout.dup(), {}
         top, reach = layout.top_cell(), max(layer.space for layer in self.rules.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
-        outlines = [(box.left, box.bottom, box.right, box.top) for box in (inst.bbox() for inst in top.each_inst())]
+        outlines = [corners(inst.bbox()) for inst in top.each_inst()]
         places = np.array([(*box, number) for number, box in enumerate(outlines)], int).reshape(-1, BOX_AND_NET)
         kept = set()
         for name, box in (made for net in nets for made in self.boxes[net]):
@@ -139,8 +135,7 @@ class Board:
     def within(self, routed: Layers, level: int, polygon: str) -> set[str]:
         """Names of the nets with a box whose middle is in ``polygon``, KLayout's text; routed: see `owners`."""
         outline = db.Polygon.from_s(polygon)
-        box = outline.bbox()
-        found = overlapping(routed[level], (box.left, box.bottom, box.right, box.top)).tolist()
+        found = overlapping(routed[level], corners(outline.bbox())).tolist()
         return {self.nets[number] for *ends, number in found if outline.inside(db.Point(*middle(ends)))}
 
 

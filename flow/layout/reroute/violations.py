@@ -8,7 +8,7 @@ from base.gds import db, read_gds
 from platforms.coriolis import CoriolisPlatform
 
 from ..geometry.antenna import violations as antennas
-from ..geometry.boxes import Box
+from ..geometry.boxes import Box, corners
 from .board import Board, Layers
 from .rules import RoutingRules
 
@@ -50,7 +50,8 @@ def find(
     for level in filter(None, levels):  # the lowest is that of the cells' pins
         layer = rules.layers[level]
         metal = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype)))
-        spacing += [(level, _ends(pair.first), _ends(pair.second)) for pair in metal.space_check(layer.space).each()]
+        for pair in metal.space_check(layer.space).each():
+            spacing.append((level, corners(pair.first.bbox()), corners(pair.second.bbox())))
     bad = antennas(layout, top, tech, levels).items()
     charged = [(level, str(polygon)) for level, region in bad for polygon in region.each()]
     return Violations(tuple(spacing), tuple(charged))
@@ -67,8 +68,3 @@ def split_levels(rules: RoutingRules, jobs: int) -> list[list[int]]:
     for level in levels:
         min(found, key=sum).append(level)
     return found
-
-
-def _ends(edge: "db.Edge") -> Box:
-    box = edge.bbox()
-    return box.left, box.bottom, box.right, box.top

@@ -22,10 +22,10 @@ class Antenna(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, layout = self.tech(), read_gds(inputs["gds"])
-        found = {
-            tech.metals[level].name: sorted({str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()})
-            for level, bad in violations(layout, layout.top_cell(), tech).items()
-        }
+        found = {}
+        for level, bad in violations(layout, layout.top_cell(), tech).items():
+            boxes = {str(polygon.bbox().to_dtype(layout.dbu)) for polygon in bad.each()}
+            found[tech.metals[level].name] = sorted(boxes)
         outputs["summary"].write_text(json.dumps(found, indent=1) + "\n")
         return {"antenna_violations": sum(map(len, found.values()))}
 

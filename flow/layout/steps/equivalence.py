@@ -72,12 +72,9 @@ class Equivalence(Step[EquivalenceParameters]):
         }
         outputs["summary"].write_text(json.dumps({"proofs": proofs, "missing": lacking}, indent=1) + "\n")
         constants = sum(value in ("0", "1") for value in held.values())
-        return {
-            "equivalence": "proven" if proofs and all(proofs.values()) else "failed",
-            "registers": len(states),
-            "constant_registers": constants,
-            "double_registers": len(held) - constants,
-        }
+        verdict = "proven" if proofs and all(proofs.values()) else "failed"
+        found = {"constant_registers": constants, "double_registers": len(held) - constants}
+        return {"equivalence": verdict, "registers": len(states), **found}
 
     def cut(self, script: str, path: Path, **files: Path) -> Cut:
         """The design as a Cut, by the Yosys commands ``script``."""

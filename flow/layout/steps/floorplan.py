@@ -14,6 +14,7 @@ from ..geometry.macro import Macro
 from ..netlist.netlist import Netlist
 from ..netlist.pins import pins
 
+AREAS = ("core_area_um2", "macro_area_um2")
 CLOCK_CELLS_SHARE = 0.06  # of the cells' area, for the clock tree's buffers to come
 
 
@@ -47,14 +48,7 @@ class Floorplan(Step[FloorplanParameters]):
     name = "floorplan"
     inputs = {"netlist": "synthesis.netlist", "areas": "library.areas", "geometry": "library.geometry"}
     outputs = {"floorplan": "floorplan.json"}
-    metrics = {
-        "rows": "",
-        "columns": "",
-        "width_um": "um",
-        "height_um": "um",
-        "core_area_um2": "um2",
-        "macro_area_um2": "um2",
-    }
+    metrics = {"rows": "", "columns": "", "width_um": "um", "height_um": "um", **dict.fromkeys(AREAS, "um2")}
 
     def __init__(self, parameters: FloorplanParameters) -> None:
         super().__init__(parameters)
@@ -75,10 +69,8 @@ class Floorplan(Step[FloorplanParameters]):
         tree = largest_free(width, height, [macro["outer"] for macro in placed])
         plan = size | {"pins": pins(netlist.ports), "macros": placed, "tree": tree}
         outputs["floorplan"].write_text(json.dumps(plan, indent=1))
-        return size | {
-            "core_area_um2": round(width * height, 2),
-            "macro_area_um2": round(sum(macro.width_um * macro.height_um for _, macro, _ in macros), 2),
-        }
+        inside = sum(macro.width_um * macro.height_um for _, macro, _ in macros)
+        return size | dict(zip(AREAS, (round(width * height, 2), round(inside, 2)), strict=True))
 
     def check(self, netlist: Netlist, areas: dict[str, float], macros: dict[str, str]) -> None:
         """Raise StepError unless all cells have a layout and ``macros`` (cell by instance) are those in the netlist."""

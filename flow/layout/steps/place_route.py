@@ -25,7 +25,7 @@ from ..netlist.routed import placement, routed_netlist
 MODEL = "talbot_block"  # Coriolis works in lower case
 OPTIONS = ("effort", "density_variation", "strap_pitch_um", "events")  # in a request, as those of the technology
 OF_TECH = ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
-PHASES = ("clock_tree", "placement", "power", "routing")
+PHASES = ("clock_tree_s", "placement_s", "power_s", "routing_s")
 
 
 @dataclass(frozen=True)
@@ -69,15 +69,8 @@ class PlaceRoute(Step[PlaceRouteParameters]):
         "shapes": "shapes.json",
         "log": "coriolis.log",
     }
-    metrics = {
-        "routed": "",
-        "stopped": "",
-        "open_segments": "",
-        "wire_um": "um",
-        "vias": "",
-        "clock_buffers": "",
-        **{f"{name}_s": "s" for name in PHASES},
-    }
+    metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "vias": "", "clock_buffers": ""}
+    metrics |= dict.fromkeys(PHASES, "s")
     tools = ("python coriolis-eda", "python klayout")
 
     def __init__(self, parameters: PlaceRouteParameters) -> None:
@@ -109,7 +102,7 @@ class PlaceRoute(Step[PlaceRouteParameters]):
             "wire_um": round(sum(lengths), 1),
             "vias": lengths.count(0),
             "clock_buffers": cells - len(netlist.instances),
-            **{f"{name}_s": round(result["times"].get(name, 0), 2) for name in PHASES},
+            **{name: round(result["times"].get(name.removesuffix("_s"), 0), 2) for name in PHASES},
         }
 
     def coriolis(self, work: Path, blif: str, request: dict[str, Any], outputs: Files) -> dict[str, Any]:

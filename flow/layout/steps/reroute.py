@@ -16,6 +16,8 @@ from ..reroute.board import Board
 from ..reroute.negotiate import reroute
 from ..reroute.rules import RoutingRules
 
+COUNTS = ("open_nets", "rerouted_nets", "antenna_jumpers", "respaced_nets", "evicted_nets")
+
 
 @dataclass(frozen=True)
 class RerouteParameters:
@@ -51,14 +53,7 @@ class Reroute(Step[RerouteParameters]):
         "geometry": "library.geometry",
     }
     outputs = {"gds": "rerouted.gds", "placement": "placement.json"}
-    metrics = {
-        "open_nets": "",
-        "rerouted_nets": "",
-        "antenna_jumpers": "",
-        "respaced_nets": "",
-        "evicted_nets": "",
-        "wire_um": "um",
-    }
+    metrics = dict.fromkeys(COUNTS, "") | {"wire_um": "um"}
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -79,11 +74,7 @@ class Reroute(Step[RerouteParameters]):
         rerouted = set(found.routes) & set(left)
         jumped = set(found.routes) & found.charged - rerouted
         respaced = found.respaced - rerouted - jumped
-        return {
-            "open_nets": len(found.open),
-            "rerouted_nets": len(rerouted),
-            "antenna_jumpers": len(jumped),
-            "respaced_nets": len(respaced),
-            "evicted_nets": len(set(found.routes) - rerouted - jumped - respaced),
-            "wire_um": round(sum(length for net in placement["segments"].values() for _, length, _ in net), 1),
-        }
+        evicted = set(found.routes) - rerouted - jumped - respaced
+        counts = zip(COUNTS, map(len, (found.open, rerouted, jumped, respaced, evicted)), strict=True)
+        length = sum(length for net in placement["segments"].values() for _, length, _ in net)
+        return dict(counts) | {"wire_um": round(length, 1)}

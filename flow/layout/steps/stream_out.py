@@ -13,6 +13,8 @@ from ..geometry.labels import relabel
 from ..netlist.names import plain_names
 from ..netlist.netlist import SUPPLIES, Netlist
 
+COUNTS = ("instances", "trimmed", "grown", "notches")
+
 
 @dataclass(frozen=True)
 class StreamOutParameters:
@@ -42,15 +44,7 @@ class StreamOut(Step[StreamOutParameters]):
         "geometry": "library.geometry",
     }
     outputs = {"gds": "layout.gds", "verilog": "final.v", "spice": "reference.spi"}
-    metrics = {
-        "width_um": "um",
-        "height_um": "um",
-        "area_um2": "um2",
-        "instances": "",
-        "trimmed": "",
-        "grown": "",
-        "notches": "",
-    }
+    metrics = {"width_um": "um", "height_um": "um", "area_um2": "um2", **dict.fromkeys(COUNTS, "")}
     tools = ("python klayout",)
 
     def __init__(self, parameters: StreamOutParameters) -> None:
@@ -76,10 +70,6 @@ class StreamOut(Step[StreamOutParameters]):
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
         outputs["verilog"].write_text(flat.verilog())
         outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
-        box = top.dbbox()
-        return {
-            "width_um": round(box.width(), 3),
-            "height_um": round(box.height(), 3),
-            "area_um2": round(box.width() * box.height(), 2),
-            "instances": len(flat.instances),
-        } | changed
+        width, height = top.dbbox().width(), top.dbbox().height()
+        size = {"width_um": round(width, 3), "height_um": round(height, 3), "area_um2": round(width * height, 2)}
+        return size | {"instances": len(flat.instances)} | changed

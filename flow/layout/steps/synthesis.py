@@ -96,11 +96,8 @@ class Synthesis(Step[SynthesisParameters]):
         area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
         for name in ("json", "registers"):
             files[name].unlink()
-        return {
-            "cells": len(netlist.instances),
-            "cell_area_um2": round(area, 2),
-            "flip_flops": sum(is_register(i.cell) for i in netlist.instances),
-        }
+        registers = sum(is_register(i.cell) for i in netlist.instances)
+        return {"cells": len(netlist.instances), "cell_area_um2": round(area, 2), "flip_flops": registers}
 
 
 class TimedSynthesis(Synthesis):
