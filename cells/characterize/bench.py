@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import ModuleType, TracebackType
+from types import ModuleType
 from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
@@ -60,14 +60,12 @@ class Bench:
         self.volts = conditions.corner.supply
         levels = {n: level for n, level in process.SUPPLIES.items() if n in machine.netlist.ports}
         self.supplies = [n for n, level in levels.items() if level]
-        self.simulator = Simulator(
+        deck, corner = (
             circuit(machine.netlist, process, conditions.models, conditions.corner, leakage),
-            machine.inputs,
-            machine.outputs,
-            {n: v * self.volts for n, v in levels.items()},
-            conditions.corner.temperature,
-            conditions.settings,
+            conditions.corner,
         )
+        rails, settings = {n: v * self.volts for n, v in levels.items()}, conditions.settings
+        self.simulator = Simulator(deck, machine.inputs, machine.outputs, rails, corner.temperature, settings)
         self.pressed: dict[str, float] = {}
         self.middle: dict[str, float] = {}
         self._tail: dict[str, Tail] = {}
@@ -78,8 +76,8 @@ class Bench:
         self.simulator.__enter__()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        self.simulator.__exit__(kind, error, at)
+    def __exit__(self, *error: object) -> None:
+        self.simulator.__exit__(*error)
 
     @property
     def settling(self) -> float:
@@ -100,12 +98,11 @@ class Bench:
         loads: Mapping[str, float],
         pause: float | None = None,
         settings: Settings | None = None,
-        retry: bool = True,
     ) -> tuple[Wave, float]:
         """Bring the cell into ``state``, then drive it by ``edges``; returns the wave and the time at which they start.
 
         after: s simulated from then on. step: longest time step. loads: F at the outputs. pause: s between two input
-        vectors. settings, retry: see `Simulator.transient`.
+        vectors. settings: see `Simulator.transient`.
 
         A cell with storage starts from the levels of its nodes in ``state``; where the operating point is another, and
         where an output floats, input vectors are applied one after another.
@@ -114,15 +111,13 @@ class Bench:
         if "Z" not in state.outputs and state not in self._stubborn:
             nodes = [(n, v * self.volts) for n, v in state.nodes] if self.machine.sequential else ()
             points, start = self._stimulus((state.inputs,), pause, edges)
-            wave = self.simulator.transient(points, loads, start + after, step, nodes, settings, retry)
-            if all(
-                abs(wave.at(output, start) - int(level) * self.volts) < 0.1 * self.volts
-                for output, level in zip(self.machine.outputs, state.outputs, strict=True)
-            ):
+            wave = self.simulator.transient(points, loads, start + after, step, nodes, settings)
+            levels = zip(self.machine.outputs, state.outputs, strict=True)
+            if all(abs(wave.at(q, start) - int(level) * self.volts) < 0.1 * self.volts for q, level in levels):
                 return wave, start
             self._stubborn.add(state)
         points, start = self._stimulus(state.path, pause, edges)
-        return self.simulator.transient(points, loads, start + after, step, (), settings, retry), start
+        return self.simulator.transient(points, loads, start + after, step, (), settings), start
 
     def _stimulus(self, vectors: Sequence[Vector], pause: float, edges: Ramps) -> tuple[dict[str, Points], float]:
         """The sources, and the time at which ``edges`` start. vectors: applied one after another, every ``pause`` s."""
@@ -155,29 +150,20 @@ class Bench:
         ramp = self.conditions.ramp(slew)
         up = bool(change.after.outputs[self.machine.outputs.index(output)])
         tail = self.patience(output, load)
+        edges = {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]}
         for _ in range(DOUBLINGS):
-            step = (ramp + tail) / self.conditions.settings.steps
-            wave, start = self.run(
-                change.before,
-                {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]},
-                ramp + tail,
-                step,
-                {output: load},
-                pause=2 * tail + QUICK,
-            )
-            found = self._measure(wave, change, output, up, start, start + ramp + tail, load)
-            if found:
+            after, loads = ramp + tail, {output: load}
+            step = after / self.conditions.settings.steps
+            wave, start = self.run(change.before, edges, after, step, loads, pause=2 * tail + QUICK)
+            if found := self._measure(wave, change, output, up, start, start + ramp + tail, load):
                 base, rate = self._tail.get(output, Tail())
-                if load > 1e-15:
-                    self._tail[output] = Tail(base, max(rate, 3 * found.slew / load))
-                else:
-                    self._tail[output] = Tail(max(base, 2 * found.slew), rate)
+                heavy = load > 1e-15
+                rate, base = (max(rate, 3 * found.slew / load), base) if heavy else (rate, max(base, 2 * found.slew))
+                self._tail[output] = Tail(base, rate)
                 return found
             tail *= 2
-        pin = self.machine.inputs[change.pin]
-        raise SimulationError(
-            f"{self.cell.name}: {output} does not reach its level after {pin} changes", self.simulator.last
-        )
+        why = f"{self.cell.name}: {output} does not reach its level after {self.machine.inputs[change.pin]} changes"
+        raise SimulationError(why, self.simulator.last)
 
     def _measure(
         self, wave: Wave, change: Change, output: str, up: bool, start: float, stop: float, load: float

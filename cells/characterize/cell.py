@@ -31,11 +31,9 @@ def characterize(cell: Cell, process: ModuleType, conditions: Conditions) -> Mea
         for output, (_, loads, _) in axes.items():
             bench.middle[output] = _between(loads, 1 / 2)
             bench.pressed[output] = _between(loads, 2 / 3)
-        arcs = [
-            tried(f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}", _arc, bench, arc, *axes[arc.output][:2])
-            for arc in cell.arcs
-            if arc.output in axes and arc.type != LETS_GO
-        ]
+        edges = [arc for arc in cell.arcs if arc.output in axes and arc.type != LETS_GO]
+        names = [f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}" for arc in edges]
+        arcs = [tried(n, _arc, bench, a, *axes[a.output][:2]) for n, a in zip(names, edges, strict=True)]
         measured: Measured = {
             "name": cell.name,
             "failed": tried.failed,
@@ -67,19 +65,15 @@ def characterize(cell: Cell, process: ModuleType, conditions: Conditions) -> Mea
 
 def cpu_seconds() -> float:
     """CPU seconds of this process and of its children that have ended."""
-    return sum(
-        part.ru_utime + part.ru_stime
-        for part in map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    )
+    parts = map(resource.getrusage, (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(part.ru_utime + part.ru_stime for part in parts)
 
 
 def axes_of(bench: Bench, output: str) -> tuple[Axis, Axis, float]:
     """Slews, loads and interpolation error of ``output``; loads end where the slower edge reaches the longest slew."""
-    changes = [
-        arc.changes[0] for arc in bench.cell.arcs if arc.output == output and not arc.type.startswith("three_state")
-    ]
+    arcs = [arc for arc in bench.cell.arcs if arc.output == output and not arc.type.startswith("three_state")]
     number = bench.machine.outputs.index(output)
-    edges = list({change.after.outputs[number]: change for change in changes}.values())
+    edges = list({arc.changes[0].after.outputs[number]: arc.changes[0] for arc in arcs}.values())
     loads = delay.load_axis(bench.conditions, delay.largest_load(bench, edges, output))
     return refined(bench, edges, output, loads)
 

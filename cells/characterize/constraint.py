@@ -45,7 +45,6 @@ def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
     edge = "rising" if bool(storage.active) != (storage.kind == "latch") else "falling"
 
     def searched(pin: str, kind: str, rise: Sequence[Scenario], fall: Sequence[Scenario]) -> None:
-        """Search one constraint of a pin by its edges."""
         constraint: Constraint = {"pin": pin, "related": storage.clock, "type": kind, "slews": slews}
         if rise:
             constraint["rise"] = tried(f"{pin} rise: {kind}", _longest, bench, rise)
@@ -64,10 +63,9 @@ def constraints(bench: Bench, tried: Tries) -> list[Constraint]:
     pulses |= {(storage.clock, level) for level in ((0, 1) if storage.kind != "latch" else (storage.active,))}
     for pin in sorted({pin for pin, _ in pulses}):
         widths: Constraint = {"pin": pin, "related": pin, "type": "min_pulse_width", "slews": slews}
-        if (pin, 0) in pulses:
-            widths["fall"] = tried(f"{pin}: pulse to 0", _widths, bench, scenarios, pin, 0)
-        if (pin, 1) in pulses:
-            widths["rise"] = tried(f"{pin}: pulse to 1", _widths, bench, scenarios, pin, 1)
+        for level, pulse in ((0, "fall"), (1, "rise")):
+            if (pin, level) in pulses:
+                widths[pulse] = tried(f"{pin}: pulse to {level}", _widths, bench, scenarios, pin, level)
         found.append(widths)
     return [f for f in found if f.get("rise") is not None or f.get("fall") is not None]
 
@@ -97,10 +95,8 @@ def _time(bench: Bench, scenario: Scenario, clock_slew: float, data_slew: float,
     sign = -1 if scenario.early else 1
 
     def run(offset: float) -> float | None:
-        events = [
-            Event(scenario.clock, 0.0, scenario.clock_to, clock_slew),
-            Event(scenario.data, sign * offset, scenario.data_to, data_slew),
-        ]
+        clock = Event(scenario.clock, 0.0, scenario.clock_to, clock_slew)
+        events = [clock, Event(scenario.data, sign * offset, scenario.data_to, data_slew)]
         return outcome(bench, scenario.start, events, far, scenario.trigger, scenario.expected)
 
     return bisect(run, far, scenario.moves, bench.conditions.degrade, guess=guess)
@@ -148,20 +144,12 @@ def outcome(
     for pin, when, level, slew in events:
         ramp = c.ramp(slew)
         edges.setdefault(pin, []).append((far + when - ramp / 2, ramp, level))
-    output = bench.machine.outputs[0]
+    output, settings = bench.machine.outputs[0], replace(c.settings, reltol=RELTOL, timeout=PATIENCE)
     load = bench.pressed.get(output, c.least_load)
     after = max(t + ramp for line in edges.values() for t, ramp, _ in line) + bench.settling
     after += bench.patience(output, load)
     try:
-        wave, start = bench.run(
-            state,
-            edges,
-            after,
-            after / c.settings.steps,
-            {output: load},
-            settings=replace(c.settings, reltol=RELTOL, timeout=PATIENCE),
-            retry=False,
-        )
+        wave, start = bench.run(state, edges, after, after / c.settings.steps, {output: load}, settings=settings)
     except SimulationError:
         return None
     stop = start + after
@@ -196,7 +184,6 @@ def bisect(
     limit = easy + degrade * abs(easy) if moves else 0.0
 
     def kept(x: float) -> bool:
-        """Whether the constraint is kept at ``x``."""
         delay = run(x)
         return delay is not None and delay <= limit
 

@@ -26,11 +26,9 @@ def refined(bench: Bench, changes: Sequence[Change], output: str, loads: Sequenc
     c = bench.conditions
 
     def along_slew(change: Change, load: float) -> Line:
-        """Line through the table at one load."""
         return lambda slew: bench.edge(change, output, slew, load)
 
     def along_load(change: Change, slew: float) -> Line:
-        """Line through the table at one slew."""
         return lambda load: bench.edge(change, output, slew, load)
 
     slew_lines = [along_slew(change, load) for change in changes for load in (loads[1], loads[len(loads) // 2])]
@@ -59,8 +57,5 @@ def _halfway_error(line: Line, low: float, high: float) -> float:
     half = float(np.sqrt(low * high))
     share = (half - low) / (high - low)
     first, exact, last = line(low), line(half), line(high)
-    return max(
-        abs(getattr(first, name) * (1 - share) + getattr(last, name) * share - getattr(exact, name))
-        / max(abs(getattr(exact, name)), FLOOR)
-        for name in ("delay", "slew")
-    )
+    values = [[getattr(edge, name) for edge in (first, exact, last)] for name in ("delay", "slew")]
+    return max(abs(a * (1 - share) + b * share - middle) / max(abs(middle), FLOOR) for a, middle, b in values)

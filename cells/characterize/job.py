@@ -34,18 +34,10 @@ def cell_of(source: Source, process: ModuleType) -> Cell:
 
 def job(source: Source, conditions: Conditions, process: ModuleType) -> Job:
     """The job that characterizes ``source``; its inputs are netlist, conditions, ngspice and code, models too."""
-    name = f"{source.name}.{conditions.corner.name}.{conditions.models}"
-    return Job(
-        name,
-        _measure,
-        (source, conditions, process.__name__),
-        (
-            source.netlist,
-            json.dumps(asdict(conditions)),
-            code(process.__name__),
-            finish(["ngspice", "--version"]).stdout,
-        ),
-    )
+    name, module = f"{source.name}.{conditions.corner.name}.{conditions.models}", process.__name__
+    ngspice = finish(["ngspice", "--version"]).stdout
+    inputs = source.netlist, json.dumps(asdict(conditions)), code(module), ngspice
+    return Job(name, _measure, (source, conditions, module), inputs)
 
 
 def _measure(source: Source, conditions: Conditions, process: str) -> Measured:

@@ -13,10 +13,8 @@ def leakage(bench: Bench) -> list[tuple[list[int], list[Output], float]]:
         if (state.inputs, state.outputs) in found:
             continue
         wave, _ = bench.run(state, {}, HOLD, HOLD / 50, dict.fromkeys(machine.outputs, 0.0))
-        watts = sum(float(wave.current[rail][-1]) for rail in bench.supplies) * bench.volts
-        watts += sum(
-            float(wave.current[pin][-1]) * level * bench.volts
-            for pin, level in zip(machine.inputs, state.inputs, strict=True)
-        )
+        last = {node: float(current[-1]) for node, current in wave.current.items()}
+        watts = sum(last[rail] for rail in bench.supplies) * bench.volts
+        watts += sum(last[pin] * level * bench.volts for pin, level in zip(machine.inputs, state.inputs, strict=True))
         found[state.inputs, state.outputs] = watts
     return [(list(inputs), list(outputs), watts) for (inputs, outputs), watts in found.items()]

@@ -1,7 +1,7 @@
 """The types of what is measured of a cell: plain data that JSON holds, in SI units."""
 
 from collections.abc import Sequence
-from typing import NotRequired, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 from cells.netlist.function import Arc
 from cells.netlist.states import Output, State
@@ -52,8 +52,8 @@ class Measured(TypedDict):
     """Everything measured of one cell at one corner.
 
     largest_load, interpolation_error: of every output. capacitance: (rise, fall) of every input and of outputs that
-    float. quiet_energy: of every input, by edge and slew. leakage: (levels of
-    the inputs, of the outputs, W) of every state. wall_s: by the clock; cpu_s: of this process and ngspice.
+    float. quiet_energy: of every input, by edge and slew. leakage: (levels of the inputs, of the outputs, W) of every
+    state. wall_s: by the clock; cpu_s: of this process and ngspice.
     """
 
     name: str
@@ -76,16 +76,6 @@ def arc_tables(
     arc: Arc, slews: Sequence[float], loads: Sequence[float], state: State, delay: Rows, slew: Rows
 ) -> ArcTables:
     """Name the tables of ``arc``, measured in ``state``."""
-    return {
-        "pin": arc.pin,
-        "pin_edge": arc.pin_edge,
-        "output": arc.output,
-        "edge": arc.edge,
-        "type": arc.type,
-        "sense": arc.sense,
-        "slews": slews,
-        "loads": loads,
-        "state": list(state.inputs),
-        "delay": delay,
-        "slew": slew,
-    }
+    fields = ("pin", "pin_edge", "output", "edge", "type", "sense")
+    names: dict[str, Any] = {name: getattr(arc, name) for name in fields}
+    return ArcTables(**names, slews=slews, loads=loads, state=list(state.inputs), delay=delay, slew=slew)

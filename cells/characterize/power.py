@@ -28,11 +28,6 @@ def _energy(bench: Bench, change: Change, slew: float) -> float:
     ramp = bench.conditions.ramp(slew)
     after = ramp + bench.settling
     loads = dict.fromkeys(bench.machine.outputs, bench.conditions.least_load)
-    wave, start = bench.run(
-        change.before,
-        {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]},
-        after,
-        after / bench.conditions.settings.steps,
-        loads,
-    )
+    edges = {change.pin: [(0.0, ramp, change.after.inputs[change.pin])]}
+    wave, start = bench.run(change.before, edges, after, after / bench.conditions.settings.steps, loads)
     return bench.volts * sum(bench.moved(wave, rail, start - REST / 4, start + after) for rail in bench.supplies)

@@ -1,5 +1,6 @@
 """The states in which a constraint is measured, found from the cell's states."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from cells.netlist.function import Cell
@@ -40,12 +41,12 @@ class Scenarios:
 
     def _quiet(self, clock_level: int, but: int | None = None) -> list[State]:
         """States with the clock at a level, and set and reset idle (all but input number ``but``)."""
-        return [
-            s
-            for s in self.states
-            if s.inputs[self.clock] == clock_level
-            and all(s.inputs[p] == level for p, level in self.idle.items() if p != but)
-        ]
+        wanted = {self.clock: clock_level} | {p: level for p, level in self.idle.items() if p != but}
+        return self._at(wanted)
+
+    def _at(self, levels: Mapping[int, int]) -> list[State]:
+        """States with inputs, by number, at ``levels``."""
+        return [s for s in self.states if all(s.inputs[p] == level for p, level in levels.items())]
 
     def setup(self, pin: str, to: int) -> list[Scenario]:
         """Scenarios of ``pin`` going ``to`` 0 or 1 before the clock's edge, one for each level that it can bring.
@@ -94,11 +95,7 @@ class Scenarios:
         pin: clock, set or reset.
         """
         number = self.machine.inputs.index(pin)
-        states = (
-            self._quiet(1 - level)
-            if number == self.clock
-            else [s for s in self.states if all(s.inputs[p] == v for p, v in self.idle.items())]
-        )
+        states = self._quiet(1 - level) if number == self.clock else self._at(self.idle)
         found: dict[Output, State] = {}
         for s in states:
             first = self.after.get((s, number))

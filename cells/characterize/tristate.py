@@ -6,7 +6,7 @@ load; its table has the same value for every one.
 """
 
 from collections.abc import Mapping, Sequence
-from types import ModuleType, TracebackType
+from types import ModuleType
 from typing import Self
 
 import numpy as np
@@ -31,21 +31,15 @@ class Held:
         self.bench, self.output = bench, output
         c, machine = bench.conditions, bench.machine
         others = [o for o in machine.outputs if o != output]
-        self.simulator = Simulator(
-            circuit(machine.netlist, process, c.models, c.corner),
-            (*machine.inputs, output),
-            others,
-            bench.simulator.rails,
-            c.corner.temperature,
-            c.settings,
-        )
+        deck, inputs = circuit(machine.netlist, process, c.models, c.corner), (*machine.inputs, output)
+        self.simulator = Simulator(deck, inputs, others, bench.simulator.rails, c.corner.temperature, c.settings)
 
     def __enter__(self) -> Self:
         self.simulator.__enter__()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
-        self.simulator.__exit__(kind, error, at)
+    def __exit__(self, *error: object) -> None:
+        self.simulator.__exit__(*error)
 
     def run(self, inputs: Vector, moves: Mapping[str, tuple[float, float, float]], after: float) -> Wave:
         """Wave of ``after`` s from REST on. inputs: levels; moves: ramp (s), V before and V after of pins."""
@@ -70,9 +64,8 @@ class Held:
                 when = wave.time[k] + (wave.time[k + 1] - wave.time[k]) * (here - LEFT) / (here - there)
                 return float(when - REST - c.middle * ramp)
             after *= 2
-        raise SimulationError(
-            f"{bench.cell.name}: {self.output} drives on after {pin} has changed", self.simulator.last
-        )
+        why = f"{bench.cell.name}: {self.output} drives on after {pin} has changed"
+        raise SimulationError(why, self.simulator.last)
 
     def capacitance(self) -> tuple[float, float]:
         """F of the floating output for a rising and a falling ramp: the mean over the states in which it floats."""
@@ -81,14 +74,11 @@ class Held:
         states = sorted({s.inputs for s in bench.machine.states if s.outputs[number] == "Z"})[: c.states]
 
         def one(inputs: Vector, low: float, high: float) -> float:
-            """F in one state."""
             wave = self.run(inputs, {self.output: (ramp, low, high)}, ramp)
             return abs(wave.charge(self.output, REST, REST + END * ramp)) / (END * bench.volts)
 
-        rise, fall = (
-            float(np.mean([one(inputs, low, bench.volts - low) for inputs in states])) for low in (0.0, bench.volts)
-        )
-        return rise, fall
+        farads = [[one(inputs, low, bench.volts - low) for inputs in states] for low in (0.0, bench.volts)]
+        return float(np.mean(farads[0])), float(np.mean(farads[1]))
 
 
 def disable(held: Held, arc: Arc, slews: Sequence[float], loads: Sequence[float]) -> ArcTables:

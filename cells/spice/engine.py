@@ -11,13 +11,12 @@ import re
 import select
 import shutil
 import signal
-import subprocess
 import tempfile
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import TracebackType
+from subprocess import PIPE, STDOUT, Popen
 from typing import Self
 
 import numpy as np
@@ -83,14 +82,14 @@ class Simulator:
         self.settings = settings or Settings()
         self.runs = self.repeated = 0
         self.last = ""  # the latest run as a netlist for `ngspice -b`
-        self._child: subprocess.Popen[bytes] | None = None
+        self._child: Popen[bytes] | None = None
         self._current: tuple[Settings, tuple[tuple[str, float], ...]] | None = None
 
     def __enter__(self) -> Self:
         self._folder = Path(tempfile.mkdtemp(prefix="ngspice-", dir="/dev/shm" if os.path.isdir("/dev/shm") else None))
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+    def __exit__(self, *error: object) -> None:
         self._stop()
         shutil.rmtree(self._folder, ignore_errors=True)
 
@@ -102,14 +101,13 @@ class Simulator:
         step: float,
         nodes: Iterable[tuple[str, float]] = (),
         settings: Settings | None = None,
-        retry: bool = True,
     ) -> Wave:
         """Run a `Transient`; other ``nodes`` than in the run before cost a new process.
 
-        retry: whether Settings.retries are tried after a failure. Raises SimulationError.
+        settings: in place of the simulator's own, without retries after a failure. Raises SimulationError.
         """
         wanted, run = settings or self.settings, Transient(stimulus, loads, stop, step, tuple(nodes))
-        attempts = (wanted, *wanted.retries) if retry else (wanted,)
+        attempts = (wanted,) if settings else (wanted, *wanted.retries)
         self.runs += 1
         self.last = "\n".join([*self._deck(wanted, run, run.loads), f".{run.command}", ".end", ""])
         why = ""
@@ -147,7 +145,7 @@ class Simulator:
             raise _Failed(_first_error(output))
         return wave
 
-    def _started(self, settings: Settings, run: Transient) -> subprocess.Popen[bytes]:
+    def _started(self, settings: Settings, run: Transient) -> Popen[bytes]:
         """The process with the models, these settings and nodes loaded."""
         wanted = replace(settings, timeout=1.0), run.nodes
         if self._child is not None and self._current == wanted:
@@ -155,26 +153,17 @@ class Simulator:
         self._stop()
         file = self._folder / "deck.sp"
         file.write_text("\n".join([*self._deck(settings, run, dict.fromkeys(self.outputs, 1e-15)), ".end", ""]))
+        command, env = ["ngspice", "-p", file], dict(os.environ, OMP_NUM_THREADS="1", OMP_THREAD_LIMIT="1")
         try:
-            self._child = subprocess.Popen(
-                ["ngspice", "-p", file],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-                cwd=self._folder,
-                env=dict(os.environ, OMP_NUM_THREADS="1", OMP_THREAD_LIMIT="1"),
+            self._child = Popen(
+                command, stdin=PIPE, stdout=PIPE, stderr=STDOUT, start_new_session=True, cwd=self._folder, env=env
             )
         except FileNotFoundError as error:
-            raise ToolError(
-                "ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)"
-            ) from error
+            missing = "ngspice: not found; install it with: make tools (Debian: apt-get install ngspice)"
+            raise ToolError(missing) from error
         self._current = wanted
-        saved = [
-            *(f"v({n.lower()})" for n in (*self.inputs, *self.outputs)),
-            *(f"i(vin{i})" for i in range(len(self.inputs))),
-            *(f"i(vrail{i})" for i in range(len(self.rails))),
-        ]
+        saved = [f"v({n.lower()})" for n in (*self.inputs, *self.outputs)]
+        saved += [f"i(vin{i})" for i in range(len(self.inputs))] + [f"i(vrail{i})" for i in range(len(self.rails))]
         command = "set filetype=binary\nsave " + " ".join(saved)
         if wrong := _WRONG.search(_command(self._child, command, 60 + settings.timeout)):
             raise _Failed(wrong[0].strip())
@@ -202,7 +191,7 @@ class _Failed(Exception):
     """One attempt did not succeed."""
 
 
-def _command(child: subprocess.Popen[bytes], text: str, timeout: float) -> str:
+def _command(child: Popen[bytes], text: str, timeout: float) -> str:
     """What ngspice prints in answer. Raises _Failed when it ends, or uses ``timeout`` s of CPU without an answer.
 
     CPU time counts, not the clock's: on a busy machine a run is slow through no fault of its own.

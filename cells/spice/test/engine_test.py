@@ -31,9 +31,9 @@ def test_a_resistor_and_a_capacitor_take_the_time_they_should():
 @ngspice
 def test_a_failure_names_its_reason_and_gives_a_deck(tmp_path):
     broken = [".subckt rc A Y", "X1 A Y nowhere", ".ends", "Xcell A Y rc"]
-    with Simulator(broken, ["A"], ["Y"], {}, 25, Settings(timeout=5)) as simulator:
-        with pytest.raises(SimulationError, match="unknown subckt") as caught:
-            simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 2e-9, 1e-10)
+    simulator = Simulator(broken, ["A"], ["Y"], {}, 25, Settings(timeout=5))
+    with simulator, pytest.raises(SimulationError, match="unknown subckt") as caught:
+        simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 2e-9, 1e-10)
     assert "X1 A Y nowhere" in caught.value.deck and ".tran" in caught.value.deck and simulator.repeated == 1
 
 
@@ -43,7 +43,7 @@ def test_a_run_beyond_its_time_is_ended():
         simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 2e-9, 1e-10)
         slow = Settings(timeout=0.2)
         with pytest.raises(SimulationError, match="timeout"):
-            simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 1e-3, 1e-12, settings=slow, retry=False)
+            simulator.transient({"A": [(0, 0), (1e-9, 1)]}, {"Y": 1e-15}, 1e-3, 1e-12, settings=slow)
 
 
 @ngspice
@@ -56,7 +56,7 @@ def test_a_busy_machine_is_no_time_out():
         os.kill(simulator._child.pid, signal.SIGSTOP)
         threading.Timer(1.5, os.kill, (simulator._child.pid, signal.SIGCONT)).start()
         before = simulator._child.pid
-        wave = simulator.transient(stimulus, {"Y": 1e-15}, 2e-9, 1e-10, settings=Settings(timeout=1), retry=False)
+        wave = simulator.transient(stimulus, {"Y": 1e-15}, 2e-9, 1e-10, settings=Settings(timeout=1))
         assert wave.time[-1] == pytest.approx(2e-9) and simulator._child.pid == before
 
 
