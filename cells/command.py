@@ -18,12 +18,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--corner", default="tt_025C_1v80", help="process, temperature, supply: ff_n40C_1v95")
     add("--cells", help="names with commas between, inv_1,nand2_1 (default: all for synthesis)")
     add("--models", default="fitted", choices=sources.process("sky130_hd").SETS, help="set of device models")
-    add(
-        "--netlist",
-        default="extracted",
-        choices=sources.NETLISTS,
-        help="what is simulated: with parasitics, with capacitances, transistors as laid out, or the schematic",
-    )
+    netlists = "what is simulated: with parasitics, with capacitances, transistors as laid out, or the schematic"
+    add("--netlist", default="extracted", choices=sources.NETLISTS, help=netlists)
     add("--reference", type=Path, help="folder of <cell>.lib.json to compare with")
     add("--workers", type=int, default=-1, help="processes; -1: all cores")
     add("--out", type=Path, default=ROOT / "build" / "cells", help="folder of the libraries")
@@ -31,15 +27,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Characterize the library and print its summary; 1 where a cell fails or has problems."""
-    summary = characterize_library(
-        options.lib,
-        Conditions(Corner.parse(options.corner), options.models),
-        options.cells and options.cells.split(","),
-        options.netlist,
-        options.out,
-        options.reference,
-        options.workers,
-    )
+    o, conditions = options, Conditions(Corner.parse(options.corner), options.models)
+    names = o.cells and o.cells.split(",")
+    summary = characterize_library(o.lib, conditions, names, o.netlist, o.out, o.reference, o.workers)
     long = ("cell_s", "cell_cpu_s", "names", "left_out")
     print(json.dumps({name: value for name, value in summary.items() if name not in long}, indent=1))
     return 1 if summary["failed"] or summary["problems"] else 0

@@ -22,10 +22,8 @@ class Corner:
         """The corner of a name like tt_025C_1v80 or ff_n40C_1v95. Raises ParameterError for any other form."""
         match = re.fullmatch(r"([a-z]{2})_(n?)(\d+)C_(\d+)v(\d+)", name)
         if not match or match[1] not in PROCESSES:
-            raise ParameterError(
-                f"corner = {name!r}: must be like tt_025C_1v80 or ff_n40C_1v95, its process one of "
-                f"{', '.join(PROCESSES)}"
-            )
+            must = f"must be like tt_025C_1v80 or ff_n40C_1v95, its process one of {', '.join(PROCESSES)}"
+            raise ParameterError(f"corner = {name!r}: {must}")
         return cls(match[1], -float(match[3]) if match[2] else float(match[3]), float(f"{match[4]}.{match[5]}"))
 
     def __post_init__(self) -> None:

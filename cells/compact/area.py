@@ -55,11 +55,10 @@ def compare(
     for block, file in files.items():
         if not file.exists():
             raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")
-    jobs = [
-        Job(f"{block}.{name}", mapped, (str(file), block, str(liberty)), (file, liberty))
-        for block, file in files.items()
-        for name, liberty in (("ours", ours), ("theirs", theirs))
-    ]
+    jobs = []
+    for block, file in files.items():
+        for name, liberty in (("ours", ours), ("theirs", theirs)):
+            jobs.append(Job(f"{block}.{name}", mapped, (str(file), block, str(liberty)), (file, liberty)))
     found = run_jobs(jobs, store, "blocks mapped")
     return {block: (found[2 * i], found[2 * i + 1]) for i, block in enumerate(files)}
 
@@ -109,8 +108,6 @@ def _cells(found: Mapping[str, tuple[Mapped, Mapped]], k: int, liberty: Path, mo
     total = sum(count[cell] * area[cell] for cell in count)
     lines = [f"| {liberty.stem}: cell | number | um2 each | share of the area |", "|---|---:|---:|---:|"]
     for cell in sorted(count, key=lambda c: -count[c] * area[c])[:most]:
-        lines.append(
-            f"| {cell.removeprefix('sky130_fd_sc_hd__')} | {count[cell]} | {area[cell]:.2f} | "
-            f"{count[cell] * area[cell] / total:.1%} |"
-        )
+        name, share = cell.removeprefix("sky130_fd_sc_hd__"), count[cell] * area[cell] / total
+        lines.append(f"| {name} | {count[cell]} | {area[cell]:.2f} | {share:.1%} |")
     return "\n".join(lines)

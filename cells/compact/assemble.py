@@ -39,12 +39,8 @@ def assemble(columns: Sequence[Column], spread: Iterable[int] = ()) -> Assembly:
     for kind in "np":
         for (h, column), following in zip(gates, [*gates[1:], None], strict=True):
             left, right = column.ends(kind)
-            if (
-                not made.diffusions
-                or made.diffusions[-1].kind != kind
-                or made.diffusions[-1].columns[-1] != h - 1
-                or made.diffusions[-1].net != left
-            ):
+            last = made.diffusions[-1] if made.diffusions else None
+            if not last or (last.kind, last.columns[-1], last.net) != (kind, h - 1, left):
                 made.diffusions.append(Diffusion(kind, left, [h - 1]))
             made.diffusions.append(Diffusion(kind, right, [h + 1]))
             if following and following[0] == h + 4 and following[1].ends(kind)[0] == right:

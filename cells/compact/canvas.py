@@ -37,10 +37,8 @@ class Canvas:
 
     def __post_init__(self) -> None:
         if abs(self.height / self.site - round(self.height / self.site)) > 1e-9:
-            raise ParameterError(
-                f"height = {self.height}: must be a multiple of site = {self.site} "
-                "(Coriolis rounds the pitch of rows up to one)"
-            )
+            must = f"must be a multiple of site = {self.site} (Coriolis rounds the pitch of rows up to one)"
+            raise ParameterError(f"height = {self.height}: {must}")
         if self.site < 2 * (0.135 + 0.04 + 0.085) - 1e-9:
             raise ParameterError(f"site = {self.site}: must be at least 0.52 um: two diffusions end side by side in it")
         if min(b - a for a, b in pairwise(self.rows)) < 0.34 - 1e-9:
@@ -51,11 +49,8 @@ class Canvas:
     @property
     def pins(self) -> list[int]:
         """Rows from which li up to the next row covers a track of met1 with its via."""
-        return [
-            r
-            for r, (low, high) in enumerate(pairwise(self.rows))
-            if any(low - 0.085 <= t - 0.16 and t + 0.16 <= high + 0.085 for t in self.tracks)
-        ]
+        spans = ((low - 0.085, high + 0.085) for low, high in pairwise(self.rows))
+        return [r for r, (a, b) in enumerate(spans) if any(a <= t - 0.16 and t + 0.16 <= b for t in self.tracks)]
 
     @property
     def tracks(self) -> list[float]:

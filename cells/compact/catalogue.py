@@ -9,17 +9,8 @@ INPUTS = ("i0", "i1", "i2", "i3", "i4")
 
 def schematics() -> dict[str, Schematic]:
     """Every cell with transistors, by name."""
-    made = [
-        *_inverters(),
-        *_simple(),
-        *_complex(),
-        *_exclusive(),
-        *_arithmetic(),
-        *_flip_flops(),
-        *_clock_gates(),
-        *_constants(),
-    ]
-    return {schematic.name: schematic for schematic in made}
+    families = (_inverters, _simple, _complex, _exclusive, _arithmetic, _flip_flops, _clock_gates, _constants)
+    return {schematic.name: schematic for family in families for schematic in family()}
 
 
 def _inverters() -> Iterator[Schematic]:
@@ -31,11 +22,8 @@ def _inverters() -> Iterator[Schematic]:
 
 def _constants() -> Iterator[Schematic]:
     """Each transistor's gate hangs on the other's drain, never on a rail: no gate oxide sees the supply's edges."""
-    zero, one = (
-        Schematic("zero_x1", (), ("zero",), functions={"zero": "0"}),
-        Schematic("one_x1", (), ("one",), functions={"one": "1"}),
-    )
-    for cell, low, high in ((zero, "zero", "h"), (one, "l", "one")):
+    for name, level, low, high in (("zero", "0", "zero", "h"), ("one", "1", "l", "one")):
+        cell = Schematic(f"{name}_x1", (), (name,), functions={name: level})
         cell.n.append(Switch("n", high, low, "vss"))
         cell.p.append(Switch("p", low, high, "vdd"))
         yield cell
@@ -74,27 +62,17 @@ def _complex() -> Iterator[Schematic]:
     for name, function in functions.items():
         ports = INPUTS[: sum(int(digit) for digit in name if digit.isdigit())]
         yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", function)
-    for name, function in (
-        ("and21or", functions["and21nor"]),
-        ("or21and", functions["or21nand"]),
-        ("and22or", functions["and22nor"]),
-        ("or22and", functions["or22nand"]),
-    ):
+    pairs = {"and21or": "and21nor", "or21and": "or21nand", "and22or": "and22nor", "or22and": "or22nand"}
+    for name, inverting in pairs.items():
         ports = INPUTS[: 3 if "21" in name else 4]
-        yield Schematic(f"{name}_x1", ports, ("q",)).gate("n", function).gate("q", "n")
+        yield Schematic(f"{name}_x1", ports, ("q",)).gate("n", functions[inverting]).gate("q", "n")
 
 
 def _exclusive() -> Iterator[Schematic]:
-    yield (
-        Schematic("xor2_x1", ("i0", "i1"), ("q",))
-        .gate("n", ("or", "i0", "i1"))
-        .gate("q", ("or", ("and", "i0", "i1"), "n"))
-    )
-    yield (
-        Schematic("nexor2_x1", ("i0", "i1"), ("nq",))
-        .gate("n", ("and", "i0", "i1"))
-        .gate("nq", ("and", ("or", "i0", "i1"), "n"))
-    )
+    xor = Schematic("xor2_x1", ("i0", "i1"), ("q",)).gate("n", ("or", "i0", "i1"))
+    yield xor.gate("q", ("or", ("and", "i0", "i1"), "n"))
+    nexor = Schematic("nexor2_x1", ("i0", "i1"), ("nq",)).gate("n", ("and", "i0", "i1"))
+    yield nexor.gate("nq", ("and", ("or", "i0", "i1"), "n"))
     for name, output in (("mux2_x1", "q"), ("nmux2_x1", "nq")):
         mux = Schematic(name, ("cmd", "i0", "i1"), (output,)).gate("c", "cmd")
         inner = "n" if output == "q" else output

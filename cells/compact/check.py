@@ -26,18 +26,14 @@ def check(folder: Path, names: Sequence[str], workers: int = -1) -> dict[str, Ch
     """
     _arrange(folder, names)
     drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
-    jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in ("apart", "gallery")]
-    jobs += [
-        Job(name, matches, (str(folder), name), (lvs, folder / "compact.spi", _content(folder, name))) for name in names
-    ]
+    jobs, spi = [], folder / "compact.spi"
+    for name in ("apart", "gallery"):
+        jobs.append(Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")))
+    jobs += [Job(name, matches, (str(folder), name), (lvs, spi, _content(folder, name))) for name in names]
     apart, abutted, *matching = run(jobs, folder / "checks", "cells checked", workers)
     result = {name: Checked(apart.get(name, {}), ok) for name, ok in zip(names, matching, strict=True)}
-    between = {
-        rule: count
-        for found in (abutted, {cell: broken for cell, broken in apart.items() if cell not in names})
-        for broken in found.values()
-        for rule, count in broken.items()
-    }
+    others = [*abutted.values(), *(broken for cell, broken in apart.items() if cell not in names)]
+    between = {rule: count for broken in others for rule, count in broken.items()}
     return result | {"gallery": Checked(between, True)}
 
 
@@ -56,12 +52,8 @@ def _arrange(folder: Path, names: Sequence[str]) -> None:
             x = 0
             for name in order:
                 cell = layout.cell(name)
-                box = cell.bbox_per_layer(boundary)
-                turn = (
-                    db.Trans(db.Trans.M0, x, (row + 1) * box.height())
-                    if row % 2
-                    else db.Trans(db.Trans.R0, x, row * box.height())
-                )
+                box, mirrored = cell.bbox_per_layer(boundary), row % 2
+                turn = db.Trans(db.Trans.M0 if mirrored else db.Trans.R0, x, (row + mirrored) * box.height())
                 top.insert(db.CellInstArray(cell.cell_index(), turn))
                 x += box.width() + gap
         for cell in [cell for cell in layout.top_cells() if cell.name != top_name]:
@@ -93,25 +85,16 @@ def _content(folder: Path, name: str) -> str:
 
     layout = db.Layout()
     layout.read(str(folder / "compact.gds"))
-    return "".join(
-        f"{info}{sorted(map(str, layout.cell(name).shapes(layout.layer(info)).each()))}"
-        for info in layout.layer_infos()
-    )
+    shapes = {info: layout.cell(name).shapes(layout.layer(info)) for info in layout.layer_infos()}
+    return "".join(f"{info}{sorted(map(str, same.each()))}" for info, same in shapes.items())
 
 
 def _deck(folder: Path, deck: str, name: str, environment: Mapping[str, str]) -> tuple[Path, str]:
     report = (folder / "reports" / f"{name}.{deck}.xml").absolute()
     report.parent.mkdir(exist_ok=True)
     report.unlink(missing_ok=True)
-    done = finish(
-        ["klayout", "-b", "-r", folder / "decks" / f"sky130.{deck}"],
-        env={
-            "REPORT_FILE": str(report),
-            "CELL_NAME": name,
-            "KLAYOUT_HOME": str(report.parent / ".klayout"),
-            **environment,
-        },
-    )
+    env = {"REPORT_FILE": str(report), "CELL_NAME": name, "KLAYOUT_HOME": str(report.parent / ".klayout")}
+    done = finish(["klayout", "-b", "-r", folder / "decks" / f"sky130.{deck}"], env={**env, **environment})
     if done.returncode and deck == "drc" or not report.exists():
         raise ToolError(f"klayout: {deck} of {name} failed: {(done.stderr or done.stdout).strip()[-300:]}")
     return report, done.stdout + done.stderr

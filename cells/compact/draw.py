@@ -98,9 +98,8 @@ class Drawing(Pen):
             x, bottom, top = self._reach(net, pin) if reach else pin
             for layer in ("li", "li.pin"):
                 self.box(layer, net, x - WIRE / 2, bottom, x + WIRE / 2, top)
-        self.shapes += [
-            replace(s, layer="m1.block", net="") for s in self.shapes if s.layer == "m1" and s.net not in ("vdd", "vss")
-        ]
+        inside = [s for s in self.shapes if s.layer == "m1" and s.net not in ("vdd", "vss")]
+        self.shapes += [replace(s, layer="m1.block", net="") for s in inside]
 
     def x(self, h: int) -> float:
         """The middle of half-site column ``h``, um."""
@@ -110,11 +109,9 @@ class Drawing(Pen):
         c = self.canvas
         for h, column in self.made.gates:
             half = c.length / 2
-            for switch, low, high in (
-                (column.n, c.n[0] - 0.13, c.rows[c.low] + half),
-                (column.p, c.rows[c.high] - half, c.p[1] + 0.13),
-            ):
-                self.box("poly", switch.gate, self.x(h) - half, low, self.x(h) + half, high)
+            left, right = self.x(h) - half, self.x(h) + half
+            self.box("poly", column.n.gate, left, c.n[0] - 0.13, right, c.rows[c.low] + half)
+            self.box("poly", column.p.gate, left, c.rows[c.high] - half, right, c.p[1] + 0.13)
         for d in self.made.diffusions:
             low, high = c.n if d.kind == "n" else c.p
             start, end = min(d.columns), max(d.columns)
@@ -195,11 +192,8 @@ class Drawing(Pen):
     def _fill(self, net: str, vertices: Collection[Vertex]) -> None:
         """Fill the gaps between routes of one net side by side."""
         rows = self.canvas.rows
-        upright = {
-            (e[0][1], min(e[0][2], e[1][2]))
-            for e in self.wiring.edges.get(net, ())
-            if e[0][0] == e[1][0] == "li" and e[0][1] == e[1][1]
-        }
+        edges = [e for e in self.wiring.edges.get(net, ()) if e[0][0] == e[1][0] == "li" and e[0][1] == e[1][1]]
+        upright = {(e[0][1], min(e[0][2], e[1][2])) for e in edges}
         for layer, h, r, *_ in (v for v in vertices if v[0] in ("li", "poly", "met1")):
             if (layer, h + 1, r) not in vertices:
                 continue

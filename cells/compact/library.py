@@ -24,9 +24,8 @@ def drawn(
     """Draw every cell, once: the jobs' results are kept in ``store``. workers: processes, -1 for all cores."""
     canvas, wanted = canvas or Canvas(), schematics()
     order = sorted(wanted, key=lambda name: -len(wanted[name].n))  # the widest take longest
-    jobs = [
-        Job(name, make, (wanted[name], canvas, known := recipe(name)), (wanted[name], canvas, known)) for name in order
-    ]
+    arguments = [(wanted[name], canvas, recipe(name)) for name in order]
+    jobs = [Job(name, make, inputs, inputs) for name, inputs in zip(order, arguments, strict=True)]
     made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
     return {name: (wanted[name], made[name]) for name in wanted} | ties(canvas) | diode(canvas)
 

@@ -70,11 +70,8 @@ def choose(schematic: Schematic, canvas: Canvas, seeds: Iterable[int], below: Re
 
 def merit(drawing: Drawing) -> tuple[int, int]:
     """Pin access (tracks of met1 that the least accessible pin meets, at most 3), then less met1 inside."""
-    pins = [
-        sum(s.bottom <= t - 0.16 + 1e-9 and t + 0.16 <= s.top + 1e-9 for t in drawing.canvas.tracks)
-        for s in drawing.shapes
-        if s.layer == "li.pin"
-    ]
+    tracks, spans = drawing.canvas.tracks, [(s.bottom, s.top) for s in drawing.shapes if s.layer == "li.pin"]
+    pins = [sum(low <= t - 0.16 + 1e-9 and t + 0.16 <= high + 1e-9 for t in tracks) for low, high in spans]
     return min(3, *pins, 3), -sum(s.layer == "m1" for s in drawing.shapes)
 
 
@@ -87,11 +84,8 @@ def search(
     for seed, columns in placed.items():
         for extra in range(GAPS + 1):
             sites = len(columns) + 1 + len(breaks(columns)) + extra
-            tried += [
-                Recipe(sites, met1, seed, spread)
-                for met1 in ((False, True) if len(columns) < WIDE else (True,))
-                for spread in _spreads(columns, extra, seed)
-            ]
+            layers, spreads = (False, True) if len(columns) < WIDE else (True,), _spreads(columns, extra, seed)
+            tried += [Recipe(sites, met1, seed, spread) for met1 in layers for spread in spreads]
     for trial in sorted(tried):
         if below is not None and trial.sites >= below.sites:
             return

@@ -34,20 +34,13 @@ class DrawnCell(pdk_cell.Cell):
     def _devices(self, circuit: Any, canvas: Canvas) -> dict[str, list[Any]]:
         """Add the instances; returns the ports that are connected to each net."""
         pins: dict[str, list[Any]] = {}
-        for kind, switches, (low, high), bulk in (
-            ("n", self.schematic.n, canvas.n, "vss"),
-            ("p", self.schematic.p, canvas.p, "vdd"),
-        ):
+        s = self.schematic
+        for kind, switches, (low, high), bulk in (("n", s.n, canvas.n, "vss"), ("p", s.p, canvas.p, "vdd")):
+            model, width = PRIMITIVES[f"{kind}fet_01v8"], round(high - low, 3)
             for k, switch in enumerate(switches):
-                device = circuit.instantiate(
-                    PRIMITIVES[f"{kind}fet_01v8"], name=f"{kind}{k}", w=round(high - low, 3), l=canvas.length
-                )
-                for port, net in (
-                    ("sourcedrain1", switch.a),
-                    ("gate", switch.gate),
-                    ("sourcedrain2", switch.b),
-                    ("bulk", bulk),
-                ):
+                device = circuit.instantiate(model, name=f"{kind}{k}", w=width, l=canvas.length)
+                nets = {"sourcedrain1": switch.a, "gate": switch.gate, "sourcedrain2": switch.b, "bulk": bulk}
+                for port, net in nets.items():
                     pins.setdefault(net, []).append(device.ports[port])
         if "diode" in self.drawing:
             width, height = self.drawing["diode"]
@@ -64,16 +57,9 @@ class DrawnCell(pdk_cell.Cell):
 
 def to_pdkmaster(name: str, canvas: Canvas, drawn: Mapping[str, tuple[Schematic, Drawn]]) -> RoutingGaugeLibrary:
     """The library ``name`` of the cells ``drawn``."""
-    metals = {metal: PRIMITIVES[metal] for metal in ("m1", "m2", "m5")}
-    gauge = RoutingGauge(
-        tech=tech,
-        bottom=metals["m1"],
-        bottom_direction="horizontal",
-        top=metals["m5"],
-        pingrid_pitch=canvas.site,
-        row_height=canvas.height,
-        pitches={metals["m1"]: canvas.site, metals["m2"]: canvas.site},
-    )
+    low, high, pitches = PRIMITIVES["m1"], PRIMITIVES["m5"], {PRIMITIVES[metal]: canvas.site for metal in ("m1", "m2")}
+    sizes = {"pingrid_pitch": canvas.site, "row_height": canvas.height, "pitches": pitches}
+    gauge = RoutingGauge(tech=tech, bottom=low, bottom_direction="horizontal", top=high, **sizes)
     library = RoutingGaugeLibrary(name=name, tech=tech, routinggauge=gauge)
     for schematic, drawing in drawn.values():
         library.cells += DrawnCell(canvas, schematic, drawing)

@@ -42,15 +42,10 @@ def run(options: Namespace) -> int:
     names = options.cells.split(",") if options.cells else list(schematics())
     if unknown := sorted(set(names) - schematics().keys()):
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
-    jobs = [
-        Job(
-            f"{name}.{span[1]}-{span[2]}{'.from_scratch' if options.from_scratch else ''}",
-            best,
-            (name, int(span[1]), int(span[2]), not options.from_scratch),
-            (recipe(name), Canvas()),
-        )
-        for name in names
-    ]
+    first, last, scratch = int(span[1]), int(span[2]), options.from_scratch
+    suffix = f"{span[1]}-{span[2]}{'.from_scratch' if scratch else ''}"
+    arguments = {name: (name, first, last, not scratch) for name in names}
+    jobs = [Job(f"{name}.{suffix}", best, arguments[name], (recipe(name), Canvas())) for name in names]
     found = run_jobs(jobs, "build/cells/compact/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text())
     better = {name: made for name, made in zip(names, found, strict=True) if made}

@@ -11,10 +11,8 @@ WIDTHS = (1, 2, 4, 8)  # sites
 
 def ties(canvas: Canvas) -> dict[str, tuple[Schematic, Drawn]]:
     """Draw cells of rails, well and taps alone: tie, tie_w2, ..."""
-    return {
-        (name := "tie" if sites == 1 else f"tie_w{sites}"): (Schematic(name, (), ()), _entry(Pen(canvas, sites)))
-        for sites in WIDTHS
-    }
+    names = {"tie" if sites == 1 else f"tie_w{sites}": sites for sites in WIDTHS}
+    return {name: (Schematic(name, (), ()), _entry(Pen(canvas, sites))) for name, sites in names.items()}
 
 
 def diode(canvas: Canvas) -> dict[str, tuple[Schematic, Drawn]]:

@@ -90,12 +90,10 @@ def _gds(made: Any, canvas: Canvas, path: Path) -> None:
 
     layout = export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
     npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
-    low, high = (
-        round((canvas.rows[row] + beyond) * 1000) for row, beyond in ((canvas.low, -0.185), (canvas.high, 0.185))
-    )
+    low, high = ((canvas.rows[row] + out) * 1000 for row, out in ((canvas.low, -0.185), (canvas.high, 0.185)))
     for cell in made.cells:
         width, height = round(cell.drawing["width"] * 1000), round(canvas.height * 1000)
-        layout.cell(cell.name).shapes(npc).insert(db.Box(0, low, width, high))
+        layout.cell(cell.name).shapes(npc).insert(db.Box(0, round(low), width, round(high)))
         layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
     write_gds(layout, path)
 

@@ -15,12 +15,11 @@ from typing import NamedTuple
 import klayout.db as db
 
 from platforms.extraction import ExtractionPlatform
-from platforms.layers import DIFFUSION, Crossing, Layer
+from platforms.layers import DIFFUSION, Layer
 
 from .devices import CellLayout
 
 EPSILON = 1e-6  # um
-Crossings = Mapping[tuple[str, str], Crossing]  # by LEF names of the upper and the lower layer
 Span = tuple[float, float]  # distances near and far from an edge, um
 
 
@@ -45,64 +44,60 @@ class Strip(NamedTuple):
 
 
 class _Total:
-    """Sums of capacitances by pair of nets, fF."""
+    """Sums of capacitances by pair of nets, fF; the names of the conductors and their crossings."""
 
-    def __init__(self) -> None:
+    def __init__(self, tech: ExtractionPlatform) -> None:
         self.pairs: dict[tuple[str, str], float] = defaultdict(float)
+        self.names = [conductor.lef for conductor in tech.conductors]
+        self.crossings = {(c.upper, c.lower): c for c in tech.crossings}
 
     def add(self, a: str, b: str, attofarad: float) -> None:
         """Add the capacitance between ``a`` and ``b``; none of a net to itself."""
         if a != b:
             self.pairs[min(a, b), max(a, b)] += attofarad / 1000
 
+    def below(self, layer: Layer) -> list[str]:
+        """Conductors under ``layer``, the nearest first; diffusion under all."""
+        return [*reversed(self.names[: self.names.index(layer.lef)]), DIFFUSION]
+
 
 def capacitances(found: CellLayout, tech: ExtractionPlatform) -> dict[tuple[str, str], float]:
     """Capacitance in fF of every pair of nets, the names of each pair sorted."""
-    total = _Total()
-    crossings = {(c.upper, c.lower): c for c in tech.crossings}
-    _areas(found, tech, crossings, total)
-    rectangles = _Rectangles(found)
+    total, rectangles = _Total(tech), _Rectangles(found, tech.halo_um)
+    for layer in tech.conductors:
+        for net, region in found.shapes[layer.lef].items():
+            _areas(found, net, layer, region.merged(), total)
     for layer in tech.conductors:
         for net, region in found.shapes[layer.lef].items():
             for edge in region.merged().edges().each():
-                _edge(edge, net, layer, rectangles, tech, crossings, total)
+                _edge(edge, net, layer, rectangles, total)
     return dict(total.pairs)
 
 
-def _below(layer: Layer, tech: ExtractionPlatform) -> list[str]:
-    """Conductors under ``layer``, the nearest first; diffusion under all."""
-    names = [conductor.lef for conductor in tech.conductors]
-    return [*reversed(names[: names.index(layer.lef)]), DIFFUSION]
-
-
-def _areas(found: CellLayout, tech: ExtractionPlatform, crossings: Crossings, total: _Total) -> None:
+def _areas(found: CellLayout, net: str, layer: Layer, rest: db.Region, total: _Total) -> None:
     um2 = found.dbu**2
-    for layer in tech.conductors:
-        for net, region in found.shapes[layer.lef].items():
-            rest = region.merged()
-            for lower in _below(layer, tech):
-                if layer.lef == "poly":
-                    rest -= found.active
-                    continue
-                for other, below in found.shapes[lower].items():
-                    if rest.bbox().touches(below.bbox()):
-                        area = (rest & below).area() * um2
-                        total.add(net, other, area * crossings[layer.lef, lower].overlap_af_um2)
-                        rest -= below
-            for bulk, well in found.wells.items():
-                total.add(net, bulk, (rest & well).area() * um2 * layer.area_af_um2)
+    for lower in total.below(layer):
+        if layer.lef == "poly":
+            rest -= found.active
+            continue
+        for other, below in found.shapes[lower].items():
+            if rest.bbox().touches(below.bbox()):
+                area = (rest & below).area() * um2
+                total.add(net, other, area * total.crossings[layer.lef, lower].overlap_af_um2)
+                rest -= below
+    for bulk, well in found.wells.items():
+        total.add(net, bulk, (rest & well).area() * um2 * layer.area_af_um2)
 
 
 class _Rectangles:
     """The conductors, wells and active as rectangles, by layer."""
 
-    def __init__(self, found: CellLayout) -> None:
-        self.layers = {name: _split(nets, found.dbu) for name, nets in found.shapes.items()}
-        self.wells = _split(found.wells, found.dbu)
-        self.active = _split({"": found.active}, found.dbu)
-        self.dbu = found.dbu
+    def __init__(self, found: CellLayout, halo_um: float) -> None:
+        regions = {**found.shapes, "well": found.wells, "active": {"": found.active}}
+        self.layers = {name: _split(nets, found.dbu) for name, nets in regions.items()}
+        self.dbu, self.halo_um = found.dbu, halo_um
 
-    def beside(self, rectangles: Sequence[Rectangle], edge: db.Edge, halo_um: float) -> Iterator[Strip]:
+    def beside(self, rectangles: Sequence[Rectangle], edge: db.Edge) -> Iterator[Strip]:
         """Parts of ``rectangles`` in the strip of width ``halo_um`` outside ``edge``."""
         x1, y1, x2, y2 = (v * self.dbu for v in (edge.p1.x, edge.p1.y, edge.p2.x, edge.p2.y))
         vertical = x1 == x2
@@ -112,7 +107,7 @@ class _Rectangles:
         for left, bottom, right, top, net in rectangles:
             low, high, a, b = (left, right, bottom, top) if vertical else (bottom, top, left, right)
             near, far = ((low - at), (high - at)) if sign > 0 else ((at - high), (at - low))
-            a, b, near, far = max(a, start), min(b, end), max(near, 0.0), min(far, halo_um)
+            a, b, near, far = max(a, start), min(b, end), max(near, 0.0), min(far, self.halo_um)
             if b - a > EPSILON and far - near > EPSILON:
                 yield Strip(near, far, a, b, net)
 
@@ -126,89 +121,51 @@ def _split(nets: Mapping[str, db.Region], dbu: float) -> list[Rectangle]:
     return found
 
 
-def _edge(
-    edge: db.Edge,
-    net: str,
-    layer: Layer,
-    rectangles: _Rectangles,
-    tech: ExtractionPlatform,
-    crossings: Crossings,
-    total: _Total,
-) -> None:
+def _edge(edge: db.Edge, net: str, layer: Layer, rectangles: _Rectangles, total: _Total) -> None:
     """All that one edge of ``net`` on ``layer`` sees."""
-    names = [conductor.lef for conductor in tech.conductors]
-    own = names.index(layer.lef)
-    strips = {
-        name: list(rectangles.beside(rectangles.layers[name], edge, tech.halo_um)) for name in [*names, DIFFUSION]
-    }
-    strips["well"] = list(rectangles.beside(rectangles.wells, edge, tech.halo_um))
-    strips["active"] = list(rectangles.beside(rectangles.active, edge, tech.halo_um)) if layer.lef == "poly" else []
+    strips = {name: list(rectangles.beside(parts, edge)) for name, parts in rectangles.layers.items()}
+    if layer.lef != "poly":
+        strips["active"] = []
     start, end = sorted((edge.p1.y, edge.p2.y) if edge.p1.x == edge.p2.x else (edge.p1.x, edge.p2.x))
     ends = {start * rectangles.dbu, end * rectangles.dbu}
     for parts in strips.values():
         ends.update(v for strip in parts for v in (strip.start, strip.end))
     bounds = sorted(ends)
     for a, b in zip(bounds, bounds[1:]):
-        length = b - a
+        length, low, high = b - a, a + EPSILON, b - EPSILON
         if length < EPSILON:
             continue
-        here = {
-            name: [
-                (strip.near, strip.far, strip.net)
-                for strip in parts
-                if strip.start <= a + EPSILON and strip.end >= b - EPSILON
-            ]
-            for name, parts in strips.items()
-        }
-        near, _, other = min(here[layer.lef], default=(tech.halo_um, 0, net))
+        across = {name: [s for s in parts if s.start <= low and s.end >= high] for name, parts in strips.items()}
+        here = {name: [(s.near, s.far, s.net) for s in parts] for name, parts in across.items()}
+        near, _, other = min(here[layer.lef], default=(rectangles.halo_um, 0, net))
         if other != net:
             total.add(net, other, length * layer.sidewall_af_um / 2 / (near + layer.sidewall_offset_um))
         free = [(0.0, near)]
         if not (here["active"] and min(here["active"])[0] < EPSILON):  # not along a channel
-            _down(free, here, net, layer, names[:own], length, crossings, total)
-        _up(free, here, net, layer, names[own + 1 :], length, crossings, total)
+            _down(free, here, net, layer, length, total)
+        for upper in total.names[total.names.index(layer.lef) + 1 :]:
+            crossing = total.crossings[upper, layer.lef]
+            for near, far, other in _pieces(free, here[upper]):
+                total.add(net, other, length * crossing.up_af_um * _share(crossing.overlap_af_um2, near, far))
+            free = _without(free, here[upper])
 
 
 Intervals = list[tuple[float, float, str]]  # near, far, net
 
 
 def _down(
-    free: list[Span],
-    here: Mapping[str, Intervals],
-    net: str,
-    layer: Layer,
-    below: Sequence[str],
-    length: float,
-    crossings: Crossings,
-    total: _Total,
+    free: list[Span], here: Mapping[str, Intervals], net: str, layer: Layer, length: float, total: _Total
 ) -> None:
-    for lower in [*reversed(below), DIFFUSION]:
+    for lower in total.below(layer):
         if layer.lef == "poly":
             free = _without(free, here["active"])
             continue
-        crossing = crossings[layer.lef, lower]
+        crossing = total.crossings[layer.lef, lower]
         for near, far, other in _pieces(free, here[lower]):
             total.add(net, other, length * crossing.down_af_um * _share(crossing.overlap_af_um2, near, far))
         free = _without(free, here[lower])
     for near, far, bulk in _pieces(free, here["well"]):
         total.add(net, bulk, length * layer.fringe_af_um * _share(layer.area_af_um2, near, far))
-
-
-def _up(
-    free: list[Span],
-    here: Mapping[str, Intervals],
-    net: str,
-    layer: Layer,
-    above: Sequence[str],
-    length: float,
-    crossings: Crossings,
-    total: _Total,
-) -> None:
-    for upper in above:
-        crossing = crossings[upper, layer.lef]
-        for near, far, other in _pieces(free, here[upper]):
-            total.add(net, other, length * crossing.up_af_um * _share(crossing.overlap_af_um2, near, far))
-        free = _without(free, here[upper])
 
 
 def _share(overlap: float, near: float, far: float) -> float:

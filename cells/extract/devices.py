@@ -79,20 +79,15 @@ def find(gds: str | Path, name: str, tech: ExtractionPlatform) -> CellLayout:
     l2n = db.LayoutToNetlist(db.RecursiveShapeIterator(layout, cell, []))
     layers, texts = _layers(l2n, layout, tech, cell.bbox())
     for kind in "np":
-        extractor = db.DeviceExtractorMOS4Transistor(kind)
-        l2n.extract_devices(
-            extractor,
-            {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"], "P": layers["poly"], "W": layers[f"{kind}bulk"]},
-        )
+        sides: dict[str, db.ShapeCollection] = {"P": layers["poly"], "W": layers[f"{kind}bulk"]}
+        sides |= {"SD": layers[f"{kind}sd"], "G": layers[f"{kind}gate"]}
+        l2n.extract_devices(db.DeviceExtractorMOS4Transistor(kind), sides)
     _connect(l2n, layers, texts, tech)
     l2n.extract_netlist()
     circuit = l2n.netlist().top_circuit()
     found = _collect(l2n, circuit, layers, tech, layout.dbu)
-    marks = {
-        mark: db.Region(cell.begin_shapes_rec(layout.layer(*tech.devices[mark])))
-        for mark in MARKS
-        if mark in tech.devices
-    }
+    named = {mark: layout.layer(*tech.devices[mark]) for mark in MARKS if mark in tech.devices}
+    marks = {mark: db.Region(cell.begin_shapes_rec(layer)) for mark, layer in named.items()}
     found.devices = [_device(device, found, marks) for device in circuit.each_device()]
     found.vias = [_merged(layers[via.lef]) for via in tech.vias]
     found.labels = _labels(layout, cell, tech)
@@ -137,17 +132,9 @@ def _layers(
     pwell = db.Region(box.enlarged(REACH)) - nwell
     pactive = active & raw["psdm"]
     nactive = active & raw["nsdm"] if "nsdm" in raw else active - pactive
-    derived = {
-        "nbulk": pwell,
-        "pbulk": nwell,
-        "ngate": (nactive - nwell) & poly,
-        "pgate": (pactive & nwell) & poly,
-        "nsd": nactive - nwell - poly,
-        "psd": (pactive & nwell) - poly,
-        "ntap": nactive & nwell,
-        "ptap": pactive - nwell,
-        "active": active,
-    }
+    n, p = nactive - nwell, pactive & nwell
+    derived = {"nbulk": pwell, "pbulk": nwell, "ngate": n & poly, "pgate": p & poly, "nsd": n - poly, "psd": p - poly}
+    derived |= {"ntap": nactive & nwell, "ptap": pactive - nwell, "active": active}
     for name, region in derived.items():
         if name != "pbulk":
             l2n.register(region, name)
@@ -216,20 +203,9 @@ def _device(device: db.Device, found: CellLayout, marks: dict[str, db.Region]) -
     box = found.active.bbox()
     line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
     run = next(part.bbox() for part in line.each_merged() if part.inside(point))
-    return Device(
-        kind=device.device_class().name,
-        drain=net["D"],
-        gate=net["G"],
-        source=net["S"],
-        bulk=net["B"],
-        width=value("W"),
-        length=value("L"),
-        ad=value("AD"),
-        as_=value("AS"),
-        pd=value("PD"),
-        ps=value("PS"),
-        sa=(point.x - run.left) * found.dbu - value("L") / 2,
-        sb=(run.right - point.x) * found.dbu - value("L") / 2,
-        marks=frozenset(mark for mark, region in marks.items() if not region.interacting(spot).is_empty()),
-        at=point,
-    )
+    drain, gate, source, bulk = (net[terminal] for terminal in "DGSB")
+    width, length, *sides = (value(name) for name in ("W", "L", "AD", "AS", "PD", "PS"))
+    sa, sb = ((dbu * found.dbu - length / 2) for dbu in (point.x - run.left, run.right - point.x))
+    over = frozenset(mark for mark, region in marks.items() if not region.interacting(spot).is_empty())
+    kind = device.device_class().name
+    return Device(kind, drain, gate, source, bulk, width, length, *sides, sa=sa, sb=sb, marks=over, at=point)

@@ -26,6 +26,8 @@ IDEAL = 1e-3  # ohm a square of a diffusion, in which the transistor's model has
 LEAST = 1e-3  # ohm; what is less is as much
 MOST = 1e6  # ohm; what is more is left out
 BRANCHES = 5  # of a node that is taken out
+Points = Mapping[int, Sequence[db.Point]]  # by number of the conductor
+Polygons = Mapping[int, Sequence[db.Polygon]]
 VIEWS = (db.Trans(), db.Trans(db.Trans.M90))  # as drawn, and mirrored
 
 
@@ -72,9 +74,8 @@ def resistances(found: CellLayout, tech: ExtractionPlatform) -> Resistances:
             for i, role in port.users:
                 terminals[i][role] = node
         if len(ports) > 1:
-            kept = {
-                pair: siemens for pair, siemens in _conductances(net, ports, found, tech).items() if siemens > 1 / MOST
-            }
+            every = _conductances(net, ports, found, tech)
+            kept = {pair: siemens for pair, siemens in every.items() if siemens > 1 / MOST}
             if set(range(len(ports))) - {end for pair in kept for end in pair}:
                 raise ParameterError(f"net = {net}: no resistance below {MOST:g} ohm joins its {len(ports)} terminals")
             number = dict(enumerate(nodes))
@@ -135,19 +136,17 @@ def _conductances(
             conductor.resistance = IDEAL if name in found.islands else tech.conductor(name).sheet_ohm
             rules.add_conductor(conductor)
     for k, (region, via) in enumerate(zip(found.vias, tech.vias, strict=True)):
-        for lower in [
-            name for name in names if name in via.below or (name in found.islands and DIFFUSION in via.below)
-        ]:
-            if number[lower] in geometry and number[via.above] in geometry:
-                _via(
-                    rules,
-                    geometry,
-                    len(names) * (k + 1) + number[lower],
-                    number[lower],
-                    number[via.above],
-                    region & geometry[number[lower]] & geometry[number[via.above]],
-                    tech.contact_ohm[lower],
-                )
+        below = {*via.below, *(found.islands if DIFFUSION in via.below else ())}
+        upper = number[via.above]
+        for name in (name for name in names if name in below and {number[name], upper} <= geometry.keys()):
+            lower = number[name]
+            cut = region & geometry[lower] & geometry[upper]
+            if not cut.is_empty():
+                layer = len(names) * (k + 1) + lower
+                geometry[layer], made = cut, pex.RExtractorTechVia()
+                made.cut_layer, made.bottom_conductor, made.top_conductor = layer, lower, upper
+                made.resistance = tech.contact_ohm[name] * (cut.area() / cut.count() * 1e-6)
+                rules.add_via(made)
     points: dict[int, list[db.Point]] = {}
     flat: dict[int, list[db.Polygon]] = {}
     for port in ports:
@@ -159,25 +158,17 @@ def _conductances(
     return _reduced(network, [(number[port.conductor], port.shape) for port in ports], flat)
 
 
-def _network(
-    dbu: float,
-    rules: Any,
-    geometry: Mapping[int, db.Region],
-    points: Mapping[int, Sequence[db.Point]],
-    polygons: Mapping[int, Sequence[db.Polygon]],
-) -> Any:
+def _network(dbu: float, rules: Any, geometry: Mapping[int, db.Region], points: Points, polygons: Polygons) -> Any:
     """KLayout's network of a net; mirrored where its squares, counted as drawn, are more than MOST.
 
     It cuts a polygon into trapezoids, sometimes one without a height (1.3e11 ohm in xor2_2), and none of the mirrored.
     """
     found = []
     for view in VIEWS:
-        network = pex.RNetExtractor(dbu).extract(
-            rules,
-            {layer: region.transformed(view) for layer, region in geometry.items()},
-            {layer: [view * point for point in same] for layer, same in points.items()},
-            {layer: [polygon.transformed(view) for polygon in same] for layer, same in polygons.items()},
-        )
+        seen = {layer: region.transformed(view) for layer, region in geometry.items()}
+        spots = {layer: [view * point for point in same] for layer, same in points.items()}
+        flat = {layer: [polygon.transformed(view) for polygon in same] for layer, same in polygons.items()}
+        network = pex.RNetExtractor(dbu).extract(rules, seen, spots, flat)
         highest = max((element.resistance() for element in network.each_element()), default=0.0)
         if highest <= MOST:
             return network
@@ -185,40 +176,19 @@ def _network(
     return min(found, key=lambda view: view[0])[1]
 
 
-def _via(
-    rules: Any, geometry: dict[int, db.Region], layer: int, lower: int, upper: int, region: db.Region, ohm: float
-) -> None:
-    if region.is_empty():
-        return
-    geometry[layer] = region
-    via = pex.RExtractorTechVia()
-    via.cut_layer, via.bottom_conductor, via.top_conductor = layer, lower, upper
-    area = region.area() / region.count() * 1e-6
-    via.resistance = ohm * area
-    rules.add_via(via)
-
-
 def _reduced(
-    network: Any, ports: Sequence[tuple[int, "db.Region | db.Point"]], flat: Mapping[int, Sequence[db.Polygon]]
+    network: Any, ports: Sequence[tuple[int, "db.Region | db.Point"]], flat: Polygons
 ) -> dict[tuple[int, int], float]:
     """Conductances between the ports (layer, shape), numbered in their order, and inner nodes, numbered from there."""
     number, count = {}, len(ports)
     for node in sorted(network.each_node(), key=lambda node: (node.layer(), str(node.location()))):  # not by address
-        hit = next(
-            (
-                k
-                for k, (layer, shape) in enumerate(ports)
-                if node.layer() == layer and _is(node, shape, flat.get(layer, ()))
-            ),
-            None,
-        )
+        same = ((k, shape) for k, (layer, shape) in enumerate(ports) if node.layer() == layer)
+        hit = next((k for k, shape in same if _is(node, shape, flat.get(node.layer(), ()))), None)
         number[node.object_id()] = count if hit is None else hit
         count += hit is None
     beside: list[dict[int, float]] = [{} for _ in range(count)]  # node -> neighbor: S
-    for a, b, ohm in sorted(
-        (*sorted((number[e.a().object_id()], number[e.b().object_id()])), e.resistance())
-        for e in network.each_element()
-    ):
+    ends = (((number[end.object_id()] for end in (e.a(), e.b())), e.resistance()) for e in network.each_element())
+    for a, b, ohm in sorted((*sorted(pair), ohm) for pair, ohm in ends):
         _join(beside, a, b, 1 / max(ohm, LEAST))
     while inner := [k for k in range(len(ports), count) if 0 < len(beside[k]) <= BRANCHES]:
         _eliminate(beside, min(inner, key=lambda k: len(beside[k])))

@@ -42,25 +42,12 @@ def abstract(gds: str | Path, name: str, tech: ExtractionPlatform, pins: Mapping
     found = find(gds, name, tech)
     outline = _outline(gds, name, tech)
     metals = [layer.lef for layer in tech.conductors if layer.lef != "poly"]
-    blocked = {
-        metal: sum((region for net, region in found.shapes[metal].items() if net not in pins), db.Region())
-        for metal in metals
-    }
-    return write.macro(
-        name,
-        [
-            "CLASS CORE",
-            f"FOREIGN {name}",
-            "ORIGIN 0.000 0.000",
-            write.size(outline.width(), outline.height()),
-            "SYMMETRY X Y",
-            f"SITE {site}",
-        ],
-        [_pin(pin, kind, found, metals) for pin, kind in pins.items()],
-        list(_rectangles(blocked, found.dbu))
-        if any(set(found.shapes[metal]) - set(pins) for metal in metals)
-        else None,
-    )
+    others = {metal: [found.shapes[metal][net] for net in found.shapes[metal] if net not in pins] for metal in metals}
+    blocked = {metal: sum(regions, db.Region()) for metal, regions in others.items()}
+    head = ["CLASS CORE", f"FOREIGN {name}", "ORIGIN 0.000 0.000", write.size(outline.width(), outline.height())]
+    head += ["SYMMETRY X Y", f"SITE {site}"]
+    obstructions = list(_rectangles(blocked, found.dbu)) if any(others.values()) else None
+    return write.macro(name, head, [_pin(pin, kind, found, metals) for pin, kind in pins.items()], obstructions)
 
 
 def _outline(gds: str | Path, name: str, tech: ExtractionPlatform) -> db.DBox:

@@ -16,11 +16,8 @@ def readers(path: str | Path) -> dict[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         script = Path(folder) / "read.tcl"
         script.write_text(f"read_liberty {{{path}}}\nexit\n")
-        commands = {
-            "yosys": ["yosys", "-q", "-p", f"read_liberty {path}"],
-            "opensta": ["sta", "-no_splash", "-exit", str(script)],
-        }
-        return {tool: _output(command) for tool, command in commands.items()}
+        yosys, opensta = ["yosys", "-q", "-p", f"read_liberty {path}"], ["sta", "-no_splash", "-exit", str(script)]
+        return {"yosys": _output(yosys), "opensta": _output(opensta)}
 
 
 def _output(command: list[str]) -> str:

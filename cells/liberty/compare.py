@@ -11,20 +11,13 @@ import numpy.typing as npt
 from base.liberty.group import Group
 from cells.characterize.table import bilinear
 
-KINDS = {
-    "cell_rise": "delay",
-    "cell_fall": "delay",
-    "rise_transition": "slew",
-    "fall_transition": "slew",
-    "rise_power": "energy",
-    "fall_power": "energy",
-}
-CONSTRAINTS = {
-    **{f"{kind}_{edge}": kind for kind in ("setup", "hold", "recovery", "removal") for edge in ("rising", "falling")},
-    "min_pulse_width": "width",
-}
+KINDS = {f"cell_{edge}": "delay" for edge in ("rise", "fall")}
+KINDS |= {f"{edge}_transition": "slew" for edge in ("rise", "fall")}
+KINDS |= {f"{edge}_power": "energy" for edge in ("rise", "fall")}
+TIMES = ("setup", "hold", "recovery", "removal")
+CONSTRAINTS = {f"{kind}_{edge}": kind for kind in TIMES for edge in ("rising", "falling")}
+CONSTRAINTS["min_pulse_width"] = "width"
 Floats = npt.NDArray[np.float64]
-
 
 # Attributes by which two groups are the same, the narrowest first: characterizers differ in whether a release is a
 # 'preset' or belongs to 'clear', and in the sense of an edge that only one of them has.
@@ -70,22 +63,16 @@ def differences(name: str, ours: Group, theirs: Group) -> list[Difference]:
     """Differences of one cell."""
 
     def number(kind: str, what: str, own: float, other: float) -> Difference:
-        """Compare two numbers."""
         return Difference(name, kind, what, np.array([own]), np.array([other]))
 
     found = [number("leakage", "mean", *(cell.number("cell_leakage_power") for cell in (ours, theirs)))]
-    found += [
-        number("leakage by state", state.text("when"), _leakage(ours, state), state.number("value"))
-        for state in theirs.all("leakage_power")
-        if "when" in state.attributes
-    ]
+    for state in (state for state in theirs.all("leakage_power") if "when" in state.attributes):
+        found.append(number("leakage by state", state.text("when"), _leakage(ours, state), state.number("value")))
     for pin in theirs.all("pin"):
         own, used = ours.one("pin", pin.name) or Group("pin", (pin.name,)), set()
-        found += [
-            number("capacitance", f"{pin.name} {attribute}", own.number(attribute), pin.number(attribute))
-            for attribute in ("rise_capacitance", "fall_capacitance")
-            if attribute in pin.attributes
-        ]
+        for key in ("rise_capacitance", "fall_capacitance"):
+            if key in pin.attributes:
+                found.append(number("capacitance", f"{pin.name} {key}", own.number(key), pin.number(key)))
         for kind in ("timing", "internal_power"):
             for group in pin.all(kind):
                 found += _tables(name, pin, own, group, used)
@@ -130,16 +117,10 @@ def _tables(name: str, pin: Group, own: Group, group: Group, used: set[int]) -> 
         kind = _kind(group, table)
         if kind is None:
             continue
-        values = table.array("values")
-        mine = _same(own, group, table.kind, kind)
+        values, mine = table.array("values"), _same(own, group, table.kind, kind)
         used.add(id(mine))
-        yield Difference(
-            name,
-            kind,
-            _what(pin, group, table),
-            np.full(values.shape, np.nan) if mine is None else _at(mine, table),
-            values,
-        )
+        ours = np.full(values.shape, np.nan) if mine is None else _at(mine, table)
+        yield Difference(name, kind, _what(pin, group, table), ours, values)
 
 
 def _same(own: Group, group: Group, table: str, kind: str) -> Group | None:
@@ -182,11 +163,8 @@ def summary(found: Sequence[Difference]) -> dict[str, Any]:
         finite = np.abs(errors[np.isfinite(errors)])
         out[kind] = {"unit": unit, "entries": int(errors.size), "missing": int(errors.size - finite.size)}
         if finite.size:
-            out[kind] |= {
-                "median": round(float(np.median(finite)), 3),
-                "p95": round(float(np.percentile(finite, 95)), 3),
-                "worst": round(float(finite.max()), 3),
-            }
+            errors = {"median": np.median(finite), "p95": np.percentile(finite, 95), "worst": finite.max()}
+            out[kind] |= {name: round(float(error), 3) for name, error in errors.items()}
     return {
         "error": out,
         "only_theirs": [f"{d.cell}: {d.what}" for d in both if np.isnan(d.ours).all()],

@@ -116,9 +116,8 @@ def understand(netlist: Netlist, polarity: Mapping[str, str], rails: Mapping[str
         return Cell(machine, functions, three_state, None, tuple(_arcs(machine, _combinational_type)))
     storage = _storage(machine)
     functions = {q: _output_function(machine, storage, k) for k, q in enumerate(machine.outputs)}
-    return Cell(
-        machine, functions, dict.fromkeys(machine.outputs), storage, tuple(_arcs(machine, _sequential_type(storage)))
-    )
+    arcs = tuple(_arcs(machine, _sequential_type(storage)))
+    return Cell(machine, functions, dict.fromkeys(machine.outputs), storage, arcs)
 
 
 def _code(bits: Iterable[int | str]) -> int:
@@ -180,16 +179,11 @@ def _gating(machine: Machine) -> Storage | None:
     for clock in range(len(machine.inputs)):
         for active in (0, 1):
             rest = {s.outputs[0] for s in machine.states if s.inputs[clock] != active}
-            free = [
-                c
-                for c in machine.changes
-                if c.pin != clock and c.before.inputs[clock] == active and c.before.outputs != c.after.outputs
-            ]
-            if rest == {1 - active} and not free:
+            others = [c for c in machine.changes if c.pin != clock and c.before.inputs[clock] == active]
+            if rest == {1 - active} and all(c.before.outputs == c.after.outputs for c in others):
                 data = tuple(i for i in range(len(machine.inputs)) if i != clock)
-                samples = [
-                    (c.before, c.after) for c in machine.changes if c.pin == clock and c.after.inputs[clock] == active
-                ]
+                edges = [c for c in machine.changes if c.pin == clock and c.after.inputs[clock] == active]
+                samples = [(c.before, c.after) for c in edges]
                 text, used = _stored(machine, samples, data, with_state=False)
                 return Storage("gate", machine.inputs[clock], active, text, used)
     return None

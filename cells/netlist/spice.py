@@ -157,8 +157,7 @@ def _element(netlist: Netlist, words: list[str], line: str, origin: str, spelled
         ]
     elif kind in "cr" and len(words) >= 4:
         a, b = (_node(node, spelled) for node in words[1:3])
-        (netlist.capacitors if kind == "c" else netlist.resistors).append(
-            Passive(name, a, b, number(words[3].split("=")[-1]))
-        )
+        passive = Passive(name, a, b, number(words[3].split("=")[-1]))
+        (netlist.capacitors if kind == "c" else netlist.resistors).append(passive)
     else:
         raise ParameterError(f"netlist = {origin}: {line!r} is no transistor, capacitor or resistor")

@@ -74,11 +74,8 @@ class Machine:
                     blind.add(key)
                 else:
                     kept = tuple(nodes[self.switches.root[pin]] for pin in self.outputs)
-                    inside = tuple(
-                        (node, level)
-                        for node in self.switches.inner
-                        if node not in self.netlist.ports and (level := nodes[node]) is not None
-                    )
+                    inner = ((n, nodes[n]) for n in self.switches.inner if n not in self.netlist.ports)
+                    inside = tuple((node, level) for node, level in inner if level is not None)
                     found[key] = State(vector, known, kept, inside, path)
                 for pin in range(n):
                     after = tuple(v ^ (i == pin) for i, v in enumerate(vector))

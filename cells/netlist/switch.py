@@ -63,9 +63,8 @@ class Switches:
         return {n: v if v == previous[n] else None for n, v in state.items()}
 
     def _step(self, state: Levels, forced: Levels) -> Levels:
-        sure, maybe = (
-            {level: self._distance(state, forced, level, doubt) for level in (0, 1)} for doubt in (False, True)
-        )
+        levels = [[self._distance(state, forced, level, doubt) for level in (0, 1)] for doubt in (False, True)]
+        sure, maybe = levels
         after = dict(forced)
         for node in self.inner:
             if node in forced:
@@ -118,7 +117,6 @@ def joined(netlist: Netlist) -> dict[str, str]:
     root = {n: n for n in netlist.nodes}
 
     def find(n: str) -> str:
-        """The root of a node."""
         while root[n] != n:
             n = root[n]
         return n

@@ -18,15 +18,8 @@ from cells.report import curve, pictures, separate
 from models.parameters import ParameterError
 
 # per cent, constraints in ps: median and 95th percentile that are asked for at the typical corner
-BOUNDS = {
-    "delay": (5, 12),
-    "slew": (5, 12),
-    "capacitance": (5, None),
-    "leakage": (20, None),
-    "energy": (20, None),
-    "setup": (15, None),
-    "hold": (15, None),
-}
+BOUNDS = {"delay": (5, 12), "slew": (5, 12), "capacitance": (5, None), "leakage": (20, None), "energy": (20, None)}
+BOUNDS |= {"setup": (15, None), "hold": (15, None)}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -46,22 +39,15 @@ def run(options: Namespace) -> int:
         page |= against(conditions, options.reference, options.out, options.workers)
     measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
     found = curve.table(measured)
-    page |= {
-        "curve": found,
-        "curve_picture": pictures.error_against_time(found, curve.DEFAULT),
-        "off_grid": curve.by_cell(measured),
-    }
+    page |= {"curve": found, "curve_picture": pictures.error_against_time(found, curve.DEFAULT)}
+    page["off_grid"] = curve.by_cell(measured)
     with staged(options.out) as part:
         (part / "index.html").write_text(render(Path(__file__).with_name("index.html"), **page))
         figures = {name: page.get(name) for name in ("kinds", "curve", "off_grid", "variants", "alone")}
         (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
     for kind, e in page["kinds"].items():
-        errors = (
-            f"median {e['median']:7.2f} {e['unit']}, 95th percentile {e['p95']:7.2f}, "
-            if "median" in e
-            else "nothing to compare, "
-        )
-        print(f"{kind:16} {errors}{e['entries']} entries")
+        errors = "median {median:7.2f} {unit}, 95th percentile {p95:7.2f}" if "median" in e else "nothing to compare"
+        print(f"{kind:16} {errors.format(**e)}, {e['entries']} entries")
     print(options.out / "index.html")
     return 0
 
@@ -76,9 +62,7 @@ def against(conditions: Conditions, folder: Path, out: Path, workers: int) -> di
     tree = read(out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
     differences = compare.library(tree, known)
     summary = compare.summary(differences)
-    kinds = summary["error"]
-    for kind, e in kinds.items():
-        e["bound"] = BOUNDS.get(kind)
+    kinds = {kind: {**e, "bound": BOUNDS.get(kind)} for kind, e in summary["error"].items()}
     cells = {}
     for name in names:
         same = [d for d in differences if d.cell == name]

@@ -3,6 +3,7 @@
 import json
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import NamedTuple, TypedDict
 
@@ -55,11 +56,9 @@ class CellError(NamedTuple):
 def settings(conditions: Conditions) -> dict[str, Conditions]:
     """The settings that are compared, the default among them."""
     base, found = conditions, {}
-    for reltol in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
-        for steps in (20, 50, 200):
-            found[f"reltol {reltol:g}, {steps} steps"] = replace(
-                base, settings=replace(base.settings, reltol=reltol, steps=steps)
-            )
+    for reltol, steps in product((1e-2, 1e-3, 1e-4, 1e-5, 1e-6), (20, 50, 200)):
+        tolerance = replace(base.settings, reltol=reltol, steps=steps)
+        found[f"reltol {reltol:g}, {steps} steps"] = replace(base, settings=tolerance)
     found["trapezoidal, reltol 0.0001, 50 steps"] = replace(base, settings=replace(base.settings, method="trap"))
     for count in (4, 5, 7, 9, 13):
         slews = tuple(float(s) for s in np.geomspace(base.slews[0], base.slews[-1], count))
@@ -76,28 +75,16 @@ def measure(library: str, conditions: Conditions, store: Path, workers: int) -> 
     """
     process, cells = sources.process(library), (*CELLS, *SLOW)
     found = {name: sources.source(library, name) for name in cells}
-    truths = [
-        jobs.Job(
-            f"{name}.truth",
-            truth,
-            (library, name, conditions),
-            (OFF_GRID, *job(found[name], replace(conditions, settings=DENSE), process).inputs),
-        )
-        for name in cells
-    ]
-    truths = dict(zip(cells, jobs.run(truths, store, "dense transients", workers), strict=True))
-    todo = []
+    truths, todo = [], []
     for name in cells:
-        tried = settings(conditions) if name in CELLS else {DEFAULT: conditions}
-        todo += [
-            jobs.Job(
-                f"{name}.{label.replace(' ', '_')}",
-                one,
-                (library, name, label, at, truths[name]),
-                (*job(found[name], at, process).inputs, json.dumps(truths[name])),
-            )
-            for label, at in tried.items()
-        ]
+        inputs = OFF_GRID, *job(found[name], replace(conditions, settings=DENSE), process).inputs
+        truths.append(jobs.Job(f"{name}.truth", truth, (library, name, conditions), inputs))
+    truths = dict(zip(cells, jobs.run(truths, store, "dense transients", workers), strict=True))
+    for name in cells:
+        for label, at in (settings(conditions) if name in CELLS else {DEFAULT: conditions}).items():
+            arguments = library, name, label, at, truths[name]
+            inputs = *job(found[name], at, process).inputs, json.dumps(truths[name])
+            todo.append(jobs.Job(f"{name}.{label.replace(' ', '_')}", one, arguments, inputs))
     return jobs.run(todo, store, "error against run time", workers=1)
 
 
@@ -107,17 +94,13 @@ def one(library: str, name: str, label: str, conditions: Conditions, truth: Sequ
     started = cpu_seconds()
     with Bench(cell, sources.process(library), conditions) as bench:
         grid = {output: axes_of(bench, output) for output in cell.machine.outputs}
-        tables = [
-            delay.table(bench, arc.changes[0], arc.output, grid[arc.output][1], grid[arc.output][0])
-            for arc in cell.arcs
-        ]
-    seconds = cpu_seconds() - started
-    errors = [
-        100 * (table.at(field, slew, load) / exact[field] - 1)
-        for table, points in zip(tables, truth, strict=True)
-        for slew, load, exact in points
-        for field in ("delay", "slew")
-    ]
+        axes = [grid[arc.output] for arc in cell.arcs]
+        arcs = zip(cell.arcs, axes, strict=True)
+        tables = [delay.table(bench, arc.changes[0], arc.output, loads, slews) for arc, (slews, loads, _) in arcs]
+    seconds, errors = cpu_seconds() - started, []
+    for table, points in zip(tables, truth, strict=True):
+        for slew, load, exact in points:
+            errors += [100 * (table.at(field, slew, load) / exact[field] - 1) for field in ("delay", "slew")]
     return {"name": label, "cell": name, "error": errors, "seconds": seconds}
 
 
@@ -127,19 +110,13 @@ def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
     process = sources.process(library)
     cell = cell_of(sources.source(library, name), process)
     with Bench(cell, process, replace(base, settings=DENSE)) as bench:
-        largest = {
-            output: delay.largest_load(bench, [a.changes[0] for a in cell.arcs if a.output == output], output)
-            for output in cell.machine.outputs
-        }
+        changes = {output: [a.changes[0] for a in cell.arcs if a.output == output] for output in cell.machine.outputs}
+        largest = {output: delay.largest_load(bench, same, output) for output, same in changes.items()}
         for arc in cell.arcs:
             slews = np.exp(rng.uniform(np.log(base.slews[0]), np.log(base.slews[-1]), OFF_GRID))
             loads = np.exp(rng.uniform(np.log(base.least_load), np.log(largest[arc.output]), OFF_GRID))
-            found.append(
-                [
-                    (slew, load, vars(bench.edge(arc.changes[0], arc.output, slew, load)))
-                    for slew, load in zip(slews.tolist(), loads.tolist(), strict=True)
-                ]
-            )
+            points = zip(slews.tolist(), loads.tolist(), strict=True)
+            found.append([(s, load, vars(bench.edge(arc.changes[0], arc.output, s, load))) for s, load in points])
     return found
 
 
@@ -156,7 +133,7 @@ def table(found: Sequence[Tried]) -> list[Setting]:
 
 def by_cell(found: Sequence[Tried]) -> list[CellError]:
     """Summarize every cell with the default setting."""
-    own = [(f["cell"], np.abs(f["error"])) for f in found if f["name"] == DEFAULT]
-    return [
-        CellError(cell, len(errors), float(np.median(errors)), float(np.percentile(errors, 95))) for cell, errors in own
-    ]
+    rows = []
+    for cell, errors in ((f["cell"], np.abs(f["error"])) for f in found if f["name"] == DEFAULT):
+        rows.append(CellError(cell, len(errors), float(np.median(errors)), float(np.percentile(errors, 95))))
+    return rows

@@ -36,15 +36,8 @@ def heat_maps(differences: Sequence[Difference]) -> str:
         values = (d.ours - d.theirs) * 1e3 if time else 100 * d.relative
         axis.imshow(values, cmap="RdBu_r", vmin=-SCALE, vmax=SCALE)
         for (i, j), value in np.ndenumerate(values):
-            axis.text(
-                j,
-                i,
-                str(round(value)),
-                ha="center",
-                va="center",
-                fontsize=6,
-                color="white" if abs(value) > 0.7 * SCALE else "black",
-            )
+            color = "white" if abs(value) > 0.7 * SCALE else "black"
+            axis.text(j, i, str(round(value)), ha="center", va="center", fontsize=6, color=color)
         axis.set_title(f"{d.what}{' (ps)' if time else ' (%)'}", fontsize=6)
     return embedded(figure)
 
@@ -58,15 +51,9 @@ def error_against_time(rows: Sequence[Setting], default: str) -> str:
         axis.plot([seconds, seconds], [median, high], "-", color="0.8", zorder=1)
         axis.plot(seconds, median, "s" if grid else "o", color="C0")
         axis.plot(seconds, high, "s" if grid else "o", color="C3", mfc="none")
-        weight = "bold" if name == default else "normal"
-        axis.annotate(
-            str(number), (seconds, high), fontsize=8, weight=weight, xytext=(2, 3), textcoords="offset points"
-        )
-    axis.set(
-        xscale="log",
-        yscale="log",
-        xlabel="CPU seconds, three cells",
-        ylabel="error in per cent: median, 95th percentile",
-    )
+        weight, at = "bold" if name == default else "normal", (seconds, high)
+        axis.annotate(str(number), at, fontsize=8, weight=weight, xytext=(2, 3), textcoords="offset points")
+    axis.set(xscale="log", yscale="log", xlabel="CPU seconds, three cells")
+    axis.set_ylabel("error in per cent: median, 95th percentile")
     axis.grid(alpha=0.3, which="both")
     return embedded(figure)

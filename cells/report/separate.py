@@ -55,17 +55,10 @@ def separate(
     for name in names:
         file = next(folder.glob(f"{name}.lib.json"), None) or next(folder.glob(f"*__{name}__*.lib.json"))
         for models, netlist in variants(process):
-            source = sources.source(library, name, netlist)
-            at = replace(conditions, models=models)
-            inputs = job(source, at, process).inputs
-            todo.append(
-                jobs.Job(
-                    f"{name}.{models}.{netlist}.{conditions.corner.name}",
-                    errors,
-                    (library, name, at, netlist, str(file)),
-                    (*inputs, file),
-                )
-            )
+            source, at = sources.source(library, name, netlist), replace(conditions, models=models)
+            arguments, inputs = (library, name, at, netlist, str(file)), (*job(source, at, process).inputs, file)
+            title = f"{name}.{models}.{netlist}.{conditions.corner.name}"
+            todo.append(jobs.Job(title, errors, arguments, inputs))
     return jobs.run(todo, store, "models and netlists", workers)
 
 
@@ -83,14 +76,10 @@ def errors(library: str, name: str, conditions: Conditions, netlist: str, file: 
                     table = timing.one(kind)
                     if table is None:
                         continue
-                    values = table.array("values")[POINTS, POINTS]
-                    ours = [
-                        [
-                            getattr(bench.edge(arc.changes[0], arc.output, slew * 1e-9, load * 1e-12), field) * 1e9
-                            for load in table.array("index_2")[POINTS]
-                        ]
-                        for slew in table.array("index_1")[POINTS]
-                    ]
+                    values, change = table.array("values")[POINTS, POINTS], arc.changes[0]
+                    slews, loads = (table.array(f"index_{k}")[POINTS] for k in (1, 2))
+                    edges = [[bench.edge(change, arc.output, s * 1e-9, f * 1e-12) for f in loads] for s in slews]
+                    ours = [[getattr(edge, field) * 1e9 for edge in row] for row in edges]
                     found[field] += np.ravel((np.array(ours) / values - 1) * 100).tolist()
     return found
 
