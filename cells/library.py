@@ -93,12 +93,11 @@ def _corners(folder: Path) -> dict[str, dict[str, Any]]:
 
 
 def _summary(measured: Sequence[Measured], tree: Group) -> dict[str, Any]:
+    counts = {name: sum(len(m[name]) for m in measured) for name in ("arcs", "constraints")}
+    counts |= {name: sum(m[name] for m in measured) for name in ("simulations", "repeated")}
     return {
         "cells": len(measured),
-        "arcs": sum(len(m["arcs"]) for m in measured),
-        "constraints": sum(len(m["constraints"]) for m in measured),
-        "simulations": sum(m["simulations"] for m in measured),
-        "repeated": sum(m["repeated"] for m in measured),
+        **counts,
         "failed": [f"{m['name']}: {f['what']}: {f['why']}" for m in measured for f in m["failed"]],
         "problems": problems(tree),
         "cpu_s": round(sum(m["cpu_s"] for m in measured), 1),

@@ -11,7 +11,7 @@ from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.library import schematic_spice
 from cells.compact.write import written
-from cells.extract import extract
+from cells.extract.subcircuit import extract
 from cells.liberty.build import Constant
 from cells.netlist import spice
 from models.parameters import ParameterError

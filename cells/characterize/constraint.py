@@ -126,13 +126,7 @@ def _shortest(bench: Bench, scenarios: Scenarios, pin: str, level: int, state: S
 
 
 def outcome(
-    bench: Bench,
-    state: State,
-    events: Sequence[Event],
-    far: float,
-    trigger: int,
-    expected: Output,
-    edge: int | None = None,
+    bench: Bench, state: State, events: list[Event], far: float, trigger: int, expected: Output, edge: int | None = None
 ) -> float | None:
     """Delay of the first output in s, 0.0 when it stays as it should, None when it does not end as expected.
 

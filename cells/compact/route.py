@@ -5,7 +5,7 @@ way.
 """
 
 import heapq
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -15,6 +15,7 @@ from numba import njit
 from cells.compact.canvas import Canvas
 from cells.compact.grid import Arrays, Flags, Floats, Grid, Ints, Vertex
 
+Edges = list[tuple[int, int, int]]  # net, vertex, vertex
 Terminals = tuple[Ints, Ints, Ints]  # start of each net's sets, start of each set's members, and the members
 
 ROUNDS = 80
@@ -72,7 +73,7 @@ def _grid(columns: int, canvas: Canvas, met1: bool) -> tuple[Grid, Arrays]:
     return grid, grid.arrays()
 
 
-def _wiring(grid: Grid, names: Sequence[str], used: Flags, edges: Iterable[tuple[int, int, int]]) -> Wiring:
+def _wiring(grid: Grid, names: Sequence[str], used: Flags, edges: Edges) -> Wiring:
     held = {net: {grid.vertices[i] for i in np.flatnonzero(used[k])} for k, net in enumerate(names)}
     pairs: dict[str, list[tuple[Vertex, Vertex]]] = {net: [] for net in names}
     for k, a, b in edges:
@@ -89,7 +90,7 @@ def _wiring(grid: Grid, names: Sequence[str], used: Flags, edges: Iterable[tuple
 
 
 @njit(cache=True)
-def _negotiate(grid: Arrays, terminals: Terminals, used: Flags) -> tuple[bool, list[tuple[int, int, int]]]:
+def _negotiate(grid: Arrays, terminals: Terminals, used: Flags) -> tuple[bool, Edges]:
     """Fill ``used`` (net, vertex); returns whether no conflict is left, and edges as (net, vertex, vertex)."""
     excludes, vertices, count = grid[3], used.shape[1], len(terminals[0]) - 1
     past, held = np.zeros(vertices), np.zeros(vertices, np.int64)
@@ -129,13 +130,7 @@ def _negotiate(grid: Arrays, terminals: Terminals, used: Flags) -> tuple[bool, l
 
 @njit(cache=True)
 def _tree(
-    grid: Arrays,
-    terminals: Terminals,
-    held: Ints,
-    past: Floats,
-    present: float,
-    net: int,
-    edges: list[tuple[int, int, int]],
+    grid: Arrays, terminals: Terminals, held: Ints, past: Floats, present: float, net: int, edges: Edges
 ) -> tuple[Flags, bool]:
     """Find a tree that meets every terminal of ``net``: its vertices, and whether there is one; appends its edges."""
     price, leaf, nexts, excludes, needs, crowds = grid

@@ -30,10 +30,6 @@ def _storage(s: Schematic) -> list[str]:
     if s.storage == "gate":
         return ["  reg enable;", "  always @(clk or i) if (!clk) enable = i;", "  assign q = clk & enable;"]
     if "clear" in s.functions:
-        return [
-            "  reg state;",
-            "  always @(posedge clk or negedge nrst)",
-            f"    if (!nrst) state <= 1'b0; else state <= {s.functions['next_state']};",
-            "  assign q = state;",
-        ]
+        body = f"    if (!nrst) state <= 1'b0; else state <= {s.functions['next_state']};"
+        return ["  reg state;", "  always @(posedge clk or negedge nrst)", body, "  assign q = state;"]
     return ["  reg state;", f"  always @(posedge clk) state <= {s.functions['next_state']};", "  assign q = state;"]

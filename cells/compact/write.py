@@ -16,7 +16,7 @@ from cells.compact.liberty import liberty
 from cells.compact.library import FOLDER, NAME, library
 from cells.compact.transistors import Schematic
 from cells.compact.verilog import verilog
-from cells.lef import PinKind, abstract
+from cells.lef.abstract import PinKind, abstract
 from platforms.extraction import extraction_platform
 
 if TYPE_CHECKING:

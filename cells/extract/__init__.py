@@ -1,5 +1,1 @@
 """Cells as they are laid out: GDS in, a SPICE subcircuit with measured transistors and parasitics out."""
-
-from cells.extract.subcircuit import extract
-
-__all__ = ["extract"]

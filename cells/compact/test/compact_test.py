@@ -17,7 +17,7 @@ from cells.compact.place import breaks, place
 from cells.compact.route import route
 from cells.compact.rules import broken
 from cells.compact.transistors import Schematic, Switch
-from cells.extract import extract
+from cells.extract.subcircuit import extract
 from cells.extract.test.compare import differences
 from cells.netlist import spice
 from models.parameters import ParameterError

@@ -9,7 +9,7 @@ pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 import klayout.db as db
 
 from base.lef.read import read_macros
-from cells.lef import PinKind, abstract
+from cells.lef.abstract import PinKind, abstract
 from models.parameters import ParameterError
 from platforms.extraction import extraction_platform
 from platforms.sky130 import cells

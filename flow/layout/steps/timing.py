@@ -80,7 +80,7 @@ class Timing(Step[TimingParameters]):
 def sources_of(inputs: Files, tech: ExtractionPlatform) -> "list[Source]":
     """The cells with an input, as the library's functions name them, with their parasitics."""
     from cells.characterize.job import Source
-    from cells.extract import extract
+    from cells.extract.subcircuit import extract
 
     areas = json.loads(inputs["areas"].read_text())
     cells = read(inputs["functions"]).all("cell")

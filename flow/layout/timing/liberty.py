@@ -28,7 +28,7 @@ class Function(NamedTuple):
 
 def functions(gds: Path, names: Iterable[str], models: ModuleType, tech: "ExtractionPlatform") -> dict[str, Function]:
     """Functions of the cells ``names`` in ``gds``; cells without an output are left out. models: `device_models`."""
-    from cells.extract import extract
+    from cells.extract.subcircuit import extract
     from cells.netlist.function import understand
     from cells.netlist.spice import parse
 
