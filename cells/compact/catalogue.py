@@ -1,6 +1,7 @@
 """The cells: names, functions and transistors. Ports are named as in c4m-flexcell (i0, cmd, q, nq, clk, nrst)."""
 
 from collections.abc import Iterator
+from itertools import islice
 
 from cells.compact.transistors import Function, Schematic, Switch
 
@@ -46,22 +47,15 @@ def _simple() -> Iterator[Schematic]:
 
 
 def _complex() -> Iterator[Schematic]:
-    a, b, c, d, e = INPUTS
-    functions: dict[str, Function] = {
-        "and21nor": ("or", ("and", a, b), c),
-        "or21nand": ("and", ("or", a, b), c),
-        "and22nor": ("or", ("and", a, b), ("and", c, d)),
-        "or22nand": ("and", ("or", a, b), ("or", c, d)),
-        "and211nor": ("or", ("and", a, b), c, d),
-        "or211nand": ("and", ("or", a, b), c, d),
-        "and31nor": ("or", ("and", a, b, c), d),
-        "or31nand": ("and", ("or", a, b, c), d),
-        "and221nor": ("or", ("and", a, b), ("and", c, d), e),
-        "or221nand": ("and", ("or", a, b), ("or", c, d), e),
-    }
-    for name, function in functions.items():
-        ports = INPUTS[: sum(int(digit) for digit in name if digit.isdigit())]
-        yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", function)
+    """Of a name each digit is a group of inputs, joined by the first operator; the second one joins the groups."""
+    functions: dict[str, Function] = {}
+    for digits in ("21", "22", "211", "31", "221"):
+        for inner, outer in (("and", "or"), ("or", "and")):
+            pins = iter(INPUTS)
+            groups = [tuple(islice(pins, int(digit))) for digit in digits]
+            name, ports = f"{inner}{digits}n{outer}", INPUTS[: sum(map(len, groups))]
+            functions[name] = (outer, *((inner, *group) if len(group) > 1 else group[0] for group in groups))
+            yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", functions[name])
     pairs = {"and21or": "and21nor", "or21and": "or21nand", "and22or": "and22nor", "or22and": "or22nand"}
     for name, inverting in pairs.items():
         ports = INPUTS[: 3 if "21" in name else 4]

@@ -2,7 +2,6 @@
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass, replace
 from typing import NamedTuple, NotRequired, TypedDict
 
 import klayout.db as db
@@ -20,8 +19,7 @@ EPSILON = 1e-6
 VIA_PAD = (0.29, 0.23)  # um: met1 around mcon
 
 
-@dataclass(frozen=True)
-class Shape:
+class Shape(NamedTuple):
     """A rectangle (um) on a layer of PDKMaster's technology. net: its net, '' for wells, implants and the like."""
 
     layer: str
@@ -37,22 +35,11 @@ class Shape:
         return db.Box(*(round(v * 1000) for v in (self.left, self.bottom, self.right, self.top)))
 
 
-class Box(TypedDict):
-    """A Shape as JSON holds it."""
-
-    layer: str
-    net: str
-    left: float
-    bottom: float
-    right: float
-    top: float
-
-
 class Drawn(TypedDict):
-    """A cell as JSON holds it: width in um, shapes, recipe (see `cells.compact.make.Recipe`), sides of a diode."""
+    """A cell as JSON holds it: width in um, fields of its shapes and of its Recipe, sides of a diode."""
 
     width: float
-    shapes: list[Box]
+    shapes: list[tuple[str, str, float, float, float, float]]
     recipe: NotRequired[list[object]]
     diode: NotRequired[tuple[float, float]]
 
@@ -99,7 +86,7 @@ class Drawing(Pen):
             for layer in ("li", "li.pin"):
                 self.box(layer, net, x - WIRE / 2, bottom, x + WIRE / 2, top)
         inside = [s for s in self.shapes if s.layer == "m1" and s.net not in ("vdd", "vss")]
-        self.shapes += [replace(s, layer="m1.block", net="") for s in inside]
+        self.shapes += [s._replace(layer="m1.block", net="") for s in inside]
 
     def x(self, h: int) -> float:
         """The middle of half-site column ``h``, um."""

@@ -6,12 +6,12 @@ extra gaps are, whether met1 is used. With a recipe a cell is drawn at once, wit
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, astuple, dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 
 from cells.compact.assemble import assemble, task
 from cells.compact.canvas import Canvas
-from cells.compact.draw import Box, Drawing, Drawn
+from cells.compact.draw import Drawing, Drawn
 from cells.compact.place import Column, breaks, place
 from cells.compact.route import route
 from cells.compact.rules import broken
@@ -40,10 +40,8 @@ class Recipe:
 
 def recipe(name: str) -> Recipe | None:
     """The Recipe kept for cell ``name``, or None."""
-    if kept := json.loads(RECIPES.read_text()).get(name):
-        sites, met1, seed, spread = kept
-        return Recipe(sites, met1, seed, tuple(spread))
-    return None
+    kept = json.loads(RECIPES.read_text()).get(name)
+    return Recipe(*kept[:3], tuple(kept[3])) if kept else None
 
 
 def make(schematic: Schematic, canvas: Canvas, known: Recipe | None = None) -> Drawn:
@@ -54,8 +52,7 @@ def make(schematic: Schematic, canvas: Canvas, known: Recipe | None = None) -> D
         drawing = known and _draw(schematic, place(schematic, known.seed), known, canvas)
     if not known or not drawing:
         raise NoLayout(f"{schematic.name}: none of {SEEDS} placements with up to {GAPS} extra gaps could be routed")
-    shapes = [Box(**asdict(shape)) for shape in drawing.shapes]
-    return {"width": drawing.width, "recipe": list(astuple(known)), "shapes": shapes}
+    return {"width": drawing.width, "recipe": list(astuple(known)), "shapes": [*drawing.shapes]}
 
 
 def choose(schematic: Schematic, canvas: Canvas, seeds: Iterable[int], below: Recipe | None = None) -> Recipe | None:

@@ -1,6 +1,6 @@
 """The drawn cells as a library of PDKMaster (c4m-pdk-sky130), for its exporters."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from c4m.pdk.sky130.pdkmaster import cktfab, layoutfab, tech
@@ -10,7 +10,7 @@ from pdkmaster.design.routinggauge import RoutingGauge
 from pdkmaster.technology import geometry
 
 from cells.compact.canvas import Canvas
-from cells.compact.draw import Drawn
+from cells.compact.draw import Drawn, Shape
 from cells.compact.transistors import Schematic
 
 PRIMITIVES: Any = tech.primitives  # PDKMaster's types do not tell metals from other primitives
@@ -23,12 +23,13 @@ class DrawnCell(pdk_cell.Cell):
         super().__init__(name=schematic.name, tech=tech, cktfab=cktfab, layoutfab=layoutfab)
         self.schematic, self.drawing = schematic, drawing
         circuit = self.new_circuit()
-        self._connect(circuit, self._devices(circuit, canvas))
+        ports, pins = schematic.ports, self._devices(circuit, canvas)
+        for net in (*ports, *sorted(pins.keys() - set(ports))):
+            circuit.new_net(name=net, external=net in ports, childports=tuple(pins.get(net, ())))
         layout = self.new_circuitlayouter().layout
-        for shape in drawing["shapes"]:
-            sides = {side: shape[side] for side in ("left", "bottom", "right", "top")}
-            net = circuit.nets[shape["net"]] if shape["net"] else None
-            layout.add_shape(layer=PRIMITIVES[shape["layer"]], net=net, shape=geometry.Rect(**sides))
+        for s in (Shape(*shape) for shape in drawing["shapes"]):
+            box = geometry.Rect(left=s.left, bottom=s.bottom, right=s.right, top=s.top)
+            layout.add_shape(layer=PRIMITIVES[s.layer], net=circuit.nets[s.net] if s.net else None, shape=box)
         layout.boundary = geometry.Rect(left=0.0, bottom=0.0, right=drawing["width"], top=canvas.height)
 
     def _devices(self, circuit: Any, canvas: Canvas) -> dict[str, list[Any]]:
@@ -48,11 +49,6 @@ class DrawnCell(pdk_cell.Cell):
             pins.setdefault("i", []).append(device.ports["cathode"])
             pins.setdefault("vss", []).append(device.ports["anode"])
         return pins
-
-    def _connect(self, circuit: Any, pins: Mapping[str, Iterable[Any]]) -> None:
-        ports = self.schematic.ports
-        for net in (*ports, *sorted(pins.keys() - set(ports))):
-            circuit.new_net(name=net, external=net in ports, childports=tuple(pins.get(net, ())))
 
 
 def to_pdkmaster(name: str, canvas: Canvas, drawn: Mapping[str, tuple[Schematic, Drawn]]) -> RoutingGaugeLibrary:

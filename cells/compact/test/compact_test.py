@@ -81,7 +81,7 @@ def drawn_spice(tmp_path, name):
     }
     layout, made = db.Layout(), make(CELLS[name], Canvas(), recipe(name))
     cell = layout.create_cell(name)
-    for shape in (Shape(**s) for s in made["shapes"]):
+    for shape in (Shape(*s) for s in made["shapes"]):
         if shape.layer not in gds:
             continue
         box = db.DBox(shape.left, shape.bottom, shape.right, shape.top)
