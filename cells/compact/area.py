@@ -8,6 +8,7 @@ import tempfile
 from argparse import ArgumentParser, Namespace
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 from pathlib import Path
 from typing import TypedDict
 
@@ -55,12 +56,10 @@ def compare(
     for block, file in files.items():
         if not file.exists():
             raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")
-    jobs = []
-    for block, file in files.items():
-        for name, liberty in (("ours", ours), ("theirs", theirs)):
-            jobs.append(Job(f"{block}.{name}", mapped, (str(file), block, str(liberty)), (file, liberty)))
+    pairs = product(files.items(), (("ours", ours), ("theirs", theirs)))
+    jobs = [Job(f"{b}.{name}", mapped, (str(file), b, str(lib)), (file, lib)) for (b, file), (name, lib) in pairs]
     found = run_jobs(jobs, store, "blocks mapped")
-    return {block: (found[2 * i], found[2 * i + 1]) for i, block in enumerate(files)}
+    return dict(zip(files, zip(found[::2], found[1::2], strict=True), strict=True))
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -76,8 +75,7 @@ def run(options: Namespace) -> int:
     """Print the areas of both; 1 where ours is larger than the limit allows."""
     from platforms.sky130.functions import liberty
 
-    ours = options.liberty
-    if not ours.exists():
+    if not (ours := options.liberty).exists():
         raise ParameterError(f"liberty = {ours}: must be a file (talbot cells-compact)")
     STORE.mkdir(parents=True, exist_ok=True)
     theirs = STORE / "sky130_fd_sc_hd.lib"

@@ -35,7 +35,7 @@ def assemble(columns: Sequence[Column], spread: Iterable[int] = ()) -> Assembly:
     for k, column in enumerate(columns):
         gates.append((h, column))
         h += 4 if k in gaps else 2
-    made = Assembly(h, gates)
+    made = Assembly(gates[-1][0] + 2, gates)
     for kind in "np":
         for (h, column), following in zip(gates, [*gates[1:], None], strict=True):
             left, right = column.ends(kind)
@@ -45,7 +45,6 @@ def assemble(columns: Sequence[Column], spread: Iterable[int] = ()) -> Assembly:
             made.diffusions.append(Diffusion(kind, right, [h + 1]))
             if following and following[0] == h + 4 and following[1].ends(kind)[0] == right:
                 made.diffusions[-1].columns.append(h + 3)  # runs on through the gap
-    made.columns = gates[-1][0] + 2
     return made
 
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
-from typing import NamedTuple, TypedDict
+from typing import TypedDict
 
 import numpy as np
 
@@ -24,6 +24,8 @@ DEFAULT = "reltol 0.0001, 50 steps"
 OFF_GRID = 16  # random points of a table, the same for every setting
 DENSE = Settings(reltol=1e-6, trtol=1.0, steps=1000, method="gear")
 Truth = tuple[float, float, dict[str, float]]  # slew s, load F, what a dense transient measures there
+Setting = tuple[str, float, float, float]  # name, CPU seconds of CELLS, median and 95th percentile of the error, %
+CellError = tuple[str, int, float, float]  # of the default setting: cell, values, median and 95th percentile, %
 
 
 class Tried(TypedDict):
@@ -33,24 +35,6 @@ class Tried(TypedDict):
     cell: str
     seconds: float
     error: list[float]
-
-
-class Setting(NamedTuple):
-    """A setting: CPU seconds of CELLS, and absolute errors in per cent."""
-
-    name: str
-    seconds: float
-    median: float
-    p95: float
-
-
-class CellError(NamedTuple):
-    """Absolute errors of a cell in per cent with the default setting."""
-
-    cell: str
-    values: int
-    median: float
-    p95: float
 
 
 def settings(conditions: Conditions) -> dict[str, Conditions]:
@@ -94,9 +78,8 @@ def one(library: str, name: str, label: str, conditions: Conditions, truth: Sequ
     started = cpu_seconds()
     with Bench(cell, sources.process(library), conditions) as bench:
         grid = {output: axes_of(bench, output) for output in cell.machine.outputs}
-        axes = [grid[arc.output] for arc in cell.arcs]
-        arcs = zip(cell.arcs, axes, strict=True)
-        tables = [delay.table(bench, arc.changes[0], arc.output, loads, slews) for arc, (slews, loads, _) in arcs]
+        arcs = ((arc, *grid[arc.output]) for arc in cell.arcs)
+        tables = [delay.table(bench, arc.changes[0], arc.output, loads, slews) for arc, slews, loads, _ in arcs]
     seconds, errors = cpu_seconds() - started, []
     for table, points in zip(tables, truth, strict=True):
         for slew, load, exact in points:
@@ -122,18 +105,17 @@ def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
 
 def table(found: Sequence[Tried]) -> list[Setting]:
     """Summarize every setting over CELLS."""
-    rows = []
-    for name in dict.fromkeys(f["name"] for f in found):
-        same = [f for f in found if f["name"] == name and f["cell"] in CELLS]
-        values = np.abs(np.concatenate([f["error"] for f in same]))
-        seconds, median, p95 = sum(f["seconds"] for f in same), np.median(values), np.percentile(values, 95)
-        rows.append(Setting(name, seconds, float(median), float(p95)))
-    return rows
+    names = dict.fromkeys(f["name"] for f in found)
+    groups = {name: [f for f in found if f["name"] == name and f["cell"] in CELLS] for name in names}
+    seconds = {name: sum(f["seconds"] for f in same) for name, same in groups.items()}
+    return [(name, seconds[name], *spread([e for f in same for e in f["error"]])) for name, same in groups.items()]
 
 
 def by_cell(found: Sequence[Tried]) -> list[CellError]:
     """Summarize every cell with the default setting."""
-    rows = []
-    for cell, errors in ((f["cell"], np.abs(f["error"])) for f in found if f["name"] == DEFAULT):
-        rows.append(CellError(cell, len(errors), float(np.median(errors)), float(np.percentile(errors, 95))))
-    return rows
+    return [(f["cell"], len(f["error"]), *spread(f["error"])) for f in found if f["name"] == DEFAULT]
+
+
+def spread(errors: Sequence[float]) -> tuple[float, float]:
+    """Median and 95th percentile of the absolute ``errors``."""
+    return float(np.median(np.abs(errors))), float(np.percentile(np.abs(errors), 95))

@@ -47,13 +47,13 @@ def error_against_time(rows: Sequence[Setting], default: str) -> str:
     figure = Figure(figsize=(9, 5), layout="constrained")
     axis = figure.subplots()
     for number, (name, seconds, median, high) in enumerate(rows, start=1):
-        grid = name.startswith("grid")
+        marker = "s" if name.startswith("grid") else "o"
         axis.plot([seconds, seconds], [median, high], "-", color="0.8", zorder=1)
-        axis.plot(seconds, median, "s" if grid else "o", color="C0")
-        axis.plot(seconds, high, "s" if grid else "o", color="C3", mfc="none")
+        axis.plot(seconds, median, marker, color="C0")
+        axis.plot(seconds, high, marker, color="C3", mfc="none")
         weight, at = "bold" if name == default else "normal", (seconds, high)
         axis.annotate(str(number), at, fontsize=8, weight=weight, xytext=(2, 3), textcoords="offset points")
-    axis.set(xscale="log", yscale="log", xlabel="CPU seconds, three cells")
-    axis.set_ylabel("error in per cent: median, 95th percentile")
+    label = "error in per cent: median, 95th percentile"
+    axis.set(xscale="log", yscale="log", xlabel="CPU seconds, three cells", ylabel=label)
     axis.grid(alpha=0.3, which="both")
     return embedded(figure)

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
-from types import ModuleType
-from typing import NamedTuple, TypedDict
+from typing import TypedDict
 
 import numpy as np
 
@@ -14,8 +14,10 @@ from cells.characterize.bench import Bench
 from cells.characterize.conditions import Conditions
 from cells.characterize.job import cell_of, job
 from cells.liberty import reference
+from cells.report.curve import spread
 
 POINTS = slice(0, None, 2)  # of the reference's axes: every other
+Variant = tuple[str, str, int, float, float]  # models, netlist, entries, median and 95th percentile of the error, %
 
 
 class Errors(TypedDict):
@@ -26,21 +28,6 @@ class Errors(TypedDict):
     netlist: str
     delay: list[float]
     slew: list[float]
-
-
-class Variant(NamedTuple):
-    """Absolute errors of delay and slew in per cent with a set of models and a netlist."""
-
-    models: str
-    netlist: str
-    entries: int
-    median: float
-    p95: float
-
-
-def variants(process: ModuleType) -> list[tuple[str, str]]:
-    """Every combination of a set of models and a netlist."""
-    return [(models, netlist) for models in process.SETS for netlist in sources.NETLISTS]
 
 
 def separate(
@@ -54,7 +41,7 @@ def separate(
     todo = []
     for name in names:
         file = next(folder.glob(f"{name}.lib.json"), None) or next(folder.glob(f"*__{name}__*.lib.json"))
-        for models, netlist in variants(process):
+        for models, netlist in product(process.SETS, sources.NETLISTS):
             source, at = sources.source(library, name, netlist), replace(conditions, models=models)
             arguments, inputs = (library, name, at, netlist, str(file)), (*job(source, at, process).inputs, file)
             title = f"{name}.{models}.{netlist}.{conditions.corner.name}"
@@ -86,9 +73,7 @@ def errors(library: str, name: str, conditions: Conditions, netlist: str, file: 
 
 def table(found: Sequence[Errors]) -> list[Variant]:
     """Summarize every variant over all cells, delay and slew together."""
-    rows = []
-    for models, netlist in dict.fromkeys((f["models"], f["netlist"]) for f in found):
-        same = [f for f in found if (f["models"], f["netlist"]) == (models, netlist)]
-        values = np.abs([e for f in same for e in (*f["delay"], *f["slew"])])
-        rows.append(Variant(models, netlist, len(values), float(np.median(values)), float(np.percentile(values, 95))))
-    return rows
+    errors: dict[tuple[str, str], list[float]] = {}
+    for f in found:
+        errors.setdefault((f["models"], f["netlist"]), []).extend((*f["delay"], *f["slew"]))
+    return [(*variant, len(values), *spread(values)) for variant, values in errors.items()]
