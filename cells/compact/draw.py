@@ -108,10 +108,9 @@ class Drawing(Pen):
             self.box("difftap", d.net, left, low, right, high)
 
     def _rail_stubs(self) -> None:
-        c = self.canvas
-        for net, edge in (("vss", 0.0), ("vdd", c.height)):
+        for net, edge in (("vss", 0.0), ("vdd", self.canvas.height)):
             for _, h, r, *_ in self.wiring.vertices.get(net, ()):
-                y = c.rows[r]
+                y = self.canvas.rows[r]
                 self.box("li", net, self.x(h) - WIRE / 2, min(y, edge), self.x(h) + WIRE / 2, max(y, edge))
 
     def _wires(self, net: str) -> None:
@@ -124,7 +123,9 @@ class Drawing(Pen):
             elif layer == "li":
                 self.at("li", net, x, y, WIRE, WIRE)
             elif layer == "licon":
-                self._gate_contact(net, x, y)
+                self.at("poly", net, x, y, *PAD)
+                self.at("licon", net, x, y, CUT, CUT)
+                self.at("li", net, x, y, PATCH, WIRE)
             elif layer == "mcon":
                 self.at("mcon", net, x, y, CUT, CUT)
                 self.at("m1", net, x, y, *VIA_PAD)
@@ -142,11 +143,6 @@ class Drawing(Pen):
         x = sorted((self.x(a[1]), self.x(b[1])))
         y = sorted((self.canvas.rows[a[2]], self.canvas.rows[b[2]]))
         self.box(layer, net, x[0] - half, y[0] - tall, x[1] + half, y[1] + tall)
-
-    def _gate_contact(self, net: str, x: float, y: float) -> None:
-        self.at("poly", net, x, y, *PAD)
-        self.at("licon", net, x, y, CUT, CUT)
-        self.at("li", net, x, y, PATCH, WIRE)
 
     def _beside(self, net: str, h: int, side: int, row: int) -> float:
         """Draw a gate's contact and its poly pad, SHIFT beside the gate's middle; returns its x."""
@@ -167,14 +163,12 @@ class Drawing(Pen):
         self.box("li", net, ends[0] - WIRE / 2, away - WIRE / 2, ends[1] + WIRE / 2, away + WIRE / 2)
 
     def _diffusion_contacts(self, net: str) -> None:
-        last = len(self.canvas.rows) - 1
         for d in self.made.diffusions:
-            row = 0 if d.kind == "n" else last
+            row = 0 if d.kind == "n" else len(self.canvas.rows) - 1
             for h in d.columns if d.net == net else ():
                 if ("li", h, row) in self.wiring.vertices[net]:
-                    x, y = self.x(h), self.canvas.rows[row]
-                    self.at("licon", net, x, y, CUT, CUT)
-                    self.at("li", net, x, y, PATCH, WIRE)
+                    self.at("licon", net, self.x(h), self.canvas.rows[row], CUT, CUT)
+                    self.at("li", net, self.x(h), self.canvas.rows[row], PATCH, WIRE)
 
     def _fill(self, net: str, vertices: Collection[Vertex]) -> None:
         """Fill the gaps between routes of one net side by side."""
@@ -199,13 +193,12 @@ class Drawing(Pen):
             ends = (PATCH, WIRE) if row == [c.low] else (WIRE, PATCH)
             bottom, top = low - ends[0] / 2, high + ends[1] / 2
         else:
-            x = self.x(h)
-            own = {v[2] for v in self.wiring.vertices[net] if v[:2] == ("li", h)}
-            low = high = r
-            joined = {frozenset(e) for e in self.wiring.edges[net]}
-            while high + 1 in own and frozenset((("li", h, high), ("li", h, high + 1))) in joined:
+            x, low, high = self.x(h), r, r
+            edges = [sorted(e) for e in self.wiring.edges[net] if e[0][:2] == e[1][:2] == ("li", h)]
+            joined = {below[2] for below, _ in edges}  # rows from which li runs on to the next one
+            while high in joined:
                 high += 1
-            while low - 1 in own and frozenset((("li", h, low), ("li", h, low - 1))) in joined:
+            while low - 1 in joined:
                 low -= 1
             bottom, top = c.rows[low] - WIRE / 2, c.rows[high] + WIRE / 2
         return Reach(x, bottom, top)

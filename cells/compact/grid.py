@@ -59,8 +59,8 @@ class Grid:
         """Return price, leaf, next, excludes, needs and crowds for the router."""
         price = np.array([PRICE[v[0]] for v in self.vertices])
         leaf = np.array([v[0] in ("pin", "tap") for v in self.vertices])
-        nexts, excludes, needs, crowds = map(self._packed, (self.next, self.excludes, self.needs, self.crowds))
-        return price, leaf, nexts, excludes, needs, crowds
+        pack = self._packed
+        return price, leaf, pack(self.next), pack(self.excludes), pack(self.needs), pack(self.crowds)
 
     def _packed(self, table: Neighbours) -> Packed:
         members = [sorted(self.number[u] for u in table[v]) for v in self.vertices]

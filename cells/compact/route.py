@@ -51,7 +51,7 @@ def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
 
     seed: of the noise on prices, up to NOISE; another seed tries other ways of equal length.
     """
-    grid, (price, leaf, nexts, excludes, needs, crowds) = _grid(task.columns, task.canvas, met1)
+    grid, (price, *tables) = _grid(task.columns, task.canvas, met1)
     price = price * (1 + NOISE * np.random.default_rng(seed).random(len(price)))
     nets = sorted(task.terminals, key=lambda net: (len(task.terminals[net]), net))
     pins = {v for v in grid.vertices if v[0] in ("pin", "tap")}
@@ -63,7 +63,7 @@ def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
     used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
     for k, own in enumerate(task.blocked.values()):
         used[len(nets) + k, [grid.number[v] for v in own]] = True
-    ok, edges = _negotiate((price, leaf, nexts, excludes, needs, crowds), (net_start, set_start, members), used)
+    ok, edges = _negotiate((price, *tables), (net_start, set_start, members), used)
     return _wiring(grid, [*nets, *task.blocked], used, edges) if ok else None
 
 
@@ -114,12 +114,9 @@ def _negotiate(grid: Arrays, terminals: Terminals, used: Flags) -> tuple[bool, E
                 continue
             clash = False
             for net in range(used.shape[0]):
-                if not used[net, v]:
-                    continue
-                for e in range(excludes[0][v], excludes[0][v + 1]):
-                    x = excludes[1][e]
-                    if held[x] > used[net, x]:
-                        clash = True
+                if used[net, v]:
+                    for x in excludes[1][excludes[0][v] : excludes[0][v + 1]]:
+                        clash |= held[x] > used[net, x]
             if clash:
                 clashes += 1
                 past[v] += 1.0
@@ -190,13 +187,11 @@ def _tree(
                 if d + cost[u] >= best[u] or (leaf[u] and not goal[u]):
                     continue
                 crowded = False
-                for c in range(crowds[0][u], crowds[0][u + 1]):
-                    if tree[crowds[1][c]] and crowds[1][c] != v:
-                        crowded = True
-                if crowded:
-                    continue
-                best[u], came[u] = d + cost[u], v
-                heapq.heappush(heap, (float(best[u]), int(u)))
+                for c in crowds[1][crowds[0][u] : crowds[0][u + 1]]:
+                    crowded |= tree[c] and c != v
+                if not crowded:
+                    best[u], came[u] = d + cost[u], v
+                    heapq.heappush(heap, (float(best[u]), int(u)))
         if end < 0:
             return tree, False
         while end >= 0:
