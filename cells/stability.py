@@ -122,8 +122,7 @@ def corner_case(corner: Corner) -> Iterator[Case]:
     with Bench(nand, PROCESS, conditions) as bench:
         for arc in nand.arcs:
             found = delay.table(bench, arc.changes[0], "Y", (0.5e-15, 10e-15, 100e-15), (10e-12, 0.3e-9, 1.5e-9))
-            for values in (found.values["delay"], found.values["slew"]):
-                rises &= bool((np.diff(values, axis=1) > 0).all())
+            rises &= all((np.diff(found.values[field], axis=1) > 0).all() for field in ("delay", "slew"))
             longest = max(longest, float(found.values["delay"].max()))
     with Bench(flip_flop, PROCESS, conditions) as bench:
         stored = [bench.edge(arc.changes[0], "Q", 0.1e-9, 10e-15).delay for arc in flip_flop.arcs]
@@ -142,6 +141,5 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of all cases; 1 where a bound is missed."""
-    found = cases()
-    print(table(found))
+    print(table(found := cases()))
     return 0 if all(case.ok for case in found) else 1

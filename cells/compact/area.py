@@ -12,12 +12,9 @@ from itertools import product
 from pathlib import Path
 from typing import TypedDict
 
+from base import jobs, tools
 from base.files import insert
-from base.jobs import Job
-from base.jobs import run as run_jobs
 from base.liberty.read import areas
-from base.tools import ToolError
-from base.tools import run as run_tool
 from models.parameters import ParameterError
 
 BLOCKS = ("QuadDividerRadix2", "EdgeAdc", "AmpCtrl", "RunLength", "RegFile")
@@ -40,11 +37,11 @@ def mapped(verilog: str, top: str, liberty: str) -> Mapped:
             f"read_verilog -sv {verilog}; synth -flatten -top {top}; dfflibmap -liberty {liberty}; "
             f"abc -liberty {liberty}; opt_clean -purge; tee -q -o {report} stat -json"
         )
-        run_tool(["yosys", "-q", "-p", script])
+        tools.run(["yosys", "-q", "-p", script])
         cells = json.loads(report.read_text())["design"]["num_cells_by_type"]
     area = areas(Path(liberty))
     if left := sorted(cells.keys() - area.keys()):
-        raise ToolError(f"yosys: {top}: cells {', '.join(left)} are missing in {liberty}")
+        raise tools.ToolError(f"yosys: {top}: cells {', '.join(left)} are missing in {liberty}")
     return {"um2": sum(area[cell] * number for cell, number in cells.items()), "cells": cells}
 
 
@@ -57,8 +54,8 @@ def compare(
         if not file.exists():
             raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")
     pairs = product(files.items(), (("ours", ours), ("theirs", theirs)))
-    jobs = [Job(f"{b}.{name}", mapped, (str(file), b, str(lib)), (file, lib)) for (b, file), (name, lib) in pairs]
-    found = run_jobs(jobs, store, "blocks mapped")
+    todo = [jobs.Job(f"{b}.{k}", mapped, (str(file), b, str(lib)), (file, lib)) for (b, file), (k, lib) in pairs]
+    found = jobs.run(todo, store, "blocks mapped")
     return dict(zip(files, zip(found[::2], found[1::2], strict=True), strict=True))
 
 

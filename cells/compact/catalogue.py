@@ -33,14 +33,12 @@ def _constants() -> Iterator[Schematic]:
 def _simple() -> Iterator[Schematic]:
     for count in (2, 3, 4):
         ports = INPUTS[:count]
-        for operator, name in (("and", "nand"), ("or", "nor")):
-            yield Schematic(f"{name}{count}_x1", ports, ("nq",)).gate("nq", (operator, *ports))
-            if count == 2:
-                yield Schematic(f"{name}2_x2", ports, ("nq",)).gate("nq", (operator, *ports), 2)
-        for operator, name in (("and", "and"), ("or", "or")):
-            for drive in (1, 2) if count == 2 else (1,):
-                made = Schematic(f"{name}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports))
-                yield made.gate("q", "n", drive)
+        variants = [(operator, drive) for operator in ("and", "or") for drive in ((1, 2) if count == 2 else (1,))]
+        for operator, drive in variants:
+            yield Schematic(f"n{operator}{count}_x{drive}", ports, ("nq",)).gate("nq", (operator, *ports), drive)
+        for operator, drive in variants:
+            made = Schematic(f"{operator}{count}_x{drive}", ports, ("q",)).gate("n", (operator, *ports))
+            yield made.gate("q", "n", drive)
     # One input inverted inside: nand2b = not (not i0 and i1)
     yield Schematic("nand2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("and", "n", "i1"))
     yield Schematic("nor2b_x1", ("i0", "i1"), ("nq",)).gate("n", "i0").gate("nq", ("or", "n", "i1"))
@@ -52,7 +50,7 @@ def _complex() -> Iterator[Schematic]:
     for digits in ("21", "22", "211", "31", "221"):
         for inner, outer in (("and", "or"), ("or", "and")):
             pins = iter(INPUTS)
-            groups = [tuple(islice(pins, int(digit))) for digit in digits]
+            groups = [list(islice(pins, int(digit))) for digit in digits]
             name, ports = f"{inner}{digits}n{outer}", INPUTS[: sum(map(len, groups))]
             functions[name] = (outer, *((inner, *group) if len(group) > 1 else group[0] for group in groups))
             yield Schematic(f"{name}_x1", ports, ("nq",)).gate("nq", functions[name])

@@ -26,9 +26,8 @@ def check(folder: Path, names: Sequence[str], workers: int = -1) -> dict[str, Ch
     """
     _arrange(folder, names)
     drc, lvs = folder / "decks/sky130.drc", folder / "decks/sky130.lvs"
-    jobs, spi = [], folder / "compact.spi"
-    for name in ("apart", "gallery"):
-        jobs.append(Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")))
+    spi, together = folder / "compact.spi", ("apart", "gallery")
+    jobs = [Job(name, rules, (str(folder), name), (drc, folder / f"{name}.gds")) for name in together]
     jobs += [Job(name, matches, (str(folder), name), (lvs, spi, _content(folder, name))) for name in names]
     apart, abutted, *matching = run(jobs, folder / "checks", "cells checked", workers)
     result = {name: Checked(apart.get(name, {}), ok) for name, ok in zip(names, matching, strict=True)}
@@ -46,8 +45,7 @@ def _arrange(folder: Path, names: Sequence[str]) -> None:
     for top_name, rows, gap in (("apart", [names], 5000), ("gallery", orders, 0)):
         layout = db.Layout()
         layout.read(str(folder / "compact.gds"))
-        boundary = layout.layer(235, 4)
-        top = layout.create_cell(top_name)
+        boundary, top = layout.layer(235, 4), layout.create_cell(top_name)
         for row, order in enumerate(rows):
             x = 0
             for name in order:

@@ -29,8 +29,7 @@ def run(options: Namespace) -> int:
     print(f"{len(names)} cells in {options.out}")
     if options.no_check:
         return 0
-    result = check(options.out, names)
-    bad = {name: found for name, found in result.items() if found.drc or not found.lvs}
+    bad = {name: found for name, found in check(options.out, names).items() if found.drc or not found.lvs}
     for name, found in bad.items():
         rules = ", ".join(f"{rule} x {count}" for rule, count in found.drc.items())
         print(f"  {name}: {rules or 'DRC clean'}; LVS {'matches' if found.lvs else 'does not match'}")

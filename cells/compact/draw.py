@@ -93,16 +93,15 @@ class Drawing(Pen):
         return (h + 1) * self.canvas.site / 2
 
     def _transistors(self) -> None:
-        c = self.canvas
+        c, half = self.canvas, self.canvas.length / 2
         for h, column in self.made.gates:
-            half = c.length / 2
             left, right = self.x(h) - half, self.x(h) + half
             self.box("poly", column.n.gate, left, c.n[0] - 0.13, right, c.rows[c.low] + half)
             self.box("poly", column.p.gate, left, c.rows[c.high] - half, right, c.p[1] + 0.13)
+        gates = {h for h, _ in self.made.gates}
         for d in self.made.diffusions:
             low, high = c.n if d.kind == "n" else c.p
             start, end = min(d.columns), max(d.columns)
-            gates = {h for h, _ in self.made.gates}
             left = self.x(start) - (0.26 if start - 1 in gates else 0.125)
             right = self.x(end) + (0.26 if end + 1 in gates else 0.125)
             self.box("difftap", d.net, left, low, right, high)
@@ -136,8 +135,8 @@ class Drawing(Pen):
         self._fill(net, vertices)
 
     def _segment(self, net: str, a: Vertex, b: Vertex, contacts: set[Vertex]) -> None:
-        layer = {"li": "li", "poly": "poly", "met1": "m1"}[a[0]]
-        half = {"li": WIRE, "poly": self.canvas.length, "m1": 0.14}[layer] / 2
+        layer, width = {"li": ("li", WIRE), "poly": ("poly", self.canvas.length), "met1": ("m1", 0.14)}[a[0]]
+        half = width / 2
         # A pad beside a gate: no notch between the two
         tall = PAD[1] / 2 if a[0] == "poly" and a[2] == b[2] and {a, b} & contacts else half
         x = sorted((self.x(a[1]), self.x(b[1])))
@@ -155,9 +154,8 @@ class Drawing(Pen):
     def _tip(self, net: str, h: int, side: int, row: int) -> None:
         c = self.canvas
         x, y = self._beside(net, h, side, row), c.rows[row]
-        away = c.rows[row - 1 if row == c.low else row + 1]
-        back = PATCH / 2 if row == c.low else -PATCH / 2
-        forth = -WIRE / 2 if row == c.low else WIRE / 2
+        step = -1 if row == c.low else 1
+        away, back, forth = c.rows[row + step], -step * PATCH / 2, step * WIRE / 2
         self.box("li", net, x - WIRE / 2, min(y + back, away + forth), x + WIRE / 2, max(y + back, away + forth))
         ends = sorted((x, self.x(h + side)))
         self.box("li", net, ends[0] - WIRE / 2, away - WIRE / 2, ends[1] + WIRE / 2, away + WIRE / 2)
@@ -178,8 +176,7 @@ class Drawing(Pen):
         for layer, h, r, *_ in (v for v in vertices if v[0] in ("li", "poly", "met1")):
             if (layer, h + 1, r) not in vertices:
                 continue
-            name = {"met1": "m1"}.get(layer, layer)
-            height = {"li": WIRE, "poly": PAD[1], "m1": 0.14}[name]
+            name, height = {"li": ("li", WIRE), "poly": ("poly", PAD[1]), "met1": ("m1", 0.14)}[layer]
             self.box(name, net, self.x(h), rows[r] - height / 2, self.x(h + 1), rows[r] + height / 2)
             if layer == "li" and {(h, r), (h + 1, r)} <= upright:
                 self.box("li", net, self.x(h), rows[r], self.x(h + 1), rows[r + 1])
@@ -231,11 +228,10 @@ def frame(drawing: Pen) -> None:
             x = (k + 0.5) * c.site
             drawing.at("licon", net, x, y, CUT, CUT)
             drawing.at("mcon", net, x, y, CUT, CUT)
-    over = 0.13
-    drawing.box("psdm", "", -over, -c.implant, width + over, c.implant)
-    drawing.box("nsdm", "", -over, c.n[0] - 0.125, width + over, c.n[1] + 0.125)
-    drawing.box("psdm", "", -over, c.p[0] - 0.125, width + over, c.p[1] + 0.125)
-    drawing.box("nsdm", "", -over, c.height - c.implant, width + over, c.height + c.implant)
+    drawing.box("psdm", "", -0.13, -c.implant, width + 0.13, c.implant)
+    drawing.box("nsdm", "", -0.13, c.n[0] - 0.125, width + 0.13, c.n[1] + 0.125)
+    drawing.box("psdm", "", -0.13, c.p[0] - 0.125, width + 0.13, c.p[1] + 0.125)
+    drawing.box("nsdm", "", -0.13, c.height - c.implant, width + 0.13, c.height + c.implant)
     drawing.box("nwm", "vdd", -0.18, c.well, width + 0.18, c.height + 0.31)
 
 

@@ -24,8 +24,8 @@ def drawn(
     """Draw every cell, once: the jobs' results are kept in ``store``. workers: processes, -1 for all cores."""
     canvas, wanted = canvas or Canvas(), schematics()
     order = sorted(wanted, key=lambda name: -len(wanted[name].n))  # the widest take longest
-    arguments = [(wanted[name], canvas, recipe(name)) for name in order]
-    jobs = [Job(name, make, inputs, inputs) for name, inputs in zip(order, arguments, strict=True)]
+    arguments = {name: (wanted[name], canvas, recipe(name)) for name in order}
+    jobs = [Job(name, make, inputs, inputs) for name, inputs in arguments.items()]
     made = dict(zip(order, run(jobs, store, "cells drawn", workers), strict=True))
     return {name: (wanted[name], made[name]) for name in wanted} | ties(canvas) | diode(canvas)
 
@@ -33,8 +33,7 @@ def drawn(
 def library(canvas: Canvas | None = None, store: Path = FOLDER / "drawn", workers: int = -1) -> "RoutingGaugeLibrary":
     """All cells as a library of PDKMaster, for the exporters to Coriolis, KLayout and SPICE.
 
-    workers: see `drawn`; 1 within a process that should end by itself (joblib's workers keep it waiting for five
-    minutes).
+    workers: see `drawn`; 1 in a process that should end by itself (joblib's workers keep it waiting for minutes).
     """
     from cells.compact.pdk import to_pdkmaster
 
@@ -46,9 +45,6 @@ def schematic_spice(schematic: Schematic, canvas: Canvas) -> str:
     """The netlist of the transistors alone, sizes in um as SkyWater's models expect them."""
     lines = [f".subckt {schematic.name} {' '.join(schematic.ports)}"]
     for kind, switches, (low, high), bulk in (("n", schematic.n, canvas.n, "vss"), ("p", schematic.p, canvas.p, "vdd")):
-        lines += [
-            f"X{kind}{k} {s.a} {s.gate} {s.b} {bulk} sky130_fd_pr__{kind}fet_01v8 w={high - low:.4g} "
-            f"l={canvas.length:.4g}"
-            for k, s in enumerate(switches)
-        ]
+        model = f"sky130_fd_pr__{kind}fet_01v8 w={high - low:.4g} l={canvas.length:.4g}"
+        lines += [f"X{kind}{k} {s.a} {s.gate} {s.b} {bulk} {model}" for k, s in enumerate(switches)]
     return "\n".join([*lines, ".ends", ""])

@@ -41,7 +41,7 @@ class Recipe:
 def recipe(name: str) -> Recipe | None:
     """The Recipe kept for cell ``name``, or None."""
     kept = json.loads(RECIPES.read_text()).get(name)
-    return Recipe(*kept[:3], tuple(kept[3])) if kept else None
+    return Recipe(kept[0], kept[1], kept[2], tuple(kept[3])) if kept else None
 
 
 def make(schematic: Schematic, canvas: Canvas, known: Recipe | None = None) -> Drawn:
@@ -86,8 +86,7 @@ def search(
     for trial in sorted(tried):
         if below is not None and trial.sites >= below.sites:
             return
-        drawing = _draw(schematic, placed[trial.seed], trial, canvas)
-        if drawing:
+        if drawing := _draw(schematic, placed[trial.seed], trial, canvas):
             yield trial, drawing
 
 
@@ -109,8 +108,6 @@ def _spreads(columns: Sequence[Column], extra: int, seed: int) -> list[tuple[int
     if len(free) < extra:
         return []
     step = len(free) / extra
-    choices = (
-        tuple(sorted({free[int(i * step + shift * step / 3 + seed) % len(free)] for i in range(extra)}))
-        for shift in range(3)
-    )
-    return sorted({choice for choice in choices if len(choice) == extra})
+    places = [[int(i * step + shift * step / 3 + seed) % len(free) for i in range(extra)] for shift in range(3)]
+    choices = {tuple(sorted({free[place] for place in some})) for some in places}
+    return sorted(choice for choice in choices if len(choice) == extra)

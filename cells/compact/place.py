@@ -52,8 +52,7 @@ def _cost(pins: Ints, nets: int, order: Ints, turned: Flags) -> float:
             gap = False
             for kind in range(2):
                 left = pins[kind, order[kind, k - 1], 1 if turned[kind, k - 1] else 2]
-                if left != pins[kind, order[kind, k], 2 if turned[kind, k] else 1]:
-                    gap = True
+                gap |= left != pins[kind, order[kind, k], 2 if turned[kind, k] else 1]
             broken += gap
             x += 2.0 if gap else 1.0
         for kind in range(2):

@@ -51,8 +51,8 @@ def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
 
     seed: of the noise on prices, up to NOISE; another seed tries other ways of equal length.
     """
-    grid, (price, *tables) = _grid(task.columns, task.canvas, met1)
-    price = price * (1 + NOISE * np.random.default_rng(seed).random(len(price)))
+    grid, arrays = _grid(task.columns, task.canvas, met1)
+    price = arrays[0] * (1 + NOISE * np.random.default_rng(seed).random(len(arrays[0])))
     nets = sorted(task.terminals, key=lambda net: (len(task.terminals[net]), net))
     pins = {v for v in grid.vertices if v[0] in ("pin", "tap")}
     sets = [[*task.terminals[net], *([pins] if net in task.ports else [])] for net in nets]
@@ -63,7 +63,7 @@ def route(task: Task, met1: bool = True, seed: int = 0) -> Wiring | None:
     used = np.zeros((len(nets) + len(task.blocked), len(grid.vertices)), dtype=np.bool_)
     for k, own in enumerate(task.blocked.values()):
         used[len(nets) + k, [grid.number[v] for v in own]] = True
-    ok, edges = _negotiate((price, *tables), (net_start, set_start, members), used)
+    ok, edges = _negotiate((price, *arrays[1:]), (net_start, set_start, members), used)
     return _wiring(grid, [*nets, *task.blocked], used, edges) if ok else None
 
 

@@ -20,11 +20,10 @@ def broken(drawing: Drawing) -> list[str]:
     for s in drawing.shapes:
         if s.net:
             nets.setdefault((s.layer, s.net), db.Region()).insert(s.nm)
-    pads = whole["licon"] & whole["poly"]
     for layer in ("li", "poly", "m1"):
         own = [(net, region.merged()) for (name, net), region in nets.items() if name == layer]
         for i, (a, first) in enumerate(own):
             out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1 :] if not (first & second).is_empty()]
-    if not (pads.sized(190) & whole["difftap"]).is_empty():
+    if not ((whole["licon"] & whole["poly"]).sized(190) & whole["difftap"]).is_empty():
         out.append("licon on poly to difftap")
     return out

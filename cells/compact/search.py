@@ -8,9 +8,8 @@ import re
 from argparse import ArgumentParser, Namespace
 from dataclasses import astuple
 
-from base.files import staged
-from base.jobs import Job
-from base.jobs import run as run_jobs
+from base import jobs
+from base.files import write
 from cells.compact.canvas import Canvas
 from cells.compact.catalogue import schematics
 from cells.compact.make import RECIPES, choose, recipe
@@ -18,10 +17,7 @@ from models.parameters import ParameterError
 
 
 def best(name: str, first: int, last: int, narrower: bool) -> list[object] | None:
-    """The best recipe of cell ``name`` from placements of seeds ``first`` to ``last``, as a list.
-
-    narrower: only one that is narrower than the kept one.
-    """
+    """The best recipe of cell ``name`` from seeds ``first`` to ``last``; narrower: than the kept one."""
     found = choose(schematics()[name], Canvas(), range(first, last), recipe(name) if narrower else None)
     return list(astuple(found)) if found else None
 
@@ -44,16 +40,14 @@ def run(options: Namespace) -> int:
         raise ParameterError(f"cells = {unknown[0]!r}: must be one of {', '.join(schematics())}")
     first, last, scratch = int(span[1]), int(span[2]), options.from_scratch
     suffix = f"{span[1]}-{span[2]}{'.from_scratch' if scratch else ''}"
-    arguments = {name: (name, first, last, not scratch) for name in names}
-    jobs = [Job(f"{name}.{suffix}", best, arguments[name], (recipe(name), Canvas())) for name in names]
-    found = run_jobs(jobs, "build/cells/compact/search", "cells searched", options.workers)
+    rest = first, last, not scratch
+    todo = [jobs.Job(f"{name}.{suffix}", best, (name, *rest), (recipe(name), Canvas())) for name in names]
+    found = jobs.run(todo, "build/cells/compact/search", "cells searched", options.workers)
     kept = json.loads(RECIPES.read_text())
     better = {name: made for name, made in zip(names, found, strict=True) if made}
     for name, (sites, met1, seed, _) in better.items():
         was = kept.get(name, ["none"])[0]
         print(f"{name}: {sites} sites{' with met1' if met1 else ''} (seed {seed}); it was {was}")
-    kept |= better
-    with staged(RECIPES.parent) as part:
-        lines = (f'"{name}": {json.dumps(kept[name])}' for name in sorted(kept))
-        (part / RECIPES.name).write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    lines = (f'"{name}": {json.dumps(made)}' for name, made in sorted({**kept, **better}.items()))
+    write(RECIPES, "{\n" + ",\n".join(lines) + "\n}\n")
     return 0

@@ -53,9 +53,8 @@ class Schematic:
         self.functions[output] = f"!{self._expression(function)}"
         for k in range(fingers):
             # Every second finger the other way round, so that neighbours share what lies between them
-            ends = ("vss", output) if k % 2 else (output, "vss")
-            self._network("n", function, *ends, self.n)
-            self._network("p", function, *("vdd", output) if k % 2 else (output, "vdd"), self.p)
+            for kind, rail, out in (("n", "vss", self.n), ("p", "vdd", self.p)):
+                self._network(kind, function, *(rail, output) if k % 2 else (output, rail), out)
         return self
 
     def _expression(self, function: Function) -> str:

@@ -4,6 +4,8 @@ from collections.abc import Iterable
 
 from cells.compact.transistors import Schematic
 
+CONSTANTS = {"0": "1'b0", "1": "1'b1"}
+
 
 def verilog(cells: Iterable[Schematic]) -> str:
     """Text for ``cells``: a module each, without supply pins."""
@@ -12,12 +14,9 @@ def verilog(cells: Iterable[Schematic]) -> str:
 
 def _module(s: Schematic) -> str:
     ports = [*(f"input {pin}" for pin in s.inputs), *(f"output {pin}" for pin in s.outputs)]
-    body = _storage(s) if s.storage else [f"  assign {pin} = {_constant(s.functions[pin])};" for pin in s.outputs]
+    values = {pin: s.functions.get(pin, "") for pin in s.outputs}
+    body = _storage(s) if s.storage else [f"  assign {pin} = {CONSTANTS.get(v, v)};" for pin, v in values.items()]
     return "\n".join([f"module {s.name} ({', '.join(ports)});", *body, "endmodule", ""])
-
-
-def _constant(function: str) -> str:
-    return {"0": "1'b0", "1": "1'b1"}.get(function, function)
 
 
 def _storage(s: Schematic) -> list[str]:

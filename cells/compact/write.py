@@ -48,8 +48,7 @@ NPC = (95, 20)  # nitride cut over the gates' contacts: a mask that PDKMaster's 
 def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
     """The library's GDS in ``folder``; all files are written there unless they are of this code and ``canvas``."""
     canvas, folder = canvas or Canvas(), Path(folder)
-    stamp = digest(code(__name__), canvas)
-    mark = folder / "content"
+    stamp, mark = digest(code(__name__), canvas), folder / "content"
     if not (mark.exists() and mark.read_text() == stamp):
         drawn = library(canvas, folder / "drawn")
         with staged(folder) as part:
@@ -127,5 +126,4 @@ def _exports(made: Any, decks: Path, package: Path) -> None:
 
 
 def _direction(net: str) -> str:
-    rails = {"vdd": "supply", "vss": "ground", "clk": "clock"}
-    return rails.get(net, "out" if net in OUTPUTS else "in")
+    return {"vdd": "supply", "vss": "ground", "clk": "clock"}.get(net, "out" if net in OUTPUTS else "in")

@@ -39,8 +39,8 @@ def run(options: Namespace) -> int:
         page |= against(conditions, options.reference, options.out, options.workers)
     measured = curve.measure("sky130_hd", conditions, options.out / "jobs", options.workers)
     found = curve.table(measured)
-    page |= {"curve": found, "curve_picture": pictures.error_against_time(found, curve.DEFAULT)}
-    page["off_grid"] = curve.by_cell(measured)
+    picture = pictures.error_against_time(found, curve.DEFAULT)
+    page |= {"curve": found, "curve_picture": picture, "off_grid": curve.by_cell(measured)}
     with staged(options.out) as part:
         (part / "index.html").write_text(render(Path(__file__).with_name("index.html"), **page))
         figures = {name: page.get(name) for name in ("kinds", "curve", "off_grid", "variants", "alone")}
@@ -60,13 +60,10 @@ def against(conditions: Conditions, folder: Path, out: Path, workers: int) -> di
         raise ParameterError(f"reference = {folder}: has no cell of sky130_hd")
     characterize_library("sky130_hd", conditions, names, "extracted", out / "libraries", None, workers)
     tree = read(out / "libraries" / "sky130_hd" / f"{conditions.corner.name}.lib")
-    differences = compare.library(tree, known)
-    summary = compare.summary(differences)
+    summary = compare.summary(differences := compare.library(tree, known))
     kinds = {kind: {**e, "bound": BOUNDS.get(kind)} for kind, e in summary["error"].items()}
-    cells = {}
-    for name in names:
-        same = [d for d in differences if d.cell == name]
-        cells[name] = {**compare.summary(same), "picture": pictures.heat_maps(same)}
+    groups = {name: [d for d in differences if d.cell == name] for name in names}
+    cells = {name: {**compare.summary(same), "picture": pictures.heat_maps(same)} for name, same in groups.items()}
     found = separate.separate("sky130_hd", names, conditions, folder, out / "jobs", workers)
     alone = {name: summary[name] for name in ("only_theirs", "only_ours")}
     return {"kinds": kinds, "cells": cells, "variants": separate.table(found), "alone": alone}

@@ -37,9 +37,9 @@ class Tried(TypedDict):
     error: list[float]
 
 
-def settings(conditions: Conditions) -> dict[str, Conditions]:
+def settings(base: Conditions) -> dict[str, Conditions]:
     """The settings that are compared, the default among them."""
-    base, found = conditions, {}
+    found = {}
     for reltol, steps in product((1e-2, 1e-3, 1e-4, 1e-5, 1e-6), (20, 50, 200)):
         tolerance = replace(base.settings, reltol=reltol, steps=steps)
         found[f"reltol {reltol:g}, {steps} steps"] = replace(base, settings=tolerance)
@@ -57,14 +57,13 @@ def measure(library: str, conditions: Conditions, store: Path, workers: int) -> 
 
     One worker measures them, for the sake of the seconds; the dense transients run in ``workers`` processes.
     """
-    process, cells = sources.process(library), (*CELLS, *SLOW)
-    found = {name: sources.source(library, name) for name in cells}
-    truths, todo = [], []
-    for name in cells:
+    process, truths, todo = sources.process(library), [], []
+    found = {name: sources.source(library, name) for name in (*CELLS, *SLOW)}
+    for name in found:
         inputs = OFF_GRID, *job(found[name], replace(conditions, settings=DENSE), process).inputs
         truths.append(jobs.Job(f"{name}.truth", truth, (library, name, conditions), inputs))
-    truths = dict(zip(cells, jobs.run(truths, store, "dense transients", workers), strict=True))
-    for name in cells:
+    truths = dict(zip(found, jobs.run(truths, store, "dense transients", workers), strict=True))
+    for name in found:
         for label, at in (settings(conditions) if name in CELLS else {DEFAULT: conditions}).items():
             arguments = library, name, label, at, truths[name]
             inputs = *job(found[name], at, process).inputs, json.dumps(truths[name])
@@ -89,8 +88,7 @@ def one(library: str, name: str, label: str, conditions: Conditions, truth: Sequ
 
 def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
     """Run dense transients at random points of every arc of a cell."""
-    rng, found = np.random.default_rng(1), []
-    process = sources.process(library)
+    rng, found, process = np.random.default_rng(1), [], sources.process(library)
     cell = cell_of(sources.source(library, name), process)
     with Bench(cell, process, replace(base, settings=DENSE)) as bench:
         changes = {output: [a.changes[0] for a in cell.arcs if a.output == output] for output in cell.machine.outputs}

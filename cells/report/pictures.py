@@ -44,8 +44,7 @@ def heat_maps(differences: Sequence[Difference]) -> str:
 
 def error_against_time(rows: Sequence[Setting], default: str) -> str:
     """Draw the error against CPU seconds: median and 95th percentile; points have their numbers in ``rows``."""
-    figure = Figure(figsize=(9, 5), layout="constrained")
-    axis = figure.subplots()
+    axis = (figure := Figure(figsize=(9, 5), layout="constrained")).subplots()
     for number, (name, seconds, median, high) in enumerate(rows, start=1):
         marker = "s" if name.startswith("grid") else "o"
         axis.plot([seconds, seconds], [median, high], "-", color="0.8", zorder=1)
