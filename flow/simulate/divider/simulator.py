@@ -13,8 +13,7 @@ from base.cache import cached, digest
 from base.paths import BUILD
 from base.sources import code
 from base.tools import run
-from base.verilator import compile_program, compile_runtime, verilate, verilator_version
-from flow.simulate.verilator import FAST
+from base.verilator import FAST, compile_program, compile_runtime, verilate, verilator_version
 
 CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"
