@@ -120,12 +120,11 @@ class Tree:
             tree = ast.parse(path.read_text())
             package = module if path.name == "__init__.py" else module.rpartition(".")[0]
             strings = dict.fromkeys(_strings(tree))
-            words = {
-                word for text in strings for word in (re.findall(r"[\w.]+", text) if "import " in text else [text])
-            }
-            words = {word for word in words if "." in word} | set(_started(tree))
-            named = [name for word in sorted(words) for name in (word, f"{word}.__main__")]
-            named += ["conftest"] if "pytest" in words else []
+            programs = {word for text in strings if "import " in text for word in re.findall(r"[\w.]+", text)}
+            started = set(_started(tree))
+            dotted = {word for word in programs | {*strings} if "." in word} | started
+            named = [name for word in sorted(dotted) for name in (word, f"{word}.__main__")]
+            named += ["conftest"] if "pytest" in programs | started else []
             self._texts[module] = Text(
                 path,
                 list(self._imports(tree, package)),

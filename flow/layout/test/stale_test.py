@@ -117,7 +117,7 @@ CACHES = {
         ("flow/simulate/divider/main.cpp", {"divider", "mutant"}),
         ("cells/spice/engine.py", {"cell"}),
         ("verif/formal/engine.py", {"proof", "mutant"}),
-        ("verif/coverage/main.cpp", {"coverage", "mutant"}),
+        ("verif/coverage/main.cpp", {"coverage", "mutant", "trace"}),  # conftest.py can run netlists in that program
         ("flow/layout/chain.py", set()),
     ],
 )
