@@ -80,16 +80,17 @@ formal: $(TESTS_READY)  ## properties of every block proven, and that each catch
 	@$(PY) -m talbot formal
 
 .PHONY: coverage
-coverage: $(TESTS_READY)  ## line, toggle, branch, state machines and test plans: 100 %
+coverage: $(TESTS_READY)  ## line, branch, expression, toggle, state machines and test plans: 100 %
 	@$(PY) -m talbot coverage
 
 .PHONY: mutate
-mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must find
-	@$(PY) -m talbot mutate
+mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must find [SEED=2: another sample]
+	@$(PY) -m talbot mutate $(if $(SEED),--seed $(SEED))
 
 .PHONY: verify
-verify: $(TESTS_READY)  ## all of the verification: build/verify/report.html; goes on where it was
-	@$(PY) -m talbot verify
+verify: $(TESTS_READY) $(LAYOUT_READY)  ## all of the verification: build/verify/report.html; goes on where it was [SEED=2]
+	@bash requirements/tools.sh --missing iverilog yosys z3
+	@$(PY) -m talbot verify $(if $(SEED),--seed $(SEED))
 
 .PHONY: verilog
 verilog: $(READY)  ## build/verilog/<top>.v, linted
@@ -106,6 +107,10 @@ stability: $(READY)  ## stiff and extreme cases: bound against measured
 .PHONY: formats
 formats: $(READY)  ## stream formats and scan orders compared: build/formats/
 	@$(PY) -m talbot formats --document docs/stream.md
+
+.PHONY: document
+document: $(READY)  ## the documents for a host: docs/registers.*, the tables of docs/host.md, the C header
+	@$(PY) -m talbot document
 
 .PHONY: sizes
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)

@@ -49,6 +49,20 @@ class Text:
     plain: bool
 
 
+@dataclass(frozen=True)
+class Syntax:
+    """What a module's text says wherever it is: of `Text`, before names are looked up in a tree.
+
+    named: candidates for modules' names; files: names of data files, with * too.
+    """
+
+    imports: list[ast.Import | ast.ImportFrom]
+    named: list[str]
+    patterns: list[str]
+    files: list[str]
+    plain: bool
+
+
 class Tree:
     """The Python modules and data files below ``root`` and what each of them refers to, by text alone."""
 
@@ -117,30 +131,24 @@ class Tree:
     def _text(self, module: str) -> Text:
         if module not in self._texts:
             path = self.modules[module]
-            tree = ast.parse(path.read_text())
+            syntax = _syntax(path.read_text())
             package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-            strings = dict.fromkeys(_strings(tree))
-            programs = {word for text in strings if "import " in text for word in re.findall(r"[\w.]+", text)}
-            started = set(_started(tree))
-            dotted = {word for word in programs | {*strings} if "." in word} | started
-            named = [name for word in sorted(dotted) for name in (word, f"{word}.__main__")]
-            named += ["conftest"] if "pytest" in programs | started else []
             self._texts[module] = Text(
                 path,
-                list(self._imports(tree, package)),
-                [name for name in named if name in self.modules],
-                list(dict.fromkeys(_patterns(tree))),
-                [file for text in strings for file in self._files_named(text, path.parent)],
-                path.name == "__init__.py" and _plain(tree),
+                list(self._imports(syntax, package)),
+                [name for name in syntax.named if name in self.modules],
+                syntax.patterns,
+                [file for name in syntax.files for file in self._files_named(name, path.parent)],
+                path.name == "__init__.py" and syntax.plain,
             )
         return self._texts[module]
 
-    def _imports(self, tree: ast.Module, package: str) -> Iterator[tuple[str, Reference]]:
+    def _imports(self, syntax: Syntax, package: str) -> Iterator[tuple[str, Reference]]:
         """The references of import statements by the name that each binds."""
-        for node in ast.walk(tree):
+        for node in syntax.imports:
             if isinstance(node, ast.Import):
                 yield from ((alias.name, Reference(alias.name)) for alias in node.names if alias.name in self.modules)
-            elif isinstance(node, ast.ImportFrom):
+            else:
                 base = _absolute(node, package)
                 for alias in node.names:
                     if (module := f"{base}.{alias.name}") in self.modules:
@@ -148,15 +156,13 @@ class Tree:
                     elif base in self.modules:
                         yield alias.asname or alias.name, Reference(base, "" if alias.name == "*" else alias.name)
 
-    def _files_named(self, text: str, folder: Path) -> Iterator[Path]:
-        for name in DATA_NAME.findall(text) if len(text) < 200 else ():
-            if "*" in name:
-                yield from (file for file in folder.rglob(Path(name).name) if not SKIPPED & set(file.parts))
-                continue
-            same = self.data.get(Path(name).name, [])
-            beside = [file for file in same if file.parent == folder]
-            below = [file for file in same if file.is_relative_to(folder)]
-            yield from beside or below or same
+    def _files_named(self, name: str, folder: Path) -> list[Path]:
+        if "*" in name:
+            return [file for file in folder.rglob(Path(name).name) if not SKIPPED & set(file.parts)]
+        same = self.data.get(Path(name).name, [])
+        beside = [file for file in same if file.parent == folder]
+        below = [file for file in same if file.is_relative_to(folder)]
+        return beside or below or same
 
 
 def _files(folder: Path, suffixes: Iterable[str]) -> list[Path]:
@@ -177,29 +183,48 @@ def _absolute(node: ast.ImportFrom, package: str) -> str:
     return ".".join(parts[: len(parts) - node.level + 1] + ([node.module] if node.module else []))
 
 
-def _strings(tree: ast.Module) -> Iterator[str]:
+@cache
+def _syntax(text: str) -> Syntax:
+    """Kept by the text itself, so that a tree with one file changed, or a copy of a tree, parses one file."""
+    tree = ast.parse(text)
+    nodes = list(ast.walk(tree))
+    strings = dict.fromkeys(_strings(nodes))
+    programs = {word for text in strings if "import " in text for word in re.findall(r"[\w.]+", text)}
+    started = set(_started(nodes))
+    dotted = {word for word in programs | {*strings} if "." in word} | started
+    return Syntax(
+        [node for node in nodes if isinstance(node, (ast.Import, ast.ImportFrom))],
+        [name for word in sorted(dotted) for name in (word, f"{word}.__main__")]
+        + (["conftest"] if "pytest" in programs | started else []),
+        list(dict.fromkeys(_patterns(nodes))),
+        [name for text in strings if len(text) < 200 for name in DATA_NAME.findall(text)],
+        _plain(tree),
+    )
+
+
+def _strings(nodes: list[ast.AST]) -> Iterator[str]:
     documents = {
         id(node.body[0].value)
-        for node in ast.walk(tree)
+        for node in nodes
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and node.body
         if isinstance(node.body[0], ast.Expr)
     }
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in documents:
             yield node.value
 
 
-def _started(tree: ast.Module) -> Iterator[str]:
+def _started(nodes: list[ast.AST]) -> Iterator[str]:
     """What follows "-m" in a list: modules that a process runs."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, (ast.List, ast.Tuple)):
             texts = [element.value if isinstance(element, ast.Constant) else None for element in node.elts]
             yield from (str(module) for option, module in zip(texts, texts[1:], strict=False) if option == "-m")
 
 
-def _patterns(tree: ast.Module) -> Iterator[str]:
+def _patterns(nodes: list[ast.AST]) -> Iterator[str]:
     """Of f-strings that begin as a dotted name does: regular expressions for the names of modules."""
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.JoinedStr) and isinstance(node.values[0], ast.Constant):
             text = "".join(
                 re.escape(str(part.value)) if isinstance(part, ast.Constant) else r"\w+" for part in node.values

@@ -1,8 +1,10 @@
 """Tools as child processes: none outlives an interrupted parent, and errors name the tool that is missing or failed."""
 
 import os
+import shutil
 import signal
 import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -13,6 +15,12 @@ class ToolError(RuntimeError):
 
 class ToolTimeout(ToolError):
     """A tool was stopped at its time limit."""
+
+
+def located(name: str) -> str | None:
+    """Return the path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python; None where neither is."""
+    wheel = Path(sys.executable).parent / f"yowasp-{name}"
+    return shutil.which(name) or (str(wheel) if wheel.exists() else None)
 
 
 def finish(

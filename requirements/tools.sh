@@ -1,12 +1,19 @@
 #!/usr/bin/env bash
 # Tools beside the Python environment, from Debian's packages: Icarus, a native Verilator, Yosys, z3; for cells and
 # layouts ngspice, OpenSTA and KLayout; for the tests of the foundry's checks and of OpenROAD's scripts Magic and Tcl.
-# With --missing only where one of those that cells and layouts use is missing.
+# With --missing [COMMAND ...] only where one of the commands, by default those of cells and layouts, is missing.
 set -euo pipefail
 packages=(iverilog verilator yosys z3 ngspice opensta klayout magic tcl)
 
-if [ "${1:-}" = --missing ] && command -v iverilog verilator yosys ngspice sta klayout | wc -l | grep -qx 6; then
-    exit 0
+wanted=()
+if [ "${1:-}" = --missing ]; then
+    shift
+    [ $# -gt 0 ] || set -- iverilog verilator yosys ngspice sta klayout
+    for command in "$@"; do
+        command -v "$command" >/dev/null || wanted+=("$command")
+    done
+    [ ${#wanted[@]} -gt 0 ] || exit 0
+    echo "tools: missing = ${wanted[*]}" >&2
 fi
 
 if ! command -v apt-get >/dev/null; then

@@ -10,11 +10,11 @@ from base.paths import ROOT
 from models.parameters import DIVIDERS, ArrayParameters, ChipParameters, SensorParameters, TileParameters
 from rtl.harness.translate import translate_component
 from rtl.lint import lint
-from rtl.tops import PACKERS, TOPS, build_top
+from rtl.tops import PACKERS, PARTS, TOPS, build_top
 
 
 def translate(name: str, sensor: SensorParameters) -> str:
-    """The Verilog of top or packer ``name`` for ``sensor``, as text. Raises ParameterError."""
+    """The Verilog of top, part or packer ``name`` for ``sensor``, as text. Raises ParameterError."""
     return translate_component(build_top(name, sensor), name)
 
 
@@ -24,9 +24,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--top",
         action="append",
-        choices=(*TOPS, *PACKERS),
+        choices=(*TOPS, *PARTS, *PACKERS),
         metavar="TOP",
-        help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or a packer: {', '.join(PACKERS)}",
+        help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or one of {', '.join((*PARTS, *PACKERS))}",
     )
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "verilog", help="folder of the files")
     parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")

@@ -1,4 +1,4 @@
-"""Verilog files checked by the tools that have to read them: Verilator -Wall, Icarus and Yosys."""
+"""Verilog files checked by the tools that have to read them: Verilator -Wall, Icarus and Yosys; clock crossings."""
 
 import shutil
 from collections.abc import Sequence
@@ -7,8 +7,10 @@ from pathlib import Path
 
 from base.tools import ToolError, finish
 from base.verilator import verilator_folder
+from rtl.crossings import crossings
 
 WAIVERS = Path(__file__).parent / "waivers.vlt"
+CHIP = "AspChip"  # whose pins may be asynchronous
 
 
 class LintError(ToolError):
@@ -53,4 +55,8 @@ def lint(path: Path, top: str) -> list[str]:
         if result.returncode or output:
             raise LintError(f"{check.tool} on {path}:\n" + "\n".join(output.splitlines()[:20]))
         done.append(f"{check.tool} clean")
+    if top == CHIP and shutil.which("yosys"):
+        if problems := crossings(path, top):
+            raise LintError(f"{path}: {problems[0]}")
+        done.append("crossings clean")
     return done

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from models.parameters import ParameterError, SensorParameters
+from models.parameters.registers import register_map
 
 if TYPE_CHECKING:
     from pymtl3 import Component
@@ -77,7 +78,8 @@ def reg_file(sensor: SensorParameters) -> "Component":
     """The registers behind SPI."""
     from rtl.reg_file import RegFile
 
-    return RegFile(sensor.tile_rows - 1, sensor.tile_cols - 1)
+    array, tile, chip = sensor.array, sensor.tile, sensor.chip
+    return RegFile(array.rows, array.cols, chip.lanes, tile.rows, tile.cols, chip.divider)
 
 
 def asp_chip(sensor: SensorParameters) -> "Component":
@@ -103,16 +105,36 @@ TOPS: dict[str, Build] = {
     "AspChip": asp_chip,
 }
 
+
+def balance(sensor: SensorParameters) -> "Component":
+    """The trim of the pixel at the pins."""
+    from rtl.asp_chip.balance_rtl import Balance
+
+    trims = register_map().trims[0]
+    tile = sensor.tile
+    return Balance(tuple(tile.order), tile.rows, tile.cols, trims.width, 8 * trims.size)
+
+
+def pattern(sensor: SensorParameters) -> "Component":
+    """The test pattern."""
+    from rtl.asp_chip.pattern_rtl import Pattern
+
+    return Pattern(sensor.chip.lanes)
+
+
+# Of AspChip: exported by name only, to be proven for any sensor
+PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern}
+
 # Of rtl.run_length.candidates: exported by name only, to measure their sizes
 PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePacker", "PayloadPacker"
 
 
 def build_top(name: str, sensor: SensorParameters) -> "Component":
-    """The unelaborated component of top or packer ``name`` for ``sensor``. Raises ParameterError."""
+    """The unelaborated component of top, part or packer ``name`` for ``sensor``. Raises ParameterError."""
     if name in PACKERS:
         from rtl.run_length import candidates
 
         return getattr(candidates, name)()
-    if name not in TOPS:
+    if name not in TOPS | PARTS:
         raise ParameterError(f"top = {name!r}: must be one of {', '.join(TOPS)}")
-    return TOPS[name](sensor)
+    return (TOPS | PARTS)[name](sensor)

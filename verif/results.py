@@ -1,15 +1,17 @@
 """The results of every step of `make verify`: build/verify/<step>.json, one BlockResults per block."""
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
+from math import sqrt
 from pathlib import Path
 
 from base.files import staged
 from base.paths import ROOT
 
 OUT = ROOT / "build" / "verify"
-COVERAGE = "line", "toggle", "branch", "fsm", "functional"
+COVERAGE = "line", "branch", "expression", "toggle", "fsm", "functional"
 PROVEN = "proven"
+SEED = 1  # of what is random, unless --seed says otherwise
 
 
 @dataclass
@@ -57,6 +59,10 @@ class Mutants:
     killed: int = 0
     survived: int = 0
 
+    def plus(self, other: "Mutants") -> "Mutants":
+        """Return the sum of the counts."""
+        return Mutants(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(self)))
+
     @property
     def killable(self) -> int:
         """Mutants that some input distinguishes from the original."""
@@ -74,6 +80,26 @@ class Fault:
 
     fault: str
     result: str
+
+
+@dataclass(frozen=True)
+class StuckAt:
+    """Stuck-at faults of the gates: all of them, those tried, and those of them that a test at the pins detects."""
+
+    faults: int
+    sample: int
+    detected: int
+
+    @property
+    def share(self) -> float:
+        """Share of the sample that is detected, in %."""
+        return 100.0 * self.detected / self.sample
+
+    @property
+    def margin(self) -> float:
+        """Half of the 95 % interval of all faults around ``share``, in %."""
+        p = self.detected / self.sample
+        return 196 * sqrt(p * (1 - p) / self.sample * (1 - self.sample / self.faults))
 
 
 @dataclass(frozen=True)
@@ -132,6 +158,7 @@ class BlockResults:
     simulators: list[str] = field(default_factory=list)
     benches: dict[str, Tests] = field(default_factory=dict)
     faults: list[Fault] = field(default_factory=list)
+    stuck_at: StuckAt | None = None
     fuzz: Fuzz | None = None
     resync: Resync | None = None
     open_points: list[str] = field(default_factory=list)
@@ -142,10 +169,13 @@ class BlockResults:
         self.proofs += other.proofs
         self.coverage |= {kind: value for kind, value in other.coverage.items() if value is not None}
         self.excluded += other.excluded
-        self.mutants = other.mutants or self.mutants
+        self.mutants = (
+            self.mutants.plus(other.mutants) if self.mutants and other.mutants else other.mutants or self.mutants
+        )
         self.simulators += [name for name in other.simulators if name not in self.simulators]
         self.benches |= other.benches
         self.faults += other.faults
+        self.stuck_at = other.stuck_at or self.stuck_at
         self.fuzz = other.fuzz or self.fuzz
         self.resync = other.resync or self.resync
         self.open_points += other.open_points

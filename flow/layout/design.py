@@ -1,8 +1,9 @@
 """The designs: top module, clock, I/O constraints, macros, and the tests that the netlist must pass."""
 
 from dataclasses import dataclass, field
+from functools import partial
 
-from models.parameters import ParameterError, check_real
+from models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, check_real
 from platforms.processes import PROCESSES
 
 
@@ -52,6 +53,7 @@ class Design:
     the block's tests build it with these parameters, for `pytest --netlist`; a block whose tests have a size of their
     own is laid out in that size. utilization: where the search for the smallest area begins. density_variation: of the
     placer. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
+    asynchronous: inputs that pass synchronizers, a false path.
     """
 
     name: str
@@ -66,6 +68,7 @@ class Design:
     macros: tuple[MacroPlacement, ...] = ()
     clock: Clock = Clock()
     io: IoConstraints = IoConstraints()
+    asynchronous: tuple[str, ...] = ()
 
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
@@ -81,6 +84,7 @@ DIVIDER = MacroPlacement("divider", "quad_divider")
 # As in the thesis (B.3.2): both blocks are macros
 TWO = MacroPlacement("phase.divider", "quad_divider", (0.1, 1.0)), MacroPlacement("amp", "amp_ctrl", (0.93, 0.8))
 DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest nets of flow.layout.sensor
+chip = partial(Design, top="AspChip", folder="asp_chip", io=DIE, asynchronous=ASYNCHRONOUS)
 DESIGNS = {
     made.name: made
     for made in (
@@ -95,9 +99,17 @@ DESIGNS = {
         Design("phase_path", *PHASE),
         Design("phase_path_macros", *PHASE, utilization=0.8, macros=(DIVIDER,)),
         Design("run_length", "RunLength", "run_length", ("RunLength",), ("--rows=12", "--cols=36", "--lanes=4")),
-        Design("reg_file", "RegFile", "reg_file", ("RegFile",), ("--rows=12", "--cols=18"), utilization=0.44),
-        Design("asp_chip", "AspChip", "asp_chip", utilization=0.56, io=DIE),
-        Design("asp_chip_macros", "AspChip", "asp_chip", utilization=0.5, density_variation=0.3, macros=TWO, io=DIE),
+        Design(
+            "reg_file",
+            "RegFile",
+            "reg_file",
+            ("RegFile",),
+            ("--rows=12", "--cols=18"),
+            utilization=0.44,
+            asynchronous=SPI_INPUTS,
+        ),
+        chip("asp_chip", utilization=0.56),
+        chip("asp_chip_macros", utilization=0.5, density_variation=0.3, macros=TWO),
     )
 }
 

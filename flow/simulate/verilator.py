@@ -6,7 +6,7 @@ from pathlib import Path
 from base.cache import cached, digest
 from base.paths import BUILD, ROOT
 from base.sources import code
-from base.verilator import FAST, compile_program, verilate, verilator_folder, verilator_version
+from base.verilator import FAST, compile_program, runtime, verilate, verilator_version
 
 from .build import Build
 
@@ -28,16 +28,28 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
 
 
 def bare_program(
-    build: Build, note: Callable[[str], None] = lambda text: None, main: Path = FRAME / "bare.cpp"
+    build: Build,
+    note: Callable[[str], None] = lambda text: None,
+    main: Path = FRAME / "bare.cpp",
+    options: Sequence[str] = (),
 ) -> Path:
-    """Path of the chip alone with ``main`` around it: by default a clock loop, for `make bench`. Raises ToolError."""
-    return _cached(build, "AspChip", [], [], main, note)
+    """Path of the chip alone with ``main`` around it: by default a clock loop, for `make bench`. Raises ToolError.
+
+    options: of g++, as -shared for a library.
+    """
+    return _cached(build, "AspChip", [], [], main, note, options)
 
 
 def _cached(
-    build: Build, top: str, options: Sequence[str], sources: Sequence[Path], main: Path, note: Callable[[str], None]
+    build: Build,
+    top: str,
+    options: Sequence[str],
+    sources: Sequence[Path],
+    main: Path,
+    note: Callable[[str], None],
+    cxx: Sequence[str] = (),
 ) -> Path:
-    key = digest(code(__name__), *sources, main, build, top, options, verilator_version())
+    key = digest(code(__name__), *sources, main, build, top, options, cxx, verilator_version())
 
     def make(work: Path) -> None:
         note("exporting the chip's Verilog")
@@ -45,9 +57,8 @@ def _cached(
         note("translating it with Verilator")
         model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
         note("compiling the simulator")
-        runtime = ["verilated", "verilated_threads", *(["verilated_vcd_c"] if build.waves else [])]
         traced = ["-DWAVES", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1"] if build.waves else []
-        files = [verilator_folder() / "include" / f"{name}.cpp" for name in runtime]
-        compile_program(work / "program", [*model, main], [*CXX_FLAGS, *traced, *files])
+        objects = [*runtime(), *(runtime(["verilated_vcd_c"]) if build.waves else [])]
+        compile_program(work / "program", [*model, main], [*CXX_FLAGS, *cxx, *traced, *objects])
 
     return cached(BUILD / "simulator" / key, make) / "program"

@@ -9,8 +9,8 @@ WRITE = 0x80  # bit 7 of the command byte; the rest is the address
 TRANSFER_MAX = 255  # bytes of one transfer
 
 
-def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> list[tuple[int, int]]:
-    """Configuration writes of one frame.
+def frame_values(frame: FrameParameters, trims: Iterable[int] | None = None) -> dict[str, int]:
+    """Configuration of one frame, field by field.
 
     Parameters
     ----------
@@ -21,8 +21,8 @@ def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> 
 
     Returns
     -------
-    list of (int, int)
-        (address, byte), ascending, every configuration byte once.
+    dict of str to int
+        Key of the field to value.
 
     Raises
     ------
@@ -36,30 +36,34 @@ def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> 
     low, high = trim_range()
     for i, trim in enumerate(trims):
         check_int(f"trim {i}", trim, low, high)
-    window, timing = frame.window, frame.timing
-    values = {
-        "mode": MODES.index(frame.mode),
-        **{
-            name: int(getattr(frame, name))
-            for name in (
-                "overlap",
-                "phase",
-                "test_pattern",
-                "decimation",
-                "threshold",
-                "noise_floor",
-                "mask",
-                "frame_number",
-            )
-        },
-        **{name: getattr(window, name) for name in ("row0", "row1", "col0", "col1")},
-        **{
-            name: getattr(timing, name)
-            for name in ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
-        },
-        **{f"trim[{i}].trim": trim for i, trim in enumerate(trims)},
+    named = vars(frame) | vars(frame.window) | vars(frame.timing) | {"mode": MODES.index(frame.mode)}
+    return {f.key: int(named[f.name]) for f in chip.configuration if f.name in named} | {
+        f"trim[{i}].trim": trim for i, trim in enumerate(trims)
     }
-    return sorted(chip.image(chip.configuration, values).items())
+
+
+def frame_writes(frame: FrameParameters, trims: Iterable[int] | None = None) -> list[tuple[int, int]]:
+    """Configuration writes of one frame.
+
+    Parameters
+    ----------
+    frame : FrameParameters
+        Configuration.
+    trims : iterable of int, optional
+        As in `frame_values`.
+
+    Returns
+    -------
+    list of (int, int)
+        (address, byte), ascending, every configuration byte once.
+
+    Raises
+    ------
+    ParameterError
+        As in `frame_values`.
+    """
+    chip = register_map()
+    return sorted(chip.image(chip.configuration, frame_values(frame, trims)).items())
 
 
 def write_transfers(writes: Iterable[tuple[int, int]]) -> list[bytes]:

@@ -10,12 +10,13 @@ ADDRESS_MAX = 127  # the address stops counting up here
 class RegisterBank:
     """State of the register file, byte by byte.
 
-    A write to `start` or `loop_back` is kept in ``start`` and ``loop`` (a byte) until `take` collects it.
+    A write to `start`, `abort` or `loop_back` is kept in ``start``, ``abort`` and ``loop`` (a byte) until `take`
+    collects it.
 
     Parameters
     ----------
     resets : mapping of str to int, optional
-        Reset values that differ from the map's, by field (row1 and col1 follow the array).
+        Values after reset that differ from the map's, by field (those that follow the array).
     """
 
     def __init__(self, resets: Mapping[str, int] | None = None) -> None:
@@ -26,7 +27,7 @@ class RegisterBank:
         self.sticky = {f.name: f.shift for f in chip.fields if f.access == "w1c"}
         self.held = 0  # sticky bits at their positions in the status byte
         self.snapshot = 0  # value of the counter whose first byte was read last
-        self.start = False
+        self.start = self.abort = False
         self.loop: int | None = None
 
     def value(self, key: str) -> int:
@@ -56,10 +57,10 @@ class RegisterBank:
         """
         self.held |= 1 << self.sticky[name]
 
-    def take(self) -> tuple[bool, int | None]:
-        """Start strobe, and loop-back byte or None, since the last call."""
-        out = self.start, self.loop
-        self.start, self.loop = False, None
+    def take(self) -> tuple[bool, bool, int | None]:
+        """Start strobe, abort strobe, and loop-back byte or None, since the last call."""
+        out = self.start, self.abort, self.loop
+        self.start, self.abort, self.loop = False, False, None
         return out
 
     def write(self, address: int, byte: int, busy: bool, loop_full: bool) -> None:
@@ -74,12 +75,17 @@ class RegisterBank:
         busy : bool
             A frame runs.
         loop_full : bool
-            The last loop-back byte still waits.
+            A loop-back byte waits for the link.
         """
         chip = self.chip
+        locked, loop_enable = busy or loop_full, bool(self.value("loop_enable"))
         if address == chip["start"].byte:
+            abort = bool(byte >> chip["abort"].shift & 1)
+            if abort:
+                self.abort = True
+                self.set("aborted")
             if byte >> chip["start"].shift & 1:
-                if busy:
+                if locked or loop_enable or abort:
                     self.set("refused")
                 else:
                     self.start = True
@@ -87,17 +93,17 @@ class RegisterBank:
         elif address == chip["busy"].byte:
             self.held &= ~byte
         elif address == chip["loop_back"].byte:
-            if loop_full:
+            if loop_full or not loop_enable:
                 self.set("refused")
             else:
                 self.loop = byte
         elif address in self.writable:
-            if busy:
+            if locked:
                 self.set("refused")
             else:
                 self.bytes[address] = byte & self.writable[address]
 
-    def read(self, address: int, busy: bool, counters: Sequence[int]) -> int:
+    def read(self, address: int, busy: bool, counters: Sequence[int], state: int = 0) -> int:
         """Read one byte for the host.
 
         Parameters
@@ -108,6 +114,8 @@ class RegisterBank:
             A frame runs.
         counters : sequence of int
             Current values in the order of the map.
+        state : int
+            Current value of the register `state`.
 
         Returns
         -------
@@ -119,6 +127,9 @@ class RegisterBank:
                 self.snapshot = value
             if f.byte <= address < f.byte + f.bytes:
                 return self.snapshot >> 8 * (address - f.byte) & 0xFF
+        first, size = self.chip.state[0].address, self.chip.state[0].size
+        if first <= address < first + size:
+            return state >> 8 * (address - first) & 0xFF
         if address == self.chip["busy"].byte:
             return self.held | busy << self.chip["busy"].shift
         return self.bytes.get(address, 0)

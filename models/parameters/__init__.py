@@ -2,7 +2,7 @@
 
 from .array import COLS_MAX, ROWS_MAX, ArrayParameters
 from .checks import ParameterError, check_choice, check_int, check_real
-from .chip import LANES, ChipParameters
+from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .divider import DIVIDERS
 from .electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters
@@ -13,6 +13,7 @@ from .tile import PixelType, TileParameters
 
 __all__ = [
     "ALL_TYPES",
+    "ASYNCHRONOUS",
     "COLS_MAX",
     "DIVIDERS",
     "ELEMENTARY_CHARGE",
@@ -20,6 +21,7 @@ __all__ = [
     "MODES",
     "ROWS_MAX",
     "SAMPLES_PER_PIXEL",
+    "SPI_INPUTS",
     "AmpTiming",
     "ArrayParameters",
     "ChipParameters",

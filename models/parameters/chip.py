@@ -6,6 +6,8 @@ from .checks import check_choice, check_int, check_real
 from .divider import DIVIDERS, ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
 
 LANES = (1, 2, 4, 8, 16, 32)
+SPI_INPUTS = ("sclk", "csn", "mosi")
+ASYNCHRONOUS = (*SPI_INPUTS, "reset")  # pins of the chip whose edges have no relation to the clock
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,7 @@
 """The 24 pixel types and their order in a tile [Jayasuriya2017, Sec. 3.5.1, Fig. 6.3]."""
 
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
@@ -79,6 +80,23 @@ class TileParameters:
             raise ParameterError(f"types = {len(self.types)} entries: must be rows * cols = {self.rows * self.cols}")
         if sorted(self.order) != list(range(len(self.types))):
             raise ParameterError(f"order = {self.order!r}: must be a permutation of 0..{len(self.types) - 1}")
+
+    @classmethod
+    def small(cls, rows: int, cols: int) -> Self:
+        """Tile of the first pixel types, in the order that they have in the thesis's tile.
+
+        Parameters
+        ----------
+        rows, cols : int
+            Pixels, 1..4 and 1..6.
+
+        Returns
+        -------
+        TileParameters
+            With rows * cols pixel types.
+        """
+        count = rows * cols
+        return cls(rows, cols, _thesis_types()[:count], tuple(kind for kind in _THESIS_ORDER if kind < count))
 
     @property
     def n_types(self) -> int:

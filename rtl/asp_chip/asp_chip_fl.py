@@ -55,7 +55,7 @@ class AspChipFL(Component):
 
     def construct(s, rows, cols, lanes, order, tile_rows=4, tile_cols=6, divider="radix4", n_frac=8, iterations=10):
         declare_pins(s, lanes)
-        s.regs = RegFileFL(-(-rows // tile_rows) - 1, -(-cols // tile_cols) - 1)
+        s.regs = RegFileFL(rows, cols, lanes, tile_rows, tile_cols, divider)
         for name in ("sclk", "csn", "mosi", "miso"):
             connect(getattr(s, name), getattr(s.regs, name))
         s.mode //= s.regs.cfg.mode
@@ -79,14 +79,14 @@ class AspChipFL(Component):
                 AmpTiming(*(int(getattr(cfg, name)) for name in TIMING))
             except ParameterError as error:
                 return True, str(error).startswith("t_")
-            s.job = s.run.cycles(lambda: int(s.comparator), lambda: s.link_rdy and not s.regs.cfg.loop_enable)
+            s.job = s.run.cycles(lambda: int(s.comparator), lambda: s.link_rdy)
             s.spent = 0
             return False, False
 
         @update_ff
         def behave():
             done = cfg_err = amp_err = False
-            if s.reset:
+            if s.reset or s.regs.abort_:
                 s.run = s.job = None
                 s.spent = 0
             elif s.job is not None:
@@ -121,6 +121,7 @@ class AspChipFL(Component):
             s.link_data @= s.regs.loop.msg if s.regs.cfg.loop_enable else s.byte
             s.link_val @= s.regs.loop.val if s.regs.cfg.loop_enable else s.byte_val
             s.regs.loop.rdy @= s.link_rdy & s.regs.cfg.loop_enable
+            s.miso_oe @= ~(s.csn | s.reset)
 
     def line_trace(s):
         return f"{s.row},{s.group},{s.k},{s.sub} {s.link_data if s.link_val else '  '}"

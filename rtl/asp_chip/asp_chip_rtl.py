@@ -1,6 +1,6 @@
 """AspChip: the whole digital chip. It connects the blocks, which have their own folders."""
 
-from pymtl3 import Component, Wire, connect, update, update_ff
+from pymtl3 import Component, Wire, connect, update
 
 from models.parameters.registers import register_map
 from rtl.adc_bank import AdcBank
@@ -11,8 +11,13 @@ from rtl.reg_file import RegFile
 from rtl.run_length import RunLength
 
 from .balance_rtl import Balance
+from .gate_rtl import Gate
+from .link_rtl import Link
 from .pattern_rtl import Pattern
 from .pins import declare_pins
+from .resets_rtl import Resets, children_reset_by
+from .state_rtl import State
+from .status_rtl import Status
 
 TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
 PHASES = ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "tap")
@@ -34,18 +39,30 @@ class AspChip(Component):
         declare_pins(s, lanes)
 
         # Components
-        s.regs = RegFile(-(-rows // tile_rows) - 1, -(-cols // tile_cols) - 1)
-        s.amp = AmpCtrl()
-        s.seq = ReadoutSeq(rows, cols, lanes, order, tile_rows, tile_cols)
-        s.bank = AdcBank(lanes)
-        s.phase = PhasePath(lanes, divider, n_frac, iterations)
-        s.encoder = RunLength(rows, cols, lanes, tile_rows, tile_cols)
-        s.generator = Pattern(lanes)
-        s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
+        s.resets = Resets()
+        with children_reset_by(s, s.resets.chip):
+            s.regs = RegFile(rows, cols, lanes, tile_rows, tile_cols, divider)
+        with children_reset_by(s, s.resets.engine):
+            s.amp = AmpCtrl()
+            s.seq = ReadoutSeq(rows, cols, lanes, order, tile_rows, tile_cols)
+            s.bank = AdcBank(lanes)
+            s.phase = PhasePath(lanes, divider, n_frac, iterations)
+            s.encoder = RunLength(rows, cols, lanes, tile_rows, tile_cols)
+            s.generator = Pattern(lanes)
+            s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
+            s.link = Link()
+            s.frame_status = Status()
+            s.states = State()
         s.phase_on = Wire()
-        s.was_sync = Wire()
-        s.cfg_told = Wire()  # cfg_err and amp_err are levels: report each once per start
-        s.amp_told = Wire()
+        s.selected = Wire()
+        gated = {name: getattr(s.amp, name) for name in PHASES} | {
+            "hold": s.bank.hold,
+            "link_val": s.link.send.val,
+            "frame_sync": s.encoder.frame_sync,
+            "busy": s.frame_status.status.busy,
+            "miso_oe": s.selected,
+        }
+        s.gate = Gate(sum(levels._dsl.Type.nbits for levels in gated.values()))
 
         # Connections
         cfg = s.regs.cfg
@@ -56,6 +73,8 @@ class AspChip(Component):
         s.regs.conversions_made[32:64] //= 0
         s.regs.conversions_left_out[0:32] //= s.bank.left_out
         s.regs.conversions_left_out[32:64] //= 0
+        s.regs.status //= s.frame_status.status
+        s.resets.abort_ //= s.regs.abort_
 
         s.seq.start //= s.regs.start
         s.seq.overlap //= cfg.overlap
@@ -71,14 +90,12 @@ class AspChip(Component):
         s.amp_row //= s.seq.amp_row
         for name in TIMING:
             connect(getattr(s.amp, name), getattr(cfg, name))
-        for name in PHASES:
-            connect(getattr(s, name), getattr(s.amp, name))
 
         s.bank.step //= s.seq.step
         s.bank.mode //= cfg.mode
         s.bank.threshold //= cfg.threshold
         s.bank.comparator //= s.generator.comparator
-        for name in (*ADDRESS, "dac", "hold", "unsigned_"):
+        for name in (*ADDRESS, "dac", "unsigned_"):
             connect(getattr(s, name), getattr(s.bank, name))
         s.mode //= cfg.mode
 
@@ -101,9 +118,45 @@ class AspChip(Component):
         s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made
         s.encoder.left_out //= s.bank.left_out
-        s.encoder.frame_sync //= s.frame_sync
         for name in (*WINDOW, "threshold", "frame_number"):
             connect(getattr(s.encoder, name), getattr(cfg, name))
+
+        s.link.loop_enable //= cfg.loop_enable
+        s.link.frame //= s.encoder.send
+        s.link.loop //= s.regs.loop
+        s.link_data //= s.link.send.msg
+        s.link.send.rdy //= s.link_rdy
+
+        s.frame_status.start //= s.regs.start
+        s.frame_status.seq_busy //= s.seq.busy
+        s.frame_status.seq_err //= s.seq.cfg_err
+        s.frame_status.amp_start //= s.seq.amp_start
+        s.frame_status.amp_err //= s.amp.cfg_err
+        s.frame_status.frame_sync //= s.encoder.frame_sync
+
+        s.regs.state //= s.states.state
+        s.states.amp_busy //= s.amp.busy
+        for name in ("pixel_reset", "integrate", "cm_reset", "ref_ctl", "read"):
+            connect(getattr(s.states, name), getattr(s.amp, name))
+        s.states.step_val //= s.seq.step.val
+        s.states.step_kind //= s.seq.step.msg.kind
+        s.states.step_rdy //= s.bank.step.rdy
+        s.states.encoder_state //= s.encoder.state
+        s.states.hold_free //= s.seq.hold_free
+        s.states.bank_idle //= s.bank.idle
+        s.states.scan_val //= s.bank.scan.val
+        s.states.scan_rdy //= s.phase.recv.rdy
+        s.states.link_val //= s.link.send.val
+        s.states.link_rdy //= s.link_rdy
+        s.states.loop_val //= s.regs.loop.val
+
+        s.gate.low //= s.resets.chip
+        place = 0
+        for name, levels in gated.items():
+            past = place + levels._dsl.Type.nbits
+            connect(s.gate.levels[place:past], levels)
+            connect(getattr(s, name), s.gate.pins[place:past])
+            place = past
 
         # Logic
         @update
@@ -111,36 +164,8 @@ class AspChip(Component):
             s.phase_on @= s.regs.cfg.phase & (s.regs.cfg.mode == TOF)
 
         @update
-        def up_link():
-            s.link_data @= s.encoder.send.msg
-            s.link_val @= s.encoder.send.val
-            s.encoder.send.rdy @= s.link_rdy
-            s.regs.loop.rdy @= 0
-            if s.regs.cfg.loop_enable:
-                s.link_data @= s.regs.loop.msg
-                s.link_val @= s.regs.loop.val
-                s.encoder.send.rdy @= 0
-                s.regs.loop.rdy @= s.link_rdy
-
-        @update
-        def up_status():
-            # until `done` is set, so that no start comes between the frame's end and its `done`
-            s.busy @= s.seq.busy | s.encoder.frame_sync | s.was_sync
-            s.regs.status.busy @= s.busy
-            s.regs.status.done @= s.was_sync & ~s.encoder.frame_sync
-            s.regs.status.cfg_err @= s.seq.cfg_err & ~s.cfg_told
-            s.regs.status.amp_err @= s.amp.cfg_err & ~s.amp_told
-
-        @update_ff
-        def up_told():
-            if s.reset:
-                s.was_sync <<= 0
-                s.cfg_told <<= 0
-                s.amp_told <<= 0
-            else:
-                s.was_sync <<= s.encoder.frame_sync
-                s.cfg_told <<= s.seq.cfg_err & ~s.regs.start
-                s.amp_told <<= s.amp.cfg_err & ~s.seq.amp_start
+        def up_selected():
+            s.selected @= ~s.csn
 
     def line_trace(s):
         return f"{s.seq.line_trace()} {s.bank.line_trace()} {s.encoder.line_trace()}"

@@ -11,7 +11,7 @@ class Balance(Component):
     """
 
     def construct(s, order, tile_rows, tile_cols, trim_bits, trim_stride):
-        n = len(order)
+        n = max(len(order), 4)  # so that an index of the table is as wide as a position
         Kinds, Trims = mk_bits(5 * n), mk_bits(24 * trim_stride)
         KindSelect, TrimSelect = mk_bits(clog2(5 * n + 1)), mk_bits(clog2(24 * trim_stride + 1))
         ROWS, COLS, STRIDE = Bits10(tile_rows), Bits5(tile_cols), TrimSelect(trim_stride)

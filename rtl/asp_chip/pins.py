@@ -12,6 +12,7 @@ def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
     inputs = {**dict.fromkeys(INPUTS, Bits1), "comparator": mk_bits(lanes)}
     outputs = {
         "miso": Bits1,
+        "miso_oe": Bits1,
         "link_data": Bits8,
         "link_val": Bits1,
         "frame_sync": Bits1,

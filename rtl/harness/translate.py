@@ -15,6 +15,7 @@ from pymtl3.passes.backends.verilog import VerilogTranslationPass
 from base.paths import ROOT
 
 COLUMNS = "200"  # PyMTL folds lines at the terminal's width
+KEPT = {"Synchronizer": "stages"}  # module -> the register that synthesis may neither merge nor move
 
 
 def module_names(top: Component, name: str) -> dict[Component, str]:
@@ -47,8 +48,19 @@ def _without_unused_constants(module: str) -> str:
     return module
 
 
+def _with_kept_register(module: str) -> str:
+    """The module with an attribute at its register of KEPT."""
+    for name, register in KEPT.items():
+        if re.search(rf"(?m)^module {name}$", module):
+            module = re.sub(rf"(?m)^  (logic .*\b{register};)$", r'  (* keep, async_reg = "true" *) \1', module)
+    return module
+
+
 def tidy(text: str) -> str:
-    """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants."""
+    """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants.
+
+    The registers of synchronizers have the attribute `keep`.
+    """
     text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
@@ -59,7 +71,7 @@ def tidy(text: str) -> str:
     for name, plain in zip(structs, short, strict=True):
         if short.count(plain) == 1:
             text = re.sub(rf"\b{name}\b", plain, text)
-    text = "endmodule".join(map(_without_unused_constants, text.split("endmodule")))
+    text = "endmodule".join(_with_kept_register(_without_unused_constants(m)) for m in text.split("endmodule"))
     lines = [line.rstrip() for line in text.splitlines()]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 

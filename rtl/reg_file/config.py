@@ -22,5 +22,11 @@ def chip_config() -> type:
 def chip_status() -> type:
     """ChipStatus: busy, and one-cycle strobes for the sticky bits that the chip sets."""
     chip = register_map()
-    strobes = [f.name for f in chip.fields if f.access == "w1c" and f.name != "refused"]
+    strobes = [f.name for f in chip.fields if f.access == "w1c" and f.name not in ("refused", "aborted")]
     return mk_bitstruct("ChipStatus", {"busy": Bits1, **dict.fromkeys(strobes, Bits1)})
+
+
+@cache
+def chip_state() -> type:
+    """ChipState: the fields of the register `state`."""
+    return mk_bitstruct("ChipState", {f.name: mk_bits(f.width) for f in register_map().state})

@@ -4,27 +4,29 @@ from pymtl3 import Bits8, Component, InPort, OutPort, update_ff
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
 from models.digital.registers import ADDRESS_MAX, RegisterBank
-from models.parameters.registers import register_map
+from models.parameters.registers import array_resets, register_map
 
-from .config import chip_config, chip_status
+from .config import chip_config, chip_state, chip_status
 
 
 class RegFileFL(Component):
     """The ports of RegFile, and the same bytes some cycles earlier: the pins have no synchronizers."""
 
-    def construct(s, last_row=95, last_col=63):
+    def construct(s, rows, cols, lanes, tile_rows=4, tile_cols=6, divider="radix4"):
         Config = chip_config()
         s.sclk = InPort()
         s.csn = InPort()
         s.mosi = InPort()
         s.miso = OutPort()
         s.status = InPort(chip_status())
+        s.state = InPort(chip_state())
         s.cycles, s.conversions_made, s.conversions_left_out = InPort(64), InPort(64), InPort(64)
         s.cfg = OutPort(Config)
-        s.start = OutPort()
+        s.start, s.abort_ = OutPort(), OutPort()
         s.loop = SendIfcRTL(Bits8)
 
-        s.bank = RegisterBank({"row1": last_row, "col1": last_col})
+        resets = array_resets(rows, cols, lanes, tile_rows, tile_cols, divider)
+        s.bank = RegisterBank(resets)
         s.was_high = s.command = None
         s.was_free = False  # csn has been high since reset
         s.bits, s.out = [], 0
@@ -41,7 +43,9 @@ class RegFileFL(Component):
             if s.bits or s.command is None or s.command & 0x80:
                 s.out = s.out << 1 & 0xFF if s.bits else 0
             else:
-                s.out = s.bank.read(s.command, int(s.status.busy), [int(getattr(s, name)) for name in counters])
+                values = [int(getattr(s, name)) for name in counters]
+                state = sum(int(getattr(s.state, f.name)) << f.lsb for f in chip.state)
+                s.out = s.bank.read(s.command, int(s.status.busy), values, state)
 
         def rising():
             s.bits.append(int(s.mosi))
@@ -59,7 +63,7 @@ class RegFileFL(Component):
         def behave():
             high = bool(s.sclk)
             if s.reset:
-                s.bank.__init__({"row1": last_row, "col1": last_col})
+                s.bank.__init__(resets)
             s.was_free = not s.reset and (s.was_free or bool(s.csn))
             if s.csn or not s.was_free:
                 s.bits, s.command, s.out = [], None, 0
@@ -71,12 +75,13 @@ class RegFileFL(Component):
             for name in ("done", "cfg_err", "amp_err"):
                 if getattr(s.status, name) and not s.reset:
                     s.bank.set(name)
-            start, loop = s.bank.take()
+            start, abort, loop = s.bank.take()
             s.start <<= start
+            s.abort_ <<= abort
             if loop is not None:
                 s.loop.val <<= 1
                 s.loop.msg <<= loop
-            elif s.reset or s.loop.rdy:
+            elif s.reset or abort or s.loop.rdy:
                 s.loop.val <<= 0
             s.cfg <<= configuration()
             s.miso <<= s.out >> 7

@@ -20,10 +20,12 @@ from pymtl3 import (
 )
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-from models.parameters.registers import register_map
+from models.parameters.registers import array_resets, register_map
 
-from .config import chip_config, chip_status
+from .config import chip_config, chip_state, chip_status
 from .spi_slave_rtl import SpiSlave
+
+TOP = 0x60  # from here on, bytes are read from one table: the state and the identity
 
 
 def packed(image: dict[int, int], first: int, last: int) -> int:
@@ -32,14 +34,12 @@ def packed(image: dict[int, int], first: int, last: int) -> int:
 
 
 class RegFile(Component):
-    """The register file behind SPI (README.md).
+    """The register file behind SPI (README.md). The parameters are in the identity, and the window resets to them."""
 
-    last_row, last_col: last tile row and column of the array, the reset values of row1 and col1.
-    """
-
-    def construct(s, last_row=95, last_col=63):
+    def construct(s, rows, cols, lanes, tile_rows=4, tile_cols=6, divider="radix4"):
         chip = register_map()
-        resets = chip.image(chip.configuration, {"row1": last_row, "col1": last_col})
+        own = array_resets(rows, cols, lanes, tile_rows, tile_cols, divider)
+        resets = chip.image(chip.configuration, own)
         first, last = min(resets), max(resets)
         n_bytes = last - first + 1
         Image = mk_bits(8 * n_bytes)
@@ -48,10 +48,12 @@ class RegFile(Component):
         FIRST, LAST = Bits7(first), Bits7(last)
         ID, VERSION = Bits8(chip["id"].reset), Bits8(chip["version"].reset)
         A_ID, A_VERSION = Bits7(chip["id"].byte), Bits7(chip["version"].byte)
-        A_START, A_STATUS, A_LOOP = (Bits7(chip[n].byte) for n in ("start", "busy", "loop_back"))
+        A_STATE = Bits7(chip.state[0].address)  # from here on, the state and the identity
+        CONSTANTS = packed(chip.image(chip.identity, own), TOP, 127)
+        A_CONTROL, A_STATUS, A_LOOP = (Bits7(chip[n].byte) for n in ("start", "busy", "loop_back"))
         A_CYCLES, A_MADE, A_LEFT_OUT = (Bits7(f.byte) for f in chip.counters)
         LAST_COUNTER = Bits7(chip.counters[-1].byte + 7)
-        START_BIT = chip["start"].shift
+        START_BIT, ABORT_BIT = chip["start"].shift, chip["abort"].shift
         sticky = [f for f in chip.fields if f.access == "w1c"]  # adjacent bits (a test checks it)
         low, high = sticky[0].shift, sticky[-1].shift + 1
         Sticky = mk_bits(high - low)
@@ -63,9 +65,11 @@ class RegFile(Component):
         s.mosi = InPort()
         s.miso = OutPort()
         s.status = InPort(chip_status())
+        s.state = InPort(chip_state())
         s.cycles, s.conversions_made, s.conversions_left_out = InPort(64), InPort(64), InPort(64)
         s.cfg = OutPort(chip_config())
         s.start = OutPort()
+        s.abort_ = OutPort()
         s.loop = SendIfcRTL(Bits8)
 
         s.spi = SpiSlave()
@@ -81,8 +85,12 @@ class RegFile(Component):
         s.offset = Wire(7)  # of the address in the image, in bytes
         s.index = Wire(10)  # ... in bits
         s.counter_index = Wire(6)
+        s.top = Wire(256)  # the bytes from TOP to 127
+        s.top_index = Wire(8)
         s.write = Wire()
+        s.locked = Wire()  # a frame runs, or a loop-back byte waits for the link
         s.starting = Wire()
+        s.aborting = Wire()
         s.in_image = Wire()
         s.configuring = Wire()
         s.looping = Wire()
@@ -99,27 +107,43 @@ class RegFile(Component):
                 connect(getattr(s.cfg, f.name), s.image[bit : bit + f.width])
         trims, past = chip.trims[0].address, chip.trims[-1].address + chip.trims[-1].size
         connect(s.cfg.trims, s.image[8 * (trims - first) : 8 * (past - first)])
+        place = 0
+        for f in chip.state:
+            bit = 8 * (f.address - TOP) + f.lsb
+            if bit > place:
+                connect(s.top[place:bit], mk_bits(bit - place)(0))
+            connect(s.top[bit : bit + f.width], getattr(s.state, f.name))
+            place = bit + f.width
+        connect(s.top[place:256], mk_bits(256 - place)(CONSTANTS >> place))
+        events = {"refused": s.refused, "aborted": s.aborting}
         for f in sticky:
-            connect(s.events[f.shift - low], s.refused if f.name == "refused" else getattr(s.status, f.name))
+            connect(s.events[f.shift - low], events[f.name] if f.name in events else getattr(s.status, f.name))
 
         @update
         def up_decode():
             s.offset @= s.address - FIRST
             s.index @= concat(s.offset, Bits3(0))
             s.counter_index @= concat(s.address[0:3], Bits3(0))
+            s.top_index @= concat(s.address[0:5], Bits3(0))
             s.in_image @= (s.address >= FIRST) & (s.address <= LAST)
             s.write @= s.spi.rx_val & s.have_command & s.writing
+            s.locked @= s.status.busy | s.loop.val
             s.starting @= Bits1(0)
+            s.aborting @= Bits1(0)
             s.configuring @= Bits1(0)
             s.looping @= Bits1(0)
             s.refused @= Bits1(0)
             if s.write:
-                s.starting @= (s.address == A_START) & s.spi.rx[START_BIT] & ~s.status.busy
-                s.configuring @= s.in_image & ~s.status.busy
-                s.looping @= (s.address == A_LOOP) & ~s.loop.val
-                s.refused @= s.status.busy & (
-                    s.in_image | (s.address == A_START) & s.spi.rx[START_BIT]
-                ) | s.loop.val & (s.address == A_LOOP)
+                if s.address == A_CONTROL:
+                    s.aborting @= s.spi.rx[ABORT_BIT]
+                    s.starting @= s.spi.rx[START_BIT] & ~(s.spi.rx[ABORT_BIT] | s.locked | s.cfg.loop_enable)
+                    s.refused @= s.spi.rx[START_BIT] & (s.spi.rx[ABORT_BIT] | s.locked | s.cfg.loop_enable)
+                elif s.address == A_LOOP:
+                    s.looping @= s.cfg.loop_enable & ~s.loop.val
+                    s.refused @= ~s.cfg.loop_enable | s.loop.val
+                elif s.in_image:
+                    s.configuring @= ~s.locked
+                    s.refused @= s.locked
 
         @update
         def up_read():
@@ -135,6 +159,8 @@ class RegFile(Component):
                     s.spi.tx @= s.conversions_left_out[0:8]
                 elif (s.address > A_CYCLES) & (s.address <= LAST_COUNTER):
                     s.spi.tx @= s.snapshot[s.counter_index : s.counter_index + Bits6(8)]
+                elif s.address >= A_STATE:
+                    s.spi.tx @= s.top[s.top_index : s.top_index + Bits8(8)]
                 elif s.address == A_STATUS:
                     s.spi.tx[BUSY] @= s.status.busy
                     s.spi.tx[low:high] @= s.sticky
@@ -189,9 +215,11 @@ class RegFile(Component):
         def up_status():
             if s.reset:
                 s.start <<= Bits1(0)
+                s.abort_ <<= Bits1(0)
                 s.sticky <<= Sticky(0)
             else:
                 s.start <<= s.starting
+                s.abort_ <<= s.aborting
                 if s.starting:
                     s.sticky <<= s.sticky & KEPT_AT_START | s.events
                 elif s.write & (s.address == A_STATUS):
@@ -201,7 +229,7 @@ class RegFile(Component):
 
         @update_ff
         def up_loop():
-            if s.reset:
+            if s.reset | s.aborting:
                 s.loop.val <<= Bits1(0)
                 s.loop.msg <<= Bits8(0)
             elif s.looping:

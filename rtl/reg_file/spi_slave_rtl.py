@@ -1,6 +1,8 @@
 """SPI slave, mode 0, oversampled by the system clock: bits to bytes and back."""
 
-from pymtl3 import Bits1, Bits2, Bits3, Bits8, Component, InPort, OutPort, Wire, concat, update, update_ff
+from pymtl3 import Bits1, Bits3, Bits8, Component, InPort, OutPort, Wire, concat, update, update_ff
+
+from .synchronizer_rtl import Synchronizer
 
 
 class SpiSlave(Component):
@@ -21,10 +23,10 @@ class SpiSlave(Component):
         s.tx = InPort(8)
         s.tx_take = OutPort()
 
-        # Two flip-flops against metastability; a third holds sclk of the cycle before.
-        s.sclk_sync = Wire(3)
-        s.csn_sync = Wire(2)
-        s.mosi_sync = Wire(2)
+        s.sclk_sync = Synchronizer()
+        s.csn_sync = Synchronizer()
+        s.mosi_sync = Synchronizer()
+        s.sclk_was = Wire()  # sclk of the cycle before
         s.was_free = Wire()  # csn has been high: the rest of a transfer that a reset cut is ignored
         s.rise = Wire()
         s.fall = Wire()
@@ -32,34 +34,33 @@ class SpiSlave(Component):
         s.shift_in = Wire(7)
         s.shift_out = Wire(8)
 
+        s.sclk_sync.pin //= s.sclk
+        s.csn_sync.pin //= s.csn
+        s.mosi_sync.pin //= s.mosi
         s.miso //= s.shift_out[7]
 
         @update
         def up_edges():
-            s.selected @= ~s.csn_sync[1] & s.was_free
+            s.selected @= ~s.csn_sync.out & s.was_free
             s.rise @= Bits1(0)
             s.fall @= Bits1(0)
             s.rx_val @= Bits1(0)
             s.tx_take @= Bits1(0)
             if s.selected:  # nothing moves in most cycles of a frame, and nothing need be simulated
-                s.rise @= s.sclk_sync[1] & ~s.sclk_sync[2]
-                s.fall @= ~s.sclk_sync[1] & s.sclk_sync[2]
+                s.rise @= s.sclk_sync.out & ~s.sclk_was
+                s.fall @= ~s.sclk_sync.out & s.sclk_was
                 s.rx_val @= s.rise & (s.count == Bits3(7))
                 s.tx_take @= s.fall & (s.count == Bits3(0))
-            s.rx @= concat(s.shift_in, s.mosi_sync[1])
+            s.rx @= concat(s.shift_in, s.mosi_sync.out)
 
         @update_ff
-        def up_sync():
+        def up_pins():
             if s.reset:
-                s.sclk_sync <<= Bits3(0)
-                s.csn_sync <<= Bits2(0)
-                s.mosi_sync <<= Bits2(0)
+                s.sclk_was <<= Bits1(0)
                 s.was_free <<= Bits1(0)
             else:
-                s.sclk_sync <<= concat(s.sclk_sync[0:2], s.sclk)
-                s.csn_sync <<= concat(s.csn_sync[0], s.csn)
-                s.mosi_sync <<= concat(s.mosi_sync[0], s.mosi)
-                s.was_free <<= s.was_free | s.csn_sync[1]
+                s.sclk_was <<= s.sclk_sync.out
+                s.was_free <<= s.was_free | s.csn_sync.out
 
         @update_ff
         def up_shift():
@@ -69,7 +70,7 @@ class SpiSlave(Component):
                 s.shift_out <<= Bits8(0)
             elif s.rise:
                 s.count <<= s.count + Bits3(1)
-                s.shift_in <<= concat(s.shift_in[0:6], s.mosi_sync[1])
+                s.shift_in <<= concat(s.shift_in[0:6], s.mosi_sync.out)
             elif s.tx_take:
                 s.shift_out <<= s.tx
             elif s.fall:

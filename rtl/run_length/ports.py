@@ -33,3 +33,4 @@ def declare_ports(s) -> None:
     s.left_out = InPort(Bits32)
     s.send = SendIfcRTL(Bits8)
     s.frame_sync = OutPort()
+    s.state = OutPort(3)  # of the control, for a host that looks for the cause of a stop; 0 at FL and CL

@@ -45,6 +45,7 @@ class RunLength(Component):
         s.control.queue_ready //= s.queue.ready
         s.control.queue_last //= s.queue.last
         s.control.frame_sync //= s.frame_sync
+        s.control.state //= s.state
         s.packer.restart //= s.control.restart
         s.packer.push //= s.control.push
         s.packer.flush //= s.control.flush

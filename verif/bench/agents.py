@@ -71,6 +71,13 @@ class Bench:
             await Timer(HALF, "ns")
         self.dut.reset.value = 0
 
+    async def again(self, reset: bool = True) -> None:
+        """Reset; or agents alone start again, where the design has nothing left to do."""
+        if reset:
+            await self.reset()
+        for agent in self.agents:
+            agent.rest()
+
     async def until(self, done: Callable[[], object], limit: int) -> None:
         """Run cycles until ``done()``. Raises AssertionError after ``limit`` of them."""
         for _ in range(limit):

@@ -78,6 +78,7 @@ class ChipBench(Bench):
             "cfg_err": False,
             "amp_err": False,
             "refused": False,
+            "aborted": False,
             "conversions_made": golden.made,
             "conversions_left_out": golden.left_out,
         }

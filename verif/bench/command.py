@@ -1,4 +1,5 @@
-"""Every cocotb bench in Icarus and in Verilator, and one frame in these and in PyMTL: build/verify/bench.json."""
+"""Every cocotb bench in Icarus and in Verilator, one frame in these and in PyMTL, and frames of every cross of the
+chip's configuration: build/verify/bench.json."""
 
 import sys
 import tempfile
@@ -11,8 +12,9 @@ from base.jobs import Job
 from base.jobs import run as run_jobs
 from base.records import from_json
 from rtl.harness.icarus import MISSING, installed
-from verif.results import OUT, BlockResults, Tests, write_step
+from verif.results import OUT, SEED, BlockResults, Tests, write_step
 
+from .cross import ARRAYS, Crossed, crossed, every
 from .exposure import FRAMES
 from .simulation import DESIGNS, SIMULATORS, BenchError, BenchTest, simulate
 
@@ -80,11 +82,27 @@ def summary(runs: Mapping[tuple[str, str], BenchRun]) -> dict[str, BlockResults]
     return by_block
 
 
+def crosses(seed: int, store: Path, workers: int) -> BlockResults:
+    """Run the frames of every cross (cross.py); a wrong frame and a cross without one are open points."""
+    jobs = [Job(f"cross-{lanes}", crossed, (lanes, seed), (seed,)) for lanes in ARRAYS]
+    done = from_json(list[Crossed], run_jobs(jobs, store, "crosses", workers))
+    points = []
+    for job, part in zip(jobs, done, strict=True):
+        if failed := [f"{CHIP} in verilator: {test.name}: {test.failure}" for test in part.tests if test.failure]:
+            job.file(store).unlink(missing_ok=True)
+            points += failed
+    tests = Tests(sum(not t.failure for part in done for t in part.tests), len(points))
+    missing = set(map(str, every())) - {name for part in done for name in part.seen}
+    return BlockResults(
+        tests=tests, open_points=points + [f"cross {name} = never: must be seen" for name in sorted(missing)]
+    )
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot bench`."""
     parser.add_argument("--block", action="append", choices=DESIGNS, help="may be repeated; default: all")
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
-    parser.add_argument("--seed", type=int, default=1, help="of the tests' random numbers")
+    parser.add_argument("--seed", type=int, default=SEED, help="of the tests' random numbers")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")
     parser.add_argument("--workers", type=int, default=-1, help="processes, -1 for all cores")
 
@@ -98,12 +116,15 @@ def run(options: Namespace) -> int:
     store = options.out / "bench"
     runs = from_json(list[BenchRun], run_jobs(list(jobs.values()), store, "benches", options.workers))
     by_block = summary(dict(zip(jobs, runs, strict=True)))
+    if CHIP in by_block and "verilator" in simulators:
+        by_block[CHIP].add(crosses(options.seed, store, options.workers))
     write_step("bench", by_block, options.out)
     for job, ran in zip(jobs.values(), runs, strict=True):
         if any(test.failure for test in ran.tests):
             job.file(store).unlink(missing_ok=True)  # failures are tried again
     for block, here in by_block.items():
-        print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed")
+        print(f"{block}: {here.tests.passed} passed, {here.tests.failed} failed, seed {options.seed}")
         for point in here.open_points:
             print(point, file=sys.stderr)
+            print(f"again: talbot bench --block {block} --seed {options.seed}", file=sys.stderr)
     return int(any(here.open_points for here in by_block.values()))

@@ -24,18 +24,18 @@ class DividerBench(Bench):
         self.source, self.sink = Driver(Stream(dut, "recv"), random), Monitor(Stream(dut, "send"), random)
         super().__init__(dut, self.source, self.sink)
 
-    async def begin(self, count):
-        """Reset, ``count`` requests to make and a noise floor at the port; returns the responses."""
-        floor = random.choice((0, 1, 40, 255))
+    async def begin(self, count, reset=True):
+        """Reset or go on, with ``count`` requests to make and a noise floor at the port; returns the responses."""
+        floor = random.choice((0, 1, 40, 201, 255))
         self.dut.noise_floor.value = floor
         self.source.pace, self.sink.pace = (random.choice((0.1, 0.5, 1)) for _ in range(2))
-        await self.reset()
+        await self.again(reset)
         requests = [random_request() for _ in range(count)]
         self.source.items = [int(request.to_bits()) for request in requests]
         return [int(response(VARIANT, N_FRAC, ITERATIONS, request, floor).to_bits()) for request in requests]
 
-    async def requests(self, count):
-        expected = await self.begin(count)
+    async def requests(self, count, reset=True):
+        expected = await self.begin(count, reset)
         await self.until(lambda: self.source.done and self.sink.quiet > 60, LIMIT)
         check(self.sink.items, expected)
 
@@ -43,8 +43,9 @@ class DividerBench(Bench):
 @cocotb.test(timeout_time=20, timeout_unit="ms")
 async def any_requests_at_any_pace(dut):
     bench = DividerBench(dut)
-    for _ in range(12):
-        await bench.requests(60)
+    await bench.requests(60)
+    for _ in range(11):
+        await bench.requests(60, reset=random.random() < 0.2)
 
 
 @cocotb.test(timeout_time=20, timeout_unit="ms")

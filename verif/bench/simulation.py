@@ -63,7 +63,7 @@ DESIGNS = {
     for design in (
         Design(
             "RunLength",
-            "verif.bench.simulation_length_bench",
+            "verif.bench.run_length_bench",
             SensorParameters(array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4)),
         ),
         Design("PhasePath", "verif.bench.phase_path_bench"),

@@ -1,4 +1,4 @@
-"""Line, toggle, branch, state machine and functional coverage: build/verify/coverage.json.
+"""Line, toggle, branch, expression, state machine and functional coverage: build/verify/coverage.json.
 
 A block's own tests are recorded and replayed into its exported Verilog. Exit status 1 where anything is below 100 %.
 """
@@ -14,6 +14,7 @@ from rtl.replay import load
 from rtl.tops import TOPS
 from verif.results import OUT, BlockResults, write_step
 
+from .constants import constants
 from .measure import Measurement, measure
 from .testplan import TestPlan, folder_of, load_plan, plan_file
 from .traces import recorded
@@ -41,7 +42,11 @@ def measured(plans: dict[str, TestPlan], store: Path) -> dict[str, Verdict]:
     found: dict[str, list[Measurement]] = {}
     for (block, _), result in zip(jobs, run_jobs([job for _, job in jobs], store, "coverage"), strict=True):
         found.setdefault(block, []).append(from_json(Measurement, result))
-    return {block: judge(block, plan, found[block]) for block, plan in plans.items()}
+    proven = run_jobs([Job(block, constants, (str(traces[block][0]),)) for block in plans], store, "constants")
+    return {
+        block: judge(block, plan, found[block], {(module, signal, bit) for module, signal, bit in bits})
+        for (block, plan), bits in zip(plans.items(), proven, strict=True)
+    }
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -71,7 +76,7 @@ def run(options: Namespace) -> int:
         figures = ", ".join(
             f"{kind} {'-' if value is None else f'{value:g} %'}" for kind, value in verdict.coverage.items()
         )
-        print(f"{block}: {figures}; {verdict.excluded} points excluded")
+        print(f"{block}: {figures}; {verdict.constant} constant, {verdict.excluded} excluded")
         for text in verdict.errors + verdict.missing:
             print(f"  {text}")
     return int(not all(verdict.complete for verdict in verdicts.values()))

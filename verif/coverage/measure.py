@@ -14,16 +14,16 @@ from .points import POINTS
 from .ports import Recorded
 from .program import Registers, compile_program
 
-KINDS = {"v_line": "line", "v_branch": "branch", "v_toggle": "toggle"}
+KINDS = {"v_line": "line", "v_branch": "branch", "v_toggle": "toggle", "v_expr": "expression"}
 
 
 @dataclass(frozen=True)
 class Point:
     """One thing that Verilator counts.
 
-    kind: 'line', 'branch' or 'toggle'. module: in the Verilog. what: 'if', 'else', 'block', ... or
-    'signal[3]:0->1'. code: the text of its line. nth: index among identical points of the module. line: in the
-    Verilog. source: file, and line if known, of the Python that it comes from.
+    kind: 'line', 'branch', 'expression' or 'toggle'. module: in the Verilog. what: 'if', 'else', 'block', ...,
+    '(a==1 && b==0) => 0' or 'signal[3]:0->1'. code: the text of its line. nth: index among identical points of the
+    module. line: in the Verilog. source: file, and line if known, of the Python that it comes from.
     """
 
     kind: str

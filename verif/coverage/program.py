@@ -16,7 +16,7 @@ CACHE = ROOT / "build" / "replay"
 MAIN = Path(__file__).parent / "main.cpp"
 VALUES = ("--x-assign", "fast", "--x-initial", "unique")  # of X
 VERILATE = ("--cc", "--prefix", "VDut", *VALUES, "--noassert", "--no-timing", "-Wno-lint", "-Wno-fatal")
-COVERAGE = ("--coverage-line", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
+COVERAGE = ("--coverage-line", "--coverage-expr", "--coverage-toggle", "--coverage-max-width", "4096", "--flatten")
 RUNTIME = ("verilated", "verilated_threads", "verilated_cov")
 SECONDS = 900  # limit of a tool
 

@@ -11,12 +11,13 @@ import yaml
 
 from models.parameters import ParameterError, SensorParameters
 from rtl.tops import TOPS, build_top
+from verif.formal import manifest
 from verif.results import ROOT
 
 from .points import POINTS
 from .program import Registers
 
-KINDS = "line", "branch", "toggle"
+KINDS = "line", "branch", "expression", "toggle"
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,8 @@ class Exclusion:
     """Points that need not be hit.
 
     kind: of KINDS. at: each 'Module.signal', 'Module.signal[7:4]', or 'Module: text of the line'. what: the arm or edge
-    ('else', '0->1') if not all. blocks: that it holds for, default all.
+    ('else', '0->1') if not all. blocks: that it holds for, default all. proof: in place of a test, of what the
+    points do; a toggle has one.
     """
 
     kind: str
@@ -55,6 +57,7 @@ class Exclusion:
     reason: str
     what: str = ""
     blocks: tuple[str, ...] = ()
+    proof: str = ""
 
 
 @dataclass(frozen=True)
@@ -182,13 +185,23 @@ def _exclusion(field: str, entry: object, blocks: Sequence[str]) -> Exclusion:
     entry = _entry(field, entry, Exclusion)
     if entry["kind"] not in KINDS:
         raise ParameterError(f"{field}.kind = {entry['kind']!r}: must be one of {', '.join(KINDS)}")
+    proof = entry.get("proof", "")
+    if (proof or entry["kind"] == "toggle") and proof not in proofs():
+        raise ParameterError(f"{field}.proof = {proof!r}: must be a proof of rtl/*/formal/proofs.yaml")
     return Exclusion(
         entry["kind"],
         _texts(f"{field}.at", entry["at"]),
         str(entry["reason"]),
         str(entry.get("what", "")),
         _blocks(field, entry, blocks),
+        proof,
     )
+
+
+@cache
+def proofs() -> frozenset[str]:
+    """Return the names of all proofs."""
+    return frozenset(proof.name for proof in manifest.every())
 
 
 @cache

@@ -16,12 +16,14 @@ class Verdict:
     """The coverage of a block.
 
     coverage: percent by kind, None where nothing of the kind exists. missing: what no test reaches, one line each.
-    errors: exclusions that do not hold and transitions that no plan allows. excluded: points left out.
+    errors: exclusions that do not hold and transitions that no plan allows. constant: toggles of bits that are proven
+    constant. excluded: other points left out.
     """
 
     coverage: dict[str, float | None] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
+    constant: int = 0
     excluded: int = 0
 
     @property
@@ -95,9 +97,25 @@ def ranges(bits: Iterable[int]) -> str:
     return ",".join(f"{high}:{low}" if high > low else f"{low}" for low, high in reversed(out))
 
 
-def judge(block: str, plan: TestPlan, measures: Sequence[Measurement]) -> Verdict:
-    """Return the Verdict on ``block`` by its TestPlan. measures: the main parameter set first."""
+def is_constant(point: Point, constant: Collection[tuple[str, str, int]]) -> bool:
+    """Return whether ``point`` is a toggle of a bit of ``constant`` (module, signal, bit)."""
+    return point.kind == "toggle" and (point.module, *split_toggle(point.what)[:2]) in constant
+
+
+def judge(
+    block: str, plan: TestPlan, measures: Sequence[Measurement], constant: Collection[tuple[str, str, int]] = ()
+) -> Verdict:
+    """Return the Verdict on ``block`` by its TestPlan. measures: the main parameter set first. constant: bits of
+    that set's Verilog, which no input changes.
+    """
     verdict, points = Verdict(), points_of(measures)
+    verdict.errors += [
+        f"{point.module}.{point.what} = toggled: must be constant"
+        for point, times in points_of(measures[:1]).items()  # whose bits ``constant`` are
+        if times and is_constant(point, constant)
+    ]
+    points = {point: times for point, times in points.items() if not is_constant(point, constant)}
+    verdict.constant = len(points_of(measures)) - len(points)
     excluded = set()
     for exclusion in plan.exclusions_of(block):
         for at in exclusion.at:

@@ -7,18 +7,21 @@ reached, and every twin fails. A timeout is not a proof.
 import sys
 from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from base.command import failures
 from base.jobs import run as run_jobs
 from base.records import from_json
+from base.tools import located
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 from verif.results import OUT, PROVEN, BlockResults, Property, write_step
 
 from . import manifest
-from .engine import UNKNOWN, tool_or_none, version
+from .engine import UNKNOWN, version
+from .freedom import FreedomResult
+from .necessity import NecessityResult
 from .plan import pieces
 from .proof import Proof
 from .prove import CoverResult, ProofResult, TwinResult
@@ -26,27 +29,33 @@ from .prove import CoverResult, ProofResult, TwinResult
 
 @dataclass(frozen=True)
 class Outcome:
-    """All results of a proof. engines: by engine. twins: by property."""
+    """All results of a proof. engines: by engine. twins: by property. needs, freedom: of its assumptions."""
 
     proof: Proof
     engines: dict[str, ProofResult]
     covers: CoverResult
     twins: dict[str, TwinResult]
+    needs: NecessityResult = field(default_factory=NecessityResult)
+    freedom: FreedomResult = field(default_factory=FreedomResult)
 
     @property
     def properties(self) -> list[Property]:
         """Each property by each engine."""
         proof = self.proof
+        if proof.size_of:  # a row for all: the first size lists them
+            rows = {proof.name: all(twin.fails for twin in self.twins.values())}
+        else:
+            rows = {f"{proof.name}.{label}": twin.fails for label, twin in self.twins.items()}
         return [
             Property(
-                f"{proof.name}.{label}",
+                name,
                 f"{engine} ({version(engine)}, {version('yosys')})",
                 "unbounded" if proof.method == "induction" else proof.depth,
                 result.result,
-                twin.fails,
+                fails,
                 result.wall_s,
             )
-            for label, twin in self.twins.items()
+            for name, fails in rows.items()
             for engine, result in self.engines.items()
         ]
 
@@ -54,6 +63,7 @@ class Outcome:
     def problems(self) -> list[str]:
         """What is not proven, not reached or not caught, one line each."""
         name = f"{self.proof.block}.{self.proof.name}"
+        missing, twins = ([], {}) if self.proof.size_of else (self.covers.missing, self.twins)
         return [
             *(
                 f"{name} = {result.result} by {engine}: must be proven ({', '.join(result.failing) or result.output})"
@@ -62,35 +72,54 @@ class Outcome:
             ),
             *(
                 f"{name}.{label} = not reached: every cover point must be, in {self.proof.cover_depth} steps"
-                for label in self.covers.missing
+                for label in missing
             ),
             *(
                 f"{name}.{label} = {twin.status} with its bug in the design: must fail"
-                for label, twin in self.twins.items()
+                for label, twin in twins.items()
                 if not twin.fails
+            ),
+            *(f"{name}.{conjunct} = needless: the proof must fail without it" for conjunct in self.needs.needless),
+            *(
+                f"{name}: {problem}"
+                for problem in (self.freedom.problems(self.proof.never, " ".join(self.proof.tied).split()))
+                if self.freedom.reached
             ),
         ]
 
 
 def collect(proofs: Iterable[Proof], store: Path, workers: int = -1) -> list[Outcome]:
     """Run every job of ``proofs``. store: folder of the kept results. workers: processes, -1 for all cores."""
-    planned = [(proof, pieces(proof, present(proof))) for proof in proofs]
+    checked: dict[Path, str] = {}  # by wrapper, the proof with which its assumptions are checked
+    for proof in manifest.every():
+        checked.setdefault(proof.wrapper, proof.name)
+    planned = [(proof, [*pieces(proof, present(proof), checked[proof.wrapper] == proof.name)]) for proof in proofs]
     results = iter(run_jobs([piece.job for _, found in planned for piece in found], store, "formal", workers))
     outcomes = []
     for proof, found in planned:
-        by_kind = {kind: {} for kind in (ProofResult, CoverResult, TwinResult)}
+        by_kind = {kind: {} for kind in (ProofResult, CoverResult, TwinResult, NecessityResult, FreedomResult)}
         for piece in found:
             result = from_json(piece.kind, next(results))
             if UNKNOWN in vars(result).values():  # tried again next time
                 piece.job.file(store).unlink(missing_ok=True)
             by_kind[piece.kind][piece.name] = result
-        outcomes.append(Outcome(proof, by_kind[ProofResult], by_kind[CoverResult]["cover"], by_kind[TwinResult]))
+        first = next((outcome for outcome in outcomes if outcome.proof.name == proof.size_of), None)
+        outcomes.append(
+            Outcome(
+                proof,
+                by_kind[ProofResult],
+                first.covers if first else by_kind[CoverResult]["cover"],
+                first.twins if first else by_kind[TwinResult],
+                by_kind[NecessityResult].get("necessity", NecessityResult()),
+                by_kind[FreedomResult].get("freedom", FreedomResult()),
+            )
+        )
     return outcomes
 
 
 def present(proof: Proof) -> list[str]:
     """Return the installed engines of a proof; the first is required."""
-    return [proof.engines[0], *(engine for engine in proof.engines[1:] if tool_or_none(engine))]
+    return [proof.engines[0], *(engine for engine in proof.engines[1:] if located(engine))]
 
 
 def summary(outcomes: Sequence[Outcome]) -> dict[str, BlockResults]:
@@ -117,13 +146,14 @@ def table(outcomes: Iterable[Outcome]) -> str:
 
 def chosen(proofs: Sequence[Proof], options: Namespace) -> list[Proof]:
     """Return the ``proofs`` that the command line names, by default all. Raises ParameterError for none."""
-    unknown = set(options.proof or ()) - {proof.name for proof in proofs}
-    if unknown:
+    named = set(options.proof or ())
+    if unknown := named - {proof.name for proof in proofs}:
         raise ParameterError(f"proof = {', '.join(sorted(unknown))}: must be the name of a proof")
+    named |= {proof.size_of for proof in proofs if proof.name in named}  # whose covers and twins it shares
     found = [
         proof
         for proof in proofs
-        if (not options.only or proof.block in options.only) and (not options.proof or proof.name in options.proof)
+        if (not options.only or proof.block in options.only) and (not options.proof or proof.name in named)
     ]
     if not found:
         raise ParameterError(f"only = {', '.join(options.only or options.proof)}: must be a block with proofs")
@@ -145,6 +175,6 @@ def run(options: Namespace) -> int:
     write_step("formal", summary(outcomes), options.out)
     print(table(outcomes))
     for engine in sorted({e for proof in proofs for e in proof.engines} - {"boolector"}):
-        if not tool_or_none(engine):
+        if not located(engine):
             print(f"{engine} = not found: second engine skipped; make tools installs it", file=sys.stderr)
     return failures(line for outcome in outcomes for line in outcome.problems)

@@ -1,20 +1,28 @@
 """The Verilog that is proven: the export of rtl.export, and the same with a twin's bug."""
 
 import re
+from functools import cache
 
-from models.parameters import ParameterError
+from models.parameters import ParameterError, SensorParameters
 from rtl.export import translate
 
 from . import tables
 from .proof import Proof
 
 
+def without_comments(verilog: str) -> str:
+    """Return the Verilog without its lines of comments."""
+    return re.sub(r"(?m)^\s*//.*\n", "", verilog)
+
+
+@cache  # several proofs are of one top, and every mutant asks for all
+def _exported(top: str, sensor: SensorParameters) -> str:
+    return without_comments(translate(top, sensor))
+
+
 def exported(proof: Proof) -> dict[str, str]:
     """Return module -> the Verilog that holds it, without comments."""
-    texts = {}
-    for top in dict.fromkeys(proof.modules.values()):
-        texts[top] = re.sub(r"(?m)^\s*//.*\n", "", translate(top, proof.sensor_parameters))
-    return {module: texts[top] for module, top in proof.modules.items()}
+    return {module: _exported(top, proof.sensor_parameters) for module, top in proof.modules.items()}
 
 
 def wrapper(proof: Proof) -> str:

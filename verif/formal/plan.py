@@ -1,38 +1,50 @@
 """The jobs of a proof: what is proven is planned here, so that a change of one block leaves the others' results."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from base.jobs import Job
 
 from . import design
 from .engine import version
+from .freedom import FreedomResult, freedom
+from .necessity import NecessityResult, necessity
 from .proof import Proof
 from .prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
 
 
 @dataclass(frozen=True)
 class Piece:
-    """One job of a proof. kind: the class of its result. name: the engine or the property."""
+    """One job of a proof. kind: the class of its result. name: the engine, the property or what is checked."""
 
-    kind: type[ProofResult | CoverResult | TwinResult]
+    kind: type[ProofResult | CoverResult | TwinResult | NecessityResult | FreedomResult]
     name: str
     job: Job
 
 
-def pieces(proof: Proof, engines: Iterable[str]) -> list[Piece]:
-    """Return every piece of a proof by ``engines``. Raises ParameterError, FormalError."""
+def pieces(proof: Proof, engines: Iterable[str], assumptions: bool = True) -> Iterator[Piece]:
+    """Yield every piece of a proof by ``engines``. Raises ParameterError, FormalError.
+
+    assumptions: check these, too (once for a wrapper is enough, whatever the sizes it is proven for).
+    """
     texts, wrapper = design.exported(proof), design.wrapper(proof)
-    base = (*sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout)
-    found = []
+    base = (*sorted(texts.values()), wrapper, proof.top, proof.method, proof.timeout, *proof.assumed)
     for engine in engines:
         inputs = (*base, proof.depth, version("yosys"), version(engine))
         job = Job(f"{proof.name}.{engine}", prove, (proof, engine, texts, wrapper), inputs)
-        found.append(Piece(ProofResult, engine, job))
+        yield Piece(ProofResult, engine, job)
+    if proof.size_of:
+        return
     job = Job(f"{proof.name}.cover", cover, (proof, texts, wrapper), (*base, proof.cover_depth))
-    found.append(Piece(CoverResult, "cover", job))
+    yield Piece(CoverResult, "cover", job)
+    for kind, call, depth in (
+        (NecessityResult, necessity, proof.depth),
+        (FreedomResult, freedom, str((proof.free_depth, proof.free_from, proof.never, proof.tied))),
+    ):
+        if assumptions:
+            job = Job(f"{proof.name}.{call.__name__}", call, (proof, texts, wrapper), (*base, depth))
+            yield Piece(kind, call.__name__, job)
     for label, bug in proof.twins.items():
         bad, around = design.broken(proof, texts, wrapper, label)
         inputs = (*base, *sorted(bad.values()), around, bug.depth or proof.twin_depth)
-        found.append(Piece(TwinResult, label, Job(f"{proof.name}.{label}", twin, (proof, label, bad, around), inputs)))
-    return found
+        yield Piece(TwinResult, label, Job(f"{proof.name}.{label}", twin, (proof, label, bad, around), inputs))

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
+from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters, TileParameters
 
 METHODS = ("induction", "bounded")
 ENGINES = ("boolector", "z3")
-LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|cover)\s*\(")
+LABEL = re.compile(r"\b(\w+)\s*:\s*(assert|assume|cover)\s*\(")
+RESET = "a_reset"  # the assumption that every proof makes: it begins in reset
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,18 @@ class Proof:
     """The properties of one wrapper.
 
     name: unique. block: the top in rtl.tops that its results count for. wrapper: SystemVerilog file. top: its
-    module. modules: module under proof -> the exported top whose Verilog holds it. sensor: rows, cols, lanes,
-    divider, n_frac, iterations that differ from the default. method: 'induction' (base and step, unbounded) or
-    'bounded'. depth: steps of the base, and the largest k of the induction. cover_depth, twin_depth: steps within which
-    every cover point must be reached and every twin must fail. engines: the first also runs covers and twins. timeout:
-    s. generated: names in verif.formal.tables, text put before the wrapper. sources: files read before the wrapper.
-    defines: macros of the wrapper. why: reason for the depth. twins: property -> Twin.
+    module. modules: module under proof -> the exported top or part whose Verilog holds it. sensor: rows, cols, lanes,
+    tile_rows, tile_cols, divider, n_frac, iterations that differ from the default. method: 'induction' (base and step,
+    unbounded) or 'bounded'. depth: steps of the base, and the largest k of the induction. cover_depth, twin_depth:
+    steps within which every cover point must be reached and every twin must fail. engines: the first also runs covers
+    and twins. timeout: s. generated: names in verif.formal.tables, text put before the wrapper. sources: files read
+    before the wrapper. defines: macros of the wrapper. why: reason for the depth. twins: property -> Twin.
+    assumptions: label -> the neighbour's property or the document that it follows from (but RESET). never: regular
+    expression of cover points of its inputs that cannot be reached (verif.formal.freedom) -> the reason. tied: inputs
+    of the modules that have a constant, with spaces between -> the reason. size_of: the proof that this one repeats at
+    another size: its covers and twins count for both. slow: no test of `make test`.
+    free_depth: steps within which the inputs must take their values. free_from: register of
+    the wrapper -> value that it begins with there, all others with any; by default they begin in reset.
     """
 
     name: str
@@ -49,6 +56,9 @@ class Proof:
     depth: int
     why: str
     twins: dict[str, Twin]
+    assumptions: dict[str, str] = field(default_factory=dict)
+    never: dict[str, str] = field(default_factory=dict)
+    tied: dict[str, str] = field(default_factory=dict)
     sensor: dict[str, Any] = field(default_factory=dict)
     cover_depth: int = 20
     twin_depth: int = 20
@@ -57,6 +67,10 @@ class Proof:
     generated: tuple[str, ...] = ()
     sources: tuple[Path, ...] = ()
     defines: dict[str, Any] = field(default_factory=dict)
+    size_of: str | None = None
+    slow: bool = False
+    free_depth: int = 8
+    free_from: dict[str, int] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._check("method", self.method, METHODS)
@@ -75,6 +89,11 @@ class Proof:
         return "\n".join(path.read_text() for path in (*self.sources, self.wrapper))
 
     @property
+    def assumed(self) -> tuple[str, ...]:
+        """Labels of its assumptions."""
+        return (RESET, *self.assumptions)
+
+    @property
     def sensor_parameters(self) -> SensorParameters:
         """Parameters that the design is exported for."""
         given = dict(self.sensor)
@@ -86,9 +105,12 @@ class Proof:
             given.pop("n_frac", default.chip.n_frac),
             given.pop("iterations", default.chip.cordic_iterations),
         )
+        tile = TileParameters.small(
+            given.pop("tile_rows", default.tile.rows), given.pop("tile_cols", default.tile.cols)
+        )
         if given:
             raise ParameterError(f"{self.name}.sensor = {', '.join(given)}: must be parameters of the sensor")
-        return SensorParameters(array=array, chip=chip)
+        return SensorParameters(tile=tile, array=array, chip=chip)
 
 
 @dataclass(frozen=True)
@@ -98,17 +120,18 @@ class Labels:
     properties: list[str]
     invariants: list[str]
     covers: list[str]
+    assumptions: list[str]
 
 
 def labels(text: str) -> Labels:
     """Return the labels of a wrapper; an assertion named inv_... is an invariant.
 
-    Raises ParameterError for an assertion or a cover point without a label, or a label that occurs twice.
+    Raises ParameterError for an assertion, assumption or cover point without a label, or a label that occurs twice.
     """
-    plain = re.sub(r"//.*", "", text)
+    plain = re.sub(r"//.*|/\*[\s\S]*?\*/", "", text)
     found = LABEL.findall(plain)
-    if len(found) != len(re.findall(r"\b(?:assert|cover)\s*\(", plain)):
-        raise ParameterError("label = none: every assert and cover must have one")
+    if len(found) != len(re.findall(r"\b(?:assert|assume|cover|restrict)\b", plain)):
+        raise ParameterError("label = none: every assert, assume and cover must have one")
     names = [name for name, _ in found]
     if len(set(names)) != len(names):
         raise ParameterError(f"label = {', '.join(sorted({n for n in names if names.count(n) > 1}))}: must occur once")
@@ -117,4 +140,5 @@ def labels(text: str) -> Labels:
         [n for n in asserts if not n.startswith("inv_")],
         [n for n in asserts if n.startswith("inv_")],
         [name for name, kind in found if kind == "cover"],
+        [name for name, kind in found if kind == "assume"],
     )

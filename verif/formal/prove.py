@@ -1,11 +1,13 @@
 """The independent pieces of a proof, as jobs: base and step with each engine, the covers, each property's twin."""
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from verif.results import PROVEN
 
 from .engine import FAILED, PASSED, UNKNOWN, Workplace
+from .netlist import Netlist
 from .proof import Proof, labels
 
 
@@ -38,9 +40,11 @@ class TwinResult:
     step: int | None
 
 
-def prove(proof: Proof, engine: str, texts: dict[str, str], wrapper: str) -> ProofResult:
-    """Prove all properties of a wrapper by base and, for an induction, step."""
-    with Workplace(texts, wrapper, proof.top) as place:
+def prove(
+    proof: Proof, engine: str, texts: dict[str, str], wrapper: str, edit: Callable[[Netlist], None] | None = None
+) -> ProofResult:
+    """Prove all properties of a wrapper by base and, for an induction, step. edit: changes the netlist."""
+    with Workplace(texts, wrapper, proof.top, proof.assumed, edit=edit) as place:
         answer = place.check(engine, ["-t", str(proof.depth), "--presat"], proof.timeout)
         result, wall = {PASSED: PROVEN}.get(answer.status, answer.status), answer.wall_s
         if result == PROVEN and proof.method == "induction":
@@ -53,7 +57,7 @@ def prove(proof: Proof, engine: str, texts: dict[str, str], wrapper: str) -> Pro
 
 def cover(proof: Proof, texts: dict[str, str], wrapper: str) -> CoverResult:
     """Find which cover points are reached within cover_depth."""
-    with Workplace(texts, wrapper, proof.top) as place:
+    with Workplace(texts, wrapper, proof.top, proof.assumed) as place:
         answer = place.check(proof.engines[0], ["-c", "-t", str(proof.cover_depth)], proof.timeout)
     reached = set(re.findall(r"Reached cover statement(?: in step \d+)? at (?:\S+: )?(\w+)", answer.output))
     named = labels(proof.text).covers
@@ -65,7 +69,7 @@ def cover(proof: Proof, texts: dict[str, str], wrapper: str) -> CoverResult:
 def twin(proof: Proof, label: str, texts: dict[str, str], wrapper: str) -> TwinResult:
     """Check whether the broken design violates property ``label``."""
     depth = proof.twins[label].depth or proof.twin_depth
-    with Workplace(texts, wrapper, proof.top, only=label) as place:
+    with Workplace(texts, wrapper, proof.top, proof.assumed, only=label) as place:
         answer = place.check(proof.engines[0], ["-t", str(depth)], proof.timeout)
     steps = re.findall(r"Checking assertions in step (\d+)", answer.output)
     fails = answer.status == FAILED and f": {label}" in answer.output

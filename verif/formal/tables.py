@@ -6,7 +6,8 @@ import numpy as np
 
 from models.digital.divider import quad_divide
 from models.parameters.divider import cordic_angles
-from models.parameters.registers import register_map
+from models.parameters.registers import array_resets, register_map
+from rtl.quad_divider import timing
 
 from .proof import Proof
 
@@ -44,10 +45,27 @@ def type_at(proof: Proof) -> str:
     return case("type_at", 5, 5, order)
 
 
+def geometry(proof: Proof) -> str:
+    """Return the sizes of the sensor as macros."""
+    sensor = proof.sensor_parameters
+    array, tile = sensor.array, sensor.tile
+    sizes = {"ROWS": array.rows, "COLS": array.cols, "TILE_ROWS": tile.rows, "TILE_COLS": tile.cols}
+    return _macros(sizes | {"LANES": sensor.chip.lanes})
+
+
+def _macros(values: dict[str, int]) -> str:
+    return "".join(f"`define {name} {value}\n" for name, value in values.items())
+
+
 def registers(proof: Proof) -> str:
-    """Return bit_address, bit_place, bit_writable and bit_reset of each bit of the configuration, and macros."""
+    """Return the register map as functions and macros.
+
+    bit_address, bit_place, bit_writable and bit_reset of each bit of the configuration; writable_at and constant_at of
+    each address; STATE_WORD, the bytes of the register `state`, from input ``state``.
+    """
     chip, sensor = register_map(), proof.sensor_parameters
-    resets = {"row1": sensor.tile_rows - 1, "col1": sensor.tile_cols - 1}
+    array, tile, build = sensor.array, sensor.tile, sensor.chip
+    resets = array_resets(array.rows, array.cols, build.lanes, tile.rows, tile.cols, build.divider)
     bits = []  # from the struct's lowest bit: (address, place, writable, reset)
     writable = chip.writable()
     for f in chip.trims:
@@ -70,11 +88,77 @@ def registers(proof: Proof) -> str:
         "FIRST": min(image),
         "LAST": max(image),
         "START": chip["start"].byte,
+        "ABORT_BIT": chip["abort"].shift,
         "STATUS": chip["busy"].byte,
         "LOOP": chip["loop_back"].byte,
         "CYCLES": chip["cycles"].byte,
+        "STATE": chip.state[0].address,
     }
-    return "".join(f"`define {name} {value}\n" for name, value in macros.items()) + "".join(columns)
+    constants = chip.image(chip.identity, resets)
+    columns += [
+        case(name, 7, 8, [table.get(address, 0) for address in range(128)])
+        for name, table in (("writable_at", writable), ("constant_at", constants))
+    ]
+    state, past = ["1'b0"] * 32, sum(f.width for f in chip.state)
+    for f in chip.state:  # the first one is highest in the struct
+        past -= f.width
+        state[f.lsb : f.lsb + f.width] = [f"state[{past + i}]" for i in range(f.width)]
+    return f"{_macros(macros)}`define STATE_WORD {{{', '.join(reversed(state))}}}\n{''.join(columns)}"
 
 
-TABLES = {"type_at": type_at, "registers": registers, "phase_of_ratio": phase_of_ratio, "cordic_angle": cordic_angle}
+def lane_registers(proof: Proof) -> str:
+    """Return macro LANE_REGISTERS of AdcBank's wrapper: states, fulls, codes and converted, packed, lane 0 lowest."""
+    lanes = proof.sensor_parameters.chip.lanes
+    wires = []
+    for packed, (name, width) in {
+        "states": ("state", 3),
+        "fulls": ("full", 1),
+        "codes": ("code", 8),
+        "converted": ("search_made", 1),
+    }.items():
+        names = [f"lane{lane}.{name}" for lane in reversed(range(lanes))]
+        wires.append(_connected(dict.fromkeys(names, width)))
+        wires.append(f"wire [{width * lanes - 1}:0] {packed} = {{{', '.join(map(_inside, names))}}};")
+    return f"`define LANE_REGISTERS {' '.join(wires)}\n"
+
+
+def phase_path(proof: Proof) -> str:
+    """Return ENTRIES, DIVIDER and CYCLES: wires to the state of PhasePath's store and divider, for its wrapper."""
+    chip = proof.sensor_parameters.chip
+    steps = timing(chip.divider, chip.n_frac, chip.cordic_iterations)[0] - 1
+    values = {
+        f"store.entry{i}.value_{xy}": bits for i in reversed(range(chip.lanes)) for xy, bits in (("x", 9), ("y", 8))
+    }
+    entries = f"{_connected(values)} wire [{17 * chip.lanes - 1}:0] entries = {{{', '.join(map(_inside, values))}}};"
+    if chip.divider == "pipelined":
+        names = [f"divider.stage{i}.out_val" for i in reversed(range(steps + 1))]
+        left = "".join(f"{_inside(name)} ? {i} : " for i, name in enumerate(names)) + "0"
+        held, sound, state = " + ".join(map(_inside, names)), "1", dict.fromkeys(names, 1)
+    else:
+        state = {"divider.ctrl.running": 1, "divider.ctrl.done": 1}
+        running, done = map(_inside, state)
+        count = f"divider.dpath.{'i' if chip.divider == 'cordic' else 'count'}"
+        state[count] = 4
+        held, left = f"{running} + {done}", f"{done} ? 0 : {steps} - {_inside(count)}"
+        sound = f"!({running} && {done}) && (!{running} || {_inside(count)} < {steps})"
+    divider = f"{_connected(state)} wire [4:0] held = {held}; wire [4:0] left = {left}; wire sound = {sound};"
+    return f"`define ENTRIES {entries}\n`define DIVIDER {divider}\n`define CYCLES {steps}\n"
+
+
+def _inside(name: str) -> str:
+    return f"\\dut.{name} "
+
+
+def _connected(widths: dict[str, int]) -> str:
+    return " ".join(f"(* hierconn *) wire [{bits - 1}:0] {_inside(name)};" for name, bits in widths.items())
+
+
+TABLES = {
+    "type_at": type_at,
+    "geometry": geometry,
+    "phase_path": phase_path,
+    "registers": registers,
+    "phase_of_ratio": phase_of_ratio,
+    "cordic_angle": cordic_angle,
+    "lane_registers": lane_registers,
+}

@@ -17,13 +17,12 @@ from base.jobs import Job
 from base.jobs import run as run_jobs
 from base.records import from_json
 from models.parameters import check_int
-from verif.results import OUT, BlockResults, Fuzz, Resync, Sweep, write_step
+from verif.results import OUT, SEED, BlockResults, Fuzz, Resync, Sweep, write_step
 
 from .batch import BATCH, Batch, make_input, run_batch, try_input
 from .resync import AROUND, FRAMES, sweep
 
 CHANGES = 16  # wrong values tried at each byte of a real frame
-SEED = 1
 
 
 def batches(inputs: int, seed: int, folder: Path) -> list[Job]:
@@ -49,6 +48,7 @@ def summarize(seed: int, done: Sequence[Batch], swept: Sequence[Sweep]) -> dict[
         kinds.update(batch.kinds)
         for f in batch.failures:
             line = f"batch {batch.batch}, input {f.index} ({f.kind}): {f.error}" + (f": {f.file}" if f.file else "")
+            line += f"; again: talbot fuzz --seed {seed} --only {batch.batch} {f.index}"
             (decoder if f.target == "decoder" else host).append(line)
     inputs, files = sum(d.inputs for d in done), sum(d.files for d in done)
     slowest = max((d.seconds_max for d in done), default=0.0)
@@ -91,12 +91,16 @@ def run(options: Namespace) -> int:
     for mark in folder.glob("at.*"):
         mark.unlink(missing_ok=True)
     try:
-        done = from_json(list[Batch], run_jobs(batches(options.inputs, options.seed, folder), folder, "fuzz"))
+        planned = batches(options.inputs, options.seed, folder)
+        done = from_json(list[Batch], run_jobs(planned, folder, "fuzz"))
         jobs = sweeps(options.changes, options.seed) if options.changes else []
         swept = from_json(list[Sweep], run_jobs(jobs, folder, "resync"))
     except TerminatedWorkerError:
         where = "; ".join(running(folder))
         return failures([f"a process ended (crash or timeout) at: {where}; seed {options.seed}: see --only"])
+    for job, result in [*zip(planned, done, strict=True), *zip(jobs, swept, strict=True)]:
+        if result.failures:
+            job.file(folder).unlink(missing_ok=True)  # failures are tried again
     found = summarize(options.seed, done, swept)
     write_step("fuzz", found, options.out)
     return report(found)
@@ -119,7 +123,7 @@ def report(found: Mapping[str, BlockResults]) -> int:
             failures += part.failures if part else 0
         if fuzz := entry.fuzz:
             slowest = f", slowest {1e3 * fuzz.seconds_max:.0f} ms" if fuzz.seconds_max else ""
-            print(f"{block}: {fuzz.inputs:,} inputs, {fuzz.failures} failures{slowest}")
+            print(f"{block}: {fuzz.inputs:,} inputs, {fuzz.failures} failures{slowest}, seed {fuzz.seed}")
         if resync := entry.resync:
             print(f"resynchronisation: {resync.tried:,} wrong bytes, {resync.failures} lose more than a row")
         for point in entry.open_points:

@@ -128,7 +128,7 @@ def a_bank(rng: np.random.Generator) -> None:
     ):
         before = dict(bank.bytes)
         bank.write(address, byte, busy, full)
-        start, loop = bank.take()
+        start, _, loop = bank.take()
         demand(not (start and busy), "a start while busy")
         demand(loop is None or not full and loop == byte, "a loop-back byte without room")
         moved = {a for a in before if bank.bytes[a] != before[a]}

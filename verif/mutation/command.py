@@ -7,8 +7,9 @@ them all is compared with the original by induction. A survivor is a bug of the 
 import json
 from argparse import ArgumentParser, Namespace
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import asdict
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
 from pathlib import Path
 
 from base.jobs import Job
@@ -22,66 +23,114 @@ from rtl.tops import TOPS
 from verif.coverage.program import compile_program
 from verif.coverage.testplan import folder_of
 from verif.coverage.traces import recorded
-from verif.results import OUT, BlockResults, Mutants, write_step
+from verif.results import OUT, SEED, BlockResults, Mutants, write_step
 
-from .judge import EQUIVALENT, KILLED, SURVIVED, Judgement, judge, try_original, try_tests
+from .judge import EQUIVALENT, KILLED, SURVIVED, Judgement, judge, proofs_of, try_original, try_tests
 from .mutants import Mutant, generate, with_mutants
+from .operators import rewritten
+from .planted import jobs as bugs
 
-SEED = 1
-NUMBERS = {
-    "AmpCtrl": 55,
-    "ReadoutSeq": 70,
-    "EdgeAdc": 40,
-    "AdcBank": 40,
-    "QuadDividerRadix2": 32,
-    "QuadDividerRadix4": 32,
-    "QuadDividerPipelined": 32,
-    "Cordic": 40,
-    "PhasePath": 48,
-    "RunLength": 90,
-    "RegFile": 55,
-    "AspChip": 40,
+NUMBERS = {  # of mutants of bits, and as many of the text
+    "AmpCtrl": 12,
+    "ReadoutSeq": 16,
+    "EdgeAdc": 12,
+    "AdcBank": 12,
+    "QuadDividerRadix2": 8,
+    "QuadDividerRadix4": 8,
+    "QuadDividerPipelined": 8,
+    "Cordic": 8,
+    "PhasePath": 12,
+    "RunLength": 18,
+    "RegFile": 12,
+    "AspChip": 12,
 }
+OTHERS = 2  # parameter sets with a proof, beside the main one
 
 
-def plant(block: str, path: Path, store: Path, number: int, seed: int) -> tuple[Path, list[Mutant]]:
-    """Write mutants of the component of trace ``path`` to a folder of ``store``; returns both."""
+@dataclass(frozen=True)
+class Planted:
+    """Mutants of a block in one Verilog. path: trace of the component. folder: of mutants.v. bits: of netlist cells."""
+
+    block: str
+    path: Path
+    folder: Path
+    mutants: list[Mutant]
+
+    @property
+    def name(self) -> str:
+        """What its jobs are called."""
+        return f"{self.block}-{self.folder.name}"
+
+
+def plant(block: str, path: Path, folder: Path, number: int, seed: int, bits: bool) -> Planted:
+    """Write mutants of the component of trace ``path`` to ``folder``. bits: by Yosys, else of the text."""
     trace = load(path, cycles=False)
     verilog = trace.verilog()
-    mutants = generate(verilog, trace.cls, folder_of(block), number, seed)
-    text = with_mutants(verilog, trace.cls, mutants)
-    folder = store / block
+    if bits:
+        mutants = generate(verilog, trace.cls, folder_of(block), number, seed)
+        text = with_mutants(verilog, trace.cls, mutants)
+    else:
+        mutants, text = rewritten(verilog, trace.cls, folder_of(block), number, seed)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "mutants.v").write_text(text)
     compile_program(text, trace.cls, trace.ports, mutant=True)
-    return folder, mutants
+    return Planted(block, path, folder, mutants)
+
+
+def populations(block: str, paths: Sequence[Path], store: Path, factor: float, seed: int) -> Iterator[Planted]:
+    """Yield the mutants of a block: bits and text of its main parameters, text of others (sizes, lanes)."""
+    number = factor * NUMBERS[block]
+    yield plant(block, paths[0], store / block / "bits", max(4, round(number)), seed, True)
+    yield plant(block, paths[0], store / block / "text", max(6, round(number)), seed, False)
+    others = (path for path in paths[1:] if any(proofs_of(load(path, cycles=False))))
+    for path in islice(others, OTHERS):
+        yield plant(block, path, store / block / path.stem, max(6, round(number / 4)), seed, False)
 
 
 def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: int = SEED) -> dict[str, BlockResults]:
     """Try a sample of mutants of each block. factor: of the sample's size."""
-    blocks = list(blocks)
-    traces = recorded(blocks, store.parent / "traces")
-    tests, judges, whole, made = [], [], [], {}
-    for block in blocks:
-        path = traces[block][0]
-        folder, made[block] = plant(block, path, store, max(4, round(factor * NUMBERS[block])), seed)
-        text = folder / "mutants.v"
-        decides = path.with_suffix(".trace"), text, code(f"rtl/{folder_of(block)}/test")
-        whole.append(Job(block, try_original, (str(path), str(folder)), decides))
-        for mutant in made[block]:
-            name, arguments = f"{block}-{mutant.number}", (str(path), str(folder), mutant)
+    traces = recorded(blocks := list(blocks), store.parent / "traces")
+    made = [one for block in blocks for one in populations(block, traces[block], store, factor, seed)]
+    tests, judges, whole, of = [], [], [], []
+    for one in made:
+        text, formal = one.folder / "mutants.v", ROOT / "rtl" / folder_of(one.block) / "formal"
+        decides = one.path.with_suffix(".trace"), text, code(f"rtl/{folder_of(one.block)}/test")
+        whole.append(Job(one.name, try_original, (str(one.path), str(one.folder)), decides))
+        for mutant in one.mutants:
+            name, arguments = f"{one.name}-{mutant.number}", (str(one.path), str(one.folder), mutant)
             tests.append(Job(name, try_tests, arguments, decides))
-            formal = ROOT / "rtl" / folder_of(block) / "formal"
             judges.append(Job(name, judge, arguments, (text, formal)))  # independent of the tests
+            of.append(one.block)
     run_jobs(whole, store / "tests", "tests without a mutant")
     results = from_json(list[Judgement], run_jobs(tests, store / "tests", "mutants against the tests"))
     left = [i for i, result in enumerate(results) if result.result == SURVIVED]
-    for i, result in zip(
-        left, run_jobs([judges[i] for i in left], store / "judged", "undetected mutants"), strict=True
-    ):
+    judged = run_jobs([judges[i] for i in left], store / "judged", "undetected mutants")
+    for i, result in zip(left, judged, strict=True):
         results[i] = from_json(Judgement, result)
-    results = iter(results)
-    return {block: summary(mutants, [next(results) for _ in mutants]) for block, mutants in made.items()}
+        if results[i].result == SURVIVED:
+            judges[i].file(store / "judged").unlink(missing_ok=True)  # survivors are judged again
+    mutants = [mutant for one in made for mutant in one.mutants]
+    by_block = {block: [i for i, name in enumerate(of) if name == block] for block in blocks}
+    found = {block: summary([mutants[i] for i in at], [results[i] for i in at]) for block, at in by_block.items()}
+    for block, entry in escaped(blocks, store / "planted").items():
+        entry.add(found[block])
+        found[block] = entry
+    return found
+
+
+def escaped(blocks: Iterable[str], store: Path) -> dict[str, BlockResults]:
+    """Plant the bugs of planted.yaml that ``blocks`` have; one that its tests pass is an open point."""
+    planned = bugs(blocks)
+    caught = run_jobs([job for _, job in planned], store, "bugs that escaped once")
+    found: dict[str, BlockResults] = {}
+    for (block, job), good in zip(planned, caught, strict=True):
+        points = [] if good else [f"planted {job.name} = survived: its tests must fail"]
+        found.setdefault(block, BlockResults()).add(
+            BlockResults(mutants=Mutants(1, killed=int(good), survived=int(not good)), open_points=points)
+        )
+        if not good:
+            job.file(store).unlink(missing_ok=True)
+    return found
 
 
 def summary(mutants: Sequence[Mutant], judged: Sequence[Judgement]) -> BlockResults:

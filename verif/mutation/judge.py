@@ -1,19 +1,22 @@
 """The judgement of a mutant: the block's tests, all inputs of a divider, the equivalence check, the proofs."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from base.tools import ToolError
+from flow.layout.netlist.verilog import modules
 from flow.simulate.divider import exhaustive, simulator
 from models.parameters import SensorParameters
-from rtl.replay import Trace, load, tests_of
+from rtl.replay import Trace, load
 from verif.coverage.program import compile_program
 from verif.formal import design, manifest
+from verif.formal.proof import Proof
 from verif.formal.prove import prove
 from verif.results import PROVEN, ROOT
 
-from .equivalence import DIFFERENT, EQUIVALENT, compare, the_same
+from .equivalence import DIFFERENT, EQUIVALENT, UNKNOWN, compare, the_same
 from .mutants import Mutant, yosys
 from .trial import attempt
 
@@ -31,7 +34,8 @@ VARIANTS = {
 class Judgement:
     """A mutant's result: 'killed', 'equivalent' or 'survived'.
 
-    by: what kills it. difference: of a survivor, cycles to a known difference, or 'unknown'.
+    by: what kills it, or the proofs that hold with it where no input is known that distinguishes it. difference: of a
+    survivor, cycles to a known difference, or 'unknown'.
     """
 
     result: str
@@ -53,24 +57,25 @@ def try_tests(path: str, folder: str, mutant: Mutant) -> Judgement:
     tries = [(own, 2 * head.cycles)] if own else []
     if cycle >= 0:
         test = head.test_at(cycle)
-        tries += [(test, 2 * head.cycles_of(test)), (tests_of(head.cls)[1], 2 * head.cycles)]
+        every = list(dict.fromkeys(name for _, name in head.tests))
+        tries += [([test], 2 * head.cycles_of(test)), (every, 2 * head.cycles)]
     for tests, cycles in tries:
-        if failed := attempt(head, verilog, mutant, [tests], cycles + SPARE, alone=tests is own).failed:
+        if failed := attempt(head, verilog, mutant, tests, cycles + SPARE, alone=tests is own).failed:
             return Judgement(KILLED, failed)
     return Judgement(SURVIVED)
 
 
-def own_tests(mutant: Mutant) -> Path | None:
-    """Return the test file of the mutated module alone, or None: `test/<name>_test.py` beside its `<name>_rtl.py`."""
+def own_tests(mutant: Mutant) -> list[Path]:
+    """Return the test file of the mutated module alone, if any: `test/<name>_test.py` beside its `<name>_rtl.py`."""
     source = ROOT / mutant.source.split(":")[0]
     file = source.parent / "test" / f"{source.stem.removesuffix('_rtl')}_test.py"
-    return file if file.exists() and source.stem.removesuffix("_rtl") != source.parent.name else None
+    return [file] if file.exists() and source.stem.removesuffix("_rtl") != source.parent.name else []
 
 
 def try_original(path: str, folder: str) -> None:
     """Run the tests on the design with all mutants and none selected. Raises ToolError unless all pass."""
     head, verilog = mutated(path, folder)
-    trial = attempt(head, verilog, None, [tests_of(head.cls)[1]], head.cycles + SPARE)
+    trial = attempt(head, verilog, None, dict.fromkeys(name for _, name in head.tests), head.cycles + SPARE)
     if trial.failed or not trial.took_place:
         raise ToolError(f"{head.cls}: no test may fail without a mutant: {trial.failed or 'none has tried it'}")
 
@@ -88,23 +93,27 @@ def judge(path: str, folder: str, mutant: Mutant) -> Judgement:
         return Judgement(KILLED, "flow/simulate/divider/test/exhaustive_test.py")
     if mutant.module != head.cls and the_same(verilog, mutant.module, number):
         return Judgement(EQUIVALENT)
-    if proof := broken_proof(verilog, head, number):
-        return Judgement(KILLED, f"proof {proof}")
+    kept = []
+    for proof in proofs_of(head):
+        texts = {module: one_mutant(verilog, module, number) for module in proof.modules}
+        changed = [text for text in texts.values() if text != verilog]
+        if not any(re.search(rf"(?m)^module {mutant.module}\b", text) for text in changed):
+            continue  # it is about other parts
+        if prove(proof, proof.engines[0], texts, design.wrapper(proof)).result != PROVEN:
+            return Judgement(KILLED, f"proof {proof.name}")
+        kept.append(proof.name)
     verdict, cycles = compare(verilog, head.cls, head.ports, number)
-    if verdict == EQUIVALENT:
-        return Judgement(EQUIVALENT)
+    if verdict == EQUIVALENT or verdict == UNKNOWN and kept:
+        return Judgement(EQUIVALENT, ", ".join(kept) if verdict == UNKNOWN else "")
     return Judgement(SURVIVED, difference=cycles if verdict == DIFFERENT else verdict)
 
 
-def broken_proof(verilog: str, head: Trace, number: int) -> str | None:
-    """Return the name of a proof that fails on the mutated design, or None."""
-    original = re.sub(r"(?m)^\s*//.*\n", "", head.verilog())
+def proofs_of(head: Trace) -> Iterator[Proof]:
+    """Yield the proofs of the component of a trace, or of its parts, at its parameters."""
+    original = design.without_comments(head.verilog())
     for proof in manifest.every():
-        if list(proof.modules) == [head.cls] and design.exported(proof)[head.cls] == original:
-            text = {head.cls: one_mutant(verilog, head.cls, number)}
-            if prove(proof, proof.engines[0], text, design.wrapper(proof)).result != PROVEN:
-                return proof.name
-    return None
+        if {*proof.modules.values()} == {head.cls} and {*design.exported(proof).values()} == {original}:
+            yield proof
 
 
 def divides_right(verilog: str, head: Trace, number: int) -> bool:
@@ -123,6 +132,8 @@ def divides_right(verilog: str, head: Trace, number: int) -> bool:
 
 def one_mutant(verilog: str, top: str, number: int) -> str:
     """Return the Verilog of ``top`` with mutant ``number`` and without the input that selects one."""
+    if not re.search(r"\bmutant\b", modules(verilog)[top]):  # nor has any module in it
+        return verilog
     pick = f"setattr -unset keep w:mutant; connect -set mutant 16'd{number}; delete -input w:mutant"
     text = yosys(
         f"read_verilog -sv mutants.v; hierarchy -check -top {top}; proc; cd {top}; {pick}; cd ..; "

@@ -15,7 +15,7 @@ from verif.coverage.program import tool
 
 PREPARE = "read_verilog -sv dut.v; hierarchy -check -top {top}; proc; opt_expr; opt_muxtree; opt_clean"
 BITS = 16  # of the input `mutant`
-LEAST = 4  # mutants of a module that has as many
+LEAST = 2  # mutants of a module that has as many
 
 
 @dataclass(frozen=True)

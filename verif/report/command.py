@@ -14,7 +14,7 @@ from time import perf_counter
 
 from base.command import failures
 from base.files import staged
-from verif.results import OUT, BlockResults
+from verif.results import OUT, SEED, BlockResults
 
 from . import limits
 from .merge import summarize
@@ -24,7 +24,7 @@ from .steps import STEPS, Outcome, read_step, run_step
 BY_NAME = {step.name: step for step in STEPS}
 
 
-def outcomes(chosen: Collection[str], out: Path) -> list[Outcome]:
+def outcomes(chosen: Collection[str], out: Path, seed: int = SEED) -> list[Outcome]:
     """Run the steps named in ``chosen`` and read the kept results of the others."""
     done = []
     for number, step in enumerate(STEPS, 1):
@@ -33,7 +33,7 @@ def outcomes(chosen: Collection[str], out: Path) -> list[Outcome]:
             done.append(Outcome(step, 0.0, problem, by_block))
             continue
         print(f"\nverify {number}/{len(STEPS)}: {step.title}", flush=True)
-        done.append(run_step(step, out))
+        done.append(run_step(step, out, seed))
         if done[-1].problem:
             failures([done[-1].problem])
     return done
@@ -49,6 +49,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         help=f"run these alone, and read the kept results of the others; of {', '.join(BY_NAME)}",
     )
     parser.add_argument("--read", action="store_true", help="run nothing: report on the kept results")
+    parser.add_argument("--seed", type=int, default=SEED, help="of tests, benches and fuzz")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of the results and the report")
 
 
@@ -57,7 +58,7 @@ def run(options: Namespace) -> int:
     start, out = perf_counter(), options.out
     held = limits.read()
     out.mkdir(parents=True, exist_ok=True)
-    done = outcomes([] if options.read else options.steps or list(BY_NAME), out)
+    done = outcomes([] if options.read else options.steps or list(BY_NAME), out, options.seed)
     summary = summarize([outcome.by_block for outcome in done])
     problems = [o.problem for o in done if o.problem]
     fallen = limits.fallen(summary, held)

@@ -30,6 +30,7 @@ def figures(entry: BlockResults) -> dict[str, float | None]:
         **{f"coverage.{kind}": entry.coverage.get(kind) for kind in COVERAGE},
         **{f"mutants.{kind}": mutants and getattr(mutants, kind) for kind in MUTANTS},
         "mutants.score": mutants and mutants.score,
+        "stuck_at.share": entry.stuck_at and entry.stuck_at.share,
         "open_points": len(entry.open_points),
     }
     for name, part in (("fuzz", entry.fuzz), ("resync", entry.resync)):

@@ -57,6 +57,7 @@ def row(block: str, entry: BlockResults, limits: Limits) -> Row:
         return Cell(text, kind, "; ".join(f"{name} {limit_text(sides)}" for name, sides in held.items()))
 
     tests, mutants, proofs = entry.tests, entry.mutants, entry.proofs
+    stuck = f"{entry.stuck_at.share:.1f} ± {entry.stuck_at.margin:.1f} %" if entry.stuck_at else NOTHING
     killed = f"{_percent(mutants.score)} of {mutants.killable}" if mutants else NOTHING
     cells = [
         cell(_of(tests.passed, tests.passed + tests.failed), "tests.failed", "tests.passed"),
@@ -66,6 +67,7 @@ def row(block: str, entry: BlockResults, limits: Limits) -> Row:
         cell(f"{sum(p.wall_s for p in proofs):.0f} s" if proofs else NOTHING),
         *(cell(_percent(entry.coverage.get(kind)), f"coverage.{kind}") for kind in COVERAGE),
         cell(killed, "mutants.survived", "mutants.score", "mutants.made"),
+        cell(stuck, "stuck_at.share"),
         cell(", ".join(entry.simulators) or NOTHING),
         cell(str(len(entry.open_points)), "open_points"),
     ]

@@ -8,27 +8,29 @@ from pathlib import Path
 from time import perf_counter
 
 from base.records import from_json
-from verif.results import ROOT, BlockResults
+from verif.results import ROOT, SEED, BlockResults
 
 TALBOT = [sys.executable, "-m", "talbot"]
 
 
 @dataclass(frozen=True)
 class Step:
-    """A step. name: of its file, <name>.json. command: of `talbot`. title: for people."""
+    """A step. name: of its file, <name>.json. command: of `talbot`. title: for people. seeded: it has --seed."""
 
     name: str
     command: str
     title: str
+    seeded: bool = False
 
 
 STEPS = (
     Step("formal", "formal", "proofs and their broken twins"),
-    Step("suite", "suite", "tests of every block at every level"),
-    Step("bench", "bench", "cocotb benches in Icarus and Verilator"),
+    Step("suite", "suite", "tests of every block at every level", True),
+    Step("bench", "bench", "cocotb benches in Icarus and Verilator", True),
     Step("coverage", "coverage", "coverage and test plans"),
     Step("mutation", "mutate", "mutants"),
-    Step("fuzz", "fuzz", "fuzz and resynchronisation"),
+    Step("stuck_at", "stuck-at", "stuck-at faults by a test at the pins"),
+    Step("fuzz", "fuzz", "fuzz and resynchronisation", True),
 )
 
 
@@ -42,12 +44,13 @@ class Outcome:
     by_block: dict[str, BlockResults]
 
 
-def run_step(step: Step, out: Path) -> Outcome:
+def run_step(step: Step, out: Path, seed: int = SEED) -> Outcome:
     """Run a step, its output on this terminal. Results of an earlier run are removed first."""
     results = out / f"{step.name}.json"
     results.unlink(missing_ok=True)
     start = perf_counter()
-    status = subprocess.run([*TALBOT, step.command, "--out", out.resolve()], cwd=ROOT).returncode
+    options = ["--out", out.resolve(), *(["--seed", str(seed)] if step.seeded else [])]
+    status = subprocess.run([*TALBOT, step.command, *options], cwd=ROOT).returncode
     seconds = perf_counter() - start
     problem = "" if status in (0, 1) else f"step {step.name} = exit status {status}: must be 0 (see its output)"
     by_block, unread = read_step(step, out)

@@ -28,6 +28,7 @@ FOLDERS = (
     ("models/digital/stream", (DECODER,)),
     ("verif/fuzz", (DECODER,)),
     ("models/parameters", (HOST,)),
+    ("flow/host", (HOST,)),
     ("models", (MODELS,)),
     ("pixels", (MODELS,)),
     ("", (FLOW,)),

@@ -4,6 +4,7 @@ A skipped test is an open point: what it checks is not checked.
 """
 
 import json
+import shlex
 import shutil
 from argparse import ArgumentParser, Namespace
 from collections import Counter
@@ -17,7 +18,7 @@ from base.paths import ROOT
 from base.records import from_json
 from base.sources import code
 from models.parameters import ParameterError
-from verif.results import OUT, BlockResults, Fault, Tests, write_step
+from verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
 
 from .blocks import blocks_of, level_of
 from .pytest_folder import Case, FolderRun, folders, run_folder
@@ -26,12 +27,18 @@ PASSED, FAILED, SKIPPED = "passed", "failed", "skipped"
 TOOLS = "iverilog", "yosys", "g++", "z3"  # where one is missing, tests are skipped
 
 
-def jobs(wanted: Iterable[str], seconds: Mapping[str, float]) -> list[Job]:
+def options_of(seed: int) -> tuple[str, ...]:
+    """Return the options of pytest: slow tests, too, and the seed of the random ones."""
+    return "--all", f"--hypothesis-seed={seed}"
+
+
+def jobs(wanted: Iterable[str], seconds: Mapping[str, float], seed: int = SEED) -> list[Job]:
     """Return a Job for each folder, the longest first. seconds: of each folder's last run."""
-    setup = [ROOT / "pyproject.toml", *map(shutil.which, TOOLS)]
+    setup = [ROOT / "pyproject.toml", seed, *map(shutil.which, TOOLS)]
     ordered = sorted(wanted, key=lambda folder: -seconds.get(folder, 1e9))
     return [
-        Job(folder.replace("/", "-"), run_folder, (folder,), (code(folder, "conftest"), *setup)) for folder in ordered
+        Job(folder.replace("/", "-"), run_folder, (folder, options_of(seed)), (code(folder, "conftest"), *setup))
+        for folder in ordered
     ]
 
 
@@ -76,6 +83,7 @@ def last_seconds(store: Path) -> dict[str, float]:
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot suite`."""
     parser.add_argument("--folder", nargs="+", metavar="NAME", help="test folders; default: all")
+    parser.add_argument("--seed", type=int, default=SEED, help="of Hypothesis")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of suite.json")
 
 
@@ -86,12 +94,14 @@ def run(options: Namespace) -> int:
     for folder in options.folder or ():
         if folder not in known:
             raise ParameterError(f"folder = {folder!r}: must be one of {', '.join(known)}")
-    planned = jobs(options.folder or known, last_seconds(store) if store.exists() else {})
+    planned = jobs(options.folder or known, last_seconds(store) if store.exists() else {}, options.seed)
     done = from_json(list[FolderRun], run_jobs(planned, store, "tests"))
     forget(planned, done, store)
     write_step("suite", summarize(done), options.out)
     cases = [case for result in done for case in result.cases]
     failures(f"{case.test} = {case.outcome}: {case.message[:300]}" for case in cases if case.outcome != PASSED)
+    if failed := [case.test for case in cases if case.outcome == FAILED]:
+        print(f"again: python -m pytest {' '.join((*options_of(options.seed), *map(shlex.quote, failed[:10])))}")
     counts = Counter(case.outcome for case in cases)
     print(", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED)))
     return int(counts[FAILED] > 0)

@@ -48,10 +48,10 @@ class FolderRun:
     cases: list[Case]
 
 
-def run_folder(folder: str, root: Path = ROOT, options: Sequence[str] = ("--all",)) -> FolderRun:
+def run_folder(folder: str, options: Sequence[str] = (), root: Path = ROOT) -> FolderRun:
     """Run the tests of ``folder`` (not of folders below it); a pytest that fails itself is a failed case, too.
 
-    options: of pytest; --all runs the tests marked slow, too.
+    options: of pytest.
     """
     files = sorted(
         str(p.relative_to(root)) for p in (root / folder).glob("*_test.py") if not p.name.endswith("_bench_test.py")

@@ -32,7 +32,7 @@ DIGITAL, ANALOG = ("vdd", "vss"), ("vdda", "vssa")
 SUPPLIES = DIGITAL + ANALOG
 # Pins of the die, beside the supplies, from the west
 LINK = *(f"link_data[{k}]" for k in range(8)), "link_val", "link_rdy"
-SIGNALS = "clk", "reset", "sclk", "csn", "mosi", "miso", "busy", "frame_sync", *LINK
+SIGNALS = "clk", "reset", "sclk", "csn", "mosi", "miso", "miso_oe", "busy", "frame_sync", *LINK
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,6 @@
 """A line changed in each kind of file on which the layout's steps depend: exactly these steps have another key."""
 
 import shutil
-from pathlib import Path
 
 import pytest
 
@@ -28,28 +27,47 @@ def steps():
     return {name: step for name, step in found.items() if not name.endswith(tuple(OPTIONS.corners))}
 
 
-@pytest.fixture
-def tree(tmp_path):
-    """A copy of the repository's sources."""
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory):
+    """A copy of the repository's sources, which `changed` leaves as it was."""
+    root = tmp_path_factory.mktemp("tree")
     for folder in FOLDERS:
-        shutil.copytree(ROOT / folder, tmp_path / folder, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("conftest.py", "pyproject.toml"):
-        shutil.copy(ROOT / name, tmp_path)
-    return tmp_path
+        shutil.copy(ROOT / name, root)
+    return root
 
 
-def changed(steps, tree, file):
-    """Names of the steps whose key changes with one more line in ``file``."""
+@pytest.fixture(scope="module")
+def step_keys(steps, tree):
+    """(a function that returns the key of each step, what it returns for the tree as it is)."""
+    return with_result(lambda: {name: source_of(step, tree) for name, step in steps.items()})
 
-    def keys():
+
+@pytest.fixture(scope="module")
+def cache_keys(tree):
+    """The same of each of CACHES."""
+    return with_result(lambda: {name: sources.code(*starts, root=tree) for name, starts in CACHES.items()})
+
+
+def with_result(keys):
+    def fresh():
         sources.forget()
-        return {name: source_of(step, tree) for name, step in steps.items()}
+        return keys()
 
-    before = keys()
+    return fresh, fresh()
+
+
+def changed(keys, tree, file):
+    """Names of the keys that change with one more line in ``file``."""
+    fresh, before = keys
     path = tree / file
-    assert path.exists(), file
-    path.write_text(path.read_text() + ("\nCHANGED = True\n" if Path(file).suffix == ".py" else "\n"))
-    after = keys()
+    text = path.read_text()
+    path.write_text(text + ("\nCHANGED = True\n" if path.suffix == ".py" else "\n"))
+    try:
+        after = fresh()
+    finally:
+        path.write_text(text)
     return {name for name in before if before[name] != after[name]}
 
 
@@ -72,8 +90,8 @@ EXACTLY = [
 
 
 @pytest.mark.parametrize("file, expected", EXACTLY)
-def test_exactly_these_steps_run_again(steps, tree, file, expected):
-    assert changed(steps, tree, file) == expected
+def test_exactly_these_steps_run_again(step_keys, tree, file, expected):
+    assert changed(step_keys, tree, file) == expected
 
 
 @pytest.mark.parametrize(
@@ -89,8 +107,8 @@ def test_exactly_these_steps_run_again(steps, tree, file, expected):
         ("models/parameters/checks.py", {"drc", "sta", "gate_frames", "timing"}, set()),
     ],
 )
-def test_these_steps_run_again_and_those_do_not(steps, tree, file, some, others):
-    found = changed(steps, tree, file)
+def test_these_steps_run_again_and_those_do_not(step_keys, tree, file, some, others):
+    found = changed(step_keys, tree, file)
     assert some <= found and not others & found
 
 
@@ -121,13 +139,5 @@ CACHES = {
         ("flow/layout/chain.py", set()),
     ],
 )
-def test_exactly_these_caches_have_another_key(tree, file, expected):
-    def keys():
-        sources.forget()
-        return {name: sources.code(*starts, root=tree) for name, starts in CACHES.items()}
-
-    before = keys()
-    path = tree / file
-    path.write_text(path.read_text() + "\n")
-    after = keys()
-    assert {name for name in before if before[name] != after[name]} == expected
+def test_exactly_these_caches_have_another_key(cache_keys, tree, file, expected):
+    assert changed(cache_keys, tree, file) == expected

@@ -7,6 +7,8 @@ def sdc(design: Design, propagated: bool = True) -> str:
     """Text of the SDC (ns, pF). propagated: whether the clock has the delays of its tree, once there is one."""
     clock, io = design.clock, design.io
     tree = f"set_propagated_clock [get_clocks {{{clock.port}}}]\n" if propagated else ""
+    pins = " ".join(design.asynchronous)
+    untimed = f"set_false_path -from [get_ports {{{pins}}}]\n" if pins else ""
     return f"""create_clock -name {clock.port} -period {clock.period_ns:g} [get_ports {{{clock.port}}}]
 set_clock_uncertainty -setup {clock.uncertainty_ns:g} [get_clocks {{{clock.port}}}]
 set_clock_uncertainty -hold {clock.hold_uncertainty_ns:g} [get_clocks {{{clock.port}}}]
@@ -16,6 +18,6 @@ foreach port [all_inputs] {{
 }}
 set_input_delay {io.input_delay * clock.period_ns:g} -clock {clock.port} $data_inputs
 set_output_delay {io.output_delay * clock.period_ns:g} -clock {clock.port} [all_outputs]
-set_input_transition {io.input_slew_ns:g} [all_inputs]
+{untimed}set_input_transition {io.input_slew_ns:g} [all_inputs]
 set_load {io.load_pf:g} [all_outputs]
 """

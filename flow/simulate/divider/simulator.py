@@ -13,7 +13,7 @@ from base.cache import cached, digest
 from base.paths import BUILD
 from base.sources import code
 from base.tools import run
-from base.verilator import FAST, compile_program, compile_runtime, verilate, verilator_version
+from base.verilator import FAST, compile_program, runtime, verilate, verilator_version
 
 CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"
@@ -34,12 +34,6 @@ class DividerRun:
     interval: tuple[int, int]
 
 
-def _runtime() -> list[Path]:
-    """Object files of Verilator's run time; no cycle is spent there, so they are compiled fast."""
-    content = digest(code(__name__), verilator_version())
-    return sorted(cached(CACHE / f"runtime-{content}", lambda folder: compile_runtime(folder, ["-O0"])).glob("*.o"))
-
-
 def program(verilog: str, top: str) -> Path:
     """Path of the compiled bench for module ``top`` of ``verilog`` (text). Raises ToolError."""
 
@@ -47,7 +41,7 @@ def program(verilog: str, top: str) -> Path:
         source = folder / "divider.v"
         source.write_text(verilog)
         model = verilate(folder / "model", top, [source], FAST, "VQuadDivider")
-        compile_program(folder / "bench", [*model, MAIN], ["-O2", *_runtime()])
+        compile_program(folder / "bench", [*model, MAIN], ["-O2", *runtime()])
         shutil.rmtree(folder / "model")
 
     return cached(CACHE / digest(code(__name__), verilator_version(), top, verilog), make) / "bench"

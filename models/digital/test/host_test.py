@@ -64,6 +64,7 @@ def test_status_round_trip():
         "cfg_err": False,
         "amp_err": True,
         "refused": False,
+        "aborted": False,
         "cycles": counters[0],
         "conversions_made": counters[1],
         "conversions_left_out": counters[2],

@@ -6,6 +6,8 @@ from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
+from models.parameters.divider import DIVIDERS
+
 if TYPE_CHECKING:
     from systemrdl.node import FieldNode, RegNode
 
@@ -32,8 +34,12 @@ class Field:
         'ro', 'rw', 'wo' or 'w1c' (sticky, cleared by writing 1).
     signed : bool
         Two's complement.
+    constant : bool
+        Built into the chip.
+    choices : tuple of (int, str)
+        Names of its values, if they have some.
     description : str
-        Meaning, one line.
+        Meaning, one line, with the choices.
     """
 
     register: str
@@ -45,12 +51,19 @@ class Field:
     reset: int
     access: str
     signed: bool
+    constant: bool
+    choices: tuple[tuple[int, str], ...]
     description: str
 
     @property
     def key(self) -> str:
         """Name of the field, with its register if that is one of an array: 'threshold', 'trim[3].trim'."""
         return f"{self.register}.{self.name}" if "[" in self.register else self.name
+
+    @property
+    def range(self) -> tuple[int, int]:
+        """Lowest and highest value."""
+        return (-(1 << self.width - 1), (1 << self.width - 1) - 1) if self.signed else (0, (1 << self.width) - 1)
 
     @property
     def byte(self) -> int:
@@ -94,6 +107,11 @@ class RegisterMap:
         return tuple(f for f in self.fields if f.access == "rw")
 
     @cached_property
+    def identity(self) -> tuple[Field, ...]:
+        """Constants by which a host knows the chip."""
+        return tuple(f for f in self.fields if f.constant)
+
+    @cached_property
     def trims(self) -> tuple[Field, ...]:
         """Trim fields by pixel type."""
         return tuple(f for f in self.fields if f.name == "trim")
@@ -102,6 +120,11 @@ class RegisterMap:
     def counters(self) -> tuple[Field, ...]:
         """Eight-byte fields, ascending; a read of the first byte takes a snapshot of all eight."""
         return tuple(f for f in self.fields if f.access == "ro" and f.width == 64)
+
+    @cached_property
+    def state(self) -> tuple[Field, ...]:
+        """Fields of the register `state`."""
+        return tuple(f for f in self.fields if f.register == "state")
 
     def image(self, fields: Iterable[Field], values: Mapping[str, int] | None = None) -> dict[int, int]:
         """Contents of the bytes that hold some fields.
@@ -147,6 +170,9 @@ def _access(node: "FieldNode") -> str:
 def _fields(register: "RegNode") -> Iterator[Field]:
     name = register.get_path_segment()
     for node in register.fields():
+        choices = tuple(node.get_property("encode") or ())
+        named = ", ".join(f"{c.value} {c.name}" + (f" ({c.rdl_desc})" if c.rdl_desc else "") for c in choices)
+        text = str(node.get_property("desc")) + (f" {named}." if named else "")
         yield Field(
             register=name,
             name=node.inst_name,
@@ -157,7 +183,9 @@ def _fields(register: "RegNode") -> Iterator[Field]:
             reset=cast(int, node.get_property("reset", default=0)),
             access=_access(node),
             signed=bool(node.get_property("signed_value", default=False)),
-            description=" ".join(str(node.get_property("desc")).split()),
+            constant=node.get_property("hw").name == "na",
+            choices=tuple((c.value, c.name) for c in choices),
+            description=" ".join(text.split()),
         )
 
 
@@ -174,5 +202,33 @@ def register_map() -> RegisterMap:
 
 def trim_range() -> tuple[int, int]:
     """Lowest and highest value of a trim register."""
-    width = register_map().trims[0].width
-    return -(1 << width - 1), (1 << width - 1) - 1
+    return register_map().trims[0].range
+
+
+def array_resets(
+    rows: int, cols: int, lanes: int, tile_rows: int = 4, tile_cols: int = 6, divider: str = "radix4"
+) -> dict[str, int]:
+    """Values after reset that follow the array: the identity and the window.
+
+    Parameters
+    ----------
+    rows, cols, lanes, tile_rows, tile_cols : int
+        Pixels, converters, pixels of a tile.
+    divider : str
+        One of DIVIDERS.
+
+    Returns
+    -------
+    dict of str to int
+        By field.
+    """
+    return {
+        "row1": -(-rows // tile_rows) - 1,
+        "col1": -(-cols // tile_cols) - 1,
+        "lanes": lanes,
+        "rows": rows,
+        "cols": cols,
+        "tile_rows": tile_rows,
+        "tile_cols": tile_cols,
+        "divider": DIVIDERS.index(divider),
+    }

@@ -273,6 +273,16 @@ class TestAdcBankRTL(TestAdcBankCL):
 class TestAdcBankVerilog(TestAdcBankRTL):
     verilog = True
 
+    def test_every_pair_of_lanes_behind_a_scan_that_waits(self):
+        """Each pair is at the pins of an empty bank, whose scan waits as the results come."""
+        Step = step_msg(LANES)
+        pairs = sorted({1 << a | 1 << b for a in range(LANES) for b in range(LANES)})
+        sets = [Step(SAMPLE, 0, 1, en % 6, 0, en) for en in pairs]
+        steps = [Step(FRAME, 0, 0, 0, 0, 0), Step(ROW, 0, 0, 0, 0, 0), *sets, Step(END, 0, 0, 0, 0, 0)]
+        pattern = [(True, False), *13 * [(False, False)], *4 * [(False, True)]]
+        run = Run(simulator(self.cls, self.verilog), steps, "image", 0, pattern)
+        assert (run.messages, run.counts) == expected(steps, LANES, "image", 0)
+
 
 class TestAdcBankIcarus(TestAdcBankRTL):
     verilog = "icarus"

@@ -47,13 +47,15 @@ module AmpCtrlProof (
 
   // The previous cycle
   reg first = 1;
-  reg was_reset, was_accept, was_zero, was_free, was_busy, was_read, was_ref;
+  reg was_reset, was_accept, was_zero, was_free, was_busy, was_ref, was_err;
+  reg [1:0] was_tap;
   reg [3:0] was;
   wire [3:0] phases = {pixel_reset, integrate, cm_reset, read};
   reg [30:0] was_rank;
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_accept <= accept; was_zero <= zero; was_free <= hold_free;
     was_busy <= busy; was <= phases; was_rank <= rank; was_ref <= ref_ctl;
+    was_err <= cfg_err; was_tap <= tap;
   end
 
   // Cycles of the current phase or pause so far, and integrations and common-mode resets of this tap
@@ -65,8 +67,8 @@ module AmpCtrlProof (
   wire [8:0] cm_resets_now = cm_resets + (cm_reset && !was[1]);
   always @(posedge clk) begin
     length <= reset ? 0 : so_far;
-    integrations <= reset || pixel_reset ? 0 : integrations_now;
-    cm_resets <= reset || pixel_reset ? 0 : cm_resets_now;
+    integrations <= reset || accept || pixel_reset ? 0 : integrations_now;
+    cm_resets <= reset || accept || pixel_reset ? 0 : cm_resets_now;
   end
 
   // The rank: taps, common-mode resets, phases and cycles left, the most significant first
@@ -96,7 +98,7 @@ module AmpCtrlProof (
   end
 
   always @* begin
-    if (first) assume (reset);
+    if (first) a_reset: assume (reset);
     if (!first && was_reset)
       p_reset: assert ({phases, shutter, ref_ctl, sample, tap, busy, done, cfg_err} == 0);
     if (!first && !was_reset) begin
@@ -110,6 +112,7 @@ module AmpCtrlProof (
       p_done: assert (done == (was_busy && !busy));
       // A start begins a row, unless a duration is zero
       p_start: assert (!was_accept || (was_zero ? !busy && cfg_err : busy && !cfg_err));
+      p_error: assert (cfg_err == (was_accept ? was_zero : was_err));
       p_still: assert (was_busy || was_accept || !busy);
       // The sample-and-hold is overwritten only when it is free
       p_hold: assert (!(read && !was[0]) || was_free);
@@ -121,6 +124,11 @@ module AmpCtrlProof (
       p_read_length: assert (!(was[0] && !was_ref && !read) || length == d_read);
       p_guard_length: assert (!(was == 0 && phases != 0) || length >= d_guard);
       p_cm_count: assert (!(read && !was[0]) || cm_resets == d_n_cm && integrations == d_n_cm + 1);
+      // The shutter is open from the first integration to the end of the last
+      p_shutter: assert (shutter == (integrate || integrations_now != 0 && integrations_now <= d_n_cm));
+      // A tap ends where the next one's reset begins, the last one with the row
+      p_tap: assert (tap == was_tap || (done ? tap == 0 : tap == was_tap + 2'd1 && pixel_reset && !was[3]));
+      p_taps: assert (!done || was_tap == (four ? 3 : 0));
       // The reference level is sampled in its last cycle, the signal in its last
       p_sample: assert (sample == (ref_ctl ? so_far == d_settle : read && so_far == d_read));
     end
@@ -139,7 +147,10 @@ module AmpCtrlProof (
       inv_resets: assert (!(busy && place < 8 && place > 0)
                           || cm_resets_now + resets == d_n_cm + (place == 4)
                              && integrations_now == cm_resets_now + (place != 7 && place != 4)
-                             && (place > 3 || resets == 0) && (place < 4 || place > 5 || resets != 0));
+                             && resets <= d_n_cm && (place > 3 || resets == 0)
+                             && (place < 4 || place > 5 || resets != 0));
+      inv_shutter: assert (busy && place > 0 && place < 8 || integrations_now == 0
+                           || integrations_now == d_n_cm + 1 && !(busy && place == 9));
       inv_tap: assert (busy ? four || tap == 0 : tap == 0);
     end
   end

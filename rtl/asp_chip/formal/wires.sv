@@ -4,7 +4,7 @@
 module AspChipWires (
   input clk, input reset, input sclk, input csn, input mosi, input link_rdy, input [`LANES - 1:0] comparator
 );
-  wire miso, link_val, frame_sync, busy, hold, unsigned_, pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample;
+  wire miso, miso_oe, link_val, frame_sync, busy, hold, unsigned_, pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample;
   wire [7:0] link_data, group;
   wire [8 * `LANES - 1:0] dac;
   wire [1:0] mode, sub, tap;
@@ -12,6 +12,10 @@ module AspChipWires (
   wire [2:0] k;
   wire [`LANES - 1:0] en;
   AspChip dut (.*);
+
+  (* hierconn *) wire \dut.resets.chip , \dut.resets.engine , \dut.resets.abort_ , \dut.regs.abort_ ;
+  (* hierconn *) wire \dut.regs.reset , \dut.amp.reset , \dut.seq.reset , \dut.bank.reset , \dut.phase.reset ;
+  (* hierconn *) wire \dut.encoder.reset , \dut.generator.reset , \dut.frame_status.reset , \dut.resets.reset ;
 
   // RegFile's bits: in the order of the register map, trims in the lowest bits
   localparam TRIMS = 384, CONFIGURATION = TRIMS + 199;
@@ -46,7 +50,8 @@ module AspChipWires (
   (* hierconn *) wire [11:0] \dut.bank.scan__msg , \dut.phase.recv__msg , \dut.phase.send__msg , \dut.encoder.recv__msg ;
   (* hierconn *) wire \dut.bank.scan__val , \dut.phase.recv__val , \dut.bank.scan__rdy , \dut.phase.recv__rdy ;
   (* hierconn *) wire \dut.phase.send__val , \dut.encoder.recv__val , \dut.phase.send__rdy , \dut.encoder.recv__rdy ;
-  (* hierconn *) wire \dut.encoder.frame_sync ;
+  (* hierconn *) wire \dut.encoder.frame_sync , \dut.frame_status.frame_sync , \dut.link.send__val , \dut.gate.low ;
+  (* hierconn *) wire [3:0] \dut.regs.status , \dut.frame_status.status ;
 
   (* hierconn *) wire \dut.amp.start , \dut.seq.amp_start , \dut.amp.four_tap , \dut.seq.four_tap ;
   (* hierconn *) wire \dut.amp.hold_free , \dut.seq.hold_free , \dut.amp.done , \dut.seq.amp_done ;
@@ -54,6 +59,9 @@ module AspChipWires (
   (* hierconn *) wire \dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate ;
   (* hierconn *) wire \dut.amp.cm_reset , \dut.amp.read , \dut.amp.sample ;
   (* hierconn *) wire [1:0] \dut.amp.tap ;
+  (* hierconn *) wire [14:0] \dut.regs.state ;
+  (* hierconn *) wire [2:0] \dut.seq.state , \dut.encoder.state ;
+  (* hierconn *) wire \dut.amp.busy , \dut.regs.loop__val ;
 
   wire [CONFIGURATION - 1:0] cfg = \dut.regs.cfg ;
   wire loop_enable = cfg[CONFIGURATION - 4], phase = cfg[CONFIGURATION - 2];
@@ -61,7 +69,6 @@ module AspChipWires (
   always @(posedge clk) first <= 0;
 
   always @* begin
-    if (first) assume (reset);
     p_configuration: assert (cfg == {
         \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.seq.mode , \dut.seq.decimation ,
         \dut.bank.threshold , \dut.phase.noise_floor , \dut.seq.mask , \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 ,
@@ -77,12 +84,12 @@ module AspChipWires (
                       && \dut.regs.conversions_made == {32'd0, \dut.bank.made }
                       && \dut.regs.conversions_left_out == {32'd0, \dut.bank.left_out }
                       && \dut.encoder.made == \dut.bank.made && \dut.encoder.left_out == \dut.bank.left_out );
-    p_address: assert ({row, group, k, sub, en, hold, unsigned_} == {\dut.bank.row , \dut.bank.group , \dut.bank.k ,
-                       \dut.bank.sub , \dut.bank.en , \dut.bank.hold , \dut.bank.unsigned_ } && dac == \dut.bank.dac
+    p_address: assert ({row, group, k, sub, en, unsigned_} == {\dut.bank.row , \dut.bank.group , \dut.bank.k ,
+                       \dut.bank.sub , \dut.bank.en , \dut.bank.unsigned_ } && dac == \dut.bank.dac
                        && amp_row == \dut.seq.amp_row && balance == \dut.balancer.balance );
     p_pattern: assert ({\dut.generator.row , \dut.generator.group , \dut.generator.k , \dut.generator.sub ,
                         \dut.generator.hold , \dut.generator.dac , \dut.generator.analog , \dut.bank.comparator } ==
-                       {row[7:0], group, k, sub, hold, dac, comparator, \dut.generator.comparator });
+                       {row[7:0], group, k, sub, \dut.bank.hold , dac, comparator, \dut.generator.comparator });
     p_balance: assert ({\dut.balancer.row , \dut.balancer.k } == {row, k});
     p_streams: assert ({\dut.bank.step__msg , \dut.bank.step__val , \dut.seq.step__rdy } ==
                        {\dut.seq.step__msg , \dut.seq.step__val , \dut.bank.step__rdy } &&
@@ -94,11 +101,24 @@ module AspChipWires (
                      \dut.seq.bank_idle , \dut.seq.start } ==
                     {\dut.seq.amp_start , \dut.seq.four_tap , \dut.seq.hold_free , \dut.amp.done , \dut.amp.cfg_err ,
                      \dut.bank.idle , \dut.regs.start });
-    p_pins: assert ({pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample, tap} ==
-                    {\dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate ,
-                     \dut.amp.cm_reset , \dut.amp.read , \dut.amp.sample , \dut.amp.tap }
+    p_pins: assert ({pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample, tap, hold, link_val, frame_sync,
+                     busy, miso_oe} ==
+                    (\dut.gate.low ? 14'd0 :
+                     {\dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate ,
+                      \dut.amp.cm_reset , \dut.amp.read , \dut.amp.sample , \dut.amp.tap , \dut.bank.hold ,
+                      \dut.link.send__val , \dut.encoder.frame_sync , \dut.frame_status.status [3], !csn})
                     && {\dut.regs.sclk , \dut.regs.csn , \dut.regs.mosi , miso} == {sclk, csn, mosi, \dut.regs.miso }
-                    && frame_sync == \dut.encoder.frame_sync );
+                    && \dut.frame_status.frame_sync == \dut.encoder.frame_sync && \dut.regs.status == \dut.frame_status.status );
+    p_states: assert (\dut.regs.state == {
+        \dut.amp.pixel_reset ? 3'd2 : \dut.amp.integrate ? 3'd3 : \dut.amp.cm_reset ? 3'd4 :
+        \dut.amp.ref_ctl ? 3'd5 : \dut.amp.read ? 3'd6 : {2'd0, \dut.amp.busy },
+        \dut.seq.state , \dut.encoder.state , !\dut.seq.hold_free , !\dut.bank.idle ,
+        \dut.seq.step__val && !\dut.bank.step__rdy , \dut.bank.scan__val && !\dut.phase.recv__rdy ,
+        \dut.link.send__val && !link_rdy, \dut.regs.loop__val });
+    p_resets: assert ({\dut.resets.reset , \dut.resets.abort_ , \dut.regs.reset , \dut.gate.low } ==
+                      {reset, \dut.regs.abort_ , {2{\dut.resets.chip }}} &&
+                      {\dut.amp.reset , \dut.seq.reset , \dut.bank.reset , \dut.phase.reset , \dut.encoder.reset ,
+                       \dut.generator.reset , \dut.frame_status.reset } == {7{\dut.resets.engine }});
     c_run: cover (!first && !reset && !csn && \dut.regs.cfg [0] == 0);
   end
 endmodule

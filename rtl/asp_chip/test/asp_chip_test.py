@@ -86,6 +86,7 @@ class ChipTests:
             "cfg_err": False,
             "amp_err": False,
             "refused": False,
+            "aborted": False,
             "conversions_made": golden.made,
             "conversions_left_out": golden.left_out,
         }

@@ -34,8 +34,9 @@ class TestRTL:
                 sim.hold @= 0
                 sim.sim_reset()
                 held[:] = 0
-            row, group, k, sub, hold = (int(rng.integers(n)) for n in (256, 256 // self.lanes, 6, 4, 2))
-            dac, analog = rng.integers(0, 256, self.lanes), rng.integers(0, 2, self.lanes)
+            group, k, sub, hold = (int(rng.integers(n)) for n in (256 // self.lanes, 6, 4, 2))
+            row, analog = cycle % 256, rng.integers(0, 2, self.lanes)
+            dac = (held + rng.integers(-1, 2, self.lanes)) % 256 if cycle % 2 else rng.integers(0, 256, self.lanes)
             sim.row @= row
             sim.group @= group
             sim.k @= k
@@ -59,8 +60,13 @@ class TestRTLTwoLanes(TestRTL):
     lanes = 2
 
 
+class TestRTLManyLanes(TestRTL):
+    lanes = 32
+
+
 class TestVerilog(TestRTL):
     verilog = True
+    lanes = 8
 
 
 class TestIcarus(TestRTL):

@@ -1,61 +1,66 @@
-// The reference of a lane: the ideal comparator's decision for its DAC code, and the codes to be sent.
+// The reference of a lane, exact in every cycle: the decisions of README.md with whatever the comparator answers
+// (offset, noise), and the results that they give.
 //
-// `value` is at the lane's input: the sample-and-hold samples it with `go`. It is an integer in LSB, with values beyond
-// the range of both codes to include clipping. The comparator is the one of docs/chip.md: high when value >=
-// level(dac).
+// dac: in a cycle in which `running` decides. found: `result`, {converted, code}, is decided in this cycle; ready: the
+// number of results that `out` has not sent, and elder the first of them. its_...: the design's registers; holds: they
+// agree with the reference, in every state that an induction starts from.
 
 module Lane (
-  input clk, input reset, input go, input unsigned_, input [6:0] threshold, input signed [9:0] value, input [7:0] dac,
-  input val, input rdy, input [7:0] code, input converted, input [2:0] state, input free,
-  output comparator, output reg [1:0] due, output [7:0] due_code, output due_converted, output holds
+  input clk, input reset, input go, input unsigned_, input [6:0] threshold, input comparator, input rdy,
+  output reg running, output busy, output free, output startable, output window, output reg [3:0] number,
+  output reg [7:0] bits, output [7:0] dac, output found, output [8:0] result, output reg [1:0] ready,
+  output reg [8:0] elder,
+  input [2:0] its_state, input [7:0] its_trial, input its_full, input [7:0] its_code, input its_converted, output holds
 );
   localparam IDLE = 0, ABOVE = 1, BELOW = 2, OUTSIDE = 3, SEARCH = 4, WAIT = 5, WAIT_ZERO = 6;
 
-  reg signed [9:0] held;
-  wire signed [9:0] level = unsigned_ ? {2'b0, dac} : {2'b0, dac} - 10'sd128;
-  assign comparator = held >= level;
+  // Decision `number` is number + 1 cycles after go: v >= level(T) and v >= level(1 - T), then a bit each, MSB first
+  reg above;
+  assign window = !unsigned_ && threshold != 0;
+  wire [3:0] first = window ? 2 : 0;
+  wire search = number >= first;
+  wire [3:0] digit = number - first;
+  assign dac = search ? bits | 8'h80 >> digit : number == 0 ? 8'd128 + threshold : 8'd129 - threshold;
 
-  // The result of a value by the README: clipped, zero in the window, and whether it needs a search
-  function [8:0] result(input signed [9:0] value);
-    reg signed [9:0] clipped;
+  // The code is the answers of the search; inside the window it becomes zero
+  function [8:0] coded(input [7:0] answers);
+    reg signed [8:0] code, limit;
     begin
-      if (unsigned_) clipped = value < 0 ? 10'sd0 : value > 255 ? 10'sd255 : value;
-      else clipped = value < -128 ? -10'sd128 : value > 127 ? 10'sd127 : value;
-      result[8] = unsigned_ || value >= $signed({3'b0, threshold}) || value <= -$signed({3'b0, threshold});
-      result[7:0] = result[8] ? clipped[7:0] : 8'd0;
+      code = {1'b0, answers} - (unsigned_ ? 9'd0 : 9'd128);
+      limit = unsigned_ ? 0 : threshold;
+      coded = {1'b1, -limit < code && code < limit ? 8'd0 : code[7:0]};
     end
   endfunction
+  wire [7:0] answers = comparator ? dac : bits;
+  wire last = running && search && digit == 7;
+  wire zero = running && window && number == 1 && comparator && !above;
+  assign found = last || zero;
+  assign result = zero ? 9'd0 : coded(answers);
 
-  // At most two results are due: one at `out`, one that converts or waits; the older first
-  reg [8:0] elder, younger;
-  wire take = val && rdy;
-  assign {due_converted, due_code} = elder;
+  // One result is at `out`; one more conversion runs and waits for it
+  reg [8:0] younger;
+  wire taken = ready != 0 && rdy;
+  assign busy = running || ready == 2;
+  assign free = !busy || running && search && digit >= 6 && ready == 0;
+  assign startable = !busy || last && ready == 0;
   always @(posedge clk) begin
-    if (go) held <= value;
-    if (reset) due <= 0;
-    else begin
-      due <= due + go - take;
-      if (take) elder <= due == 2 ? younger : result(value);
-      else if (due == 0) elder <= result(value);
-      if (take || due < 2) younger <= result(value);
+    if (reset) begin
+      running <= 0; ready <= 0;
+    end else begin
+      running <= go && startable || running && !found;
+      ready <= ready + found - taken;
+      if (ready == 0 || taken) elder <= ready == 2 ? younger : result;
+      if (ready == 1) younger <= result;
     end
+    if (number == 0) above <= comparator;
+    number <= go && startable ? 0 : number + 1;
+    bits <= go && startable ? 0 : search ? answers : bits;
   end
 
-  // The search: the code on trial and the bits that are still open bracket the clipped value
-  wire [8:0] running = due == 2 ? younger : elder;
-  wire [8:0] of_held = result(held);
-  wire signed [9:0] clipped_held = unsigned_ ? (held < 0 ? 10'sd0 : held > 255 ? 10'sd255 : held)
-                                   : (held < -128 ? 10'sd0 : held > 127 ? 10'sd255 : held + 10'sd128);
-  wire [9:0] low = dac & (~dac + 8'd1);
-  wire window = !unsigned_ && threshold != 0;
-  assign holds = due == val + (state != IDLE) && (!val || elder == {converted, code})
-                 && state != 7 && (state < WAIT || val)
-                 && (state == IDLE || running == of_held)
-                 && (state != ABOVE || window && dac == (threshold | 8'h80))
-                 && (state != BELOW || window && dac == 8'd129 - threshold && held < $signed({3'b0, threshold}))
-                 && (state != OUTSIDE || window && dac == 8'd129 - threshold && held >= $signed({3'b0, threshold}))
-                 && (state != SEARCH || of_held[8] && dac != 0 && {1'b0, dac} <= clipped_held + low
-                                        && clipped_held < {2'b0, dac} + low)
-                 && (state != WAIT || of_held[8] && dac == clipped_held)
-                 && (state != WAIT_ZERO || !of_held[8]);
+  wire [2:0] state = ready == 2 ? (younger[8] ? WAIT : WAIT_ZERO) : !running ? IDLE
+                     : search ? SEARCH : number == 0 ? ABOVE : above ? OUTSIDE : BELOW;
+  assign holds = its_state == state && its_full == (ready != 0) && (ready == 0 || elder == {its_converted, its_code})
+                 && ready != 3 && !(running && ready == 2)
+                 && (state != WAIT || younger == coded(its_trial)) && (state != WAIT_ZERO || younger == 0)
+                 && (!running || its_trial == dac && (search ? digit <= 7 && !(bits & 8'hFF >> digit) : bits == 0));
 endmodule

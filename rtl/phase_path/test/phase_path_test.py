@@ -26,6 +26,8 @@ bytes_ = st.one_of(st.integers(0, 255), st.sampled_from([0, 1, 127, 128, 254, 25
 steps = st.integers(1, LANES).flatmap(
     lambda n: st.lists(st.lists(bytes_, min_size=n, max_size=n), min_size=4, max_size=4)
 )
+short_rows = st.lists(st.tuples(st.integers(0, 1023), st.lists(steps, max_size=1)), max_size=1)
+floors = st.sampled_from([0, 1, 20, 201, 255])
 rows = st.lists(st.tuples(st.integers(0, 1023), st.lists(steps, max_size=3)), max_size=3)
 
 
@@ -38,6 +40,11 @@ def messages(frame):
             for tap in taps:
                 out += [(SAMPLE, value | (LAST if i == len(tap) - 1 else 0)) for i, value in enumerate(tap)]
     return [*out, (END, 0)]
+
+
+def unmarked(frame):
+    """The messages that leave when off."""
+    return [(kind, data & 0xFF if kind == SAMPLE else data) for kind, data in messages(frame)]
 
 
 def expected(frame, chip, noise_floor):
@@ -60,21 +67,30 @@ def simulator(cls, verilog, chip):
 
 
 class Run:
-    """The messages sent, and the cycles in which messages are taken and sent."""
+    """Frames without a reset between them: the messages sent, and the cycles in which messages are taken and sent."""
 
-    def __init__(self, sim, sent, on, noise_floor=0, pattern=ALWAYS, limit=None):
-        sim.on @= on
-        sim.noise_floor @= noise_floor
+    def __init__(self, sim):
+        self.sim, self.cycle = sim, 0
+        self.messages, self.in_at, self.out_at = [], [], []
         sim.recv.val @= 0
         sim.send.rdy @= 0
         sim.reset @= 1
         sim.sim_tick()
         sim.reset @= 0
-        self.messages, self.in_at, self.out_at = [], [], []
-        sent, cycle = list(sent), 0
-        limit = limit or (len(sent) + 4) * (20 + 2 * len(pattern))  # far more than it takes
-        while not self.messages or self.messages[-1][0] != END:
-            offer, ready = pattern[cycle % len(pattern)]
+
+    @property
+    def seen(self):
+        return self.messages, self.in_at, self.out_at
+
+    def frame(self, sent, on, noise_floor=0, pattern=ALWAYS, limit=None):
+        """Send the messages ``sent`` of a frame; ends with END. limit: cycles, by default far more than it takes."""
+        sim, sent, begin = self.sim, list(sent), self.cycle
+        sim.on @= on
+        sim.noise_floor @= noise_floor
+        limit = begin + (limit or (len(sent) + 4) * (20 + 2 * len(pattern)))
+        ended = False
+        while not ended:
+            offer, ready = pattern[(self.cycle - begin) % len(pattern)]
             sim.recv.val @= bool(sent) and offer
             if sent:
                 sim.recv.msg.kind @= sent[0][0]
@@ -83,13 +99,24 @@ class Run:
             sim.sim_eval_combinational()
             if sent and offer and sim.recv.rdy:
                 sent.pop(0)
-                self.in_at.append(cycle)
+                self.in_at.append(self.cycle)
             if ready and sim.send.val:
                 self.messages.append((int(sim.send.msg.kind), int(sim.send.msg.data)))
-                self.out_at.append(cycle)
+                self.out_at.append(self.cycle)
+                ended = self.messages[-1][0] == END
             sim.sim_tick()
-            cycle += 1
-            assert cycle < limit
+            self.cycle += 1
+            assert self.cycle < limit
+        return self
+
+    def idle(self, configuration):
+        """Between frames: a cycle for each (on, noise floor)."""
+        self.sim.recv.val @= 0
+        for on, noise_floor in configuration:
+            self.sim.on @= on
+            self.sim.noise_floor @= noise_floor
+            self.sim.sim_tick()
+            self.cycle += 1
 
 
 class TestPhasePathFL:
@@ -99,13 +126,31 @@ class TestPhasePathFL:
     chip = ChipParameters(LANES, "radix4", 8)
 
     def run(self, *args):
-        return Run(simulator(self.cls, self.verilog, self.chip), *args)
+        return self.fresh().frame(*args)
+
+    def fresh(self):
+        return Run(simulator(self.cls, self.verilog, self.chip))
 
     @SETTINGS
     @given(rows, st.sampled_from([0, 1, 20, 255]), patterns)
     def test_any_taps_and_any_timing(self, frame, noise_floor, pattern):
         got = self.run(messages(frame), True, noise_floor, pattern)
         assert got.messages == expected(frame, self.chip, noise_floor)
+
+    @SETTINGS
+    @given(
+        st.lists(st.tuples(st.booleans(), floors, short_rows, st.lists(st.tuples(st.booleans(), floors))), max_size=4)
+    )
+    def test_frames_without_a_reset(self, frames):
+        """The configuration changes between frames, several times too."""
+        run, wanted = self.fresh(), []
+        for on, noise_floor, frame, between in frames:
+            if not on:  # other modes have one tap
+                frame = [(row, [taps[: 1 + row % 4] for taps in row_steps]) for row, row_steps in frame]
+            run.frame(messages(frame), on, noise_floor)
+            wanted += expected(frame, self.chip, noise_floor) if on else unmarked(frame)
+            run.idle(between)
+        assert run.messages == wanted
 
     def test_every_sample_of_full_steps(self):
         """The taps of all lanes of a step are stored, whatever their values."""
@@ -116,9 +161,8 @@ class TestPhasePathFL:
     @SETTINGS
     @given(rows, patterns)
     def test_passes_samples_without_the_last_flag_when_off(self, frame, pattern):
-        sent = messages(frame)
-        got = self.run(sent, False, 200, pattern)
-        assert got.messages == [(kind, data & 0xFF if kind == SAMPLE else data) for kind, data in sent]
+        got = self.run(messages(frame), False, 200, pattern)
+        assert got.messages == unmarked(frame)
 
     def test_the_four_quadrants_and_none(self):
         """x = i0 - i180, y = i270 - i90."""
@@ -148,8 +192,8 @@ class TestPhasePathCL(TestPhasePathFL):
     @given(rows, st.booleans(), patterns)
     def test_same_cycles_as_the_cycle_level(self, frame, on, pattern):
         got = self.run(messages(frame), on, 20, pattern)
-        reference = Run(simulator(PhasePathCL, False, self.chip), messages(frame), on, 20, pattern)
-        assert vars(got) == vars(reference)
+        reference = Run(simulator(PhasePathCL, False, self.chip)).frame(messages(frame), on, 20, pattern)
+        assert got.seen == reference.seen
 
     def test_passes_a_message_a_cycle_when_off(self):
         sent = messages([(1, [[[1] * 8] * 4] * 2)])
@@ -185,22 +229,29 @@ class TestPhasePathIcarus(TestPhasePathRTL):
 @pytest.mark.parametrize("cls", [PhasePathCL, PhasePath])
 @pytest.mark.parametrize(
     "chip",
-    [ChipParameters(1, "radix2", 4), ChipParameters(32, "pipelined", 12), ChipParameters(4, "cordic", 8, 6)],
-    ids=lambda c: c.divider,
+    [
+        ChipParameters(1, "radix2", 4),
+        ChipParameters(2, "radix4", 5),
+        ChipParameters(4, "cordic", 8, 6),
+        ChipParameters(16, "pipelined", 16),
+        ChipParameters(32, "pipelined", 12),
+    ],
+    ids=lambda c: f"{c.lanes}-{c.divider}",
 )
 def test_other_lanes_and_dividers(cls, chip):
     rng = np.random.default_rng(8)
-    frame = [(row, [rng.integers(0, 256, (4, chip.lanes)).tolist() for _ in range(2)]) for row in (0, 5)]
+    count = 2 if chip.lanes < 8 else 1
+    frame = [(row, [rng.integers(0, 256, (4, chip.lanes)).tolist() for _ in range(count)]) for row in (0, 5)]
     for pattern in (ALWAYS, [(True, False), (True, True), (False, True), (True, False), (True, False)]):
-        got = Run(simulator(cls, False, chip), messages(frame), True, 10, pattern)
+        got = Run(simulator(cls, False, chip)).frame(messages(frame), True, 10, pattern)
         assert got.messages == expected(frame, chip, 10)
-        reference = Run(simulator(PhasePathCL, False, chip), messages(frame), True, 10, pattern)
-        assert vars(got) == vars(reference)
+        reference = Run(simulator(PhasePathCL, False, chip)).frame(messages(frame), True, 10, pattern)
+        assert got.seen == reference.seen
 
 
 @pytest.mark.parametrize("divider, cycles", [("radix2", 102), ("radix4", 74), ("pipelined", 32), ("cordic", 116)])
 def test_cycles_of_a_full_step(divider, cycles):
     """From tap 0 of one step of eight samples to tap 0 of the next, without stalls."""
     chip = ChipParameters(LANES, divider)
-    got = Run(simulator(PhasePathCL, False, chip), messages([(1, [[[9] * 8] * 4] * 3)]), True)
+    got = Run(simulator(PhasePathCL, False, chip)).frame(messages([(1, [[[9] * 8] * 4] * 3)]), True)
     assert np.diff(np.array(got.in_at[2:-1]).reshape(3, 32)[:, 0]).tolist() == [cycles, cycles]

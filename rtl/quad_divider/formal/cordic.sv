@@ -67,14 +67,14 @@ module CordicProof (
   wire [7:0] phase = request == 0 ? 8'd0 : octant[0] ? axis - index : axis + index;
 
   always @* begin
-    if (first) assume (reset);
+    if (first) a_reset: assume (reset);
     if (!first) begin
       p_octant: assert (!(send__val && mine) || octant_ok);
       p_ratio: assert (!send__val || ratio == 0);
       p_flags: assert (!(send__val && mine) || flags_ok);
       p_phase: assert (!(send__val && mine) || send__msg[16:9] == phase);
       p_one: assert (!send__val || pending);
-      p_room: assert (!recv__rdy || !pending);
+      p_room: assert (recv__rdy == !pending);
       p_latency: assert (!pending || send__val == (age >= F + 1));
       p_stable: assert (was_reset || !was_val || was_rdy || send__val && send__msg == was_msg);
       inv_count: assert (!\dut.ctrl.running || \dut.dpath.i < F && age == \dut.dpath.i + 1);

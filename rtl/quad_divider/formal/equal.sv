@@ -17,7 +17,8 @@ module EqualProof (input clk, input reset);
   always @(posedge clk) turn <= turn + !(&turn);
 
   always @* begin
-    assume (reset == (turn == 0));
+    if (turn == 0) a_reset: assume (reset);
+    else a_once: assume (!reset);
     p_taken: assert (!ask || rdy2 && rdy4 && rdyp);
     p_answered: assert (turn < 11 || val2 && val4 && valp);
     p_equal24: assert (turn == 0 || !(val2 && val4) || msg2 == msg4);

@@ -52,8 +52,8 @@ module IterativeProof (
   wire origin = request == 0;
 
   always @* begin
-    if (first) assume (reset);
-    assume (by_hand == states);
+    if (first) a_reset: assume (reset);
+    a_by_hand: assume (by_hand == states);
     if (!first) begin
       p_octant: assert (!(send__val && mine) || octant_ok);
       p_ratio: assert (!(send__val && mine) || send_ratio == (origin ? 8'd0 : ratio));
@@ -61,7 +61,7 @@ module IterativeProof (
       p_phase: assert (!(send__val && mine) || phase_ok);
       // No response without a request, none lost, and no second request is taken before the first response
       p_one: assert (!send__val || pending);
-      p_room: assert (!recv__rdy || !pending);
+      p_room: assert (recv__rdy == !pending);
       p_latency: assert (!pending || send__val == (age >= `DIGITS + 1));
       p_stable: assert (was_reset || !was_val || was_rdy || send__val && send__msg == was_msg);
       inv_count: assert (!\dut.ctrl.running || \dut.dpath.count < `DIGITS && age == \dut.dpath.count + 1);

@@ -78,8 +78,8 @@ module PipelinedProof (
   end
 
   always @* begin
-    if (first) assume (reset);
-    assume (by_hand == states);
+    if (first) a_reset: assume (reset);
+    a_by_hand: assume (by_hand == states);
     if (!first) begin
       p_octant: assert (!mine[8] || octant_ok);
       p_ratio: assert (!mine[8] || send_ratio == (origin ? 8'd0 : ratio));

@@ -1,14 +1,17 @@
 """QuadDivider at every level: responses against the golden functions, order, back-pressure, cycles."""
 
+import random
 from dataclasses import astuple, dataclass
 from functools import cache
 from itertools import chain, product, repeat
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from models.parameters import DIVIDERS, ParameterError
+from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN, phase_thresholds
 from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.messages import DivReq
@@ -206,6 +209,47 @@ class TestVerilog(TestRTL):
 
 class TestIcarus(TestVerilog):
     verilog = "icarus"
+
+
+def around_thresholds(n_frac):
+    """Vectors on both sides of every step of the phase table: those whose ratio is nearest to a threshold."""
+    larger, smaller = (v.ravel() for v in np.meshgrid(np.arange(1, 257), np.arange(257)))
+    ratio = (smaller << n_frac) // larger
+    for threshold in phase_thresholds(n_frac):
+        for side in (ratio >= threshold, ratio < threshold):
+            if (inside := np.flatnonzero(side & (smaller <= larger))).size:
+                at = inside[abs(ratio[inside] - threshold).argmin()]
+                yield int(larger[at]), int(smaller[at])
+
+
+@pytest.mark.parametrize(
+    "config",
+    [
+        *(Config(variant, n) for variant in DIVIDERS[:-1] for n in range(N_FRAC_MIN, N_FRAC_MAX + 1)),
+        *(Config("cordic", 8, n) for n in range(ITERATIONS_MIN, ITERATIONS_MAX + 1)),
+    ],
+    ids=lambda config: config.name,
+)
+class TestEverySize:
+    verilog = "icarus"
+
+    def test_thresholds_stalls_and_a_reset(self, config):
+        noise = random.Random(1)
+
+        def turned(*pair):
+            return tuple(noise.sample([noise.choice((v, -v)) if v < 256 else -v for v in pair], 2))
+
+        bench = Bench(build(quad_divider(*astuple(config)), self.verilog, config.name), config)
+        vectors = [turned(*pair) for pair in around_thresholds(config.n_frac)]
+        vectors += [turned(noise.randrange(257), noise.randrange(257)) for _ in range(40)]
+        noise.shuffle(vectors)
+        stalls = [[noise.random() < 0.7 for _ in range(900)] for _ in range(2)]
+        bench.check(vectors[:20], *stalls, [noise.randrange(256) for _ in range(20)])
+        bench.sim.recv.val @= 1
+        for _ in range(noise.randrange(1, timing(*astuple(config))[0] + 2)):
+            bench.sim.sim_tick()
+        bench.reset()
+        bench.check(vectors[20:])
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """The test bench of ReadoutSeq: the handshakes of amplifiers and converter bank, and a record of a frame."""
 
+import random
 from dataclasses import dataclass, field
 from functools import cache
 
@@ -11,6 +12,9 @@ from rtl.messages import END, FRAME, ROW, SAMPLE
 
 CONFIGURATION = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap")
 QUIET = dict(start=0, amp_done=0, amp_err=0, bank_idle=1)
+AFTER_RESET = dict(
+    busy=0, done=0, cfg_err=0, amp_start=0, amp_row=0, four_tap=0, hold_free=1, cycles=0, offer=None
+)  # the output pins
 SMALL_TILE = 3, 5, (4, 14, 0, 9, 2, 7, 13, 1, 8, 3, 10, 6, 12, 5, 11)
 
 
@@ -145,6 +149,16 @@ def bank(ready, conversion):
         busy = conversion() if taken else max(0, busy - 1)
 
 
+def randomly(seed, err_at=None, longest=(2, 40), read=9, hurry=(0.1, 0.5, 0.9, 1)):
+    """Surroundings with random timing, some of it extreme: amplifiers and bank; and random starts while busy."""
+    noise = random.Random(seed)
+    longest, hurry = noise.choice(longest), noise.choice(hurry)
+    return (
+        amplifiers(lambda: noise.randint(1, longest), lambda: noise.randint(1, read), err_at),
+        bank(lambda: int(noise.random() < hurry), lambda: noise.randint(0, 3)),
+    ), lambda: noise.randint(0, 1)
+
+
 @dataclass
 class Record:
     """The values at the ports by cycle; `start` is high in cycle 0."""
@@ -161,12 +175,47 @@ class Record:
         return [msg for _, msg in self.taken]
 
 
+def check(record, scan, overlap, before):
+    """Check one frame's record; overlap: rows are exposed while others convert.
+
+    before: the pins, which must not change if there is no frame.
+    """
+    if scan is None:
+        assert record.pins[1] == before | {"cfg_err": 1} and not record.taken and not record.starts
+        return
+    assert record.messages == messages(scan)
+    assert [row for _, row in record.starts] == list(scan.row_list)
+    assert record.pins[-1]["done"] and not any(pins["done"] for pins in record.pins[:-1])
+    assert not any(pins["cfg_err"] for pins in record.pins[1:])
+    assert all(pins["busy"] for pins in record.pins[1:-1])
+    assert record.pins[-1]["cycles"] == len(record.pins) - 2
+    assert all(pins["four_tap"] == (scan.frame.mode == "tof") for pins in record.pins)
+    check_holds(record, scan, overlap)
+
+
+def check_holds(record, scan, overlap):
+    """hold_free is low from a row's amp_done until its steps are converted, and the next row starts in time."""
+    used, last = [], {msg[1]: cycle for cycle, msg in record.taken if msg[0] == SAMPLE}
+    for done, row, start in zip(record.dones, scan.row_list, [*record.starts[1:], (None, None)]):
+        converted = record.idle.index(1, last[row] + 1)
+        assert start[0] in (None, 1 + (done if overlap else converted))
+        used += range(done + 1, converted + 1)
+    assert [cycle for cycle, pins in enumerate(record.pins) if not pins["hold_free"]] == used
+
+
+def check_given_up(record, scan):
+    """Check the record of a frame that the amplifiers refused: the current offer is taken, then nothing more."""
+    golden = messages(scan)
+    assert record.messages == golden[: len(record.messages)] and len(record.messages) < len(golden)
+    assert record.pins[-1] | {"cycles": 0, "amp_row": 0, "four_tap": 0} == AFTER_RESET | {"cfg_err": 1}
+
+
 class Bench:
     """One simulator of any level, and its surroundings, which keep their state from frame to frame."""
 
     def __init__(self, sim, amplifier, converters):
-        self.sim, self.amplifier, self.converters = sim, amplifier, converters
-        self.answer, self.supply = next(amplifier), next(converters)
+        self.sim = sim
+        self.surround(amplifier, converters)
         self.reset()
 
     def drive(self, **ports):
@@ -208,6 +257,11 @@ class Bench:
         self.supply = self.converters.send(taken and pins["offer"][0] == SAMPLE)
         sim.sim_tick()
         return pins
+
+    def surround(self, amplifier, converters):
+        """Others in place of amplifiers and bank, while none is busy."""
+        self.amplifier, self.converters = amplifier, converters
+        self.answer, self.supply = next(amplifier), next(converters)
 
     def frame(self, ports, noise=lambda: 0, limit=12_000):
         """Start a frame and run until busy falls; ``noise``: starts while busy. Returns Record."""

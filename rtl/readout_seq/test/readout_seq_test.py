@@ -1,6 +1,5 @@
 """ReadoutSeq at every level: the golden scan's messages and rows, with any timing at the other ports."""
 
-import random
 from itertools import count
 
 import pytest
@@ -13,7 +12,21 @@ from rtl.harness.reset import outputs_after_reset
 from rtl.messages import END, FRAME, ROW, SAMPLE
 from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
 
-from .bench import SMALL_TILE, Bench, Record, Size, amp_ctrl, amplifiers, bank, messages, simulator
+from .bench import (
+    AFTER_RESET,
+    SMALL_TILE,
+    Bench,
+    Record,
+    Size,
+    amp_ctrl,
+    amplifiers,
+    bank,
+    check,
+    check_given_up,
+    messages,
+    randomly,
+    simulator,
+)
 
 # A test that several levels inherit runs on each of them, as intended.
 SETTINGS = settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
@@ -46,16 +59,6 @@ def configurations(draw, size):
     return ports
 
 
-def randomly(seed, err_at=None):
-    """Surroundings with random timing, some of it extreme: amplifiers and bank; and random starts while busy."""
-    noise = random.Random(seed)
-    longest, hurry = noise.choice((2, 40)), noise.choice((0.1, 0.5, 0.9, 1))
-    return (
-        amplifiers(lambda: noise.randint(1, longest), lambda: noise.randint(1, 9), err_at),
-        bank(lambda: int(noise.random() < hurry), lambda: noise.randint(0, 3)),
-    ), lambda: noise.randint(0, 1)
-
-
 def steadily(integrate, read, conversion):
     return amplifiers(lambda: integrate, lambda: read), bank(lambda: 1, lambda: conversion)
 
@@ -68,29 +71,8 @@ class TestReadoutSeqFL:
     def bench(self, size, surroundings):
         return Bench(simulator(self.cls, size, self.verilog), *surroundings)
 
-    def check(self, record, scan, overlap, before):
-        """One frame's record; ``before``: the pins, which must not change if there is no frame."""
-        if scan is None:
-            assert record.pins[1] == before | {"cfg_err": 1} and not record.taken and not record.starts
-            return
-        assert record.messages == messages(scan)
-        assert [row for _, row in record.starts] == list(scan.row_list)
-        assert record.pins[-1]["done"] and not any(pins["done"] for pins in record.pins[:-1])
-        assert not any(pins["cfg_err"] for pins in record.pins[1:])
-        assert all(pins["busy"] for pins in record.pins[1:-1])
-        assert record.pins[-1]["cycles"] == len(record.pins) - 2
-        assert all(pins["four_tap"] == (scan.frame.mode == "tof") for pins in record.pins)
-        self.check_holds(record, scan, overlap)
-
-    def check_holds(self, record, scan, overlap):
-        """hold_free is low from a row's amp_done until its steps are converted, and the next row starts in time."""
-        used = []
-        for done, row, start in zip(record.dones, scan.row_list, [*record.starts[1:], (None, None)]):
-            last = max(cycle for cycle, msg in record.taken if msg[:2] == (SAMPLE, row))
-            converted = record.idle.index(1, last + 1)
-            assert start[0] in (None, 1 + (done if overlap and self.overlaps else converted))
-            used += range(done + 1, converted + 1)
-        assert [cycle for cycle, pins in enumerate(record.pins) if not pins["hold_free"]] == used
+    def check(self, record, scan, overlap, before=None):
+        check(record, scan, overlap and self.overlaps, before)
 
     @SETTINGS
     @given(st.data(), seeds)
@@ -157,18 +139,8 @@ class TestReadoutSeqFL:
             bench.cycle(record)
         bench = self.bench(size, randomly(seed)[0])
         pins = bench.cycle(Record())
-        assert pins == dict(
-            busy=0,
-            done=0,
-            cfg_err=0,
-            amp_start=0,
-            amp_row=0,
-            four_tap=ports["mode"] == 3,
-            hold_free=1,
-            cycles=0,
-            offer=None,
-        )
-        self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
+        assert pins == AFTER_RESET | {"four_tap": ports["mode"] == 3}
+        self.check(bench.frame(ports), size.scan(ports), ports["overlap"])
 
     @SETTINGS
     @given(
@@ -186,10 +158,7 @@ class TestReadoutSeqFL:
         golden = messages(size.scan(ports))
         bench = self.bench(size, randomly(seed, (row, cycles, with_done))[0])
         record = bench.frame(ports)
-        assert record.messages == golden[: len(record.messages)] and len(record.messages) < len(golden)
-        assert record.pins[-1] | {"cycles": 0, "amp_row": 0, "four_tap": 0} == dict(
-            busy=0, done=0, cfg_err=1, amp_start=0, amp_row=0, four_tap=0, hold_free=1, cycles=0, offer=None
-        )
+        check_given_up(record, size.scan(ports))
         if (row, cycles) == (0, 0):
             assert not record.messages
         assert bench.cycle(Record())["cfg_err"]
@@ -226,6 +195,7 @@ class TestReadoutSeqFL:
         for _ in range(2):
             while not bench.sim.done:
                 bench.cycle(record)
+                assert len(record.pins) < 2000
             bench.cycle(record, start=1)
         assert record.messages == 2 * messages(size.scan(ports)) and bench.sim.busy
 
@@ -237,12 +207,11 @@ class TestReadoutSeqFL:
         bench = Bench(simulator(self.cls, size, self.verilog), amp_ctrl(timing, mode == 3), converters)
         for _ in range(2):
             record = bench.frame(ports)
-            self.check(record, size.scan(ports), overlap, None)
+            self.check(record, size.scan(ports), overlap)
             for (start, _), done in zip(record.starts, record.dones):
                 waits = sum(not pins["hold_free"] for pins in record.pins[start:done])
                 assert row_cycles(timing, mode == 3) < done - start <= row_cycles(timing, mode == 3) + 1 + waits
-        bench.amplifier = amp_ctrl(None, 0)  # all durations 0
-        bench.answer = next(bench.amplifier)
+        bench.surround(amp_ctrl(None, 0), bench.converters)  # all durations 0
         record = bench.frame(ports)
         assert not record.taken and record.pins[-1]["cfg_err"] and len(record.starts) == 1
 
@@ -255,7 +224,7 @@ class TestReadoutSeqFL:
             size.whole(row1=0, col1=0),
         ):
             ports["mask"] = 1 << size.order[23]
-            self.check(bench.frame(ports), size.scan(ports), ports["overlap"], None)
+            self.check(bench.frame(ports), size.scan(ports), ports["overlap"])
 
     @pytest.mark.parametrize(
         "arguments",

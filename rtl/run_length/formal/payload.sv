@@ -54,10 +54,9 @@ module PayloadProof (
   wire [30:0] padding = gathered << inside;
   wire [5:0] left = inside - (take ? 8 : 0);
   reg first = 1, was_reset, was_coded, was_val, was_rdy, was_row;
-  reg [6:0] was_threshold;
   reg [7:0] was_octet;
   always @(posedge clk) begin
-    first <= 0; was_reset <= reset; was_coded <= coded; was_threshold <= threshold;
+    first <= 0; was_reset <= reset; was_coded <= coded;
     was_val <= val; was_rdy <= rdy; was_octet <= octet;
     if (reset || restart) begin
       run <= 0; k <= 3; r2 <= 4; credit <= 128;
@@ -81,12 +80,10 @@ module PayloadProof (
   end
 
   always @* begin
-    if (first) assume (reset);
-    // RunLengthCtrl: one action at a time, samples and ends of rows only while there is room, a row begins when all
-    // bytes are sent
-    assume (push + flush + restart <= 1 && (ready || !push && !flush) && (inside == 0 || !restart) && !(ended
-            && (push || flush)));
-    if (!first && !was_reset) assume (coded == was_coded && threshold == was_threshold || ended || fresh);
+    if (first) a_reset: assume (reset);
+    // RunLengthCtrl: one action at a time, samples and ends of rows only while there is room
+    a_control: assume (push + flush + restart <= 1 && (ready || !push && !flush));
+    if (!first && !was_reset) a_config: assume (coded == was_coded || ended || fresh);
     if (!first && !was_reset) begin
       p_length: assert (!makes || decoded_length == length && valid);
       p_literal: assert (!(makes && literal) || value == sample && run == 0);

@@ -102,7 +102,8 @@ module RowProof (input clk, input reset, input [7:0] codes_in);
   wire [7:0] padding = bytes >> (8 * (TAKEN - payload)) ;
 
   always @* begin
-    assume (reset == first);
+    if (first) a_reset: assume (reset);
+    else a_once: assume (!reset);
     if (!first) begin
       p_valid: assert (!decodes || valid);
       p_zeros: assert (!decodes || zeros_there);

@@ -9,9 +9,11 @@ module StreamProof (
   input [31:0] made, input [31:0] left_out
 );
   wire recv__rdy, send__val, frame_sync;
+  wire [2:0] state;
   wire [7:0] send__msg;
   RunLength dut (.*);
   localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3;
+  localparam [47:0] CHIP = ((`LANES << 4 | `TILE_ROWS) << 4 | `TILE_COLS) * 48'd4294967296 + `ROWS * 65536 + `COLS;
   localparam IDLE = 0, HEADER = 1, ROWS = 2, MARK = 3, TRAILER = 4, DRAIN = 5;
 
   (* hierconn *) wire \dut.queue.put ;
@@ -67,9 +69,8 @@ module StreamProof (
   wire taken = recv__val && recv__rdy;
   wire [1:0] kind = recv__msg[11:10];
   wire in_rows = taken && part == ROWS;
-  wire [175:0] header = {"TLBT", 8'd1, 2'b0, decimation, 1'b0, phase, mode, 1'b0, threshold, 8'd`LANES, 8'h46,
-          16'd`ROWS,
-                         16'd`COLS, row0, row1, col0, col1, mask, frame_number};
+  wire [175:0] header = {"TLBT", 8'd1, 2'b0, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
+                         col1, mask, frame_number};
   wire [31:0] long_value = ~long_crc;
   wire [207:0] header_bytes = {header, long_value};
   wire [111:0] trailer_bytes = {made, left_out, short_crc ^ 16'hFFFF, long_value};
@@ -118,27 +119,24 @@ module StreamProof (
     end
   end
 
-  reg first = 1, was_reset, was_val, was_rdy, was_busy, was_ending, ended, fresh;
+  reg first = 1, was_reset, was_val, was_rdy, was_busy, ended, fresh;
   reg [7:0] was_msg;
   wire [83:0] choice = {mode, phase, row0, row1, col0, col1, decimation, mask, threshold, frame_number};
   reg [83:0] was_choice;
-  reg [63:0] was_counts;
   reg [4:0] quiet;
   wire busy = part != IDLE;
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_val <= send__val; was_rdy <= send__rdy; was_msg <= send__msg;
-    was_busy <= busy || taken && kind == FRAME; was_choice <= choice; was_counts <= {made, left_out};
-    was_ending <= ending || in_rows && kind == END;
+    was_busy <= busy || taken && kind == FRAME; was_choice <= choice;
     ended <= !reset && (flush || ended && !restart);
     fresh <= reset || restart || fresh && !push && !flush;
     quiet <= reset || put || recv__rdy || !send__rdy || part == DRAIN ? 0 : quiet + !(&quiet);
   end
 
   always @* begin
-    if (first) assume (reset);
+    if (first) a_reset: assume (reset);
     else begin
-      assume (!(busy && was_busy) || choice == was_choice);
-      assume (!(busy && was_ending) || {made, left_out} == was_counts);
+      a_config: assume (!(busy && was_busy) || choice == was_choice);
     end
     if (!first && !was_reset) begin
       p_octet: assert (!put || (part == HEADER || part == TRAILER || part == MARK || payload) && octet == wanted);
@@ -148,7 +146,6 @@ module StreamProof (
       p_code: assert (\dut.packer.code == recv__msg[7:0] && \dut.packer.threshold == threshold
                       && \dut.packer.coded == (mode == 0));
       p_packer: assert (push + flush + restart <= 1 && (\dut.packer.ready || !push && !flush)
-                        && (!restart || \dut.packer.count == 0) && !(ended && (push || flush))
                         && ({mode, threshold} == {was_choice[83:82], was_choice[22:16]} || ended || fresh));
       p_queue: assert (!put || \dut.queue.count < 2);
       p_sync: assert (!send__val || frame_sync);

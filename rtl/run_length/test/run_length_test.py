@@ -1,30 +1,37 @@
 """RunLength at every level: the golden encoder's bytes, whatever the timing of either side."""
 
-import contextlib
+import dataclasses
+import random
+import struct
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.stream import StreamHeader, decode_stream, encode_frame
+from models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked_row
 from models.digital.stream.test.frames import samples_of
+from models.digital.stream.trailer import trailer
+from models.parameters import LANES as LANE_COUNTS
 from models.parameters import MODES, FrameParameters, Window
 from rtl.harness.reset import outputs_after_reset
 from rtl.harness.testbench import build
 from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
 from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
+from rtl.run_length.header_rtl import HeaderBytes
 
 ROWS, COLS, LANES = 12, 36, 4
+CHIP = ROWS, COLS, LANES, 4, 6
 ALWAYS = [True]
 SETTINGS = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 BURSTS = st.lists(st.booleans(), min_size=1, max_size=12).filter(any)
 
 
 @cache
-def simulator(cls, verilog):
-    return build(cls(ROWS, COLS, LANES, 4, 6), verilog, "RunLength")
+def simulator(cls, verilog, chip=CHIP):
+    return build(cls(*chip), verilog, "RunLength")
 
 
 def header_of(mode="edge", window=Window(0, 2, 0, 5), **frame):
@@ -40,12 +47,35 @@ def messages_of(header, samples):
     return out + [ScanMsg(END, 0)]
 
 
-class Bench:
-    """Sends a frame's messages and takes its bytes; ``log``: (rdy, val, byte, frame_sync) of every cycle."""
+def scan_of(rows):
+    """The scan's messages of a frame of any rows: (index, codes)."""
+    out = [ScanMsg(FRAME, 0)]
+    for row, codes in rows:
+        out += [ScanMsg(ROW, row), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes)]
+    return [*out, ScanMsg(END, 0)]
 
-    def __init__(self, cls, verilog, header, made=0, left_out=0):
-        self.sim, w = simulator(cls, verilog), header.window
-        self.log = []
+
+def stream_of(header, rows, made, left_out):
+    """The golden bytes of such a frame."""
+    first = header.to_bytes()
+    body = b"".join(encode_marked_row(row, codes, header.edge, header.threshold) for row, codes in rows)
+    return first + body + trailer(first, body, made, left_out)
+
+
+class Bench:
+    """Sends a frame's messages and takes its bytes; ``log``: (rdy, val, byte, frame_sync) of every cycle.
+
+    Always: frame_sync rises with a frame's first byte and falls when its last one is taken; ``frames``: how often.
+    """
+
+    def __init__(self, cls, verilog, header, made=0, left_out=0, chip=CHIP):
+        self.sim = simulator(cls, verilog, chip)
+        self.configure(header, made, left_out)
+        self.reset()
+
+    def configure(self, header, made=0, left_out=0):
+        """Another frame's configuration and counts."""
+        w = header.window
         values = {
             "mode": MODES.index(header.mode),
             "phase": header.phase,
@@ -62,37 +92,72 @@ class Bench:
             port = getattr(self.sim, name)
             port @= value
         self.counts = made, left_out
+
+    def reset(self):
+        self.log, self.frames, self.before = [], 0, (False, False)
         self.sim.recv.val @= 0
         self.sim.send.rdy @= 0
         self.sim.reset @= 1
         self.sim.sim_tick()
         self.sim.reset @= 0
 
-    def run(self, messages, offered=ALWAYS, taken=ALWAYS, limit=50_000):
+    def run(self, messages, offered=ALWAYS, taken=ALWAYS, rest=30, most=None):
         """Offer messages in the cycles that ``offered`` names and take bytes in those of ``taken`` (both cyclic),
 
-        until all messages are taken and no byte has come for a while; returns the bytes.
+        until all messages are taken and frame_sync has been low for ``rest`` cycles and more, or for ``most`` cycles;
+        returns the bytes.
         """
         sim, out, sent, quiet = self.sim, bytearray(), 0, 0
-        while quiet < 30 + len(taken) + len(offered):
-            cycle = len(self.log)
-            assert cycle < limit
-            offer = sent < len(messages) and offered[cycle % len(offered)]
+        first = len(self.log)
+        while quiet < rest + len(taken) + len(offered) and (cycle := len(self.log)) - first != most:
+            assert cycle - first < 50_000
+            ready = taken[(cycle - first) % len(taken)]
+            offer = sent < len(messages) and offered[(cycle - first) % len(offered)]
             sim.recv.val @= offer
             sim.recv.msg @= messages[sent] if offer else ScanMsg(3, 0x3FF)
             held = sent == len(messages) or messages[sent].kind in (END, FRAME) and sent
             sim.made @= self.counts[0] if held else 0  # from END to the end of the frame
             sim.left_out @= self.counts[1] if held else 0
-            sim.send.rdy @= taken[cycle % len(taken)]
+            sim.send.rdy @= ready
             sim.sim_eval_combinational()
             state = bool(sim.recv.rdy), bool(sim.send.val), int(sim.send.msg), bool(sim.frame_sync)
             self.log.append(state)
-            quiet = 0 if state[1] or sent < len(messages) else quiet + 1
-            if state[1] and taken[cycle % len(taken)]:
+            was_sync, was_taken = self.before
+            assert state[3] or not state[1]
+            assert state[3] == was_sync or (state[1] if state[3] else was_taken)
+            self.frames += state[3] and not was_sync
+            self.before = state[3], state[1] and ready
+            quiet = 0 if state[3] or sent < len(messages) else quiet + 1
+            if state[1] and ready:
                 out.append(state[2])
             sent += offer and state[0]
             sim.sim_tick()
         return bytes(out)
+
+
+def burst(pick):
+    """Cycles in which a side is ready: always, rarely, any."""
+    return pick.choice(
+        (ALWAYS, [False] * pick.randint(1, 9) + [True], [pick.random() < 0.6 for _ in range(9)] + [True])
+    )
+
+
+def counts_of(pick):
+    return pick.getrandbits(32), pick.getrandbits(32)
+
+
+def any_header(pick):
+    """A header of a few tiles of the small chip."""
+    mode = pick.choice(MODES)
+    return header_of(
+        mode,
+        Window(row := pick.randint(0, 2), row, col := pick.randint(0, 4), col + 1),
+        phase=mode == "tof" and pick.random() < 0.5,
+        mask=pick.choice([2**24 - 1, 0xF0F, 1, 0x800001]),
+        threshold=pick.choice((0, 1, pick.randint(0, 127), 127)),
+        decimation=pick.randint(0, 3),
+        frame_number=pick.getrandbits(16),
+    )
 
 
 @st.composite
@@ -118,7 +183,7 @@ def frames(draw):
 class TestRunLengthFL:
     """Inherited by every level; a level overrides ``cls`` and ``verilog``."""
 
-    cls, verilog = RunLengthFL, False
+    cls, verilog, many = RunLengthFL, False, 12
 
     @classmethod
     def bench(cls, *args):
@@ -241,8 +306,44 @@ class TestRunLengthFL:
         got = self.bench(header_of(threshold=1)).run([*messages, ScanMsg(END, 0)])
         assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
 
+    def test_the_largest_order_of_the_values_stays(self):
+        """Values that raise their order half a bit at a time to its end and go on."""
+        codes = [13, -13, 25, 25, -49, 49, 97, -97, 127, -128, 127, 64]
+        header, rows = header_of(threshold=1), [(0, codes), (1, codes[::-1])]
+        assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
+
+    def test_frames_back_to_back(self):
+        """Each frame is complete, whatever was before: frames of any mode, stray messages, a reset in a frame."""
+        pick, bench = random.Random(2), self.bench(header_of())
+        for _ in range(self.many):
+            what, header = pick.choice(("nothing", "no frame", "rows", "reset")), any_header(pick)
+            if what == "no frame":
+                assert bench.run([ScanMsg(pick.randint(1, 3), pick.randint(0, 255)) for _ in range(9)], rest=1) == b""
+            elif what == "rows":
+                rows = [(pick.getrandbits(10), []) for _ in range(pick.randint(0, 3))]
+                bench.configure(header, *counts_of(pick))
+                assert bench.run(scan_of(rows), rest=1) == stream_of(header, rows, *bench.counts)
+            elif what == "reset":
+                bench.configure(header)
+                messages = messages_of(header, samples_of(header, pick.getrandbits(9)))
+                bench.run(messages, burst(pick), burst(pick), most=pick.randint(1, 200))
+                bench.reset()
+            header, frames = any_header(pick), bench.frames
+            samples = samples_of(header, pick.getrandbits(9), pick.random(), pick.choice((3, 30, 300)))
+            bench.configure(header, *counts_of(pick))
+            got = bench.run(messages_of(header, samples), burst(pick), burst(pick), rest=pick.randint(0, 2))
+            assert got == encode_frame(header, samples, *bench.counts) and bench.frames == frames + 1
+
     def test_counts_of_all_bits(self):
-        for made, left_out in ((2**32 - 1, 0), (0, 2**32 - 1), (0x5A5A5A5A, 0xA5A5A5A5), (0, 0)):
+        for made, left_out in (
+            (0x01234567, 0x89ABCDEF),
+            (2**32 - 1, 0x89ABCDEF),
+            (0x89ABCDEF, 2**32 - 1),
+            (2**32 - 1, 0),
+            (0, 2**32 - 1),
+            (0x5A5A5A5A, 0xA5A5A5A5),
+            (0, 0),
+        ):
             (frame,) = decode_stream(self.bench(header_of(), made, left_out).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)]))
             assert (frame.made, frame.left_out) == (made, left_out)
 
@@ -250,14 +351,9 @@ class TestRunLengthFL:
         header = header_of(threshold=3)
         samples = samples_of(header, 6)
         messages = messages_of(header, samples)
-        bench = self.bench(header)
-        bench.run(messages[:100])
-        for cycles in (27, 36):  # the link stalls: bytes wait everywhere
-            with contextlib.suppress(AssertionError):
-                self.bench(header).run(messages, taken=[True] * cycles + [False] * 50, limit=cycles + 30)
+        for cycles, stalled in ((27, 50), (36, 50), (100, 0)):  # a link that stalls: bytes wait everywhere
+            self.bench(header).run(messages, taken=[True] * cycles + [False] * 50, most=cycles + stalled)
             assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
-        bench.run(messages[:100])
-        assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
 
 
 class TestRunLengthCL(TestRunLengthFL):
@@ -293,16 +389,20 @@ class TestRunLength(TestRunLengthCL):
 
     def test_all_bits_of_the_header(self):
         """Any values at the ports of the header; the other levels accept valid frames only."""
-        ports = {"row0": 13, "row1": 14, "col0": 15, "col1": 16, "mask": 17, "frame_number": 20}
-        for value in (-1, 0, 0x555555, 0xAAAAAA, 0):
-            bench, at = self.bench(header_of()), 0
-            for name in ports:
+        pick, bench = random.Random(6), self.bench(header_of())
+        fixed = int.from_bytes(header_of().to_bytes()[:22], "big")
+        places = dict(decimation=132, phase=130, mode=128, threshold=120, row0=64, row1=56, col0=48, col1=40, mask=16)
+        places["frame_number"] = 0  # of the fields' lowest bits, from the end of the frame number
+        for turn in range(20):
+            expected = fixed
+            for name, low in places.items():
                 port = getattr(bench.sim, name)
-                port @= value & (1 << port.nbits) - 1
-            got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)])
-            for name, at in ports.items():
-                size = getattr(bench.sim, name).nbits // 8
-                assert int.from_bytes(got[at : at + size], "big") == value & (1 << 8 * size) - 1, name
+                ones = (1 << port.nbits) - 1
+                value = (0, ones)[turn] if turn < 2 else pick.randint(0, ones)
+                port @= value
+                expected = expected & ~(ones << low) | value << low
+            got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)], rest=1)
+            assert got[:22] == expected.to_bytes(22, "big")
 
 
 class TestRunLengthVerilog(TestRunLength):
@@ -311,3 +411,80 @@ class TestRunLengthVerilog(TestRunLength):
 
 class TestRunLengthIcarus(TestRunLength):
     verilog = "icarus"
+
+
+class TestRunLengthEveryInput:
+    """Too long for any other level."""
+
+    verilog = True
+
+    def check(self, header, rows, offered=ALWAYS, taken=ALWAYS, counts=(0, 0)):
+        bench = Bench(RunLength, True, header, *counts)
+        assert bench.run(scan_of(rows), offered, taken, rest=1) == stream_of(header, rows, *counts)
+        return len(bench.log)
+
+    def test_every_code_at_every_threshold(self):
+        pick = random.Random(3)
+        for threshold in range(128):
+            codes = pick.sample(range(-128, 128), 256)
+            self.check(header_of(threshold=threshold), [(pick.getrandbits(10), codes)])
+
+    def test_every_state_of_the_coder(self):
+        """Rows of any length whose runs and values grow and shrink, a frame of more than 256 rows."""
+        pick, rows = random.Random(4), []
+        for _ in range(300):
+            scale, codes = pick.choice((1, 2, 8, 30, 127)), []
+            for _ in range(pick.choice((0, 0, 0, 0, 1, 2, 20))):
+                codes += [0] * pick.choice((0, 0, 1, pick.randint(0, 9), 1 << pick.randint(0, 7)))
+                codes += [max(-128, min(127, round(pick.gauss(0, scale)))) for _ in range(pick.randint(0, 9))]
+            rows.append((pick.getrandbits(10), codes))
+        for threshold, mode in ((0, "edge"), (9, "edge"), (60, "edge"), (0, "raw")):
+            plain = [(row, [code & 0xFF for code in codes]) for row, codes in rows]
+            self.check(header_of(mode, threshold=threshold), rows if mode == "edge" else plain)
+
+    def test_a_stall_in_any_cycle(self):
+        """Of the link or the scan, of one cycle or some."""
+        header, rows = header_of(threshold=3), [(0x155, [-128, 3, 0, -128]), (0x2AA, [])]
+        cycles = self.check(header, rows)
+        for length, at in product((1, 3), range(cycles)):
+            stalled = [True] * at + [False] * length + [True] * cycles
+            self.check(header, rows, taken=stalled, counts=(at, length))
+            self.check(header, rows, offered=stalled)
+
+
+class TestRunLengthSizes:
+    verilog = None  # in PyMTL; not recorded: verif/coverage would compile every size
+
+    @pytest.mark.parametrize(
+        "chip",
+        [
+            (1, 1, 1, 1, 1),
+            (1024, 1536, 32, 4, 6),
+            (1023, 1535, 16, 4, 6),
+            (767, 1279, 8, 3, 5),
+            (513, 1025, 2, 3, 6),
+            (256, 255, 4, 1, 1),
+            (2, 86, 1, 2, 4),
+            (341, 682, 32, 4, 3),
+            (682, 1365, 2, 3, 6),
+        ],
+        ids=str,
+    )
+    def test_header_of_every_size(self, chip):
+        header = dataclasses.replace(
+            header_of(), **dict(zip(("rows", "cols", "lanes", "tile_rows", "tile_cols"), chip))
+        )
+        bench = Bench(RunLength, False, header, 3, 4, chip)
+        rows = [(chip[0] - 1, [1, 0, 0])]
+        assert bench.run(scan_of(rows)) == stream_of(header, rows, 3, 4)
+
+    @pytest.mark.parametrize("lanes", LANE_COUNTS)
+    def test_geometry_of_every_tile(self, lanes):
+        """The bytes of lanes, tile, rows and columns, which no input changes."""
+        for number, tile in enumerate(product(range(1, 5), range(1, 7))):
+            chip = 1024 - 41 * number, 37 * number + 1, lanes, *tile
+            header = build(HeaderBytes(*chip))
+            for index, octet in enumerate(struct.pack(">BBHH", lanes, tile[0] << 4 | tile[1], *chip[:2]), 7):
+                header.index @= index
+                header.sim_eval_combinational()
+                assert header.octet == octet, (chip, index)

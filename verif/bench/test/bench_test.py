@@ -1,6 +1,7 @@
 """The cocotb benches pass in both simulators, report what is wrong, and always end."""
 
 import json
+from importlib.util import find_spec
 
 import pytest
 
@@ -54,10 +55,23 @@ def test_a_lost_stall_fails_and_is_named(monkeypatch, tmp_path, capsys):
         return texts | {key: texts[key].replace(stall, "divider__send__val")}
 
     monkeypatch.setattr(simulation, "sources", planted)
-    arguments = ["--block", "PhasePath", "--simulator", "icarus", "--out", str(tmp_path), "--workers", "1"]
+    arguments = [
+        "--block",
+        "PhasePath",
+        "--simulator",
+        "icarus",
+        "--seed",
+        "3",
+        "--out",
+        str(tmp_path),
+        "--workers",
+        "1",
+    ]
     for _ in range(2):  # a failure is tried again
         assert main(command, arguments) == 1
-        assert "PhasePath in icarus: any_taps_at_any_pace: " in capsys.readouterr().err
+        found = capsys.readouterr().err
+        assert "PhasePath in icarus: any_taps_at_any_pace: " in found
+        assert "again: talbot bench --block PhasePath --seed 3" in found
     assert not list((tmp_path / "bench").iterdir())
 
 
@@ -75,6 +89,11 @@ def test_a_simulation_without_an_end_is_stopped(monkeypatch):
     )
     with pytest.raises(simulation.BenchError, match="PhasePath in icarus: no end after 2 s"):
         simulation.simulate(simulation.DESIGNS["PhasePath"], "icarus")
+
+
+@pytest.mark.parametrize("design", simulation.DESIGNS.values(), ids=lambda design: design.block)
+def test_every_bench_exists(design):
+    assert find_spec(design.module)
 
 
 def test_streams_that_differ_fail():

@@ -43,7 +43,7 @@ POINTS: Points = {
     "one_common_mode_reset": lambda p: _row_started(p) & (p.n_cm == 1),
     "several_common_mode_resets": lambda p: _row_started(p) & (p.n_cm > 1),
     "shortest_durations": lambda p: _row_started(p) & (sum(getattr(p, name) for name in DURATIONS) == 6),
-    "a_duration_of_16_bits": lambda p: _row_started(p) & (p.t_int == 0xFFFF),
+    "a_duration_of_16_bits": lambda p: _row_started(p) & (p.t_int >= 1 << 15),
     "refused_without_reset_time": lambda p: _start_in_idle(p) & (_zeros(p) == 1) & (p.t_reset == 0),
     "refused_without_integration": lambda p: _start_in_idle(p) & (_zeros(p) == 1) & (p.t_int == 0),
     "refused_without_common_mode_time": lambda p: _start_in_idle(p) & (_zeros(p) == 1) & (p.t_cm == 0),

@@ -24,6 +24,20 @@ def _reset_in_a_step(p: Recorded) -> Mask:
     return (p.reset == 1) & (p.was(taken) == 1)
 
 
+def _after(p: Recorded, event: Mask) -> Mask:
+    """Cycles with ``event`` before them, and no reset since."""
+    event_at, reset_at = p.since(event), p.since(p.reset == 1)
+    return (event_at > 0) & ((reset_at < 0) | (event_at < reset_at))
+
+
+def _begins(p: Recorded, on: int) -> Mask:
+    return _in(p) & (p.on == on) & (p.recv__kind == FRAME)
+
+
+def _ended(p: Recorded, on: int) -> Mask:
+    return _out(p) & (p.on == on) & (p.send__kind == END)
+
+
 POINTS: Points = {
     "samples_pass_when_off": lambda p: _out(p) & (p.on == 0) & (p.send__kind == SAMPLE),
     "marks_pass_when_off": lambda p: _out(p) & (p.on == 0) & (p.send__kind == END),
@@ -34,6 +48,11 @@ POINTS: Points = {
     # END is taken, and a sample leaves after it.
     "end_waits_for_the_divider": lambda p: (
         _out(p) & (p.on == 1) & (p.send__kind == SAMPLE) & (p.since(_in(p) & (p.recv__kind == END)) > 0)
+    ),
+    "phase_after_a_frame_without": lambda p: _begins(p, 1) & _after(p, _ended(p, 0)),
+    "without_phase_after_a_frame": lambda p: _begins(p, 0) & _after(p, _ended(p, 1)),
+    "noise_floor_changes_between_frames": lambda p: (
+        _begins(p, 1) & _after(p, _ended(p, 1)) & _after(p, p.was(p.noise_floor) != p.noise_floor)
     ),
     "step_of_one_sample": lambda p: (
         _in(p)

@@ -78,6 +78,7 @@ POINTS: Points = {
     "fastest_clock": lambda p: where(p, [t for t in transfers(p) if t.half == 4 and t.data]),
     "odd_clock": lambda p: where(p, [t for t in transfers(p) if t.half > 5 and t.half % 2 and t.data]),
     "start_strobe": lambda p: (p.start == 1) & (p.was(p.start) == 0),
+    "abort_strobe": lambda p: (p.abort_ == 1) & (p.was(p.abort_) == 0),
     "start_refused": lambda p: (
         _writes_to(p, lambda address, byte: address == START and byte & 1) & (p.status__busy == 1)
     ),

@@ -1,6 +1,7 @@
 """Coverage counts what is reached and only that; plans and exclusions that do not hold are errors."""
 
 import re
+import shutil
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,9 +11,11 @@ import pytest
 from base.tools import ToolError
 from models.parameters import ParameterError
 from rtl.edge_adc import EdgeAdc
+from rtl.harness.ports import Port
 from rtl.harness.testbench import build, hooked
 from rtl.replay.recorder import Recorder
 from rtl.tops import TOPS
+from verif.coverage.constants import constant_bits
 from verif.coverage.measure import Point, Transition, measure, sources_of
 from verif.coverage.ports import Recorded
 from verif.coverage.program import compile_program
@@ -103,6 +106,80 @@ def test_exclusions(result):
     assert any("is hit" in text for text in hit.errors)
     nothing = judge("EdgeAdc", plan(Exclusion("line", ("EdgeAdc: no such line",), "wrong")), [result])
     assert nothing.errors == ["exclude line 'EdgeAdc: no such line': must match a point"]
+
+
+FIXED = """
+typedef struct packed {
+  logic [1:0] high;
+  logic [0:0] low;
+} Pair;
+
+module Part
+(
+  input logic [0:0] clk ,
+  input logic [0:0] reset ,
+  input logic [1:0] tied ,
+  output Pair pair
+);
+  logic [0:0] one;
+  logic [0:0] late;
+  always_ff @(posedge clk) begin
+    if ( reset ) begin
+      pair <= 3'd2;
+      one <= 1'd1;
+    end
+    else begin
+      pair <= ( pair | { 1'd0, tied } ) & 3'd3;
+      one <= one | tied[0];
+    end
+    late <= 1'd1;
+  end
+endmodule
+
+module Fixed
+(
+  input logic [0:0] clk ,
+  input logic [0:0] reset ,
+  input logic [0:0] free ,
+  output Pair pair ,
+  output Pair other
+);
+  Part first
+  (
+    .clk( clk ), .reset( reset ), .tied( {free, 1'd0} ), .pair( pair )
+  );
+  Part second
+  (
+    .clk( clk ), .reset( reset ), .tied( 2'd1 ), .pair( other )
+  );
+endmodule
+"""
+
+
+@pytest.mark.skipif(not shutil.which("yosys-abc"), reason="needs Yosys: make tools")
+def test_constants_are_proven():
+    ports = [Port("reset", 1, False), Port("free", 1, False), Port("pair", 3, True), Port("other", 3, True)]
+    found = constant_bits(FIXED, "Fixed", ports)
+    of_part = {(signal, bit) for module, signal, bit in found if module == "Part"}
+    assert of_part == {("pair.high", 0), ("pair.high", 1), ("one", 0), ("late", 0), ("tied", 0)}
+    of_top = {(signal, bit) for module, signal, bit in found if module == "Fixed"}
+    assert of_top == {("pair.low", 0), *((f"{p}.high", bit) for p in ("pair", "other") for bit in (0, 1))}
+
+
+def test_a_toggle_is_excluded_by_a_proof_only(tmp_path):
+    text = plan_file("adc_bank").read_text()
+    for wrong in ("", "    proof: nothing\n"):
+        (tmp_path / "adc_bank.testplan.yaml").write_text(text.replace("    proof: adc_bank\n", wrong))
+        with pytest.raises(ParameterError, match=r"exclude\[0\].proof = .*: must be a proof of"):
+            load_plan(tmp_path / "adc_bank.testplan.yaml")
+
+
+def test_a_constant_that_toggles_is_an_error(result):
+    found = judge("EdgeAdc", plan(), [result], {("EdgeAdc", "go", 0), ("EdgeAdc", "threshold", 6)})
+    toggled = {f"EdgeAdc.go[0]:{edge} = toggled: must be constant" for edge in ("0->1", "1->0")}
+    assert found.constant == 4 and set(found.errors) == toggled
+    still = replace(result, counts=tuple(replace(count, times=0) for count in result.counts))
+    assert not judge("EdgeAdc", plan(), [still, result], {("EdgeAdc", "go", 0)}).errors  # of another parameter set
 
 
 def test_bits_of_an_exclusion():

@@ -4,15 +4,19 @@ import dataclasses
 import json
 import re
 import shutil
+from argparse import Namespace
 
 import pytest
 
 from base.command import main
+from base.paths import ROOT
 from models.parameters import ParameterError
 from verif.formal import command, design, manifest
 from verif.formal.engine import FormalError, tool
+from verif.formal.items import ProofsFile, failure
+from verif.formal.plan import pieces
 from verif.formal.proof import Twin, labels
-from verif.formal.prove import CoverResult, cover, prove, twin
+from verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
 
 try:
     for name in ("yosys", "yosys-smtbmc", "boolector"):
@@ -45,6 +49,28 @@ def test_every_property_has_a_twin_that_finds_its_place():
         assert all(bug.find != bug.replace for bug in proof.twins.values()), proof.name
 
 
+def test_pytest_collects_the_proofs_and_can_skip_each(request):
+    """Pytest ends with an internal error where a test that it skips has no line."""
+    path = ROOT / "rtl/readout_seq/formal/proofs.yaml"
+    items = list(ProofsFile.from_parent(request.session, path=path).collect())
+    assert [item.name for item in items] == [proof.name for proof in manifest.read(path)]
+    assert any(item.get_closest_marker("slow") for item in items)
+    assert all(item.location[0].endswith("proofs.yaml") and item.location[1] == 0 for item in items)
+
+
+def test_of_a_list_of_sizes_the_first_has_covers_and_twins():
+    first, *others = (proof for proof in manifest.every() if proof.block == "ReadoutSeq")
+    assert others and all(proof.size_of == first.name for proof in others)
+    assert [piece.name for piece in pieces(others[0], others[0].engines)] == ["boolector"]
+    fails = CoverResult([], ["c_frame"], 0.0), {"p_end": TwinResult(False, 0.0, "passed", 20)}
+    proven = {"boolector": ProofResult("proven", [], 0.0, "")}
+    of_first, of_other = (command.Outcome(proof, proven, *fails) for proof in (first, others[0]))
+    assert len(of_first.problems) == 2 and not of_other.problems
+    assert [(p.name, p.twin_fails) for p in of_other.properties] == [(others[0].name, False)]
+    options = Namespace(only=None, proof=[others[0].name])
+    assert command.chosen(manifest.every(), options) == [first, others[0]]
+
+
 def test_the_byte_queue_is_proven_and_its_twins_fail(queue, tmp_path):
     assert main(command, ["--proof", queue.name, "--out", str(tmp_path), "--workers", "1"]) == 0
     proofs = json.loads((tmp_path / "formal.json").read_text())["RunLength"]["proofs"]
@@ -72,6 +98,15 @@ def test_a_wrong_property_is_not_proven(queue, tmp_path):
     assert result.result == "failed" and result.failing == ["p_room"]
 
 
+def test_the_proof_of_a_block_is_a_test_that_names_what_fails(queue, tmp_path):
+    wrong = changed(queue, tmp_path, "assert (inside <= 2 &&", "assert (inside <= 1 &&")
+    assert failure(queue, tmp_path / "kept") == ""
+    message = "byte_queue = failed by boolector: must be proven (p_room)"
+    twins = {"p_room": Twin("a text that a bug has changed", "")}
+    assert failure(dataclasses.replace(wrong, depth=8, twins=twins), tmp_path / "kept") == message
+    assert len(list((tmp_path / "kept").glob("*.json"))) == 1
+
+
 def test_what_only_induction_refutes_is_unknown(queue, tmp_path):
     """A step that fails is no counterexample, and no proof."""
     loose = changed(queue, tmp_path, "\\dut.count == inside && inside <= 2", "inside <= 3")
@@ -87,7 +122,7 @@ def test_a_timeout_is_unknown(queue):
 
 
 def test_assumptions_that_contradict_each_other_reach_no_cover_point(queue, tmp_path):
-    vacuous = changed(queue, tmp_path, "assume (!put || ready);", "assume (!put);")
+    vacuous = changed(queue, tmp_path, "a_put: assume (!put || ready);", "a_put: assume (!put);")
     found = cover(vacuous, design.exported(vacuous), design.wrapper(vacuous))
     assert found.missing == ["c_full", "c_through"]
 
@@ -111,6 +146,9 @@ def test_a_bug_without_its_place_and_a_property_without_a_twin_are_refused(queue
     [
         ("assert (a);", "label = none"),
         ("cover (a);", "label = none"),
+        ("assume (a);", "label = none"),
+        ("assume property (a);", "label = none"),
+        ("x: restrict property (a);", "label = none"),
         ("x: assert (a); x: cover (b);", "label = x: must occur once"),
     ],
 )

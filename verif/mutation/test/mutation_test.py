@@ -148,8 +148,8 @@ def test_judged(tmp_path):
 
 def test_a_module_has_tests_of_its_own(tmp_path):
     balance = Mutant(1, "", "Balance", 0, "rtl/asp_chip/balance_rtl.py:31", "")
-    assert own_tests(balance) == ROOT / "rtl" / "asp_chip" / "test" / "balance_test.py"
-    assert own_tests(Mutant(1, "", "AmpCtrl", 0, "rtl/amp_ctrl/amp_ctrl_rtl.py", "")) is None
+    assert own_tests(balance) == [ROOT / "rtl" / "asp_chip" / "test" / "balance_test.py"]
+    assert not own_tests(Mutant(1, "", "AmpCtrl", 0, "rtl/amp_ctrl/amp_ctrl_rtl.py", ""))
 
 
 def test_what_a_proof_notices_is_killed(tmp_path):

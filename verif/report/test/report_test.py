@@ -14,7 +14,7 @@ from verif.report import command, limits, steps
 from verif.report.merge import figures, summarize, totals
 from verif.report.page import render
 from verif.report.steps import Outcome, Step, run_step
-from verif.results import COVERAGE, BlockResults, Fuzz, Mutants, Property, Resync, Tests
+from verif.results import COVERAGE, BlockResults, Fuzz, Mutants, Property, Resync, StuckAt, Tests
 from verif.suite.blocks import BLOCKS
 
 PROOF = Property("a.one", "boolector (3.2)", "unbounded", "proven", True, 1.5)
@@ -36,6 +36,7 @@ def everything():
         [
             {block: copy.deepcopy(GOOD) for block in TOPS},
             copy.deepcopy(FUZZ),
+            {"AspChip": BlockResults(stuck_at=StuckAt(faults=9000, sample=500, detected=360))},
             {block: BlockResults(tests=Tests(passed=3)) for block in BLOCKS if block not in TOPS},
         ]
     )
@@ -58,7 +59,8 @@ def test_the_results_of_all_steps_are_merged():
     )
     entry = summarize([{"EdgeAdc": one}, {"EdgeAdc": two}])["EdgeAdc"]
     assert entry.tests == Tests(7, 1, levels={"RTL": 4, "FL": 2})
-    assert entry.coverage == {"line": 99.0, "toggle": None, "branch": None, "fsm": None, "functional": None}
+    measured = dict.fromkeys(("branch", "expression", "toggle", "fsm", "functional"))
+    assert entry.coverage == {"line": 99.0} | measured
     assert entry.proofs == [PROOF] and entry.open_points == ["a", "b"]
     assert entry.simulators == ["Icarus", "Verilator"]
     assert set(summarize([])) == set(BLOCKS)
@@ -96,6 +98,7 @@ def change(path, value):
     [
         (("EdgeAdc", "tests", "failed"), 1, "EdgeAdc.tests.failed = 1: limit at most 0"),
         (("Flow", "tests", "failed"), 2, "Flow.tests.failed = 2: limit at most 0"),
+        (("AspChip", "stuck_at", "detected"), 349, "AspChip.stuck_at.share = 69.80: limit at least 70"),
         (("RunLength", "coverage", "toggle"), 99.96, "RunLength.coverage.toggle = 99.96: limit at least 100"),
         (("RegFile", "coverage", "line"), None, "RegFile.coverage.line = not measured: limit at least 100"),
         (("AmpCtrl", "proofs"), [replace(PROOF, result="unknown")], "AmpCtrl.proofs.unproven = 1: limit at most 0"),

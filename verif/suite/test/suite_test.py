@@ -9,7 +9,7 @@ from rtl.tops import TOPS
 from verif.results import ROOT
 from verif.suite import command
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
-from verif.suite.command import forget, jobs, summarize
+from verif.suite.command import forget, jobs, options_of, summarize
 from verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
 FILE = """
@@ -39,7 +39,7 @@ def repository(tmp_path):
 
 
 def test_outcomes_of_a_folder(repository):
-    cases = run_folder("a", repository, ()).cases
+    cases = run_folder("a", root=repository).cases
     assert [(c.test, c.outcome) for c in cases] == [
         ("a/x_test.py::TestRTL::test_good", "passed"),
         ("a/x_test.py::test_bad", "failed"),
@@ -48,8 +48,28 @@ def test_outcomes_of_a_folder(repository):
     assert "one is not two" in cases[1].message and "no tool" in cases[2].message
 
 
+SEEDED = """
+import hypothesis, hypothesis.strategies as st
+
+@hypothesis.given(st.integers())
+def test_any(number):
+    open("drawn", "a").write(f"{number} ")
+"""
+
+
+def test_a_seed_draws_the_same_again(repository):
+    (repository / "c").mkdir()
+    (repository / "c" / "z_test.py").write_text(SEEDED)
+    drawn = []
+    for seed in (1, 1, 2):
+        run_folder("c", options_of(seed)[1:], repository)
+        drawn.append((repository / "drawn").read_text())
+        (repository / "drawn").unlink()
+    assert drawn[0] == drawn[1] != drawn[2]
+
+
 def test_a_file_that_cannot_be_read_is_a_failure(repository):
-    cases = run_folder("b", repository, ()).cases
+    cases = run_folder("b", root=repository).cases
     assert any(c.outcome == "failed" and "no_such_module" in c.message for c in cases)
 
 
@@ -84,7 +104,7 @@ def test_a_divider_counts_for_what_it_names():
 
 
 def test_counts_by_block(repository):
-    found = summarize([replace(run_folder("a", repository, ()), folder="rtl/edge_adc/test")])["EdgeAdc"]
+    found = summarize([replace(run_folder("a", root=repository), folder="rtl/edge_adc/test")])["EdgeAdc"]
     tests = found.tests
     assert (tests.passed, tests.failed, tests.skipped) == (1, 1, 1) and tests.levels == {"RTL": 1}
     assert found.simulators == ["PyMTL3"] and len(found.open_points) == 2

@@ -19,6 +19,7 @@ def radix4():
     return Divider("radix4").verilog()
 
 
+@pytest.mark.slow  # rtl/quad_divider/test/gates_test.py has every request
 def test_every_input_through_the_verilog(radix4):
     found = measure(Divider("radix4"))
     print(row(found))

@@ -1,9 +1,13 @@
 """The register map: its source and its document agree."""
 
+from models.parameters import MODES
 from models.parameters.registers import register_map
-from models.parameters.registers.command import markdown
 
 CHIP = register_map()
+
+
+def test_the_modes_are_those_of_a_frame():
+    assert CHIP["mode"].choices == tuple(enumerate(MODES))
 
 
 def test_no_two_fields_share_a_bit():
@@ -26,9 +30,3 @@ def test_the_configuration_is_one_run_of_addresses_of_its_own():
     sticky = [f for f in CHIP.fields if f.access == "w1c"]
     assert [f.shift for f in sticky] == list(range(sticky[0].shift, sticky[0].shift + len(sticky)))
     assert all(f.width == 1 and f.register == "status" for f in sticky)
-
-
-def test_the_document_names_every_field():
-    text = markdown(CHIP)
-    assert all(f"| {f.name} |" in text and f.description in text for f in CHIP.fields)
-    assert "| 0x20 + 2 i | trim[0..23] |" in text

@@ -1,0 +1,30 @@
+"""Write the documents for a host: docs/registers.md, docs/registers.html, the tables of docs/host.md, the C header."""
+
+from argparse import ArgumentParser, Namespace
+from pathlib import Path
+
+from base.files import insert, write
+from base.paths import ROOT
+from models.parameters.registers import register_map
+
+from . import registers, tables
+from .c_header import c_header
+
+HEADER = Path(__file__).parents[1] / "asp_chip_registers.h"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot document`."""
+    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of the documents, with a host.md")
+    parser.add_argument("--header", type=Path, default=HEADER, help="the C header")
+
+
+def run(options: Namespace) -> int:
+    """Write every file."""
+    chip = register_map()
+    write(options.out / "registers.md", registers.markdown(chip))
+    write(options.out / "registers.html", registers.html(chip))
+    write(options.header, c_header(chip))
+    for mark, table in tables.TABLES.items():
+        insert(options.out / "host.md", mark, table())
+    return 0

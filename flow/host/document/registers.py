@@ -1,0 +1,61 @@
+"""The register map as Markdown and as a page."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from base.page import render
+from models.parameters.registers import Field, RegisterMap
+
+NOTE = (
+    "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
+    "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
+    "w1c sticky, cleared by writing 1. Addresses and bits that are not listed read 0 and ignore writes."
+)
+COLUMNS = "address", "register", "bits", "field", "access", "range", "reset", "meaning"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A field, or the fields of a register array; ``more``: registers after the first."""
+
+    field: Field
+    more: int = 0
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        """Texts in the order of COLUMNS."""
+        f, high = self.field, self.field.lsb + self.field.width - 1
+        low, top = f.range
+        return (
+            f"0x{f.address:02X}" + (f" + {f.size} i" if self.more else ""),
+            f.register.partition("[")[0] + (f"[0..{self.more}]" if self.more else ""),
+            f"{high}:{f.lsb}" if f.width > 1 else f"{f.lsb}",
+            f.name,
+            f.access,
+            f"{low}..{top}" if f.width <= 16 else f"{f.width} bits",
+            f"{f.reset:#x}" if f.reset > 9 else f"{f.reset}",
+            f.description,
+        )
+
+
+def rows(chip: RegisterMap) -> Iterator[Row]:
+    """The rows of the map, ascending."""
+    arrays: dict[str, list[Field]] = {}
+    for f in chip.fields:
+        arrays.setdefault(f.register.partition("[")[0], []).append(f)
+    for fields in arrays.values():
+        yield from [Row(fields[0], len(fields) - 1)] if "[" in fields[0].register else map(Row, fields)
+
+
+def markdown(chip: RegisterMap) -> str:
+    """The map as a Markdown document."""
+    lines = ["# Registers of AspChip", "", f"{NOTE} How a host uses them: [host.md](host.md).", ""]
+    lines += [f"| {' | '.join(COLUMNS)} |", "|" + "---|" * len(COLUMNS)]
+    return "\n".join(lines + [f"| {' | '.join(row.cells)} |" for row in rows(chip)]) + "\n"
+
+
+def html(chip: RegisterMap) -> str:
+    """The map as a page."""
+    table = [row.cells for row in rows(chip)]
+    return render(Path(__file__).with_name("registers.html"), note=NOTE, columns=COLUMNS, table=table) + "\n"

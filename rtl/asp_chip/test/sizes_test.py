@@ -1,0 +1,47 @@
+"""A chip of any size is the one that is proven and simulated, 8 x 13 with two lanes, but for its blocks' parameters."""
+
+import pytest
+
+from models.parameters import TileParameters
+from rtl.asp_chip import AspChip
+
+SIZES = {  # array, lanes, tile; divider, n_frac, iterations
+    "small": (8, 13, 2, 4, 6, "radix4", 8, 10),
+    "default": (384, 384, 8, 4, 6, "radix4", 8, 10),
+    "largest": (1024, 1536, 32, 4, 6, "pipelined", 16, 10),
+    "3 x 5": (515, 29, 16, 3, 5, "cordic", 8, 16),
+    "2 x 4": (511, 3, 4, 2, 4, "radix2", 9, 4),
+    "a pixel": (1, 1, 1, 1, 1, "cordic", 4, 7),
+}
+
+
+def elaborated(size):
+    tile_rows, tile_cols = size[3:5]
+    order = tuple(TileParameters.small(tile_rows, tile_cols).order)
+    top = AspChip(*size[:3], order, *size[3:])
+    top.elaborate()
+    return top, order
+
+
+def connections(top):
+    return {frozenset(map(repr, pair)) for pair in top.get_connect_order()}
+
+
+@pytest.mark.parametrize("name", SIZES)
+def test_the_blocks_have_the_size_of_the_chip(name):
+    """Each is built with the chip's parameters; connections and logic between the blocks depend on none."""
+    rows, cols, lanes, *tile, divider, n_frac, iterations = SIZES[name]
+    top, order = elaborated(SIZES[name])
+    given = {child.get_field_name(): child._dsl.args for child in top.get_child_components(repr)}
+    assert {name: args for name, args in given.items() if args} == {
+        "regs": (rows, cols, lanes, *tile, divider),
+        "seq": (rows, cols, lanes, order, *tile),
+        "bank": (lanes,),
+        "phase": (lanes, divider, n_frac, iterations),
+        "encoder": (rows, cols, lanes, *tile),
+        "generator": (lanes,),
+        "balancer": (order, *tile, 10, 16),
+        "gate": (14,),
+    }
+    assert connections(top) == connections(elaborated(SIZES["small"])[0])
+    assert all(block.__code__.co_freevars == ("s",) for block in top.get_update_blocks())

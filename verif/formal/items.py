@@ -1,0 +1,65 @@
+"""The proofs of a block as tests: base and step with the first engine, kept where `talbot formal` keeps them."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from base.jobs import run
+from base.records import from_json
+from verif.results import OUT, PROVEN
+
+from . import manifest
+from .engine import FormalError, tool
+from .plan import pieces
+from .proof import Proof
+from .prove import ProofResult
+
+
+def failure(proof: Proof, store: Path) -> str:
+    """Prove it by its first engine: return '' or what is not proven. store: folder of the kept results."""
+    engine = proof.engines[0]
+    job = next(pieces(proof, [engine])).job  # and no twin, whose text a bug may change
+    result = from_json(ProofResult, run([job], store, proof.name, workers=1)[0])
+    if result.result == PROVEN:
+        return ""
+    job.file(store).unlink(missing_ok=True)  # tried again next time
+    failing = ", ".join(result.failing) or result.output
+    return f"{proof.name} = {result.result} by {engine}: must be proven ({failing})"
+
+
+class ProofsFile(pytest.File):
+    """Proofs of a block: rtl/<block>/formal/proofs.yaml."""
+
+    def collect(self) -> Iterator["ProofItem"]:
+        """Yield an item a proof."""
+        for proof in manifest.read(self.path):
+            yield ProofItem.from_parent(self, name=proof.name, proof=proof)
+
+
+class ProofItem(pytest.Item):
+    """One proof."""
+
+    cls = None  # as of tests outside classes
+
+    def __init__(self, *, proof: Proof, **given: Any) -> None:
+        """Mark it slow where the proof is, or repeats another at its size."""
+        super().__init__(**given)
+        self.proof = proof
+        if proof.slow or proof.size_of:
+            self.add_marker("slow")
+
+    def runtest(self) -> None:
+        """Prove it, or take the result that is kept."""
+        try:
+            for name in ("yosys", "yosys-smtbmc", self.proof.engines[0]):
+                tool(name)
+        except FormalError as missing:
+            pytest.skip(str(missing))
+        if problem := failure(self.proof, OUT / "formal"):
+            pytest.fail(problem, pytrace=False)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Return where it is declared; pytest wants a line of a test that it skips."""
+        return self.path, 0, f"proof {self.name}"

@@ -1,0 +1,55 @@
+"""Every conjunct of every assumption is needed: without it, the proof fails."""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from verif.results import PROVEN
+
+from .engine import Workplace
+from .netlist import Conjunct, Netlist
+from .proof import Proof
+from .prove import prove
+
+
+@dataclass(frozen=True)
+class NecessityResult:
+    """Conjuncts by their text. needed: the proof fails without it. needless: it does not."""
+
+    needed: list[str] = field(default_factory=list)
+    needless: list[str] = field(default_factory=list)
+    wall_s: float = 0.0
+
+
+def necessity(proof: Proof, texts: dict[str, str], wrapper: str, label: str = "") -> NecessityResult:
+    """Try the proof without each conjunct of its assumptions; label: of those to try, by default all."""
+    conjuncts: list[Conjunct] = []
+    Workplace(
+        texts,
+        wrapper,
+        proof.top,
+        proof.assumed,
+        edit=lambda netlist: conjuncts.extend(c for a in netlist.of_type("$assume") for c in netlist.conjuncts(a)),
+    ).folder.cleanup()
+    needed, needless, wall = [], [], 0.0
+    for conjunct in (c for c in conjuncts if c.assumption.endswith(label)):
+        without = prove(proof, proof.engines[0], texts, wrapper, dropping(conjunct))
+        wall += without.wall_s
+        name = f"{conjunct.assumption}: {said(conjunct.source, wrapper)}"
+        (needless if without.result == PROVEN else needed).append(name)
+    return NecessityResult(needed, needless, round(wall, 2))
+
+
+def dropping(conjunct: Conjunct) -> Callable[[Netlist], None]:
+    """Return the change of a netlist that leaves ``conjunct`` out."""
+    return lambda netlist: netlist.drop(conjunct)
+
+
+def said(source: str, wrapper: str) -> str:
+    """Return the text at a place of the wrapper ('wrapper.sv:3.5-3.20', of several the last), or the place itself."""
+    places = re.findall(r"wrapper\.sv:(\d+)\.(\d+)-(\d+)\.(\d+)", source)
+    if not places:
+        return source
+    line, begin, last, end = map(int, places[-1])
+    text = wrapper.splitlines()[line - 1]
+    return text[begin - 1 : end - 1] if line == last and "`" not in text else text.strip()

@@ -1,0 +1,169 @@
+"""Over-constrained copies of proofs: assumptions added, strengthened and hidden. Each is rejected."""
+
+import dataclasses
+
+import pytest
+
+from models.parameters import ParameterError
+from verif.formal import command, design, manifest
+from verif.formal.engine import FormalError, tool
+from verif.formal.freedom import FreedomResult, freedom
+from verif.formal.necessity import NecessityResult, necessity
+from verif.formal.proof import labels
+from verif.formal.prove import CoverResult
+
+try:
+    for name in ("yosys", "yosys-smtbmc", "boolector"):
+        tool(name)
+except FormalError as missing:
+    pytest.skip(str(missing), allow_module_level=True)
+
+PUT = "a_put: assume (!put || ready);"
+
+
+def problems(name, folder, *changes, checks=(necessity, freedom), label="", **listed):
+    """What ``checks`` say of proof ``name`` after ``changes`` (find, replace) of its wrapper.
+
+    label: of the assumptions whose necessity is looked at, by default all.
+    """
+    proof = next(proof for proof in manifest.every() if proof.name == name)
+    text = proof.wrapper.read_text()
+    for find, replace in changes:
+        assert text.count(find) == 1, find
+        text = text.replace(find, replace)
+    path = folder / proof.wrapper.name
+    path.write_text(text)
+    proof = dataclasses.replace(proof, wrapper=path, assumptions=proof.assumptions | listed)
+    arguments = proof, design.exported(proof), design.wrapper(proof)
+    needs = necessity(*arguments, label) if necessity in checks else NecessityResult()
+    free = freedom(*arguments) if freedom in checks else FreedomResult()
+    return command.Outcome(proof, {}, CoverResult([], [], 0.0), {}, needs, free).problems
+
+
+def test_the_assumptions_of_the_byte_queue_are_needed_and_leave_its_inputs_free(tmp_path):
+    assert problems("byte_queue", tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "statement, needless",
+    [
+        ("a_x: assume (octet < 64);", "a_x: "),
+        ("a_x: assume (first || !reset);", "a_x: "),
+        ("a_x: assume (first || octet < 2 && send__rdy && !reset);", "a_x: send__rdy"),
+        ("if (send__rdy) a_x: assume (octet != 3);", "a_x: "),
+        ("a_x: assume (!watch || octet[7]);", "a_x: "),
+        ("a_x: assume (first || !was_rdy || octet != was_msg);", "a_x: "),
+        ("initial a_x: assume (octet == 0);", "a_x: "),
+        ("a_x: assume (put ? octet < 64 : 1);", "a_x: "),
+        ("Narrow narrow (.octet(octet));", "narrow.a_x: "),
+    ],
+    ids=["added", "never reset again", "three", "if", "implication", "two cycles", "initial", "choice", "in a source"],
+)
+def test_an_added_assumption_is_needless_whatever_its_reason(tmp_path, statement, needless):
+    narrow = "endmodule\nmodule Narrow (input [7:0] octet);\n  always @* a_x: assume (octet < 64);\nendmodule\n"
+    text = ("always @* begin\n    if (first) a_reset", f"{statement}\n  always @* begin\n    if (first) a_reset")
+    if statement.startswith("Narrow"):
+        changes = [
+            text,
+            (
+                "c_through: cover (take && put && following);\n  end\nendmodule",
+                f"c_through: cover (take && put && following);\n  end\n{narrow}",
+            ),
+        ]
+    elif statement.startswith("initial"):
+        changes = [text]
+    else:
+        changes = [(PUT, f"{PUT} {statement}")]
+    found = problems("byte_queue", tmp_path, *changes, checks=[necessity], label="a_x", a_x="p_octet of another block")
+    assert any(f"byte_queue.{needless}" in line and "= needless" in line for line in found), found
+
+
+@pytest.mark.parametrize(
+    "stronger, needless",
+    [
+        ("a_put: assume (!put || ready && octet[0]);", "a_put: octet[0]"),
+        ("a_put: assume ((!put || ready) && send__rdy);", "a_put: send__rdy"),
+        ("a_put: assume (!(put || octet == 9) || ready);", "a_put: octet == 9"),
+        ("if (put || watch) a_put: assume (ready);", "a_put: watch"),
+    ],
+    ids=["conjunct inside", "conjunct", "condition", "if"],
+)
+def test_an_assumption_that_became_stronger_has_a_needless_part(tmp_path, stronger, needless):
+    found = problems("byte_queue", tmp_path, (PUT, stronger), checks=[necessity], label="a_put")
+    assert any(line.startswith(f"RunLength.byte_queue.{needless} = needless") for line in found), found
+
+
+@pytest.mark.parametrize(
+    "changes, missing",
+    [
+        ([(PUT, "a_put: assume (!put);")], "put=1"),
+        (
+            [
+                ("input [7:0] octet,", "input [7:0] wide,"),
+                ("  wire ready", "  wire [7:0] octet = wide & 8'h7F;\n  wire ready"),
+            ],
+            "octet=255",
+        ),
+        (
+            [("input [7:0] octet,", ""), ("  wire ready", "  (* anyconst *) wire [7:0] octet;\n  wire ready")],
+            "octet changes",
+        ),
+        (
+            [
+                ("input reset,", "input pin,"),
+                ("  wire ready", "  wire reset = pin && first;\n  wire ready"),
+                ("first = 1, ", ""),
+                ("reg [1:0] inside", "reg first = 1;\n  reg [1:0] inside"),
+            ],
+            "reset=1",
+        ),
+        ([("input send__rdy, ", ""), ("  wire ready", "  wire send__rdy = 1;\n  wire ready")], "tied = send__rdy"),
+    ],
+    ids=["stronger", "a bit", "constant", "reset", "tied"],
+)
+def test_an_input_that_is_not_free_is_found(tmp_path, changes, missing):
+    found = problems("byte_queue", tmp_path, *changes, checks=[freedom])
+    assert any(f": {missing}" in line for line in found), found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name, find, added, part",
+    [
+        ("edge_adc", "a_config: assume", "a_x: assume (threshold < 64);", "a_x: "),
+        ("reg_file", "if (first) a_reset", "a_x: assume (first || !reset);", "a_x: "),
+        ("stream_9x13_2", "a_config: assume", "a_x: assume (decimation < 2 && phase && !reset);", "a_x: "),
+    ],
+)
+def test_the_over_constraints_that_were_not_seen(tmp_path, name, find, added, part):
+    found = problems(name, tmp_path, (find, f"{added}\n    {find}"), checks=[necessity], a_x="a reason")
+    assert any(f".{part}" in line for line in found)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "assume (octet < 64);",
+        "a_x: assume property (octet < 64);",
+        "a_x: restrict (octet < 64);",
+        "`define MUST(x) assume (x)\n`MUST(octet < 64)",
+        "/* a_x: */ assume (octet < 64);",
+    ],
+)
+def test_an_assumption_without_a_label_is_refused(text):
+    with pytest.raises(ParameterError, match="label = none"):
+        labels(text)
+
+
+def test_an_assumption_by_a_macro_or_a_cell_is_not_one_of_those_listed(tmp_path):
+    for text in ("`define MUST(l, x) l``x: assume (x)\n    `MUST(a_, put);", "\\$assume a_y (.A(put), .EN(1'b1));"):
+        place = "always @* begin\n    if (first) a_reset" if "$" in text else PUT
+        with pytest.raises(FormalError):
+            problems("byte_queue", tmp_path, (place, f"{text}\n  {place}"), l="a reason")
+
+
+def test_a_declared_exception_must_be_unreachable():
+    found = FreedomResult(["a=0", "a=1", "a=0 & b=1"], ["b=1 & a=1"])
+    assert found.problems({"b=1 & a=1": "why"}, ()) == []
+    assert found.problems({}, ()) == ["b=1 & a=1 = not reached: must be, or be in never"]
+    assert found.problems({".*a=1": "why"}, ()) == ["never..*a=1 = reached, or no input: must be unreachable"]

@@ -1,0 +1,82 @@
+"""Bugs that once escaped, in planted.yaml, each in a copy of the sources: its block's tests must fail."""
+
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import yaml
+
+from base.jobs import Job
+from base.sources import code
+from base.tools import ToolError, finish
+from models.parameters import ParameterError
+from rtl.tops import TOPS
+from verif.results import ROOT
+
+FILE = Path(__file__).parent / "planted.yaml"
+LEFT_OUT = shutil.ignore_patterns("build", ".*", "__pycache__")
+
+
+@dataclass(frozen=True)
+class Planted:
+    """A bug of ``block``. file: of the RTL. changes: (text, replacement) in it. tests: pytest's, which must fail."""
+
+    name: str
+    block: str
+    file: str
+    changes: tuple[tuple[str, str], ...]
+    tests: tuple[str, ...]
+
+    def text(self) -> str:
+        """Return the file with the bug. Raises ParameterError."""
+        text = (ROOT / self.file).read_text()
+        for find, replace in self.changes:
+            if text.count(find) != 1:
+                raise ParameterError(f"{FILE.name}: {self.name}: {find!r} = {text.count(find)} times: must be once")
+            text = text.replace(find, replace)
+        return text
+
+
+def read() -> list[Planted]:
+    """Return the bugs of planted.yaml. Raises ParameterError."""
+    found = [
+        Planted(
+            entry["name"], entry["block"], entry["file"], tuple(map(tuple, entry["changes"])), tuple(entry["tests"])
+        )
+        for entry in yaml.safe_load(FILE.read_text())
+    ]
+    for bug in found:
+        if bug.block not in TOPS:
+            raise ParameterError(f"{FILE.name}: {bug.name}: block = {bug.block}: must be one of {', '.join(TOPS)}")
+    return found
+
+
+def jobs(blocks: Iterable[str]) -> list[tuple[str, Job]]:
+    """Return (block, Job) for each bug of ``blocks``."""
+    blocks = set(blocks)
+    return [
+        (bug.block, Job(bug.name.replace(" ", "-"), is_caught, (bug,), (*map(str, bug.changes), code(*files))))
+        for bug in read()
+        if bug.block in blocks
+        for files in [(bug.file, *(test.split("::")[0] for test in bug.tests))]
+    ]
+
+
+def is_caught(bug: Planted) -> bool:
+    """Return whether a test of the bug fails. Raises ToolError where the tests cannot run with it."""
+    text = bug.text()
+    with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
+        copy = Path(temporary) / "talbot"
+        shutil.copytree(ROOT, copy, ignore=LEFT_OUT)
+        (ROOT / "build").mkdir(exist_ok=True)
+        (copy / "build").symlink_to(ROOT / "build")
+        (copy / bug.file).write_text(text)
+        options = "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=1"
+        done = finish([sys.executable, "-m", "pytest", *options, *bug.tests], {"PYTHONPATH": str(copy)}, copy)
+    if done.returncode not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED) or " error" in done.stdout:
+        raise ToolError(f"{bug.name}: its tests cannot run: {(done.stdout + done.stderr)[-1500:]}")
+    return done.returncode == pytest.ExitCode.TESTS_FAILED

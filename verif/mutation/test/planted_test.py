@@ -1,0 +1,40 @@
+"""Planted bugs: one that a test sees, one that none sees, and entries that do not fit the sources."""
+
+import sys
+from dataclasses import replace
+
+import pytest
+
+from base.paths import ROOT
+from base.tools import ToolError, finish
+from models.parameters import ParameterError
+from verif.mutation.planted import Planted, is_caught, jobs, read
+
+LIST = "    if origin in (list, tuple):\n"
+BUG = Planted(
+    "a bug", "EdgeAdc", "base/records.py", ((LIST, "    if origin is list:\n"),), ("base/test/records_test.py",)
+)
+
+
+def test_every_bug_fits_the_sources():
+    assert all(bug.text() for bug in read())
+    assert {block for block, _ in jobs(["RegFile"])} == {"RegFile"}
+
+
+def test_the_tests_of_every_bug_exist():
+    named = {name for bug in read() for name in bug.tests}
+    collected = finish([sys.executable, "-m", "pytest", "--collect-only", *sorted(named)], cwd=ROOT)
+    assert collected.returncode == 0, collected.stdout[-500:]
+
+
+@pytest.mark.slow
+def test_a_bug_is_caught():
+    assert is_caught(BUG)
+    assert not is_caught(replace(BUG, changes=((LIST, f"{LIST}        pass\n"),)))
+    with pytest.raises(ToolError, match="a bug: its tests cannot run"):
+        is_caught(replace(BUG, changes=((LIST, "    if\n"),)))
+
+
+def test_a_text_that_is_not_there():
+    with pytest.raises(ParameterError, match="a bug: 'nothing' = 0 times: must be once"):
+        replace(BUG, changes=(("nothing", ""),)).text()
