@@ -1,7 +1,8 @@
 """Options of the tests: slow ones, netlists in place of the translated Verilog, and tests skipped for lack of a tool.
 
 A property fails immediately with the first input that breaks it. --hypothesis-profile=smallest looks for the smallest
-one, which takes minutes with a simulator.
+one, which takes minutes with a simulator. Where a CI runs the tests, Hypothesis draws the same inputs every time,
+whatever --hypothesis-seed says, but with --hypothesis-profile=seeded.
 """
 
 import importlib.util
@@ -13,6 +14,7 @@ import pytest
 from hypothesis import Phase, settings
 
 settings.register_profile("first", phases=[Phase.explicit, Phase.reuse, Phase.generate])
+settings.register_profile("seeded", settings.get_profile("first"), derandomize=False)
 settings.register_profile("smallest", phases=list(Phase))
 settings.load_profile("first")
 

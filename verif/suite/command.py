@@ -29,7 +29,7 @@ TOOLS = "iverilog", "yosys", "g++", "z3"  # where one is missing, tests are skip
 
 def options_of(seed: int) -> tuple[str, ...]:
     """Return the options of pytest: slow tests, too, and the seed of the random ones."""
-    return "--all", f"--hypothesis-seed={seed}"
+    return "--all", "--hypothesis-profile=seeded", f"--hypothesis-seed={seed}"
 
 
 def jobs(wanted: Iterable[str], seconds: Mapping[str, float], seed: int = SEED) -> list[Job]:

@@ -57,7 +57,12 @@ def test_any(number):
 """
 
 
-def test_a_seed_draws_the_same_again(repository):
+@pytest.mark.parametrize("ci", [False, True])
+def test_a_seed_draws_the_same_again(repository, monkeypatch, ci):
+    monkeypatch.delenv("CI", raising=False)
+    if ci:
+        monkeypatch.setenv("CI", "true")
+    (repository / "conftest.py").write_text((ROOT / "conftest.py").read_text())
     (repository / "c").mkdir()
     (repository / "c" / "z_test.py").write_text(SEEDED)
     drawn = []
