@@ -72,9 +72,17 @@ def own_tests(mutant: Mutant) -> list[Path]:
     return [file] if file.exists() and source.stem.removesuffix("_rtl") != source.parent.name else []
 
 
-def try_original(path: str, folder: str) -> None:
-    """Run the tests on the design with all mutants and none selected. Raises ToolError unless all pass."""
+def try_original(path: str, folder: str, tests: bool) -> None:
+    """Replay the recorded cycles on the design with all mutants and none selected, and run the ``tests`` on it, too.
+
+    Raises ToolError where it differs in a cycle, or a test fails.
+    """
     head, verilog = mutated(path, folder)
+    program = compile_program(verilog, head.cls, head.ports, mutant=True)
+    if program.run(Path(path).with_suffix(".trace"), "--mutants", "0", "0") != {0: -1}:
+        raise ToolError(f"{head.cls}: no cycle may differ without a mutant: {folder}")
+    if not tests:
+        return
     trial = attempt(head, verilog, None, dict.fromkeys(name for _, name in head.tests), head.cycles + SPARE)
     if trial.failed or not trial.took_place:
         raise ToolError(f"{head.cls}: no test may fail without a mutant: {trial.failed or 'none has tried it'}")

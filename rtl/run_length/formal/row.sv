@@ -3,10 +3,13 @@
 //
 // Messages and bytes do not wait here: the unbounded proofs (payload, byte_queue, stream) cover stalls.
 
-module RowProof (input clk, input reset, input [7:0] codes_in);
+module RowProof (input clk);
   (* anyconst *) wire [8 * `SAMPLES - 1:0] codes;
   (* anyconst *) wire [6:0] threshold;
   (* anyconst *) wire [9:0] index;
+  reg first = 1;  // one reset, to begin with: the proof is bounded from there
+  always @(posedge clk) first <= 0;
+  wire reset = first;
   localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, HEADER = 26, TAKEN = 3 * `SAMPLES + 4;
 
   // The messages in order: FRAME, ROW, the samples, END
@@ -27,9 +30,7 @@ module RowProof (input clk, input reset, input [7:0] codes_in);
   reg [8 * TAKEN - 1:0] bytes;
   wire [5:0] place = came - HEADER;
   wire kept = send__val && came >= HEADER && place < TAKEN;
-  reg first = 1;
   always @(posedge clk) begin
-    first <= 0;
     if (reset) begin
       turn <= 0; came <= 0;
     end else begin
@@ -102,8 +103,6 @@ module RowProof (input clk, input reset, input [7:0] codes_in);
   wire [7:0] padding = bytes >> (8 * (TAKEN - payload)) ;
 
   always @* begin
-    if (first) a_reset: assume (reset);
-    else a_once: assume (!reset);
     if (!first) begin
       p_valid: assert (!decodes || valid);
       p_zeros: assert (!decodes || zeros_there);
