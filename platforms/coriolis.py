@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
+from pathlib import Path
 
 from .layers import GdsLayer, Layer, Via
 from .processes import package
+
+CELLS = {"sky130-compact": "compact"}  # modules of processes with other cells
 
 
 @dataclass(frozen=True)
@@ -31,13 +33,16 @@ class CoriolisPlatform:
 
     package, wheel: Python package of PDKMaster's description, and its distribution. row_um, site_um, grid_um: cell
     height, placement grid, manufacturing grid. supply_v: volts. fill_cells: cells of no function for empty places.
-    metals: from the cells' rails up; vias[k] connects metals[k] and metals[k + 1]; straps run on the last metal,
-    strap_um wide, and meet a rail over rail_overlap_um; a rail on the lowest metal is rail_um wide, half of that at the
-    edge. pin_pitch_um: tracks of the pins' two layers, 'horizontal' (west and east) and 'vertical'. label_datatype,
-    pin_datatype: GDS datatypes of labels and of what the decks take for pins. outline: GDS layer of the die's.
+    metals: from the cells' pins up; vias[k] connects metals[k] and metals[k + 1]; straps run on the last metal,
+    strap_um wide, and meet a rail over rail_overlap_um; a rail, on metals[rail], is rail_um wide, half of that at the
+    edge unless rails_over_edge: the outermost ones then are half outside. pin_pitch_um: tracks of the pins' two layers,
+    'horizontal' (west and east) and 'vertical'. label_datatype, pin_datatype: GDS datatypes of labels and of what the
+    decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
     metal. fill: of all metals but the lowest. corners: at which cells are timed, that of synthesis first; () where
     there are no models of the devices. antenna_walls: whether antenna ratios are those of side walls, else of area.
+    most_open: nets that `reroute` takes on. utilization_most: at which a search begins. masks: rules of
+    KLayout beyond those of PDKMaster's deck.
     """
 
     name: str
@@ -63,14 +68,15 @@ class CoriolisPlatform:
     contact: GdsLayer
     fill: Fill
     corners: tuple[str, ...] = ()
+    rail: int = 0
+    rails_over_edge: bool = False
+    most_open: int = 60
+    utilization_most: float = 0.95
+    masks: Path | None = None
     antenna_walls: bool = True
 
 
 def coriolis_platform(pdk: str) -> CoriolisPlatform:
     """The process ``pdk`` for the layout flow. Raises ParameterError."""
-    return import_module(f"platforms.{package(pdk)}.coriolis").PLATFORM
-
-
-def standard_cells(pdk: str) -> Any:
-    """The PDKMaster library of the cells of ``pdk``, all layouts drawn. Raises ParameterError."""
-    return import_module(f"platforms.{package(pdk)}.coriolis").library()
+    folder = package(pdk)
+    return import_module(f"platforms.{folder}.{CELLS.get(pdk, 'coriolis')}").PLATFORM

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from models.parameters import ParameterError
+from platforms.sky130.compact import PLATFORM
 
 
 @dataclass(frozen=True)
@@ -21,8 +22,8 @@ class Canvas:
     li_rail: on li; well: lower edge of the n well; length: of a gate.
     """
 
-    height: float = 3.12
-    site: float = 0.52
+    height: float = PLATFORM.row_um
+    site: float = PLATFORM.site_um
     rows: tuple[float, ...] = (0.60, 0.94, 1.28, 1.82, 2.18, 2.52)
     low: int = 2
     high: int = 3
@@ -30,7 +31,7 @@ class Canvas:
     p: tuple[float, float] = (2.14, 2.725)
     tap: float = 0.125
     implant: float = 0.26
-    rail: float = 0.15
+    rail: float = PLATFORM.rail_um / 2
     li_rail: float = 0.14
     well: float = 1.55
     length: float = 0.15

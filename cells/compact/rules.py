@@ -1,12 +1,16 @@
 """The design rules that routing can break, checked while a cell is made; the decks check all of them at the end."""
 
+from collections.abc import Mapping
+
 import klayout.db as db
 
-from cells.compact.draw import Drawing, regions
+from cells.compact.draw import Drawing, Shape, regions
 
 SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}  # nm
 WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}
 AREAS = {"li": 56_100, "m1": 83_000}  # nm2
+ACCESS = (160, 145)  # nm, half of what a route needs on met1 over a pin: the pads of a via down and of one up
+STEP = 260  # nm: half a track, at whose multiples a route can meet a pin
 
 
 def broken(drawing: Drawing) -> list[str]:
@@ -26,4 +30,18 @@ def broken(drawing: Drawing) -> list[str]:
             out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1 :] if not (first & second).is_empty()]
     if not ((whole["licon"] & whole["poly"]).sized(190) & whole["difftap"]).is_empty():
         out.append("licon on poly to difftap")
+    out += [f"{pin.net} out of reach" for pin in drawing.shapes if pin.layer == "li.pin" and not reachable(pin, nets)]
     return out
+
+
+def reachable(pin: Shape, nets: Mapping[tuple[str, str], db.Region]) -> bool:
+    """Whether a route on met1 has room over a ``pin`` on li. nets: the cell's shapes by layer and net."""
+    others = db.Region()
+    for (layer, net), region in nets.items():
+        if layer == "m1" and net != pin.net:
+            others += region
+    reach, box = [half + SPACES["m1"] - 1 for half in ACCESS], pin.nm
+    x, inset = box.center().x, WIDTHS["li"] // 2
+    places = range(-(-(box.bottom + inset) // STEP), (box.top - inset) // STEP + 1)
+    around = (db.Box(x - reach[0], k * STEP - reach[1], x + reach[0], k * STEP + reach[1]) for k in places)
+    return any((others & db.Region(room)).is_empty() for room in around)

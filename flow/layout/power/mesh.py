@@ -40,10 +40,10 @@ class Gap(NamedTuple):
 
 
 def metal(tech: CoriolisPlatform) -> Metal:
-    """Resistances of a process: rails on its lowest metal, straps on its highest, stacks as straps.py draws them."""
-    low, high = tech.metals[0], tech.metals[-1]
+    """Resistances of a process: rails on that of the cells, straps on its highest, stacks as straps.py draws them."""
+    low, high = tech.metals[tech.rail], tech.metals[-1]
     stack = 0.0
-    for via in tech.vias:
+    for via in tech.vias[tech.rail :]:
         across, along = (
             int((side - 2 * via.enclosure_um + via.space_um) / (via.size_um + via.space_um) + 1e-9)
             for side in (tech.strap_um, tech.rail_overlap_um)

@@ -8,6 +8,8 @@ from ..geometry.boxes import Box
 from .route import Route
 from .window import NetView
 
+ROUNDS = 4  # in which narrow places and gaps of a net are filled
+
 
 def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
     """Whether every piece of metal has the least area, or was given it; gaps within the net are closed.
@@ -20,11 +22,16 @@ def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
         gap = layer.space // 2
         for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():
             boxes.append(_corners(polygon.bbox()))
-        for pair in _merged(boxes).width_check(layer.width).each():
-            wider = _at_least(pair.bbox(), layer.width)  # where two pieces overlap by less than the least width
-            if not view.clear(level, wider):
+        for _ in range(ROUNDS):  # pieces corner to corner, or that overlap by less than the least width
+            merged = _merged(boxes)
+            pairs = (*merged.space_check(layer.space).each(), *merged.width_check(layer.width).each())
+            more = [_at_least(pair.bbox(), layer.width) for pair in pairs]
+            if blocked := [(level, box) for box in more if not view.clear(level, box)]:
+                view.board.add_history(blocked)  # the next try goes elsewhere
                 return False
-            boxes.append(wider)
+            boxes += more
+            if not more:
+                break
         for polygon in _merged(boxes).each():
             lack = layer.area - polygon.area()
             if lack > 0:

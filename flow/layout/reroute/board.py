@@ -35,7 +35,7 @@ class Board:
     What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
     [(name of a layer of ``rules``, Box in nm), ...]. routed[level]: array (n, 5) of the same on a metal layer, the last
     column the net's place in ``nets``. fixed[level]: array (n, 4). history[level]: array (n, 4) of the places that nets
-    contended for, as often as they did.
+    contended for, as often as they did. cuts: array (n, 4) of the cells' own vias above their pins.
     """
 
     def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:
@@ -49,6 +49,7 @@ class Board:
         self.routed: Layers = {level: self._owned(name) for name, level in self.levels.items()}
         left = {level: self.top.begin_shapes_rec(self.layers[name]) for name, level in self.levels.items() if level}
         self.fixed: Layers = {level: boxes(db.Region(shapes)) for level, shapes in left.items()}
+        self.cuts: Boxes = boxes(db.Region(self.top.begin_shapes_rec(self.layers[rules.vias[0].name])))
         self.history: Layers = {level: np.empty((0, 4), int) for level in self.fixed}
 
     def _lift(self, shapes: Mapping[str, NetShapes]) -> None:

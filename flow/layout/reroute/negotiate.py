@@ -22,7 +22,7 @@ from .violations import Violations, find, find_in_file, split_levels
 PATIENCE = 20  # evicted nets for every one that is to be routed, at most
 JUMPER_TRIES = 3  # times that a net is routed with antenna jumpers; then it goes without, and keeps its antenna
 JOBS = 2  # in which the router's layout is checked
-ROUNDS = 5  # a net that is evicted for another may get an antenna
+ROUNDS = 12  # a net that is evicted for another may get an antenna
 
 Pins = Mapping[str, Sequence[Sequence[Sequence[Any]]]]  # by net and pin (layer, left, bottom, right, top), um
 

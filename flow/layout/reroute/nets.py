@@ -7,7 +7,7 @@ import numpy as np
 
 from ..geometry.boxes import Box, Boxes
 from .area import meet_area
-from .board import Board
+from .board import Board, overlapping
 from .route import CELL_PINS, Place, Point, Route, around
 from .search import search
 from .window import NetView, Window
@@ -162,6 +162,10 @@ def _access(window: Window, level: int, point: Point, place: Point) -> Route | N
     route, above = Route(), max(level, CELL_PINS + 1)
     if level == CELL_PINS:
         route.via(window.rules, level, point)
+        via = window.rules.vias[level]
+        reach = via.size // 2 + via.space - 1
+        if len(overlapping(window.view.board.cuts, around(point, point, (reach, reach)))):
+            return None
     low, high = ((f(point[0], place[0]), f(point[1], place[1])) for f in (min, max))
     route.segment(above, around(low, high, window.rules.layers[above].half))
     return route if all(window.clear(above, box) for box in route.segments[above]) else None

@@ -28,12 +28,16 @@ class Layer:
 
 @dataclass(frozen=True)
 class Via:
-    """Between RoutingRules.layers[k] and [k + 1], k its place: size (nm); half of the (width, height) of both pads."""
+    """Between RoutingRules.layers[k] and [k + 1], k its place.
+
+    size, space (nm); below, above: half of the (width, height) of both pads.
+    """
 
     name: str
     layer: int
     datatype: int
     size: int
+    space: int
     below: tuple[int, int]
     above: tuple[int, int]
 
@@ -58,7 +62,8 @@ class RoutingRules:
         for level, via in enumerate(tech.vias):
             own = rules["vias"][via.name]
             pads = _pad(layers[level], via, own["below"]), _pad(layers[level + 1], via, own["above"])
-            vias.append(Via(via.name, via.layer, via.datatype, round(via.size_um * 1000), *pads))
+            size, space = round(via.size_um * 1000), round(via.space_um * 1000)
+            vias.append(Via(via.name, via.layer, via.datatype, size, space, *pads))
         pitch = tech.pin_pitch_um
         return cls(tuple(layers), tuple(vias), (round(pitch["vertical"] * 500), round(pitch["horizontal"] * 500)))
 

@@ -17,7 +17,8 @@ from .rules import RoutingRules
 class Violations:
     """Violations of a layout.
 
-    spacing: (level, box, box) of two edges (nm) that are too near. antennas: (level, polygon as KLayout writes it).
+    spacing: (level, box, box) of two edges (nm) that are too near, of metal or of the vias below it.
+    antennas: (level, polygon as KLayout writes it).
     Levels are those of RoutingRules.layers.
     """
 
@@ -50,7 +51,10 @@ def find(
     for level in filter(None, levels):  # the lowest is that of the cells' pins
         layer = rules.layers[level]
         metal = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype)))
-        for pair in metal.space_check(layer.space).each():
+        via = rules.vias[level - 1]
+        cuts = db.Region(top.begin_shapes_rec(layout.layer(via.layer, via.datatype)))
+        found = metal.space_check(layer.space), metal.width_check(layer.width), cuts.space_check(via.space)
+        for pair in (pair for pairs in found for pair in pairs.each()):
             spacing.append((level, corners(pair.first.bbox()), corners(pair.second.bbox())))
     bad = antennas(layout, top, tech, levels).items()
     charged = [(level, str(polygon)) for level, region in bad for polygon in region.each()]

@@ -27,7 +27,9 @@ class Drc(Step[PdkParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         deck = with_flat_spaces(inputs["deck"].read_text())
-        outputs["deck"].write_text("\n".join([deck, *hole_rules(coriolis_platform(self.parameters.pdk))]) + "\n")
+        tech = coriolis_platform(self.parameters.pdk)
+        masks = [tech.masks.read_text()] if tech.masks else []
+        outputs["deck"].write_text("\n".join([deck, *hole_rules(tech), *masks]) + "\n")
         status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
         if status:
             lines = output.strip().splitlines()

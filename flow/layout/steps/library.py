@@ -6,7 +6,8 @@ from typing import Any
 
 from base.steps import Files, Step
 from base.tools import run
-from platforms.coriolis import coriolis_platform, standard_cells
+from cells.standard import standard_cells
+from platforms.coriolis import coriolis_platform
 from platforms.extraction import device_models, extraction_platform
 
 from .. import pdkmaster
@@ -42,15 +43,16 @@ class Library(Step[PdkParameters]):
         tech = coriolis_platform(pdk)
         devices = importlib.import_module(tech.package).prims_spiceparams
         description = importlib.import_module(f"{tech.package}.pdkmaster")
-        library = standard_cells(pdk)
+        standard = standard_cells(pdk, outputs["gds"].parents[1] / "drawn")
+        library = standard.library
         cells = [cell for cell in library.cells if cell.name != "Gallery"]
         rules = pdkmaster.routing_rules(tech, description.tech.primitives)
         outputs["geometry"].write_text(json.dumps(pdkmaster.layout_geometry(tech), indent=1) + "\n")
         outputs["rules"].write_text(json.dumps(rules, indent=1) + "\n")
-        pdkmaster.export_coriolis(outputs["coriolis"], description, library, tech)
+        pdkmaster.export_coriolis(outputs["coriolis"], description, standard, tech)
         for name, deck in pdkmaster.export_decks(description, devices).items():
             outputs[name].write_text(deck)
-        pdkmaster.export_gds(outputs["gds"], description, library)
+        standard.write_gds(outputs["gds"])
         outputs["spice"].write_text(pdkmaster.export_spice(cells, devices))
         areas = {cell.name: pdkmaster.cell_area(cell) for cell in cells}
         outputs["areas"].write_text(json.dumps(areas, indent=1))

@@ -24,7 +24,7 @@ from ..netlist.routed import placement, routed_netlist
 
 MODEL = "talbot_block"  # Coriolis works in lower case
 OPTIONS = ("effort", "density_variation", "strap_pitch_um", "events")  # in a request, as those of the technology
-OF_TECH = ("row_um", "grid_um", "strap_um", "rail_overlap_um", "pin_pitch_um")
+OF_TECH = ("row_um", "grid_um", "strap_um", "rail", "rail_um", "rail_overlap_um", "rails_over_edge", "pin_pitch_um")
 PHASES = ("clock_tree_s", "placement_s", "power_s", "routing_s")
 
 

@@ -39,7 +39,7 @@ class Reroute(Step[RerouteParameters]):
 
     open_nets: still open. rerouted_nets: rerouted because they were open; antenna_jumpers: because of an antenna, with
     a jumper on the top layer in front of every gate; respaced_nets: because another net was too near; evicted_nets:
-    because they were in the way. The clock tree is left alone, except the net from the port to its root.
+    because they were in the way, those of the clock tree, too.
     """
 
     name = "reroute"
@@ -63,7 +63,7 @@ class Reroute(Step[RerouteParameters]):
         layout, left = read_gds(inputs["gds"]), open_nets(inputs["log"].read_text())
         shapes = json.loads(inputs["shapes"].read_text())
         # Of a shape that two nets have drawn, the open one's is the short: it claims last
-        order = [net for net in shapes if net in names and net not in left] + left
+        order = [net for net in shapes if net not in left] + left
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
         board = Board(layout, rules, {net: shapes[net] for net in order})
         found = reroute(board, {net: shapes[net]["pins"] for net in order}, left, p.most, inputs["gds"], tech)

@@ -4,7 +4,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import read_gds, write_gds
+from base.gds import db, read_gds, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
@@ -28,8 +28,16 @@ class StreamOutParameters:
     assembled: bool = False
 
 
+def draw_cells(layout: "db.Layout", library: "db.Layout") -> None:
+    """Draw the cells as in ``library``: Coriolis does not know all of their masks."""
+    for cell in library.each_cell():
+        if drawn := layout.cell(cell.name):
+            drawn.clear()
+            drawn.copy_shapes(cell)
+
+
 class StreamOut(Step[StreamOutParameters]):
-    """Ports labelled, narrow notches filled, segment ends trimmed, small pads grown.
+    """Cells with all their masks, ports labelled, narrow notches filled, segment ends trimmed, small pads grown.
 
     The Verilog has no hierarchy; in the SPICE a macro is a subcircuit.
     """
@@ -40,6 +48,7 @@ class StreamOut(Step[StreamOutParameters]):
         "netlist": "place_route.netlist",
         "synthesized": "synthesis.netlist",
         "cells": "library.spice",
+        "masks": "library.gds",
         "rules": "library.rules",
         "geometry": "library.geometry",
     }
@@ -60,6 +69,7 @@ class StreamOut(Step[StreamOutParameters]):
         rules = json.loads(inputs["rules"].read_text())
         (top,) = layout.top_cells()
         top.name = netlist.name
+        draw_cells(layout, read_gds(inputs["masks"]))
         relabel(layout, names, {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES), tech)
         changed = {
             "notches": notch.fill(layout, top, tech.metals, rules["space_um"]),

@@ -1,0 +1,42 @@
+"""The cells that layouts are made of, process by process."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from base.gds import write_gds
+from cells.compact.library import library
+from cells.compact.write import BLOCKAGES, export_gds
+from platforms.coriolis import coriolis_platform
+from platforms.processes import package
+
+
+@dataclass(frozen=True)
+class StandardCells:
+    """A PDKMaster library, all layouts drawn; what writes its GDS; a module of Coriolis that completes it, or ''."""
+
+    library: Any
+    write_gds: Callable[[Path], None]
+    fix: str = ""
+
+
+def standard_cells(pdk: str, store: Path) -> StandardCells:
+    """The cells of ``pdk``: of sky130-compact those of cells.compact, else c4m-flexcell's. Raises ParameterError.
+
+    store: folder of the drawn cells.
+    """
+    if pdk == "sky130-compact":
+        made = library(store=store)
+        return StandardCells(made, partial(export_gds, made), BLOCKAGES)
+    tech = coriolis_platform(pdk)
+    made = import_module(f"platforms.{package(pdk)}.coriolis").library()
+    return StandardCells(made, partial(_exported, made, import_module(f"{tech.package}.pdkmaster").gds_layers))
+
+
+def _exported(made: Any, gds_layers: Any, path: Path) -> None:
+    from pdkmaster.io.klayout import export2db
+
+    write_gds(export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True), path)
