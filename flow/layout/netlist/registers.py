@@ -127,8 +127,8 @@ class Cut:
 
         A guess from random states: a constant is a register whose next state is what it holds, a duplicate has the same
         next state as the other wherever both hold the same; of several the one whose next state comes from most of the
-        same gates. One substitute changes what others seem to hold: therefore in turns. Registers without one are left
-        out.
+        same gates, and from the fewest others. One substitute changes what others seem to hold: therefore in turns.
+        Registers without one are left out.
         """
         rng = random.Random(1)
         levels: dict[Bit, int] = {"0": 0, "1": ALL}
@@ -151,7 +151,9 @@ class Cut:
                     held = None
                 free = (other for other in present if other not in wrong[bit] and after[bit] == after[other])
                 same = (other for other in free if not (then[bit] ^ then[other]) & ~(now[bit] ^ now[other]))
-                better[bit] = held or min(same, default=None, key=lambda other, bit=bit: len(cone(bit) ^ cone(other)))
+                better[bit] = held or min(
+                    same, default=None, key=lambda other, bit=bit: _unlike(cone(bit), cone(other))
+                )
             kept = kept + 1 if better == guess and None not in guess.values() else 0
             guess = better
             if kept == SURE:
@@ -230,3 +232,8 @@ class Cut:
         outputs = [*checked, *(name for name, _ in more)]
         head = f".model cut\n.inputs {' '.join(inputs)}\n.outputs {' '.join(outputs)}\n.names const0\n.names const1\n1"
         return used, "\n".join([head, *lines, *(line for _, made in more for line in made), ".end", ""])
+
+
+def _unlike(cone: set[Bit], other: set[Bit]) -> tuple[int, int]:
+    """How unlike two cones are: what of ``cone`` is not in the ``other``, then what is in one of them alone."""
+    return len(cone - other), len(cone ^ other)
