@@ -9,7 +9,7 @@ from typing import Any
 
 from base.gds import write_gds
 from cells.compact.library import library
-from cells.compact.write import BLOCKAGES, export_gds
+from cells.compact.write import BLOCKAGES, export_gds, exported
 from platforms.coriolis import coriolis_platform
 from platforms.processes import package
 
@@ -33,10 +33,5 @@ def standard_cells(pdk: str, store: Path) -> StandardCells:
         return StandardCells(made, partial(export_gds, made), BLOCKAGES)
     tech = coriolis_platform(pdk)
     made = import_module(f"platforms.{package(pdk)}.coriolis").library()
-    return StandardCells(made, partial(_exported, made, import_module(f"{tech.package}.pdkmaster").gds_layers))
-
-
-def _exported(made: Any, gds_layers: Any, path: Path) -> None:
-    from pdkmaster.io.klayout import export2db
-
-    write_gds(export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True), path)
+    gds_layers = import_module(f"{tech.package}.pdkmaster").gds_layers
+    return StandardCells(made, lambda path: write_gds(exported(made, gds_layers), path))

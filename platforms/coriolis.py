@@ -5,9 +5,7 @@ from importlib import import_module
 from pathlib import Path
 
 from .layers import GdsLayer, Layer, Via
-from .processes import package
-
-CELLS = {"sky130-compact": "compact"}  # modules of processes with other cells
+from .processes import OTHER_CELLS, package
 
 
 @dataclass(frozen=True)
@@ -78,5 +76,5 @@ class CoriolisPlatform:
 
 def coriolis_platform(pdk: str) -> CoriolisPlatform:
     """The process ``pdk`` for the layout flow. Raises ParameterError."""
-    folder = package(pdk)
-    return import_module(f"platforms.{folder}.{CELLS.get(pdk, 'coriolis')}").PLATFORM
+    folder, (_, module) = package(pdk), OTHER_CELLS.get(pdk, ("", "coriolis"))
+    return import_module(f"platforms.{folder}.{module}").PLATFORM

@@ -10,7 +10,6 @@ SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon
 WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}
 AREAS = {"li": 56_100, "m1": 83_000}  # nm2
 ACCESS = (160, 145)  # nm, half of what a route needs on met1 over a pin: the pads of a via down and of one up
-STEP = 260  # nm: half a track, at whose multiples a route can meet a pin
 
 
 def broken(drawing: Drawing) -> list[str]:
@@ -30,18 +29,22 @@ def broken(drawing: Drawing) -> list[str]:
             out += [f"{layer} short of {a} and {b}" for b, second in own[i + 1 :] if not (first & second).is_empty()]
     if not ((whole["licon"] & whole["poly"]).sized(190) & whole["difftap"]).is_empty():
         out.append("licon on poly to difftap")
-    out += [f"{pin.net} out of reach" for pin in drawing.shapes if pin.layer == "li.pin" and not reachable(pin, nets)]
+    pins, step = [s for s in drawing.shapes if s.layer == "li.pin"], round(drawing.canvas.site * 500)
+    out += [f"{pin.net} out of reach" for pin in pins if not reachable(pin, nets, step)]
     return out
 
 
-def reachable(pin: Shape, nets: Mapping[tuple[str, str], db.Region]) -> bool:
-    """Whether a route on met1 has room over a ``pin`` on li. nets: the cell's shapes by layer and net."""
+def reachable(pin: Shape, nets: Mapping[tuple[str, str], db.Region], step: int) -> bool:
+    """Whether a route on met1 has room over a ``pin`` on li.
+
+    nets: the cell's shapes by layer and net. step: half a track, at whose multiples a route can meet a pin, nm.
+    """
     others = db.Region()
     for (layer, net), region in nets.items():
         if layer == "m1" and net != pin.net:
             others += region
     reach, box = [half + SPACES["m1"] - 1 for half in ACCESS], pin.nm
     x, inset = box.center().x, WIDTHS["li"] // 2
-    places = range(-(-(box.bottom + inset) // STEP), (box.top - inset) // STEP + 1)
-    around = (db.Box(x - reach[0], k * STEP - reach[1], x + reach[0], k * STEP + reach[1]) for k in places)
+    places = range(-(-(box.bottom + inset) // step), (box.top - inset) // step + 1)
+    around = (db.Box(x - reach[0], k * step - reach[1], x + reach[0], k * step + reach[1]) for k in places)
     return any((others & db.Region(room)).is_empty() for room in around)

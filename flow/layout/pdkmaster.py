@@ -12,9 +12,11 @@ from cells.standard import StandardCells
 from platforms.coriolis import CoriolisPlatform
 from platforms.layers import Layer, Via
 
+from .netlist.netlist import OUTPUT_PINS
+
 GRID_UM = 0.005  # on which pads are drawn
 DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"}
-DIRECTIONS |= dict.fromkeys(("q", "nq", "one", "zero", "carry", "sum", "co", "s"), "out")
+DIRECTIONS |= dict.fromkeys((*OUTPUT_PINS, "co", "s"), "out")
 
 
 def layout_geometry(tech: CoriolisPlatform) -> dict[str, Any]:

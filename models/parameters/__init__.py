@@ -6,7 +6,7 @@ from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .divider import DIVIDERS
 from .electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters
-from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, AmpTiming, FrameParameters, Window
+from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
 from .optics import OpticsParameters
 from .sensor import SensorParameters
 from .tile import PixelType, TileParameters
@@ -22,6 +22,7 @@ __all__ = [
     "ROWS_MAX",
     "SAMPLES_PER_PIXEL",
     "SPI_INPUTS",
+    "SHORT_TIMING",
     "AmpTiming",
     "ArrayParameters",
     "ChipParameters",

@@ -34,6 +34,9 @@ class AmpTiming:
             check_int(f.name, getattr(self, f.name), 0 if f.name == "n_cm" else 1, 255 if f.name == "n_cm" else 65535)
 
 
+SHORT_TIMING = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)  # of simulated frames
+
+
 @dataclass(frozen=True)
 class Window:
     """Tiles to read, both ends included.

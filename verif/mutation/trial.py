@@ -2,7 +2,6 @@
 
 import contextlib
 import io
-import re
 import sys
 from collections.abc import Generator, Iterable, Sequence
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import Phase, settings
 
+from flow.layout.netlist.verilog import modules
 from rtl.harness.driven import Driven
 from rtl.harness.ports import Port, ports_of
 from rtl.harness.testbench import hooked
@@ -94,11 +94,8 @@ class Trial(OneLevel):
 def same_module(head: Trace, cls: type, arguments: Sequence[Any]) -> bool:
     """Return whether ``cls(*arguments)`` has the Verilog of the module of that name in the traced component."""
     name = cls.__name__
-    alone, within = (
-        re.findall(rf"(?s)^module {name}\b.*?^endmodule", re.sub(r"(?m)^\s*//.*\n", "", text), re.MULTILINE)[:1]
-        for text in (translate_component(cls(*arguments), name), head.verilog())
-    )
-    return bool(within) and alone == within
+    alone, within = modules(translate_component(cls(*arguments), name)), modules(head.verilog())
+    return name in within and alone.get(name) == within[name]
 
 
 def attempt(

@@ -4,12 +4,11 @@ import numpy as np
 import numpy.typing as npt
 
 from models.digital.host import command, frame_writes, read_transfer, write_transfers
-from models.parameters import MODES, AmpTiming, FrameParameters, SensorParameters
+from models.parameters import MODES, SHORT_TIMING, FrameParameters, SensorParameters
 from models.parameters.registers import register_map
 
 HALF_BIT = 4  # cycles, at the fastest clock of SPI
 RESET = 8
-FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)
 FRAME_CYCLES = 3000  # after which a frame of the test has ended
 INPUTS = ("reset", "sclk", "csn", "mosi", "link_rdy", "comparator")
 CHIP = register_map()
@@ -55,13 +54,13 @@ def frames(sensor: SensorParameters) -> list[FrameParameters]:
     """A frame of the test pattern in each mode."""
     made = [
         FrameParameters(
-            sensor.full_window, mode, test_pattern=True, timing=FAST, threshold=9 * n, frame_number=0x5A5A >> n
+            sensor.full_window, mode, test_pattern=True, timing=SHORT_TIMING, threshold=9 * n, frame_number=0x5A5A >> n
         )
         for n, mode in enumerate(MODES)
     ]
     return [
         *made,
-        FrameParameters(sensor.full_window, "tof", test_pattern=True, timing=FAST, phase=True, noise_floor=20),
+        FrameParameters(sensor.full_window, "tof", test_pattern=True, timing=SHORT_TIMING, phase=True, noise_floor=20),
     ]
 
 

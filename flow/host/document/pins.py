@@ -4,6 +4,8 @@ from collections.abc import Iterator
 
 from rtl.asp_chip.pins import pins
 
+from .markdown import table
+
 HOST = {  # the pins of the digital side
     "clk": "System clock. Every other pin but the SPI pins is synchronous to its rising edge.",
     "reset": "Active high; synchronized on the chip. Hold it for 4 rising edges of `clk` or more.",
@@ -57,8 +59,8 @@ def _table(meaning: dict[str, str]) -> str:
     widths = {name: (direction, width) for direction, name, width in _ports()}
     if unknown := set(widths) ^ {*HOST, *ANALOG}:
         raise KeyError(f"pins {sorted(unknown)}: a port without a meaning here, or the reverse")
-    lines = ["| pin | direction | bits | meaning |", "|---|---|---|---|"]
-    return "\n".join(lines + [f"| `{name}` | {' | '.join(widths[name])} | {text} |" for name, text in meaning.items()])
+    rows = ((f"`{name}`", *widths[name], text) for name, text in meaning.items())
+    return table(["pin", "direction", "bits", "meaning"], rows)
 
 
 def _ports() -> Iterator[tuple[str, str, str]]:

@@ -7,6 +7,8 @@ from pathlib import Path
 from base.page import render
 from models.parameters.registers import Field, RegisterMap
 
+from .markdown import table
+
 NOTE = (
     "Generated from models/parameters/registers/asp_chip.rdl by talbot document. Byte addresses; a field of more than "
     "a byte is little-endian. Access: ro read only, rw read and write (the configuration), wo write only (reads 0), "
@@ -50,9 +52,8 @@ def rows(chip: RegisterMap) -> Iterator[Row]:
 
 def markdown(chip: RegisterMap) -> str:
     """The map as a Markdown document."""
-    lines = ["# Registers of AspChip", "", f"{NOTE} How a host uses them: [host.md](host.md).", ""]
-    lines += [f"| {' | '.join(COLUMNS)} |", "|" + "---|" * len(COLUMNS)]
-    return "\n".join(lines + [f"| {' | '.join(row.cells)} |" for row in rows(chip)]) + "\n"
+    note = f"{NOTE} How a host uses them: [host.md](host.md)."
+    return f"# Registers of AspChip\n\n{note}\n\n{table(COLUMNS, (row.cells for row in rows(chip)))}\n"
 
 
 def html(chip: RegisterMap) -> str:

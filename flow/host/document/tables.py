@@ -1,7 +1,7 @@
 """What `talbot document` writes between the marks of docs/host.md: pins, tile, worked examples."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from models.digital.phase import phase_samples
 from models.parameters import AmpTiming, FrameParameters, SensorParameters, Window
 from models.parameters.registers import register_map
 
+from .markdown import table
 from .pins import analog_pins, host_pins
 
 SENSOR = SensorParameters()
@@ -25,12 +26,6 @@ EXAMPLE = FrameParameters(
     frame_number=0x1234,
     timing=AmpTiming(t_int=1),
 )
-
-
-def table(head: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """A Markdown table."""
-    lines = [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
-    return "\n".join(lines + [f"| {' | '.join(map(str, row))} |" for row in rows])
 
 
 def tile_order() -> str:

@@ -11,7 +11,15 @@ from models.digital.amp_ctrl import TAPS
 from models.digital.host import command, frame_values
 from models.digital.pattern import PatternEnd
 from models.digital.scan import Scan
-from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters, Window
+from models.parameters import (
+    SHORT_TIMING,
+    AmpTiming,
+    ArrayParameters,
+    ChipParameters,
+    FrameParameters,
+    SensorParameters,
+    Window,
+)
 from models.parameters.registers import register_map
 
 from .bench import NEVER, Bench
@@ -21,12 +29,11 @@ ROWS, COLS, LANES = 10, 17, 2  # partial tiles at both edges
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
 FULL = SENSOR.full_window
 CHIP = register_map()
-FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)
 LIMIT = 100_000  # cycles
 
 
 def pattern(window=FULL, mode="edge", **fields):
-    return FrameParameters(window, mode, test_pattern=True, **{"timing": FAST} | fields)
+    return FrameParameters(window, mode, test_pattern=True, **{"timing": SHORT_TIMING} | fields)
 
 
 FRAMES = {

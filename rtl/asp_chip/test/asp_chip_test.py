@@ -10,7 +10,7 @@ from models.digital.host import command, frame_writes, read_transfer
 from models.digital.pattern import PatternEnd
 from models.parameters import (
     MODES,
-    AmpTiming,
+    SHORT_TIMING,
     ArrayParameters,
     ChipParameters,
     FrameParameters,
@@ -27,13 +27,12 @@ from .chip_bench import ChipBench
 ROWS, COLS, LANES = 8, 13, 2
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS), chip=ChipParameters(lanes=LANES))
 FULL = SENSOR.full_window
-FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)
 PATTERN = PatternEnd(ROWS, COLS)
 CHIP = register_map()
 
 
 def pattern_frame(window=FULL, mode="edge", **fields):
-    return FrameParameters(window, mode, test_pattern=True, timing=FAST, **fields)
+    return FrameParameters(window, mode, test_pattern=True, timing=SHORT_TIMING, **fields)
 
 
 FRAMES = {
@@ -118,7 +117,7 @@ class FrameTests(ChipTests):
             def values(self, mode):
                 return held
 
-        frame = FrameParameters(FULL, threshold=20, timing=FAST)
+        frame = FrameParameters(FULL, threshold=20, timing=SHORT_TIMING)
         trims = [(-1) ** t * (20 * t + 3) for t in range(24)]
         bench = self.bench(held=held, stall=0.7)
         self.check(bench, frame, golden_frame(None, SENSOR, frame, FrontEnd(ROWS, COLS)), trims)

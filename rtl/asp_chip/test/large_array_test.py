@@ -4,7 +4,7 @@ from models.chip import golden_frame
 from models.digital.host import frame_writes
 from models.digital.pattern import PatternEnd
 from models.parameters import (
-    AmpTiming,
+    SHORT_TIMING,
     ArrayParameters,
     ChipParameters,
     FrameParameters,
@@ -17,7 +17,6 @@ from rtl.harness.testbench import build
 
 from .chip_bench import ChipBench
 
-FAST = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)
 TILES = [(255, 255), (0, 85), (170, 0)]  # every bit of an address rises and falls
 
 
@@ -43,7 +42,7 @@ class TestVerilog:
             trims = [(-1) ** t * (20 * t + 3) for t in range(tile.n_types)]
             for number, (row, col) in enumerate(TILES):
                 frame = FrameParameters(
-                    Window(row, row, col, col), threshold=0, test_pattern=True, frame_number=number, timing=FAST
+                    Window(row, row, col, col), threshold=0, test_pattern=True, frame_number=number, timing=SHORT_TIMING
                 )
                 bench.stream.clear()
                 bench.pins.clear()
