@@ -34,12 +34,12 @@ class CoriolisPlatform:
     metals: from the cells' pins up; vias[k] connects metals[k] and metals[k + 1]; straps run on the last metal,
     strap_um wide, and meet a rail over rail_overlap_um; a rail, on metals[rail], is rail_um wide, half of that at the
     edge unless rails_over_edge: the outermost ones then are half outside. pin_pitch_um: tracks of the pins' two layers,
-    'horizontal' (west and east) and 'vertical'. label_datatype, pin_datatype: GDS datatypes of labels and of what the
+    'horizontal' (west and east) and 'vertical'. route_step_um: of the router's grid, along x and y. label_datatype, pin_datatype: GDS datatypes of labels and of what the
     decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
     metal. fill: of all metals but the lowest. corners: at which cells are timed, that of synthesis first; () where
     there are no models of the devices. antenna_walls: whether antenna ratios are those of side walls, else of area.
-    most_open: nets that `reroute` takes on. utilization_most: at which a search begins. masks: rules of
+    utilization_most: at which a search begins. masks: rules of
     KLayout beyond those of PDKMaster's deck.
     """
 
@@ -57,6 +57,7 @@ class CoriolisPlatform:
     rail_um: float
     rail_overlap_um: float
     pin_pitch_um: dict[str, float]
+    route_step_um: tuple[float, float]
     label_datatype: int
     pin_datatype: int
     outline: GdsLayer
@@ -68,7 +69,6 @@ class CoriolisPlatform:
     corners: tuple[str, ...] = ()
     rail: int = 0
     rails_over_edge: bool = False
-    most_open: int = 60
     utilization_most: float = 0.95
     masks: Path | None = None
     antenna_walls: bool = True

@@ -26,9 +26,9 @@ from .steps.lef import Lef
 from .steps.library import Library
 from .steps.lvs import Lvs
 from .steps.parameters import PdkParameters
-from .steps.place_route import PlaceRoute, PlaceRouteParameters
+from .steps.place import Place, PlaceParameters
 from .steps.power import Power, PowerParameters
-from .steps.reroute import Reroute, RerouteParameters
+from .steps.route import Route, RouteParameters
 from .steps.sta import Sta, StaParameters
 from .steps.sta_blocks import StaBlocks, StaBlocksParameters
 from .steps.stimulus import Stimulus, StimulusParameters
@@ -43,9 +43,8 @@ FAN_OUT = 12  # most cells that one signal drives, where synthesis knows the cel
 # Of the whole chip, whose netlist with delays simulates a thousand times slower than a block's
 CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 # Inputs of the steps after `assemble` in a design with macros: the flat netlist and placement
-ASSEMBLED = {"place_route.netlist": "assemble.netlist"}
-ASSEMBLED |= dict.fromkeys(("place_route.placement", "reroute.placement"), "assemble.placement")
-MOST_OPEN = 200  # nets that `reroute` takes on around macros, where the router leaves more open
+ASSEMBLED = {"place.netlist": "assemble.netlist"}
+ASSEMBLED |= dict.fromkeys(("place.placement", "route.placement"), "assemble.placement")
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
 EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second attempt has the one that its first has not
 ASPECTS = 1.0, 1.25  # width by height of a round's attempts
@@ -77,8 +76,8 @@ def synthesis_steps(design: Design, options: Options) -> list[Step]:
     return [library, *timing, TimedSynthesis(parameters, options.corners[0])]
 
 
-def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, PlaceRoute]]:
-    """Pairs (floorplan, place and route), the smallest area first.
+def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Place]]:
+    """Pairs (floorplan, placement), the smallest area first.
 
     At every utilization the design's variation of density comes first, in a square, then another one in another shape:
     Coriolis has no seed, and these are what its result depends on.
@@ -89,20 +88,18 @@ def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Plac
     for k in range(int((begin - LEAST_UTILIZATION) / UTILIZATION_STEP + 1e-9) + 1):
         for variation, aspect in zip((own, EVEN if own > EVEN else UNEVEN), ASPECTS, strict=True):
             utilization = round(begin - UTILIZATION_STEP * k, 4)
-            parameters = PlaceRouteParameters(
+            parameters = PlaceParameters(
                 options.pdk, design.clock.port, options.effort, variation, macros=macro_modules(design)
             )
-            yield Floorplan(FloorplanParameters(options.pdk, utilization, aspect, places)), PlaceRoute(parameters)
+            yield Floorplan(FloorplanParameters(options.pdk, utilization, aspect, places)), Place(parameters)
 
 
 def routing_steps(design: Design, options: Options) -> list[Step]:
-    """The steps after place and route that decide whether the routing keeps the design rules; `reroute` is first."""
+    """The steps after a placement that decide whether the routing keeps the design rules; `route` is first."""
     clock, macros, pdk = design.clock.port, macro_modules(design), options.pdk
-    most = MOST_OPEN if macros else coriolis_platform(pdk).most_open
-    reroute = Reroute(RerouteParameters(pdk, clock, most))
     assemble = [Assemble(AssembleParameters(pdk, macros))] if macros else []
     checks = [step(PdkParameters(pdk)) for step in (Fill, Drc, Antenna)]
-    return [reroute, *assemble, StreamOut(StreamOutParameters(pdk, clock, bool(macros))), *checks]
+    return [Route(RouteParameters(pdk, clock)), *assemble, StreamOut(StreamOutParameters(pdk, clock, bool(macros))), *checks]
 
 
 def signoff_steps(design: Design, options: Options) -> list[Step]:

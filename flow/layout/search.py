@@ -16,8 +16,7 @@ def lay_out_smallest(
 ) -> list[Attempt]:
     """Run all steps with ``runner``; the attempts, of which the last closes if any does.
 
-    An attempt closes when every net is routed, by the router or by `reroute`, and no rule of design or antennas is
-    broken. signoff: function (design, options) -> the steps after it. Raises ParameterError where macros find no place
+    An attempt closes when every net is routed and no rule of design or antennas is broken. signoff: function (design, options) -> the steps after it. Raises ParameterError where macros find no place
     in any attempt, ToolError for a missing tool, before anything runs.
     """
     version(f"python {coriolis_platform(options.pdk).wheel}")
@@ -27,9 +26,9 @@ def lay_out_smallest(
     for step in synthesis_steps(design, options):
         runner.run(step)
     tried, placed, misfit = [], 0, None
-    for floorplan, place_route in attempts(design, options):
+    for floorplan, place in attempts(design, options):
         shape = floorplan.parameters
-        attempt = Attempt(shape.utilization, shape.aspect, place_route.parameters.density_variation)
+        attempt = Attempt(shape.utilization, shape.aspect, place.parameters.density_variation)
         tried.append(attempt)
         try:
             runner.run(floorplan)
@@ -37,10 +36,12 @@ def lay_out_smallest(
             misfit = error
             continue
         placed += 1
-        found = runner.run(place_route)["metrics"]
-        attempt.open_segments = found["open_segments"]
-        reroute, *checks = routing_steps(design, options)
-        if found["stopped"] is None and not runner.run(reroute)["metrics"]["open_nets"]:
+        found = runner.run(place)["metrics"]
+        if found["stopped"] is not None:
+            continue
+        route, *checks = routing_steps(design, options)
+        attempt.open_nets = runner.run(route)["metrics"]["open_nets"]
+        if not attempt.open_nets:
             pairs = zip(checks, runner.run_all(checks), strict=True)
             attempt.rules_broken = sum(made["metrics"].get(f"{step.name}_violations", 0) for step, made in pairs)
             if not attempt.rules_broken:

@@ -53,6 +53,7 @@ PLATFORM = CoriolisPlatform(
     rail_um=2.24,
     rail_overlap_um=0.9,
     pin_pitch_um={"horizontal": 0.5, "vertical": 0.5},
+    route_step_um=(0.25, 0.25),
     label_datatype=layers.LABEL,
     pin_datatype=layers.PIN,
     outline=layers.PRBOUNDARY,

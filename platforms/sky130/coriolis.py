@@ -52,6 +52,7 @@ PLATFORM = CoriolisPlatform(
     rail_um=1.9,
     rail_overlap_um=1.2,
     pin_pitch_um={"horizontal": 0.46, "vertical": 0.51},
+    route_step_um=(0.255, 0.23),
     label_datatype=layers.LABEL,
     pin_datatype=layers.PIN,
     outline=layers.PRBOUNDARY,

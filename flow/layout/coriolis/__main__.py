@@ -1,6 +1,6 @@
-"""Place and route one netlist: reads request.json, writes result.json and <cell>.gds into the working directory.
+"""Place one netlist, with clock tree and power straps: reads request.json, writes result.json and <cell>.gds into the working directory.
 
-The exit status is 0 also with open segments, which are in result.json. Coriolis prints to the terminal.
+Coriolis prints to the terminal.
 """
 
 import json
@@ -17,22 +17,20 @@ def main(path: str) -> int:
     begin = time.perf_counter()
     configure(request)
     from .block import make_block
-    from .dump import instances, segments, shapes
+    from .dump import instances, shapes
     from .macros import make_macros
-    from .short import draw_short
 
     make_macros(request)
     cell = load(request["cell"])
     block = make_block(cell, request)
     times = {"load": time.perf_counter() - begin}
-    routed = block.doPnR()
+    block.doPnR()
     times.update(block.times)
     begin = time.perf_counter()
-    print(f"short segments drawn: {draw_short(cell)}")
     block.save()
     Path("shapes.json").write_text(json.dumps(shapes(cell)))
-    result = {"routed": bool(routed), "straps": block.straps, "pins": block.pins, "instances": instances(cell)}
-    result |= {"segments": segments(cell), "times": times | {"save": time.perf_counter() - begin}}
+    result = {"straps": block.straps, "pins": block.pins, "instances": instances(cell)}
+    result |= {"times": times | {"save": time.perf_counter() - begin}}
     Path("result.json").write_text(json.dumps(result))
     return 0
 

@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Sequence
-from math import ceil
 from typing import Any
 
 from coriolis.helpers import u
@@ -17,10 +16,6 @@ from .macros import fix_macros
 from .straps import PIN_CLEARANCE_UM, Strap, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
-# Tracks (horizontal, vertical) of a cell of the global router, reserved for the nets that end there: most, least;
-# around macros, where nets from far away gather, twice as many
-RESERVED = {False: ((6, 3), (3, 1)), True: ((11, 9), (6, 4))}
-RAIL_CLEARANCE_UM = 0.3  # of a pin's axis from a rail
 SPARE_ROWS = 8  # side of a leaf of the clock tree, in rows; Coriolis takes no less than 7
 
 
@@ -36,15 +31,7 @@ def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
     # One of the diodes that Coriolis adds against antennas stays open; the antenna step checks the result
     cfg.etesian.antennaGateMaxWL = u(40000.0)
     cfg.etesian.antennaDiodeMaxWL = u(80000.0)
-    # of the global router around a net's pins, in heights of a row: there must be a path around a macro
-    sides = (max(macro["width_um"], macro["height_um"]) for macro in request["macros"])
-    cfg.katana.searchHalo = 1 + ceil(max(sides, default=0) / request["row_um"])
-    cfg.anabatic.globalIterations = 20
     cfg.anabatic.topRoutingLayer = request["metals"][-1]["name"]
-    local, least = RESERVED[bool(request["macros"])]
-    cfg.katana.hTracksReservedLocal, cfg.katana.vTracksReservedLocal = local
-    cfg.katana.hTracksReservedMin, cfg.katana.vTracksReservedMin = least
-    cfg.katana.eventsLimit = request["events"]
     cfg.block.spareSide = u(request["row_um"] * SPARE_ROWS)
     conf.useSpares = conf.useClockTree = request["clock_tree"]
     conf.useHFNS = False
@@ -100,10 +87,10 @@ class TalbotBlock(Block):
         """Place the cells."""
         self._timed("placement", super().place)
 
-    def route(self) -> Any:
-        """Draw the straps and route; whether every net is routed."""
+    def route(self) -> bool:
+        """Draw the straps, and no more: Coriolis's router is not used, since it opens what `route` closes."""
         self._timed("power", self.power.create)
-        return self._timed("routing", super().route)
+        return True
 
 
 def spread(side: str, nets: Sequence[str], request: dict[str, Any], straps: Sequence[float]) -> list[list[Any]]:
@@ -112,9 +99,6 @@ def spread(side: str, nets: Sequence[str], request: dict[str, Any], straps: Sequ
     length = request["height_um" if across else "width_um"]
     pitch = request["pin_pitch_um"]["horizontal" if across else "vertical"]
     tracks = range(6, int(length / pitch) - 6)
-    if across and request["rail"]:  # the pins are on the metal of the rails
-        row, clear = request["row_um"], request["rail_um"] / 2 + RAIL_CLEARANCE_UM
-        tracks = [k for k in tracks if clear <= (k * pitch) % row <= row - clear]
     tracks = [k for k in tracks if across or all(abs(k * pitch - x) >= PIN_CLEARANCE_UM for x in straps)][::2]
     if len(nets) > len(tracks):
         raise SystemExit(f"coriolis: {len(nets)} pins do not fit on the {side} side of {length:.1f} um")

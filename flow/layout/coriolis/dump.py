@@ -1,4 +1,4 @@
-"""Hurricane's database after routing as plain lists."""
+"""Hurricane's database after placement as plain lists."""
 
 from typing import Any
 
@@ -21,46 +21,25 @@ def instances(cell: Any) -> list[list[Any]]:
     return made
 
 
-def segments(cell: Any) -> dict[str, list[list[Any]]]:
-    """[layer, length_um, width_um] of the segments and vias of each signal net.
-
-    The layer of a via is named after the layers that it joins, its length and width are 0.
-    """
-    nets = {}
-    for net in cell.getNets():
-        if not net.isSupply():
-            nets[net.getName()] = [made for made in map(_segment, net.getComponents()) if made]
-    return nets
-
-
-def _segment(component: Any) -> list[Any] | None:
-    layer = component.getLayer().getName() if component.getLayer() is not None else ".block"
-    if layer.endswith(".block"):  # the router's blockages
-        return None
-    if isinstance(component, (Horizontal, Vertical)):
-        dx, dy = component.getTargetX() - component.getSourceX(), component.getTargetY() - component.getSourceY()
-        return [layer, _um(abs(dx) + abs(dy)), _um(component.getWidth())]
-    return [layer, 0, 0] if isinstance(component, Contact) and "_" in layer else None
-
-
 def shapes(cell: Any) -> dict[str, dict[str, list[Any]]]:
-    """Where each signal net is, for rerouting.
+    """Where each signal net is, for routing.
 
-    Lists of 'segments' [layer, left, bottom, right, top], 'vias' [layer, x, y] and 'pins': of every cell and port on
-    the net the boxes, as segments, of which any one is to be met.
+    Lists of 'segments' [layer, left, bottom, right, top] and 'vias' [layer, x, y], of the clock tree's trunk alone,
+    'ports', boxes as segments, and 'pins': of every cell on the net the boxes of which any one is to be met.
     """
     nets = {}
     for net in cell.getNets():
         if net.isSupply():
             continue
-        made = nets[net.getName()] = {"segments": [], "vias": [], "pins": []}
+        made = nets[net.getName()] = {"segments": [], "vias": [], "ports": [], "pins": []}
         for component in net.getComponents():
+            name = component.getLayer().getName() if component.getLayer() is not None else ".block"
             if isinstance(component, Pin):
-                made["pins"].append([_box(component.getLayer(), component.getBoundingBox())])
-            elif isinstance(component, (Horizontal, Vertical)) and _segment(component):
+                made["ports"].append(_box(component.getLayer(), component.getBoundingBox()))
+            elif isinstance(component, (Horizontal, Vertical)) and not name.endswith(".block"):
                 made["segments"].append(_box(component.getLayer(), component.getBoundingBox()))
-            elif isinstance(component, Contact) and _segment(component):
-                made["vias"].append([component.getLayer().getName(), _um(component.getX()), _um(component.getY())])
+            elif isinstance(component, Contact) and "_" in name:
+                made["vias"].append([name, _um(component.getX()), _um(component.getY())])
         for plug in net.getPlugs():
             place = plug.getInstance().getTransformation()
             parts = plug.getMasterNet().getExternalComponents()

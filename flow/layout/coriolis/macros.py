@@ -14,7 +14,7 @@ JUMPER_PADS = 2.0, 6.5  # from the edge of the macro, in pads: where the jumper 
 PAD_LENGTH = 2.0  # of a pad between two vias by its width: required by the least area of a layer
 MEET_UM = 0.8, 2.4  # beyond the halo of the macro: the piece that the router meets
 
-Request = dict[str, Any]  # see the step place_route
+Request = dict[str, Any]  # see the step place
 
 
 def make_macros(request: Request) -> None:

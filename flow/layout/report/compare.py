@@ -32,7 +32,7 @@ ROWS = (
     ("power_uw", "power, uW"),
     ("ir_drop_percent", "IR drop, %"),
     ("open_nets", "open nets"),
-    ("rerouted_nets", "open nets rerouted"),
+    ("evictions", "nets evicted for others"),
     ("antenna_jumpers", "nets with antenna jumpers"),
     ("drc_violations", "DRC violations"),
     ("antenna_violations", "antennas"),

@@ -24,14 +24,14 @@ RULES = json.loads((Path(__file__).parent / "rules.json").read_text())
 class Attempt:
     """One floorplan with its placement and routing.
 
-    aspect: width by height. open_segments: that the router left; None where it gave up or macros found no place.
+    aspect: width by height. open_nets: after routing; None where the placer gave up or macros found no place.
     rules_broken: of design and antennas; None without a layout.
     """
 
     utilization: float
     aspect: float
     density_variation: float
-    open_segments: int | None = None
+    open_nets: int | None = None
     rules_broken: int | None = None
 
 
@@ -65,9 +65,9 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "utilization": attempts[-1].utilization,
         "attempts": [asdict(attempt) for attempt in attempts],
         "macros": {macro.instance: macro.design for macro in design.macros} or None,
-        "wire_um": metric("assemble", "wire_um") or metric("reroute", "wire_um"),
-        **own("reroute", "open_nets", "rerouted_nets", "antenna_jumpers"),
-        "clock_buffers": metric("place_route", "clock_buffers"),
+        "wire_um": metric("assemble", "wire_um") or metric("route", "wire_um"),
+        **own("route", "open_nets", "evictions", "antenna_jumpers"),
+        "clock_buffers": metric("place", "clock_buffers"),
         "drc_violations": metric("drc", "drc_violations"),
         "lvs_match": metric("lvs", "lvs_match"),
         **{f"{step}_violations": metric(step, f"{step}_violations") for step in CHECKS},

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from flow.layout.reroute.rules import Layer, RoutingRules, Via
+from flow.layout.route.rules import Layer, RoutingRules, Via
 from platforms import layers
 
 from .plan import CORE, Box, DieParameters, nm

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from base.steps import StepError
-from flow.layout.reroute.rules import Layer, RoutingRules
+from flow.layout.route.rules import Layer, RoutingRules
 from platforms.die import TopMetal
 
 from . import shapes

@@ -30,11 +30,11 @@ class Assemble(Step[AssembleParameters]):
 
     name = "assemble"
     inputs = {
-        "netlist": "place_route.netlist",
-        "placement": "reroute.placement",
+        "netlist": "place.netlist",
+        "placement": "route.placement",
         "floorplan": "floorplan.floorplan",
         "cells": "library.spice",
-        "gds": "reroute.gds",
+        "gds": "route.gds",
         "areas": "library.areas",
     }
     outputs = {"gds": "assembled.gds", "netlist": "netlist.json", "placement": "placement.json", "spice": "parts.spi"}

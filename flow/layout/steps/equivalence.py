@@ -49,7 +49,7 @@ class Equivalence(Step[EquivalenceParameters]):
     name = "equivalence"
     inputs = {
         "rtl": "rtl",
-        "netlist": "place_route.netlist",
+        "netlist": "place.netlist",
         "verilog": "stream_out.verilog",
         "liberty": "library.liberty",
     }

@@ -14,7 +14,7 @@ class Extraction(Step[PdkParameters]):
     """From lengths and widths of the segments and the process's coefficients of each layer."""
 
     name = "extraction"
-    inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement"}
+    inputs = {"netlist": "place.netlist", "placement": "route.placement"}
     outputs = {"spef": "parasitics.spef"}
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
 

@@ -27,7 +27,7 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
     """Worst slack of setup (blocks_wns_ns) and hold (blocks_whs_ns)."""
 
     name = "sta_blocks_{corner}"
-    inputs = {"netlist": "place_route.netlist", "placement": "reroute.placement", "sdc": "sdc"}
+    inputs = {"netlist": "place.netlist", "placement": "route.placement", "sdc": "sdc"}
     inputs |= {"liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt"}
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}

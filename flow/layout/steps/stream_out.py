@@ -44,8 +44,8 @@ class StreamOut(Step[StreamOutParameters]):
 
     name = "stream_out"
     inputs = {
-        "gds": "reroute.gds",
-        "netlist": "place_route.netlist",
+        "gds": "route.gds",
+        "netlist": "place.netlist",
         "synthesized": "synthesis.netlist",
         "cells": "library.spice",
         "masks": "library.gds",
@@ -76,6 +76,7 @@ class StreamOut(Step[StreamOutParameters]):
             "trimmed": trim.trim(layout, top, tech.metals, rules["space_um"]),
             "grown": area.grow(layout, top, tech.metals, rules["metals"]),
         }
+        top.shapes(layout.layer(*tech.outline)).insert(top.bbox())
         write_gds(layout, outputs["gds"])
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
         outputs["verilog"].write_text(flat.verilog())

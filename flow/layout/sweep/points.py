@@ -65,16 +65,16 @@ def effort_point(
     options = Options("sky130", utilization, tuple(map(Path, liberty)), effort=effort)
     design = replace(design, density_variation=variation)
     runner = _runner(design, options, out)
-    floorplan, place_route = next(attempts(design, options))
+    floorplan, place = next(attempts(design, options))
     for step in (*synthesis_steps(design, options), floorplan):
         runner.run(step)
-    found = runner.run(place_route)
+    found = runner.run(place)
     made: dict[str, Any] = {"effort": effort, "variation": variation, "utilization": utilization, "closed": False}
     made |= {"seconds": found["wall_s"], "stopped": found["metrics"]["stopped"]}
     if found["metrics"]["stopped"] is not None:
         return made
-    reroute, *others = routing_steps(design, options)
-    wires = runner.run(reroute)
+    route, *others = routing_steps(design, options)
+    wires = runner.run(route)
     made["seconds"] = round(made["seconds"] + wires["wall_s"], 2)
     if wires["metrics"]["open_nets"]:
         return made

@@ -78,7 +78,7 @@ EXACTLY = [
     ("models/capture/operator.py", {"stimulus"}),
     ("flow/simulate/bench.sv", FRAMES),
     ("pixels/afe.sv", FRAMES),
-    ("flow/layout/coriolis/straps.py", {"place_route"}),
+    ("flow/layout/coriolis/straps.py", {"place"}),
     ("flow/layout/power/mesh.py", {"ir_drop"}),
     ("cells/characterize/constraint.py", {"timing"}),
     ("cells/report/curve.py", set()),
@@ -99,11 +99,11 @@ def test_exactly_these_steps_run_again(step_keys, tree, file, expected):
     [
         (
             "platforms/sky130/coriolis.py",
-            {"library", "place_route", "fill", "drc", "extraction"},
+            {"library", "place", "fill", "drc", "extraction"},
             {"gate_frames", "sta"},
         ),
         ("rtl/quad_divider/test/quad_divider_test.py", {"gate_tests_final_icarus"}, {"drc", "gate_frames"}),
-        ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "place_route"}, {"drc", "timing"}),
+        ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "place"}, {"drc", "timing"}),
         ("models/parameters/checks.py", {"drc", "sta", "gate_frames", "timing"}, set()),
     ],
 )

@@ -3,7 +3,7 @@
 from flow.layout.netlist.flatten import flattened, merged_placement
 from flow.layout.netlist.names import plain_macros
 from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
-from flow.layout.netlist.routed import routed_netlist
+from flow.layout.netlist.placed import placed_netlist
 from flow.layout.netlist.test.shift_register import shift
 
 
@@ -77,7 +77,7 @@ def test_a_macro_has_plain_names_in_the_router_and_its_own_after_it():
     assert blocks == {"b": ("macro0", {"d[1]": "p0", "d[0]": "p1", "q": "p2"})}
     names = {"a[1]": "w1", "a[0]": "w0", "n0": "w2"}
     assert ".gate macro0 p0=w1 p1=w0 p2=w2\n" in bus.blif("m", names, blocks)
-    routed = routed_netlist(
+    routed = placed_netlist(
         bus,
         names,
         [

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from base.steps import Files, Step
-from flow.layout.reroute.rules import RoutingRules
+from flow.layout.route.rules import RoutingRules
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
 

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from base.steps import StepError
-from flow.layout.reroute.rules import RoutingRules
+from flow.layout.route.rules import RoutingRules
 from flow.layout.sensor.channel import check_apart, free, left_edge
 from flow.layout.sensor.routing import Branch, Tracks, trunks
 from flow.layout.sensor.shapes import signal

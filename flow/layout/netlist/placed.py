@@ -1,4 +1,4 @@
-"""The netlist and the placement after routing, by the names of the design."""
+"""The netlist and the placement by the names of the design."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from base.steps import StepError
 from .netlist import SUPPLIES, Instance, MacroNames, Netlist
 
 
-def routed_netlist(
+def placed_netlist(
     netlist: Netlist, names: Mapping[str, str], placed: Sequence[Sequence[Any]], macros: MacroNames
 ) -> Netlist:
     """Add what Coriolis added: the clock tree's buffers, and fill cells.
@@ -29,7 +29,7 @@ def routed_netlist(
                 cell, pins = was.cell, {pin: pins[plain] for pin, plain in macros[name][1].items()}
         instances.append(Instance(name, cell, pins))
     if len(seen) != len(netlist.instances):
-        raise StepError(f"place_route: {len(netlist.instances) - len(seen)} instances are not in the layout")
+        raise StepError(f"place: {len(netlist.instances) - len(seen)} instances are not in the layout")
     return Netlist(netlist.name, netlist.ports, tuple(instances))
 
 
@@ -40,7 +40,6 @@ def placement(names: Mapping[str, str], result: Mapping[str, Any]) -> dict[str, 
         "straps": result["straps"],
         "pins": [[side, nets[net], at] for side, net, at in result["pins"]],
         "instances": [[_number(name), *rest[:4]] for name, *rest in result["instances"]],
-        "segments": {nets.get(net, f"cts_{net}"): made for net, made in result["segments"].items()},
     }
 
 

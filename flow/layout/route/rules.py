@@ -44,7 +44,7 @@ class Via:
 
 @dataclass(frozen=True)
 class RoutingRules:
-    """Layers from that of the cells' pins up, the vias between them, (x, y) pitch of the search's grid (nm)."""
+    """Layers from that of the cells' pins up, the vias between them, (x, y) steps of the router's grid (nm)."""
 
     layers: tuple[Layer, ...]
     vias: tuple[Via, ...]
@@ -64,8 +64,8 @@ class RoutingRules:
             pads = _pad(layers[level], via, own["below"]), _pad(layers[level + 1], via, own["above"])
             size, space = round(via.size_um * 1000), round(via.space_um * 1000)
             vias.append(Via(via.name, via.layer, via.datatype, size, space, *pads))
-        pitch = tech.pin_pitch_um
-        return cls(tuple(layers), tuple(vias), (round(pitch["vertical"] * 500), round(pitch["horizontal"] * 500)))
+        x, y = tech.route_step_um
+        return cls(tuple(layers), tuple(vias), (round(x * 1000), round(y * 1000)))
 
 
 def _pad(layer: Layer, via: PlatformVia, enclosure: Sequence[float]) -> tuple[int, int]:

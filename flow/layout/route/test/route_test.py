@@ -1,15 +1,15 @@
-"""A net that is ripped up and rerouted is joined from pin to pin around others, and every rule is kept."""
+"""Nets are joined from pin to pin around others, and every rule is kept."""
 
 import random
 
 import pytest
 
 from flow.layout.geometry.test.gate import gate
-from flow.layout.reroute.board import Board
-from flow.layout.reroute.negotiate import negotiate
-from flow.layout.reroute.nets import route_net
-from flow.layout.reroute.rules import RoutingRules
-from flow.layout.reroute.violations import Violations, find, split_levels
+from flow.layout.route.board import Board
+from flow.layout.route.negotiate import negotiate
+from flow.layout.route.nets import route_net
+from flow.layout.route.rules import RoutingRules
+from flow.layout.route.violations import Violations, find, split_levels
 from platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
@@ -89,7 +89,7 @@ def um(boxes):
 def alone(pins, jumpers=False, layout=None):
     """The layout with one net routed between ``pins``; None without a path."""
     board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": list(map(um, pins))}})
-    found = route_net(board, pins, jumpers)
+    found = route_net(board, "w1", jumpers)
     if found is None:
         return None, None
     board.put("w1", found.route)
@@ -153,7 +153,7 @@ def test_a_net_without_a_path_is_ripped_up():
     shapes = {"w1": {"segments": [["m1", 4.93, 4.93, 6.0, 5.07]], "vias": [], "pins": list(map(um, boxes))}}
     board = Board(layout, RULES, shapes)
     assert board.boxes["w1"] == [("m1", (4_930, 4_930, 6_000, 5_070))]
-    found = negotiate(board, {"w1": shapes["w1"]["pins"]}, ["w1"])
+    found = negotiate(board, ["w1"])
     assert (found.open, found.routes, board.boxes["w1"]) == (["w1"], {}, [])
 
 
@@ -181,7 +181,7 @@ def test_a_net_in_the_way_is_evicted():
         for net, made in pins.items()
     }
     board = Board(layout, RULES, shapes)
-    found = negotiate(board, {net: made["pins"] for net, made in shapes.items()}, ["w1"])
+    found = negotiate(board, ["w1"])
     assert found.open == [] and set(found.routes) == {"w1", "w2"}
     drawn = board.drawn()
     assert broken(drawn, drawn.top_cell()) == {}
@@ -240,12 +240,9 @@ def test_nets_that_are_too_near_or_have_an_antenna():
         },
     )
     whole = find(board.drawn(), RULES, TECH)
-    assert whole.nets(board, board.routed) == (["w1"], ["w0"])
-    assert whole.nets(board, board.routed, ["w2"]) == (["w2"], [])
+    assert whole.nets(board) == (["w1"], ["w0"])
+    assert whole.nets(board, ["w2"]) == (["w2"], [])
     for net in segments:
-        assert find(board.part([net]), RULES, TECH).nets(board, board.routed, [net]) == whole.nets(
-            board, board.routed, [net]
-        )
-    assert board.touching(["w1"]) == {"w1"}
+        assert find(board.part([net]), RULES, TECH).nets(board, [net]) == whole.nets(board, [net])
     parts = [find(board.drawn(), RULES, TECH, levels) for levels in split_levels(RULES, 2)]
-    assert sum(parts, Violations()).nets(board, board.routed) == (["w1"], ["w0"])
+    assert sum(parts, Violations()).nets(board) == (["w1"], ["w0"])

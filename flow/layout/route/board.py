@@ -1,21 +1,21 @@
-"""A routed layout whose nets can be ripped up and rerouted, net by net."""
+"""A layout whose nets can be routed, ripped up and rerouted, net by net."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypedDict, TypeVar
 
 import numpy as np
-import numpy.typing as npt
-from numba import njit
 
 from base.gds import db
 
-from ..geometry.boxes import Box, Boxes, boxes, corners
+from ..geometry.boxes import Box, boxes, corners
+from .grid import Grid
+from .index import COLUMNS, Index, Links, Rows
 from .route import Point, Route
 from .rules import RoutingRules
 
-BOX_AND_NET = 5  # columns
+FIXED, CONTENDED = -1, -2  # owners that are no net
+CUTS = 0  # level of `Board.fixed` that holds vias
 Key = TypeVar("Key")
-Layers = dict[int, Boxes]  # boxes by level of RoutingRules.layers
 
 
 Owners = dict[tuple[str, Key], str]  # nets by layer and box or point
@@ -33,9 +33,9 @@ class Board:
     """A KLayout layout with the shapes of the nets ``shapes`` lifted out into ``boxes``.
 
     What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
-    [(name of a layer of ``rules``, Box in nm), ...]. routed[level]: array (n, 5) of the same on a metal layer, the last
-    column the net's place in ``nets``. fixed[level]: array (n, 4). history[level]: array (n, 4) of the places that nets
-    contended for, as often as they did. cuts: array (n, 4) of the cells' own vias above their pins.
+    [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above their
+    pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all nets, and
+    where nets CONTENDED. grid: both as places.
     """
 
     def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:
@@ -45,12 +45,20 @@ class Board:
         self.numbers = {net: number for number, net in enumerate(self.nets)}
         self.levels = {layer.name: level for level, layer in enumerate(rules.layers)}
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*rules.layers, *rules.vias)}
+        self.pins = {net: self._pins(made) for net, made in shapes.items()}
         self._lift(shapes)
-        self.routed: Layers = {level: self._owned(name) for name, level in self.levels.items()}
-        left = {level: self.top.begin_shapes_rec(self.layers[name]) for name, level in self.levels.items() if level}
-        self.fixed: Layers = {level: boxes(db.Region(shapes)) for level, shapes in left.items()}
-        self.cuts: Boxes = boxes(db.Region(self.top.begin_shapes_rec(self.layers[rules.vias[0].name])))
-        self.history: Layers = {level: np.empty((0, 4), int) for level in self.fixed}
+        area = corners(self.top.bbox().enlarged(*rules.step))
+        self.fixed, self.routed = Index(area, len(rules.layers)), Index(area, len(rules.layers))
+        self.grid = Grid(area, rules)
+        self.rows: dict[str, tuple[Rows, Links]] = {}
+        self.accesses: dict[str, dict[int, Any]] = {}  # by net and pin, see access
+        self._fix()
+        for net in self.nets:
+            self._enter(net)
+
+    def _pins(self, made: NetShapes) -> list[list[tuple[int, ...]]]:
+        """Of every pin of a net the boxes (level, left, bottom, right, top), nm."""
+        return [[(self.levels[name], *nanometres(um)) for name, *um in pin] for pin in made["pins"]]
 
     def _lift(self, shapes: Mapping[str, NetShapes]) -> None:
         exact, middles, ports = _claims(shapes)
@@ -62,33 +70,49 @@ class Board:
                     self.boxes[net].append((name, box))
                     shape.delete()
 
-    def _owned(self, name: str) -> Boxes:
-        """Boxes of all nets on a layer, each with the net's number: (n, 5)."""
-        found = [(*box, self.numbers[net]) for net, made in self.boxes.items() for at, box in made if at == name]
-        return np.array(found, int).reshape(-1, BOX_AND_NET)
+    def _fix(self) -> None:
+        """Enter what is left."""
+        entered = []
+        for level, layer in enumerate((self.rules.vias[0], *self.rules.layers[1:])):
+            left = boxes(db.Region(self.top.begin_shapes_rec(self.layers[layer.name])))
+            entered.append(self.fixed.insert(as_rows([(level, *box) for box in left.tolist()], FIXED)))
+        for net, pins in self.pins.items():
+            for level, left, bottom, right, top in (box for pin in pins for box in pin if box[0]):
+                numbers = self.fixed.numbers(level, (left + 1, bottom + 1, right - 1, top - 1))
+                self.fixed.boxes[numbers, -1] = self.numbers[net]
+        rows = self.fixed.boxes[np.concatenate(entered)]
+        self.grid.block(rows[rows[:, 0] > 0])
 
-    def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
-        """Raise the history cost of ``places``, pairs (level, Box)."""
-        for level, box in places:
-            self.history[level] = np.vstack([self.history[level], box])
+    def _enter(self, net: str) -> None:
+        """Enter the shapes of ``net`` where others look for them."""
+        made = [(self.levels[name], *box) for name, box in self.boxes[net] if name in self.levels]
+        rows = as_rows(made, self.numbers[net])
+        self.rows[net] = rows, self.routed.insert(rows)
+        self.grid.use(rows[rows[:, 0] > 0])
+
+    def add_history(self, places: Iterable[tuple[int, Box]], times: int = 1) -> None:
+        """Raise the history cost of ``places``, pairs (level, Box), by that of ``times`` nets."""
+        rows = as_rows([(level, *box) for level, box in places], CONTENDED)
+        self.routed.insert(rows)
+        self.grid.use(rows, times)
 
     def rip_up(self, net: str) -> None:
         """Take the shapes of ``net`` off the board."""
-        self.boxes[net] = []
-        for level, routed in self.routed.items():
-            self.routed[level] = routed[routed[:, 4] != self.numbers[net]]
+        rows, numbers = self.rows[net]
+        self.routed.remove(numbers)
+        self.grid.use(rows[rows[:, 0] > 0], -1)
+        self.boxes[net], self.rows[net] = [], (rows[:0], numbers[:0])
 
     def put(self, net: str, route: Route) -> None:
         """Let the shapes of ``net`` be those of ``route``."""
         self.rip_up(net)
         for level, made in route.segments.items():
             self.boxes[net] += [(self.rules.layers[level].name, box) for box in made]
-            owned = np.array([(*box, self.numbers[net]) for box in made], int)
-            self.routed[level] = np.vstack([self.routed[level], owned])
         for level, points in route.vias.items():
             via = self.rules.vias[level]
             half = via.size // 2
             self.boxes[net] += [(via.name, (x - half, y - half, x + half, y + half)) for x, y in sorted(set(points))]
+        self._enter(net)
 
     def drawn(self) -> "db.Layout":
         """A new layout with the shapes of all nets in it."""
@@ -104,15 +128,16 @@ class Board:
         layout, found = self.layout.dup(), {}
         top, reach = layout.top_cell(), max(layer.space for layer in self.rules.layers)
         below = [inst.cell_inst for inst in top.each_inst()]
-        outlines = [corners(inst.bbox()) for inst in top.each_inst()]
-        places = np.array([(*box, number) for number, box in enumerate(outlines)], int).reshape(-1, BOX_AND_NET)
+        outlines = Index(corners(top.bbox()), 1)
+        outlines.insert(np.array([(0, *corners(inst.bbox()), k) for k, inst in enumerate(top.each_inst())]))
         kept = set()
         for name, box in (made for net in nets for made in self.boxes[net]):
             around = box[0] - reach, box[1] - reach, box[2] + reach, box[3] + reach
-            kept.update(overlapping(places, around)[:, 4].tolist())
+            kept.update(outlines.touching(0, around)[:, -1].tolist())
             if name in self.levels:
-                for row in overlapping(self.routed[self.levels[name]], around).tolist():
-                    found[name, tuple(row[:4])] = True
+                for *other, owner in self.routed.touching(self.levels[name], around).tolist():
+                    if owner != CONTENDED:
+                        found[name, tuple(other)] = True
             found[name, box] = True
         top.clear_insts()
         for number in sorted(kept):
@@ -124,37 +149,24 @@ class Board:
                 cell.prune_cell()
         return layout
 
-    def touching(self, nets: Iterable[str]) -> set[str]:
-        """Names of all nets with a segment that touches one of ``nets``, these too."""
-        boxes = [(self.levels[name], box) for net in nets for name, box in self.boxes[net] if name in self.levels]
-        return {self.nets[number] for level, box in boxes for number in self.owners(self.routed, level, box)}
+    def owners(self, level: int, box: Box) -> set[int]:
+        """Numbers of the nets with a segment that touches ``box``."""
+        return set(self.routed.touching(level, box)[:, -1].tolist()) - {CONTENDED}
 
-    def owners(self, routed: Layers, level: int, box: Box) -> list[int]:
-        """Numbers of the nets with a segment that touches ``box``; routed: this board's, now or earlier."""
-        return overlapping(routed[level], box)[:, 4].tolist()
-
-    def within(self, routed: Layers, level: int, polygon: str) -> set[str]:
-        """Names of the nets with a box whose middle is in ``polygon``, KLayout's text; routed: see `owners`."""
+    def within(self, level: int, polygon: str) -> set[str]:
+        """Names of the nets with a box whose middle is in ``polygon``, KLayout's text."""
         outline = db.Polygon.from_s(polygon)
-        found = overlapping(routed[level], corners(outline.bbox())).tolist()
-        return {self.nets[number] for *ends, number in found if outline.inside(db.Point(*middle(ends)))}
+        found = self.routed.touching(level, corners(outline.bbox())).tolist()
+        inside = {owner for *box, owner in found if owner != CONTENDED and outline.inside(db.Point(*middle(box)))}
+        return {self.nets[number] for number in inside}
 
 
-def overlapping(boxes: Boxes, box: Box) -> Boxes:
-    """Rows of ``boxes``, (left, bottom, right, top, ...), that touch ``box``."""
-    return boxes[_touching(boxes, *map(int, box))]
-
-
-@njit(cache=True)
-def _touching(boxes: Boxes, left: int, bottom: int, right: int, top: int) -> npt.NDArray[np.int64]:
-    """Numbers of these rows."""
-    found = np.empty(len(boxes), np.int64)
-    count = 0
-    for k in range(len(boxes)):
-        if boxes[k, 0] <= right and boxes[k, 2] >= left and boxes[k, 1] <= top and boxes[k, 3] >= bottom:
-            found[count] = k
-            count += 1
-    return found[:count]
+def as_rows(made: Sequence[Sequence[int]], owner: int) -> Rows:
+    """Rows for an Index, of (level, left, bottom, right, top)."""
+    rows = np.full((len(made), COLUMNS), owner, np.int64)
+    if made:
+        rows[:, :-1] = made
+    return rows
 
 
 def _claims(shapes: Mapping[str, NetShapes]) -> tuple[Owners[Box], Owners[Point], set[tuple[str, Box]]]:

@@ -1,40 +1,42 @@
-"""Power, placement, clock tree and routing: Coriolis, in a process of its own."""
+"""Power, placement and clock tree: Coriolis, in a process of its own."""
 
 import json
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
+from base.gds import read_gds, write_gds
 from base.paths import ROOT
 from base.steps import Files, Step
 from base.tools import finish
 from models.parameters import check_int, check_real
 from platforms.coriolis import coriolis_platform
 
-from ..coriolis.log import open_segments
 from ..geometry.macro import Macro
 from ..geometry.macro_cells import OVER_UM, make_solid
+from ..geometry.ports import Port, draw_ports
 from ..netlist.names import plain_macros, plain_names
 from ..netlist.netlist import MacroNames, Netlist
-from ..netlist.routed import placement, routed_netlist
+from ..netlist.placed import placed_netlist, placement
+from ..route.rules import RoutingRules
 
 MODEL = "talbot_block"  # Coriolis works in lower case
-OPTIONS = ("effort", "density_variation", "strap_pitch_um", "events")  # in a request, as those of the technology
+OPTIONS = ("effort", "density_variation", "strap_pitch_um")  # in a request, as those of the technology
 OF_TECH = ("row_um", "grid_um", "strap_um", "rail", "rail_um", "rail_overlap_um", "rails_over_edge", "pin_pitch_um")
-PHASES = ("clock_tree_s", "placement_s", "power_s", "routing_s")
+PHASES = ("clock_tree_s", "placement_s", "power_s")
 
 
 @dataclass(frozen=True)
-class PlaceRouteParameters:
-    """Parameters of `PlaceRoute`.
+class PlaceParameters:
+    """Parameters of `Place`.
 
     pdk: process. clock: name of the clock port, '' without one. effort: of the placer, 1..3.
     density_variation: how unevenly the placer may spread the empty sites; what is packed does not route.
-    strap_pitch_um: of a pair of power straps. events: most moves of the router. macros: modules laid out before.
+    strap_pitch_um: of a pair of power straps. macros: modules laid out before.
     """
 
     pdk: str = "sky130"
@@ -42,38 +44,36 @@ class PlaceRouteParameters:
     effort: int = 2
     density_variation: float = 0.05
     strap_pitch_um: float = field(default=45.0, metadata={"unit": "um"})
-    events: int = 4_000_000
     macros: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         check_int("effort", self.effort, 1, 3)
         check_real("density_variation", self.density_variation, 0.01, 0.9)
         check_real("strap_pitch_um", self.strap_pitch_um, 10, 1000)
-        check_int("events", self.events, 1000, 100_000_000)
 
 
-class PlaceRoute(Step[PlaceRouteParameters]):
-    """Everything between a floorplan and a routed layout, in one database, which Coriolis cannot store."""
+class Place(Step[PlaceParameters]):
+    """Everything between a floorplan and a placed layout, in one database, which Coriolis cannot store."""
 
-    name = "place_route"
+    name = "place"
     inputs = {
         "netlist": "synthesis.netlist",
         "floorplan": "floorplan.floorplan",
         "coriolis": "library.coriolis",
         "geometry": "library.geometry",
+        "rules": "library.rules",
     }
     outputs = {
-        "gds": "routed.gds",
+        "gds": "placed.gds",
         "netlist": "netlist.json",
         "placement": "placement.json",
         "shapes": "shapes.json",
         "log": "coriolis.log",
     }
-    metrics = {"routed": "", "stopped": "", "open_segments": "", "wire_um": "um", "vias": "", "clock_buffers": ""}
-    metrics |= dict.fromkeys(PHASES, "s")
+    metrics = {"stopped": "", "clock_buffers": ""} | dict.fromkeys(PHASES, "s")
     tools = ("python coriolis-eda", "python klayout")
 
-    def __init__(self, parameters: PlaceRouteParameters) -> None:
+    def __init__(self, parameters: PlaceParameters) -> None:
         super().__init__(parameters)
         self.inputs = {**self.inputs, **{module: f"macro.{module}.lef" for module in parameters.macros}}
 
@@ -88,22 +88,29 @@ class PlaceRoute(Step[PlaceRouteParameters]):
         if "stopped" in result:
             for name in ("gds", "netlist", "placement", "shapes"):
                 outputs[name].write_text("")
-            return dict.fromkeys(self.metrics) | {"routed": False, "stopped": result["stopped"]}
+            return dict.fromkeys(self.metrics) | {"stopped": result["stopped"]}
         make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
-        final = routed_netlist(netlist, names, result["instances"], macros)
+        self.ports(result["pins"], inputs["rules"], outputs)
+        final = placed_netlist(netlist, names, result["instances"], macros)
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
-        lengths = [length for net in result["segments"].values() for _, length, _ in net]
         cells = sum(bool(instance.pins) for instance in final.instances)
         return {
-            "routed": result["routed"],
             "stopped": None,
-            "open_segments": open_segments(outputs["log"].read_text()),
-            "wire_um": round(sum(lengths), 1),
-            "vias": lengths.count(0),
             "clock_buffers": cells - len(netlist.instances),
             **{name: round(result["times"].get(name.removesuffix("_s"), 0), 2) for name in PHASES},
         }
+
+    def ports(self, pins: Sequence[Port], rules: Path, outputs: Files) -> None:
+        """Draw the ports in place of Coriolis's, which may be on metal of cells."""
+        tech, layout = coriolis_platform(self.parameters.pdk), read_gds(outputs["gds"])
+        shapes = json.loads(outputs["shapes"].read_text())
+        replaced = {net: made.pop("ports") for net, made in shapes.items()}
+        drawn = draw_ports(layout, pins, replaced, RoutingRules.of(tech, json.loads(rules.read_text())), tech)
+        for net, box in drawn.items():
+            shapes[net]["pins"].append([box])
+        write_gds(layout, outputs["gds"])
+        outputs["shapes"].write_text(json.dumps(shapes))
 
     def coriolis(self, work: Path, blif: str, request: dict[str, Any], outputs: Files) -> dict[str, Any]:
         """Run it in the folder ``work``; returns its result, {"stopped": its last message} if it gave up."""

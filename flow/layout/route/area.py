@@ -6,7 +6,7 @@ from base.gds import db
 
 from ..geometry.boxes import Box
 from .route import Route
-from .window import NetView
+from .view import NetView
 
 ROUNDS = 4  # in which narrow places and gaps of a net are filled
 

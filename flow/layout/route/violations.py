@@ -9,7 +9,7 @@ from platforms.coriolis import CoriolisPlatform
 
 from ..geometry.antenna import violations as antennas
 from ..geometry.boxes import Box, corners
-from .board import Board, Layers
+from .board import Board
 from .rules import RoutingRules
 
 
@@ -28,17 +28,17 @@ class Violations:
     def __add__(self, other: "Violations") -> "Violations":
         return Violations(self.spacing + other.spacing, self.antennas + other.antennas)
 
-    def nets(self, board: Board, routed: Layers, among: Iterable[str] | None = None) -> tuple[list[str], list[str]]:
+    def nets(self, board: Board, among: Iterable[str] | None = None) -> tuple[list[str], list[str]]:
         """Return the nets that are too near to others or to themselves, of two the first, and those with an antenna.
 
-        Both sorted, of the names ``among`` alone if given. routed: of the ``board`` as it was then.
+        Both sorted, of the names ``among`` alone if given.
         """
         numbers = set(range(len(board.nets)) if among is None else (board.numbers[net] for net in among))
         spacing = set()
         for level, *edges in self.spacing:
-            owners = {number for box in edges for number in board.owners(routed, level, box)} & numbers
+            owners = {number for box in edges for number in board.owners(level, box)} & numbers
             spacing |= {board.nets[min(owners)]} if owners else set()
-        charged = {net for level, polygon in self.antennas for net in board.within(routed, level, polygon)}
+        charged = {net for level, polygon in self.antennas for net in board.within(level, polygon)}
         return sorted(spacing), sorted(net for net in charged if board.numbers[net] in numbers)
 
 

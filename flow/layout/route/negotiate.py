@@ -1,0 +1,119 @@
+"""Nets that contend for places: the later one takes them, evicted nets are rerouted, contested places cost more.
+
+That is negotiated congestion as in PathFinder (McMurchie and Ebeling, FPGA 1995).
+"""
+
+import tempfile
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import joblib
+
+from base.gds import write_gds
+from platforms.coriolis import CoriolisPlatform
+
+from .board import Board
+from .nets import route_net
+from .route import Route
+from .violations import Violations, find, find_in_file, split_levels
+
+PATIENCE = 6  # evicted nets for every one that is to be routed, at most
+TRIES = 3  # of a net without a path, while others move
+JUMPER_TRIES = 3  # times that a net is routed with antenna jumpers; then it goes without, and keeps its antenna
+MOST_HISTORY = 8  # times that a place is charged for one conflict: as many as it has been turns, so that all settle
+JOBS = 2  # in which the whole layout is checked
+ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
+MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
+
+
+@dataclass
+class Routed:
+    """What a negotiation came to.
+
+    routes: of the nets that were routed. open: nets without a route. tries, lost: of every net. evictions: times that a
+    net was. respaced, charged: nets that were too near to others, nets that had an antenna.
+    """
+
+    routes: dict[str, Route] = field(default_factory=dict)
+    open: list[str] = field(default_factory=list)
+    tries: Counter[str] = field(default_factory=Counter)
+    lost: Counter[str] = field(default_factory=Counter)
+    evictions: int = 0
+    respaced: set[str] = field(default_factory=set)
+    charged: set[str] = field(default_factory=set)
+
+
+def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None) -> Routed:
+    """Route the nets ``wanted`` on the ``board`` and every net that they evict.
+
+    state: what this call goes on with; its ``charged`` nets are routed with antenna jumpers where there is room.
+    """
+    state = state or Routed()
+    waiting = sorted(wanted, key=lambda net: -_hpwl(board, net))  # the long ones while there is room: found faster
+    for net in waiting:
+        board.rip_up(net)
+    patience = PATIENCE * len(waiting) + 1000
+    turn = 0
+    while waiting:
+        evicted, turn = [], turn + 1
+        for net in waiting:
+            state.tries[net] += 1
+            jumpers = net in state.charged and state.tries[net] <= JUMPER_TRIES
+            found = (jumpers and route_net(board, net, jumpers)) or route_net(board, net, hasty=state.tries[net] == 1)
+            if not found or patience < len(found.evicted):
+                state.lost[net] += 1
+                state.routes.pop(net, None)
+                if found or state.lost[net] >= TRIES:
+                    state.open.append(net)
+                else:
+                    evicted.append(net)
+                continue
+            patience -= len(found.evicted)
+            state.evictions += len(found.evicted)
+            for other in found.evicted:
+                board.rip_up(other)
+            board.add_history(found.places, min(turn, MOST_HISTORY))
+            board.put(net, found.route)
+            state.routes[net] = found.route
+            evicted += sorted(found.evicted)
+        waiting = list(dict.fromkeys(evicted))
+    return state
+
+
+def _hpwl(board: Board, net: str) -> float:
+    """Half-perimeter wire length of a net, nm."""
+    boxes = [box for pin in board.pins[net] for box in pin]
+    if not boxes:
+        return 0
+    return max(b[3] for b in boxes) - min(b[1] for b in boxes) + max(b[4] for b in boxes) - min(b[2] for b in boxes)
+
+
+def route(board: Board, nets: Collection[str], tech: CoriolisPlatform) -> Routed:
+    """Route ``nets``, then again those with a violation; what was changed is checked again."""
+    state = negotiate(board, nets)
+    for turn in range(ROUNDS):
+        if state.open:
+            break
+        found = check(board, tech) if not turn else find(board.part(changed), board.rules, tech)
+        near, charged = found.nets(board, None if not turn else changed)
+        state.respaced |= {*near}
+        state.charged |= {*charged}
+        wanted = {*near, *charged}
+        if not wanted or len(wanted) > MOST_BROKEN * len(board.nets):
+            break
+        before = dict(state.routes)
+        negotiate(board, wanted, state)
+        changed = {net for net, made in state.routes.items() if made is not before.get(net)}
+    return state
+
+
+def check(board: Board, tech: CoriolisPlatform) -> Violations:
+    """Violations of the whole layout, found in JOBS processes."""
+    with tempfile.TemporaryDirectory() as folder:
+        gds = Path(folder) / "routed.gds"
+        write_gds(board.drawn(), gds)
+        tasks = (joblib.delayed(find_in_file)(gds, board.rules, tech, at) for at in split_levels(board.rules, JOBS))
+        return sum(joblib.Parallel(n_jobs=JOBS)(tasks), Violations())
