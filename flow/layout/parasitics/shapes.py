@@ -17,7 +17,7 @@ from platforms.wires import SUBSTRATE
 
 from .bins import Bins, Ints, at, binned
 
-BIN_UM = 2.0
+BIN_UM = 1.0
 DIFFUSION_LEVEL, POLY_LEVEL, METAL_LEVEL = 1, 2, 3  # the substrate is 0
 Labels = dict[str, list[tuple[int, int, int]]]  # text -> (level, x, y), dbu
 
