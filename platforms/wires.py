@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from .layers import Crossing
 
 SUBSTRATE = "substrate"  # and wells: below every layer
-CORNERS = "typ", "min", "max"  # of wires: nominal, least and most capacitance and resistance
+CORNERS: tuple[str, ...] = ("typ", "min", "max")  # of wires: nominal, least and most capacitance and resistance
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Wires:
 
 
 def wire_corner(corner: str) -> str:
-    """The corner of wires that goes with the ``corner`` of cells: most for slow ones (ss...), least for fast (ff...)."""
+    """The corner of wires for a ``corner`` of cells: the most for slow ones (ss...), the least for fast ones (ff...)."""
     return {"ss": "max", "ff": "min"}.get(corner[:2], "typ")
 
 

@@ -144,14 +144,7 @@ def _capacitances(
 
 @njit(cache=True)
 def _add(
-    own: Floats,
-    rows: "Dict[int, int]",
-    values: Floats,
-    n: int,
-    other: int,
-    nets: Ints,
-    ground: int,
-    value: Floats,
+    own: Floats, rows: "Dict[int, int]", values: Floats, n: int, other: int, nets: Ints, ground: int, value: Floats
 ) -> Floats:
     """Add ``value`` between the boxes ``n`` and ``other``, or the substrate for -1; ``values``, larger where full."""
     to = nets[other] if other >= 0 else ground

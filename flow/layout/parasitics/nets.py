@@ -1,18 +1,15 @@
 """Which boxes of a layout are which net, pin and port of the netlist."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 from base.gds import db
 from base.steps import StepError
 from platforms.coriolis import CoriolisPlatform
 
 from ..netlist.netlist import Netlist
-from .capacitance import Floats
 from .shapes import Labels, Shapes, labels
 
 # Hurricane's orientations of cells in rows: KLayout's transformation
@@ -73,9 +70,3 @@ def _texts(
     for port in netlist.ports:
         for bit in port.bits():
             yield bit, ("", bit), "", ports.get(bit, [])
-
-
-def pin_capacitances(shapes: Shapes, own: Floats, at: Labels) -> dict[str, float]:
-    """Capacitance in fF of a cell's nets, by the texts on them. own: of each box, fF."""
-    totals = np.bincount(shapes.nets, own)
-    return {name: float(totals[shapes.nets[shapes.at(*points[0])]]) for name, points in at.items()}

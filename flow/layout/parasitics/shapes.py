@@ -1,10 +1,8 @@
 """The conductors of a layout as rectangles, and what connects them."""
 
-from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
