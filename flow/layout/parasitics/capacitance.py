@@ -2,10 +2,12 @@
 
 Every edge is sampled by rays outwards, at most STEP_UM apart. A ray ends at the nearest conductor of its own level, or
 at REACH_UM: that distance gives the lateral coupling (aF / (distance + offset)). Of the edge's fringe field downwards
-the part 2/pi * (atan(k far) - atan(k near)), k = 0.02 /um * the overlap coefficient in aF/um2, ends on what the ray
+the part 2/pi * (atan(k far) - atan(k near)), k = Wires.rate * the overlap coefficient in aF/um2, ends on what the ray
 passes over between the distances near and far: the highest conductor below it there, else the substrate. The same
 upwards, to the lowest conductor above. A conductor's underside is sampled by rays across it, where every length counts
-with the overlap coefficient. This is the model of Magic (ExtCouple.c), for which the processes' coefficients were made.
+with the overlap coefficient. So far this is the model of Magic (ExtCouple.c), in which these add. But a plane that
+takes a part s of the field also takes it from the neighbour, whose coupling here is (1 - s)^screening of that, and the
+fields downwards and upwards, d and u, share the edge: together (d^norm + u^norm)^(1/norm).
 
 Metals have all of this. Poly has what its edges couple to metals above it, and diffusion is seen from above alone: the
 rest of their capacitances are inside cells, and in the models of the transistors.
@@ -48,6 +50,7 @@ def capacitances(shapes: Shapes, corners: Sequence[Wires]) -> list[Capacitances]
     count = len(shapes.names)
     tables = np.zeros((3, count, count, len(corners)))  # overlap, down, up; upper, lower
     sides = np.ones((2, count, len(corners)))
+    model = np.array([(wires.rate, wires.screening, wires.norm) for wires in corners])
     for n, wires in enumerate(corners):
         crossings = {(c.upper, c.lower): c for c in wires.crossings}
         for upper in range(METAL_LEVEL, count):
@@ -60,7 +63,16 @@ def capacitances(shapes: Shapes, corners: Sequence[Wires]) -> list[Capacitances]
     ends = ends[np.argsort(ends[:, 0], kind="stable")]
     first = np.searchsorted(ends[:, 0], np.arange(len(shapes.boxes) + 1))
     own, keys, values = _capacitances(
-        shapes.boxes, shapes.levels, shapes.nets, shapes.bins, first, ends[:, 1].copy(), shapes.dbu, tables, sides
+        shapes.boxes,
+        shapes.levels,
+        shapes.nets,
+        shapes.bins,
+        first,
+        ends[:, 1].copy(),
+        shapes.dbu,
+        tables,
+        sides,
+        model,
     )
     pairs = np.stack(np.divmod(keys, shapes.net_count + 1), axis=1).astype(np.int32)
     return [Capacitances(own[:, n] / 1000, pairs, values[:, n] / 1000) for n in range(len(corners))]
@@ -77,6 +89,7 @@ def _capacitances(
     dbu: float,
     tables: Floats,
     sides: Floats,
+    model: Floats,
 ) -> tuple[Floats, Numbers, Floats]:
     ground, corners = nets.max() + 1, tables.shape[3]
     own = np.zeros((len(boxes) + 1, corners))  # the last one is the substrate's
@@ -84,7 +97,8 @@ def _capacitances(
     values = np.zeros((1024, corners))
     spans, ids, exposed = np.empty((MOST, 2)), np.empty(MOST, np.int32), np.empty((MOST, 2), np.int32)
     edges, low, high = np.empty(2 * MOST), np.empty(2 * MOST, np.int32), np.empty(2 * MOST, np.int32)
-    value = np.empty(corners)
+    seen, amount = np.empty(4 * MOST, np.int32), np.empty((4 * MOST, corners))  # of the runs of a ray
+    fields, shields, value = np.empty((2, corners)), np.empty((2, corners)), np.empty(corners)
     for n in range(len(boxes)):
         level = levels[n]
         if level < POLY_LEVEL:
@@ -108,19 +122,17 @@ def _capacitances(
                     count, wall, far = _pass(
                         boxes, levels, bins, dbu, level, axis, sign, begin, place, reach, not across, spans, ids
                     )
-                    if wall >= 0 and nets[wall] != nets[n] and level > POLY_LEVEL:
-                        for c in range(corners):
-                            value[c] = length * sides[0, level, c] / 2 / (far + sides[1, level, c])
-                        values = _add(own, rows, values, n, wall, nets, ground, value)
                     pieces = _pieces(spans, ids, levels, count, level, far, edges, low, high)
+                    runs = 0
+                    fields[:], shields[:] = 0.0, 0.0
                     for up in range(1 if level == POLY_LEVEL else 0, 1 if across else 2):
-                        seen = high if up else low
+                        beside = high if up else low
                         last = 0
                         while last < pieces:
-                            other, near = seen[last], edges[last]
-                            while last < pieces and seen[last] == other:
+                            other, near = beside[last], edges[last]
+                            while last < pieces and beside[last] == other:
                                 last += 1
-                            if other < 0 and up or other >= 0 and nets[other] == nets[n]:
+                            if other < 0 and up:
                                 continue
                             top, bottom = level, levels[other] if other >= 0 else 0
                             if up:
@@ -128,14 +140,35 @@ def _capacitances(
                             for c in range(corners):
                                 overlap = tables[0, top, bottom, c]
                                 if across:
-                                    value[c] = length * (edges[last] - near) * overlap
-                                else:
-                                    rate = 0.02 * overlap
-                                    whole = wall < 0 and last == pieces  # what is beyond REACH_UM, too
-                                    angle = math.pi / 2 if whole else math.atan(rate * edges[last])
-                                    share = (angle - math.atan(rate * near)) * 2 / math.pi
-                                    value[c] = length * tables[1 + up, top, bottom, c] * share
-                            values = _add(own, rows, values, n, other, nets, ground, value)
+                                    amount[runs, c] = length * (edges[last] - near) * overlap
+                                    continue
+                                rate = model[c, 0] * overlap
+                                whole = wall < 0 and last == pieces  # what is beyond REACH_UM, too
+                                angle = math.pi / 2 if whole else math.atan(rate * edges[last])
+                                share = (angle - math.atan(rate * near)) * 2 / math.pi
+                                amount[runs, c] = length * tables[1 + up, top, bottom, c] * share
+                                fields[up, c] += amount[runs, c]
+                                if bottom >= POLY_LEVEL:
+                                    shields[up, c] += share
+                            seen[runs] = other
+                            runs += 1
+                    if not across:
+                        for c in range(corners):
+                            both = fields[0, c] + fields[1, c]
+                            norm = model[c, 2]
+                            value[c] = (fields[0, c] ** norm + fields[1, c] ** norm) ** (1 / norm) / max(both, 1e-30)
+                        for run in range(runs):
+                            for c in range(corners):
+                                amount[run, c] *= value[c]
+                    for run in range(runs):
+                        if seen[run] < 0 or nets[seen[run]] != nets[n]:
+                            values = _add(own, rows, values, n, seen[run], nets, ground, amount[run])
+                    if wall >= 0 and nets[wall] != nets[n] and level > POLY_LEVEL:
+                        for c in range(corners):
+                            coupled = length * sides[0, level, c] / 2 / (far + sides[1, level, c])
+                            open_part = max((1 - shields[0, c]) * (1 - shields[1, c]), 0.0)
+                            value[c] = coupled * open_part ** model[c, 1]
+                        values = _add(own, rows, values, n, wall, nets, ground, value)
     keys, found = np.empty(len(rows), np.int64), np.empty((len(rows), corners))
     for k, (key, row) in enumerate(rows.items()):
         keys[k], found[k] = key, values[row]
