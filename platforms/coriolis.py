@@ -40,9 +40,9 @@ class CoriolisPlatform:
     decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
     metal. fill: of all metals but the lowest. wires: by platforms.wires.CORNERS. corners: at which cells are timed,
-    that of synthesis first; () where there are no models of the devices. antenna_walls: whether antenna ratios are those of side walls, else of area.
-    most_open: nets that `reroute` takes on. utilization_most: at which a search begins. masks: rules of
-    KLayout beyond those of PDKMaster's deck.
+    that of synthesis first; () where there are no models of the devices. antenna_walls: whether antenna ratios are
+    those of side walls, else of area. most_open: nets that `reroute` takes on. utilization_most: at which a search
+    begins. masks: rules of KLayout beyond those of PDKMaster's deck.
     """
 
     name: str
