@@ -74,9 +74,9 @@ def pin_capacitances(
 ) -> dict[str, list[float]]:
     """Capacitance in fF, at each of ``corners``, of the nets of a ``cell`` alone, by the texts on them."""
     found = shapes(layout, layout.cell(cell), tech, devices)
-    all_of_it = capacitances(found, corners)
-    totals = [np.bincount(found.nets, with_fill_floating(found, one, np.empty(0, int))) for one in all_of_it]
     at = {name: found.nets[found.at(*points[0])] for name, points in labels(layout, layout.cell(cell), tech).items()}
+    driven = np.array(list(at.values()), np.int64)
+    totals = [np.bincount(found.nets, with_fill_floating(found, one, driven)) for one in capacitances(found, corners)]
     return {name: [float(total[net]) for total in totals] for name, net in at.items()}
 
 
