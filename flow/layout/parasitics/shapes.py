@@ -58,11 +58,11 @@ def shapes(layout: "db.Layout", cell: "db.Cell", tech: CoriolisPlatform, devices
         found = db.Region()
         for layer in layers:
             found.insert(cell.begin_shapes_rec(layout.layer(*layer)))
-        return found.merged()
+        return found
 
-    poly = region(tech.poly)
+    poly = region(tech.poly).merged()
     active = region(*(devices.devices[name] for name in ("diff", "tap") if name in devices.devices))
-    conductors = [active - poly, poly, *(region(metal.gds) for metal in tech.metals)]
+    conductors = [active - poly, poly, *(region(metal.gds).merged() for metal in tech.metals)]
     parts = [_boxes(conductor.decompose_trapezoids_to_region()) for conductor in conductors]
     boxes = np.concatenate(parts)
     levels = np.repeat(np.arange(1, len(parts) + 1, dtype=np.int32), [len(part) for part in parts])
