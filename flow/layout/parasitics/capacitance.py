@@ -33,20 +33,21 @@ MOST = 4096  # conductors that one ray may pass
 ACROSS = 4  # the fifth way of rays: left, bottom, right, top, across the box
 Floats = npt.NDArray[np.float64]
 Numbers = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
 class Capacitances:
-    """own: fF of each box to all other nets and the substrate. pairs: (m, 2) nets, the lower number first; the
-    substrate is the last net's number + 1. coupling: fF of each pair."""
+    """own: fF of each box to all other nets and the substrate. pairs: (m, 2) nets that couple, the lower number first;
+    the substrate is the last net's number + 1. coupling: fF of each pair."""
 
     own: Floats
     pairs: Ints
     coupling: Floats
 
 
-def capacitances(shapes: Shapes, corners: Sequence[Wires]) -> list[Capacitances]:
-    """Capacitances of ``shapes`` at each of ``corners``."""
+def capacitances(shapes: Shapes, corners: Sequence[Wires], paired: Flags | None = None) -> list[Capacitances]:
+    """Capacitances of ``shapes`` at each of ``corners``. paired: whether a net is to be in the pairs; default all."""
     count = len(shapes.names)
     tables = np.zeros((3, count, count, len(corners)))  # overlap, down, up; upper, lower
     sides = np.ones((2, count, len(corners)))
@@ -58,6 +59,7 @@ def capacitances(shapes: Shapes, corners: Sequence[Wires]) -> list[Capacitances]
             for lower in range(upper):
                 c = crossings.get((shapes.names[upper], shapes.names[lower]), Crossing("", "", 0.0, 0.0, 0.0))
                 tables[:, upper, lower, n] = c.overlap_af_um2, c.down_af_um, c.up_af_um
+    wanted = np.append(np.ones(shapes.net_count, np.bool_) if paired is None else paired, False)
     touching = shapes.links[shapes.links[:, 4] < 0]
     ends = np.concatenate((touching[:, [0, 1]], touching[:, [1, 0]]))
     ends = ends[np.argsort(ends[:, 0], kind="stable")]
@@ -73,6 +75,7 @@ def capacitances(shapes: Shapes, corners: Sequence[Wires]) -> list[Capacitances]
         tables,
         sides,
         model,
+        wanted,
     )
     pairs = np.stack(np.divmod(keys, shapes.net_count + 1), axis=1).astype(np.int32)
     return [Capacitances(own[:, n] / 1000, pairs, values[:, n] / 1000) for n in range(len(corners))]
@@ -90,8 +93,9 @@ def _capacitances(
     tables: Floats,
     sides: Floats,
     model: Floats,
+    paired: Flags,
 ) -> tuple[Floats, Numbers, Floats]:
-    ground, corners = nets.max() + 1, tables.shape[3]
+    corners = tables.shape[3]
     own = np.zeros((len(boxes) + 1, corners))  # the last one is the substrate's
     rows = Dict.empty(types.int64, types.int64)
     values = np.zeros((1024, corners))
@@ -162,13 +166,13 @@ def _capacitances(
                                 amount[run, c] *= value[c]
                     for run in range(runs):
                         if seen[run] < 0 or nets[seen[run]] != nets[n]:
-                            values = _add(own, rows, values, n, seen[run], nets, ground, amount[run])
+                            values = _add(own, rows, values, n, seen[run], nets, paired, amount[run])
                     if wall >= 0 and nets[wall] != nets[n] and level > POLY_LEVEL:
                         for c in range(corners):
                             coupled = length * sides[0, level, c] / 2 / (far + sides[1, level, c])
                             open_part = max((1 - shields[0, c]) * (1 - shields[1, c]), 0.0)
                             value[c] = coupled * open_part ** model[c, 1]
-                        values = _add(own, rows, values, n, wall, nets, ground, value)
+                        values = _add(own, rows, values, n, wall, nets, paired, value)
     keys, found = np.empty(len(rows), np.int64), np.empty((len(rows), corners))
     for k, (key, row) in enumerate(rows.items()):
         keys[k], found[k] = key, values[row]
@@ -177,10 +181,16 @@ def _capacitances(
 
 @njit(cache=True)
 def _add(
-    own: Floats, rows: "Dict[int, int]", values: Floats, n: int, other: int, nets: Ints, ground: int, value: Floats
+    own: Floats, rows: "Dict[int, int]", values: Floats, n: int, other: int, nets: Ints, paired: Flags, value: Floats
 ) -> Floats:
     """Add ``value`` between the boxes ``n`` and ``other``, or the substrate for -1; ``values``, larger where full."""
+    for c in range(len(value)):
+        own[n, c] += value[c]
+        own[other, c] += value[c]
+    ground = len(paired) - 1
     to = nets[other] if other >= 0 else ground
+    if not (paired[nets[n]] or paired[to]):
+        return values
     key = np.int64(min(nets[n], to)) * (ground + 1) + max(nets[n], to)
     if key not in rows:
         rows[key] = len(rows)
@@ -188,8 +198,6 @@ def _add(
             values = np.concatenate((values, np.zeros_like(values)))
     row = rows[key]
     for c in range(len(value)):
-        own[n, c] += value[c]
-        own[other, c] += value[c]
         values[row, c] += value[c]
     return values
 

@@ -19,7 +19,7 @@ from platforms.wires import Wires
 
 from ..netlist.netlist import OUTPUT_PINS, Netlist
 from ..timing.parasitics import Tree
-from .capacitance import Capacitances, Floats, Numbers, capacitances
+from .capacitance import Capacitances, Flags, Floats, Numbers, capacitances
 from .nets import Place, places
 from .shapes import METAL_LEVEL, Shapes, labels, shapes
 from .trees import Trees, trees
@@ -39,26 +39,30 @@ def extract(
     cells = {place.cell for ends in nets.values() for place in ends if place.cell}
     inside = {cell: pin_capacitances(layout, cell, tech, devices, corners) for cell in cells}
     numbers = np.array([found.nets[ends[0].box] for ends in nets.values()])
+    floats = floating(found, numbers)
     vias = [devices.vias[0].lef, *(via.lef for via in tech.vias)]
     pins = [place for ends in nets.values() for place in ends]
     first = np.cumsum([0, *map(len, nets.values())])
     roots = [int(k) + _driver(netlist, ends) for k, ends in zip(first, nets.values())]
-    for n, (wires, all_of_it) in enumerate(zip(corners, capacitances(found, corners), strict=True)):
-        own = with_fill_floating(found, all_of_it, numbers)
+    for n, (wires, all_of_it) in enumerate(zip(corners, capacitances(found, corners, floats), strict=True)):
+        own = with_fill_floating(found, all_of_it, floats)
         made = trees(found, own, wires, vias, [(pin.box, *pin.at) for pin in pins], roots)
         in_cell = np.array([inside[pin.cell][pin.pin[1]][n] if pin.cell else 0.0 for pin in pins])
         less = np.maximum(np.bincount(found.nets, own)[numbers] - np.add.reduceat(in_cell, first[:-1]), 0.0)
         yield dict(zip(nets, _named(made, pins, first, in_cell, less), strict=True))
 
 
-def with_fill_floating(found: Shapes, all_of_it: Capacitances, driven: Numbers) -> Floats:
-    """Capacitance (fF) of each box to all that does not float.
-
-    What touches neither poly nor diffusion and is not one of the nets ``driven`` floats; its own boxes have 0.
-    """
-    floats = np.ones(found.net_count + 1, np.bool_)
+def floating(found: Shapes, driven: Numbers) -> Flags:
+    """Whether a net floats: it touches neither poly nor diffusion, and is none of the nets ``driven``."""
+    floats = np.ones(found.net_count, np.bool_)
     floats[found.nets[found.levels < METAL_LEVEL]] = False
-    floats[driven] = floats[-1] = False
+    floats[driven] = False
+    return floats
+
+
+def with_fill_floating(found: Shapes, all_of_it: Capacitances, floats: Flags) -> Floats:
+    """Capacitance (fF) of each box to all that does not float; boxes of nets that do have 0. floats: of each net."""
+    floats = np.append(floats, False)
     total = np.bincount(found.nets, all_of_it.own, found.net_count + 1)
     lost = np.zeros(found.net_count + 1)
     for net, other in ((0, 1), (1, 0)):
@@ -75,8 +79,9 @@ def pin_capacitances(
     """Capacitance in fF, at each of ``corners``, of the nets of a ``cell`` alone, by the texts on them."""
     found = shapes(layout, layout.cell(cell), tech, devices)
     at = {name: found.nets[found.at(*points[0])] for name, points in labels(layout, layout.cell(cell), tech).items()}
-    driven = np.array(list(at.values()), np.int64)
-    totals = [np.bincount(found.nets, with_fill_floating(found, one, driven)) for one in capacitances(found, corners)]
+    floats = floating(found, np.array(list(at.values()), np.int64))
+    all_of_it = capacitances(found, corners, floats)
+    totals = [np.bincount(found.nets, with_fill_floating(found, one, floats)) for one in all_of_it]
     return {name: [float(total[net]) for total in totals] for name, net in at.items()}
 
 

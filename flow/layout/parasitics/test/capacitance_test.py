@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from flow.layout.parasitics.capacitance import capacitances
-from flow.layout.parasitics.extract import with_fill_floating
+from flow.layout.parasitics.extract import floating, with_fill_floating
 
 from .planted import M1, M2, M3, TECH, VIA, net, planted
 
@@ -104,9 +104,9 @@ def test_fill_adds_and_floats():
     for found in (bare, filled):
         (got,) = capacitances(found, [TYPICAL])
         driven = np.array([net(found, "met1", 1, 0.1)])
-        floating = with_fill_floating(found, got, driven)
-        own += [got.own[found.nets == driven[0]].sum(), floating[found.nets == driven[0]].sum()]
-        assert not floating[found.nets != driven[0]].any()
+        rest = with_fill_floating(found, got, floating(found, driven))
+        own += [got.own[found.nets == driven[0]].sum(), rest[found.nets == driven[0]].sum()]
+        assert not rest[found.nets != driven[0]].any()
     assert own[0] == own[1] < own[3] < own[2]
 
 
@@ -114,7 +114,7 @@ def test_what_is_driven_does_not_float():
     found = planted((M1, 0, 0, 10, 0.3), (M1, 0, 0.6, 10, 0.9), (M2, 0, 0.6, 0.3, 0.9), (VIA, 0.1, 0.7, 0.25, 0.85))
     (got,) = capacitances(found, [TYPICAL])
     assert net(found, "met2", 0.1, 0.7) == net(found, "met1", 5, 0.7)
-    assert with_fill_floating(found, got, np.array([0, 1])).sum() == pytest.approx(got.own.sum())
+    assert with_fill_floating(found, got, floating(found, np.array([0, 1]))).sum() == pytest.approx(got.own.sum())
 
 
 @pytest.mark.parametrize(
