@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from flow.layout.parasitics.trees import LEAST_OHM, trees
-from flow.layout.sensor.elmore import Edge, delays
 
 from .planted import DEVICES, M1, M2, M3, TECH, VIA, VIA2, planted
 
@@ -26,10 +25,18 @@ def to_root(tree, node):
 
 
 def elmore(tree):
-    """Delay of each pin, ns."""
-    edges = [Edge(int(tree.parents[k]), k, tree.ohm[k], 0.0) for k in range(len(tree.parents)) if tree.parents[k] >= 0]
-    found = delays(edges, int(tree.pins[0]), dict(enumerate(tree.femtofarad)))
-    return [found[int(node)] for node in tree.pins]
+    """Delay of each pin, ns: each resistor above it times all that is charged through it."""
+    through = tree.femtofarad.copy()
+    order = np.argsort(tree.distance)
+    order = order[np.isfinite(tree.distance[order])]
+    for node in order[::-1]:
+        if tree.parents[node] >= 0:
+            through[tree.parents[node]] += through[node]
+    found = np.zeros(len(through))
+    for node in order:
+        if tree.parents[node] >= 0:
+            found[node] = found[tree.parents[node]] + tree.ohm[node] * through[node] * 1e-6
+    return found[tree.pins].tolist()
 
 
 def test_a_line_with_three_pins():
