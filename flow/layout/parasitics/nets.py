@@ -59,10 +59,12 @@ def _texts(
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if not instance.pins:
             continue
-        if cell not in cells:
-            cells[cell] = labels(layout, layout.cell(cell), tech)
         turn = getattr(db.Trans, ORIENTATIONS[orientation])
         trans = db.Trans(turn, round(x / layout.dbu), round(y / layout.dbu))
+        if layout.cell(cell) is None:  # a macro's black box, larger than the macro in its place
+            cell, trans = instance.cell, _nearest(layout, instance.cell, trans.disp)
+        if cell not in cells:
+            cells[cell] = labels(layout, layout.cell(cell), tech)
         for pin, net in instance.pins.items():
             points = [(level, trans * db.Point(*at)) for level, *at in cells[cell].get(pin, ())]
             yield net, (instance.name, pin), cell, [(level, point.x, point.y) for level, point in points]
@@ -70,3 +72,10 @@ def _texts(
     for port in netlist.ports:
         for bit in port.bits():
             yield bit, ("", bit), "", ports.get(bit, [])
+
+
+def _nearest(layout: "db.Layout", cell: str, at: "db.Vector") -> "db.Trans":
+    """Where the instance of ``cell`` nearest to a point is in the top cell."""
+    index = layout.cell(cell).cell_index()
+    found = [instance.trans for instance in layout.top_cell().each_inst() if instance.cell_index == index]
+    return min(found, key=lambda trans: (trans.disp - at).sq_length())
