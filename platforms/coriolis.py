@@ -1,11 +1,13 @@
 """What the layout flow (Coriolis, KLayout and the steps of flow.layout) needs of a process: one object a process."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
 from .layers import GdsLayer, Layer, Via
 from .processes import OTHER_CELLS, package
+from .wires import Wires
 
 
 @dataclass(frozen=True)
@@ -37,10 +39,10 @@ class CoriolisPlatform:
     'horizontal' (west and east) and 'vertical'. route_step_um: of the router's grid, along x and y. label_datatype, pin_datatype: GDS datatypes of labels and of what the
     decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
-    metal. fill: of all metals but the lowest. corners: at which cells are timed, that of synthesis first; () where
-    there are no models of the devices. antenna_walls: whether antenna ratios are those of side walls, else of area.
-    utilization_most: at which a search begins. masks: rules of
-    KLayout beyond those of PDKMaster's deck.
+    metal. fill: of all metals but the lowest. wires: by platforms.wires.CORNERS. corners: at which cells are timed,
+    that of synthesis first; () where there are no models of the devices. antenna_walls: whether antenna ratios are
+    those of side walls, else of area. utilization_most: at which a search
+    begins. masks: rules of KLayout beyond those of PDKMaster's deck.
     """
 
     name: str
@@ -66,6 +68,7 @@ class CoriolisPlatform:
     active: GdsLayer
     contact: GdsLayer
     fill: Fill
+    wires: Mapping[str, Wires]
     corners: tuple[str, ...] = ()
     rail: int = 0
     rails_over_edge: bool = False

@@ -10,6 +10,7 @@ from typing import Any
 from base.files import staged
 from base.steps import Runner, StepError
 from platforms.coriolis import coriolis_platform
+from platforms.wires import wire_corner
 
 from .chain import input_files
 from .design import Design, folder_name, macro_designs
@@ -22,7 +23,7 @@ from .report.page import Picture, write_report
 from .report.picture import by_block, render
 from .search import lay_out_smallest
 
-RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.spef", "sdc": "sdc"}
+RESULTS = {"gds": "fill.gds", "v": "stream_out.verilog", "lef": "lef.lef", "spef": "extraction.typ", "sdc": "sdc"}
 RESULTS |= {"drc.lyrdb": "drc.report", "foundry.lyrdb": "foundry_drc.report", "magic_drc.txt": "magic_drc.report"}
 RESULTS |= {"lvsdb": "lvs.report"}
 BY_CORNER = {"sdf": "sta_{}.sdf", "sta.txt": "sta_{}.report", "lib": "block_liberty_{}.liberty"}
@@ -56,6 +57,7 @@ def publish(folder: Path, name: str, options: Options, runner: Runner, summary: 
     results = dict(RESULTS)
     for corner in options.corners:
         results |= {f"{corner}.{suffix}": source.format(corner) for suffix, source in BY_CORNER.items()}
+        results[f"{corner}.spef"] = f"extraction.{wire_corner(corner)}"
     for suffix in FIRST if options.corners else ():
         results[suffix] = BY_CORNER[suffix].format(options.corners[0])
     with staged(folder, [f"{name}.{suffix}" for suffix in (*results, "png", "blocks.png")]) as part:

@@ -14,7 +14,7 @@ from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
 from .steps.equivalence import Equivalence, EquivalenceParameters
-from .steps.extraction import Extraction
+from .steps.extraction import Extraction, ExtractionBlocks
 from .steps.fill import Fill
 from .steps.floorplan import Floorplan, FloorplanParameters
 from .steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
@@ -117,6 +117,8 @@ def signoff_steps(design: Design, options: Options) -> list[Step]:
         return steps
     for step in steps:
         step.inputs = {name: ASSEMBLED.get(source, source) for name, source in step.inputs.items()}
+    if options.corners:
+        steps.append(ExtractionBlocks(PdkParameters(options.pdk)))
     for corner in options.corners:
         steps.append(StaBlocks(StaBlocksParameters(options.pdk, design.top, corner, macro_modules(design))))
     return steps

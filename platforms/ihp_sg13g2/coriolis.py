@@ -5,7 +5,7 @@ from typing import Any
 from platforms.coriolis import CoriolisPlatform, Fill
 from platforms.patience import patience
 
-from . import layers
+from . import layers, wires
 
 
 def library() -> Any:
@@ -65,5 +65,6 @@ PLATFORM = CoriolisPlatform(
     fill=Fill(
         sides_um=(2.0, 1.0, 0.5), space_um=0.42, clearance_um=0.6, density=0.36, density_most=0.6, window_um=200.0
     ),
+    wires=wires.WIRES,
     antenna_walls=False,
 )

@@ -5,7 +5,7 @@ from typing import Any
 from platforms.coriolis import CoriolisPlatform, Fill
 from platforms.patience import patience
 
-from . import layers
+from . import layers, wires
 
 
 def library() -> Any:
@@ -63,5 +63,6 @@ PLATFORM = CoriolisPlatform(
     # at most 60 % of a layer (rules *.pd.1d as efabless's mpw_precheck checks them); there is no least density:
     # SkyWater fills on its side. The squares keep every width, area and space of m1 to m4 (0.3 um, 0.24 um2)
     fill=Fill(sides_um=(2.0, 1.0, 0.5), space_um=0.4, clearance_um=0.6, density=0.3, density_most=0.6, window_um=700.0),
+    wires=wires.WIRES,
     corners=("tt_025C_1v80", "ss_100C_1v60", "ff_n40C_1v95"),
 )

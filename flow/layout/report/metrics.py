@@ -130,8 +130,8 @@ def timing_basis(options: Options) -> str:
         return "no timing: cells by area alone"
     cells = ", ".join(path.name for path in options.liberty) or f"measured at {', '.join(options.corners)}"
     return (
-        f"cells: {cells}; parasitics: area and edge capacitance to the substrate and resistance of the "
-        "routed segments, no coupling; power: transitions of the netlist in its recorded trace"
+        f"cells: {cells}; parasitics: of the finished layout, with coupling (as to ground) and fill, every net a tree "
+        "of resistors, wires at the corner that goes with the cells'; power: transitions of the netlist in its trace"
     )
 
 

@@ -19,6 +19,7 @@ from flow.layout.steps.parameters import PdkParameters
 from flow.layout.steps.sta import StaParameters
 from platforms.coriolis import coriolis_platform
 from platforms.die import top_metal
+from platforms.wires import CORNERS
 
 from .analog import files
 from .metrics import RULES, summarize
@@ -32,7 +33,8 @@ from .steps.die_sta import DieSta
 
 SENSOR, CHIP = "asp_sensor", "asp_chip"
 # Files of the chip's run that the die is given
-PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.spef": "extraction.spef", "core.sdc": "sdc"}
+PARTS = {"core.lef": "lef.lef", "core.gds": "fill.gds", "core.sdc": "sdc"}
+PARTS |= {f"core.{wires}": f"extraction.{wires}" for wires in CORNERS}
 PARTS |= {"core.verilog": "stream_out.verilog", "library.rules": "library.rules", "library.drc": "library.drc"}
 RESULTS = {"gds": "die_gds.gds", "v": "die_plan.verilog", "sdc": "die_parasitics.sdc", "drc.lyrdb": "drc.report"}
 RESULTS |= {"connectivity.json": "die_connectivity.report", "parasitics.json": "die_parasitics.nets"}

@@ -1,26 +1,44 @@
-"""Parasitics of every net from the routed segments, as SPEF."""
+"""Parasitics of every net from the finished layout, as SPEF at the corners of wires."""
 
 from typing import Any
 
+from base.gds import read_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
+from platforms.extraction import extraction_platform
 
 from ..netlist.netlist import Netlist
-from ..timing.parasitics import extract, spef
+from ..parasitics.extract import extract
+from ..timing.parasitics import spef
 from .parameters import PdkParameters
 
 
 class Extraction(Step[PdkParameters]):
-    """From lengths and widths of the segments and the process's coefficients of each layer."""
+    """Capacitances with coupling, of all shapes, and every net as a tree of resistors.
+
+    A corner of cells is timed with the wires of `platforms.wires.wire_corner`. Metrics: at the typical corner; a net's
+    resistance is that of all of its segments.
+    """
 
     name = "extraction"
-    inputs = {"netlist": "place.netlist", "placement": "route.placement"}
-    outputs = {"spef": "parasitics.spef"}
+    inputs = {"gds": "fill.gds", "netlist": "place.netlist", "placement": "route.placement"}
+    outputs = {"typ": "parasitics.spef", "min": "parasitics.min.spef", "max": "parasitics.max.spef"}
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
+    tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        netlist = Netlist.read(inputs["netlist"])
-        nets = extract(netlist, inputs["placement"], coriolis_platform(self.parameters.pdk))
-        outputs["spef"].write_text(spef(netlist, nets))
-        ff, ohm = [net.femtofarad for net in nets.values()], max(net.ohm for net in nets.values())
+        pdk, netlist = self.parameters.pdk, Netlist.read(inputs["netlist"])
+        tech, devices = coriolis_platform(pdk), extraction_platform(pdk)
+        layout, corners = read_gds(inputs["gds"]), [tech.wires[name] for name in outputs]
+        found = list(extract(layout, netlist, inputs["placement"], tech, devices, corners))
+        for name, nets in zip(outputs, found, strict=True):
+            outputs[name].write_text(spef(netlist, nets))
+        ff = [net.femtofarad for net in found[0].values()]
+        ohm = max(sum(ohm for *_, ohm in net.resistors) for net in found[0].values())
         return {"wire_pf": round(sum(ff) / 1000, 3), "largest_ff": round(max(ff), 2), "largest_ohm": round(ohm, 1)}
+
+
+class ExtractionBlocks(Extraction):
+    """The same of a design with macros, these as cells."""
+
+    name = "extraction_blocks"

@@ -15,7 +15,7 @@ class Fill(Step[PdkParameters]):
     """The largest squares first, until a layer has its density or no room.
 
     before, after: density of every layer in its densest window. density_violations: layers with more than the process
-    allows. The fill's capacitance is not extracted: it keeps the process's clearance to other metal.
+    allows. It keeps the process's clearance to other metal; `extraction` counts what it adds to the nets.
     """
 
     name = "fill"

@@ -41,7 +41,7 @@ class Sta(CornerStep[StaParameters]):
     """
 
     name = "sta_{corner}"
-    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.spef", "sdc": "sdc", "liberty": "timing.{corner}"}
+    inputs = {"verilog": "stream_out.verilog", "spef": "extraction.{wires}", "sdc": "sdc", "liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
     metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz"}
     tools = ("sta",)

@@ -4,11 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from base.steps import Files
-from platforms.coriolis import coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..timing.opensta import opensta
-from ..timing.parasitics import extract, spef
 from .corner import CornerStep
 from .sta import SCRIPT, worst_slacks
 
@@ -27,7 +25,7 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
     """Worst slack of setup (blocks_wns_ns) and hold (blocks_whs_ns)."""
 
     name = "sta_blocks_{corner}"
-    inputs = {"netlist": "place.netlist", "placement": "route.placement", "sdc": "sdc"}
+    inputs = {"netlist": "place.netlist", "spef": "extraction_blocks.{wires}", "sdc": "sdc"}
     inputs |= {"liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt"}
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}
@@ -40,9 +38,8 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, folder, netlist = self.parameters, outputs["report"].parent, Netlist.read(inputs["netlist"])
-        files = {name: folder / f"{name}.log" for name in ("verilog", "spef", "sdf")}
+        files = {name: folder / f"{name}.log" for name in ("verilog", "sdf")} | {"spef": inputs["spef"]}
         files["verilog"].write_text(netlist.verilog())
-        files["spef"].write_text(spef(netlist, extract(netlist, inputs["placement"], coriolis_platform(p.pdk))))
         libraries = "\nread_liberty ".join(str(inputs[name]) for name in ("liberty", *p.macros))
         script = SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files)
         report = opensta(folder / "sta.log", script)

@@ -10,6 +10,7 @@ from flow.layout.options import Options
 from flow.layout.search import lay_out_smallest
 from flow.layout.steps.drc import Drc
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from flow.layout.steps.extraction import Extraction, ExtractionBlocks
 from flow.layout.steps.lef import Lef
 from flow.layout.steps.lvs import Lvs
 from flow.layout.steps.parameters import PdkParameters
@@ -73,6 +74,18 @@ def test_it_is_clean_matches_and_is_proven(runners):
         "constant_registers": 0,
         "double_registers": 0,
     }
+
+
+def test_the_macro_is_extracted_as_its_cells_and_as_one(runners):
+    flat = Extraction(PdkParameters())
+    flat.inputs = {name: ASSEMBLED.get(source, source) for name, source in flat.inputs.items()}
+    inside = Extraction(PdkParameters())
+    whole, outside = (
+        runners["pair"].run(step)["metrics"]["wire_pf"] for step in (flat, ExtractionBlocks(flat.parameters))
+    )
+    part = runners["counter"].run(inside)["metrics"]["wire_pf"]
+    assert part < whole and outside < whole
+    assert part + outside == pytest.approx(whole, rel=0.05)
 
 
 def test_a_block_moved_off_its_nets_is_found(runners, tmp_path):

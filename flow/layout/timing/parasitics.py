@@ -1,17 +1,16 @@
-"""Parasitics of a net's segments, and the SPEF of a netlist.
+"""The SPEF of a netlist, and parasitics estimated from a net's segments alone.
 
-Each segment counts with its area and its two long edges to the substrate, each via with its resistance. There is no
-coupling between segments, and a net is one T: half of its whole resistance on either side of its capacitance, which is
-more than any single path of a branched net has.
+In that estimate each segment counts with its area and its two long edges to the substrate, each via with its
+resistance; there is no coupling. `flow.layout.parasitics` extracts a finished layout.
 """
 
-import json
-from collections.abc import Container, Iterable, Mapping
-from pathlib import Path
+from collections.abc import Container, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
 from platforms.coriolis import CoriolisPlatform
+
+Node = int | tuple[str, str]
 
 
 class Parasitics(NamedTuple):
@@ -19,6 +18,17 @@ class Parasitics(NamedTuple):
 
     femtofarad: float
     ohm: float
+
+
+class Tree(NamedTuple):
+    """A net as a tree of resistors. A node is a pin (instance, pin), a port ("", port) or a number from 1.
+
+    femtofarad: of all nodes. nodes: fF of each. resistors: (node, node, ohm).
+    """
+
+    femtofarad: float
+    nodes: Mapping[Node, float]
+    resistors: Sequence[tuple[Node, Node, float]]
 
 
 def parasitics(segments: Iterable[tuple[str, float, float]], tech: CoriolisPlatform) -> Parasitics:
@@ -37,31 +47,36 @@ def parasitics(segments: Iterable[tuple[str, float, float]], tech: CoriolisPlatf
     return Parasitics(attofarad / 1000, ohm)
 
 
-def extract(netlist: Netlist, placement: Path, tech: CoriolisPlatform) -> dict[str, Parasitics]:
-    """Parasitics of the nets of ``netlist`` from the segments in the file ``placement``, by net."""
-    nets = {net for instance in netlist.instances for net in instance.pins.values()}
-    segments = json.loads(placement.read_text())["segments"]
-    return {net: parasitics(parts, tech) for net, parts in segments.items() if net in nets}
+def one_t(net: tuple[float, float], pins: Sequence[Node]) -> Tree:
+    """A net, (fF, ohm), as one T: half of its resistance on either side of its capacitance."""
+    femtofarad, ohm = net
+    return Tree(femtofarad, {1: femtofarad}, [(pin, 1, max(ohm / 2, 0.001)) for pin in pins])
 
 
-def spef(netlist: Netlist, nets: Mapping[str, tuple[float, float]]) -> str:
-    """Text of the SPEF. nets: net -> (fF, ohm)."""
+def spef(netlist: Netlist, nets: Mapping[str, Tree | tuple[float, float]]) -> str:
+    """Text of the SPEF. nets: net -> its tree, or (fF, ohm) for `one_t`."""
     pins: dict[str, list[tuple[str, str]]] = {}
     for instance in netlist.instances:
         for pin, net in instance.pins.items():
-            pins.setdefault(net, []).append((f"{_name(instance.name, ())}:{pin}", pin))
+            pins.setdefault(net, []).append((instance.name, pin))
     ports = {net: port.direction for port in netlist.ports for net in port.bits()}
     lines = ['*SPEF "IEEE 1481-1998"', f'*DESIGN "{netlist.name}"', '*DATE ""', '*VENDOR ""', '*PROGRAM "talbot"']
     lines += ['*VERSION ""', '*DESIGN_FLOW ""', "*DIVIDER /", "*DELIMITER :", "*BUS_DELIMITER [ ]"]
     lines += ["*T_UNIT 1 NS", "*C_UNIT 1 FF", "*R_UNIT 1 OHM", "*L_UNIT 1 HENRY"]
-    for net, (femtofarad, ohm) in sorted(nets.items()):
-        ends = [f"*I {pin} {'O' if name in OUTPUT_PINS else 'I'}" for pin, name in pins.get(net, [])]
+    for net, made in sorted(nets.items()):
+        called = _name(net, ports)
+        ends: dict[Node, str] = {(owner, pin): f"{_name(owner, ())}:{pin}" for owner, pin in pins.get(net, [])}
+        listed = [f"*I {ends[end]} {'O' if end[1] in OUTPUT_PINS else 'I'}" for end in pins.get(net, [])]
         if net in ports:
-            ends.append(f"*P {_name(net, ports)} {'I' if ports[net] == 'input' else 'O'}")
-        center = f"{_name(net, ports)}:1"
-        branches = (f"{k} {end.split()[1]} {center} {max(ohm / 2, 0.001):.3f}" for k, end in enumerate(ends, 1))
-        lines += ["", f"*D_NET {_name(net, ports)} {femtofarad:.4f}", "*CONN", *ends]
-        lines += ["*CAP", f"1 {center} {femtofarad:.4f}", "*RES", *branches, "*END"]
+            ends["", net] = called
+            listed.append(f"*P {called} {'I' if ports[net] == 'input' else 'O'}")
+        tree = made if isinstance(made, Tree) else one_t(made, list(ends))
+        names = {node: f"{called}:{node}" for node in tree.nodes} | ends
+        lines += ["", f"*D_NET {called} {tree.femtofarad:.4f}", "*CONN", *listed, "*CAP"]
+        lines += [f"{k} {names[node]} {femto:.4f}" for k, (node, femto) in enumerate(tree.nodes.items(), 1)]
+        lines.append("*RES")
+        lines += [f"{k} {names[a]} {names[b]} {ohm:.3f}" for k, (a, b, ohm) in enumerate(tree.resistors, 1)]
+        lines.append("*END")
     return "\n".join(lines) + "\n"
 
 

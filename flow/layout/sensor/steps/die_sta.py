@@ -15,7 +15,7 @@ class DieSta(Sta):
     """
 
     name = "die_sta_{corner}"
-    inputs = {**Sta.inputs, "verilog": "core.verilog", "spef": "core.spef", "sdc": "die_parasitics.sdc"}
+    inputs = {**Sta.inputs, "verilog": "core.verilog", "spef": "core.{wires}", "sdc": "die_parasitics.sdc"}
     metrics = {**Sta.metrics, "slews_over": "", "worst_slew_ns": "ns"}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:

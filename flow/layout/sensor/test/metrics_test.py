@@ -13,6 +13,7 @@ from flow.layout.sensor.die import lay_out_die
 from flow.layout.sensor.metrics import RULES
 from flow.layout.sensor.plan import BLOCKS
 from flow.layout.steps.library import Library
+from platforms.wires import CORNERS
 
 from . import small
 
@@ -27,7 +28,7 @@ def test_a_small_die(tmp_path):
     library = Runner(tmp_path / "shared", {})
     library.run(Library())
     given |= {f"library.{name}": library.paths[f"library.{name}"] for name in ("rules", "drc")}
-    for name in ("sdc", "verilog", "spef"):
+    for name in ("sdc", "verilog", *CORNERS):
         given[f"core.{name}"] = tmp_path / f"core.{name}"
         given[f"core.{name}"].write_text("")
     path, lines = lay_out_die(

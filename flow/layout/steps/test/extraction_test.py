@@ -1,4 +1,4 @@
-"""What the wires of a net come to, and the names under which a timing tool finds them."""
+"""Parasitics estimated from segments, and the names under which a timing tool finds them."""
 
 import pytest
 

@@ -53,7 +53,7 @@ def test_the_liberty_of_a_block_stands_for_its_cells(tmp_path):
         areas=json.dumps({"width_um": 4.0, "height_um": 5.0}),
         whole=whole.verilog(),
         wires=spef(whole, {"part.w0": (0.001, 1.0)}),
-        placement=json.dumps({"segments": {"n1": [], "not there": [["m1", 1.0, 0.3]]}}),
+        outside=spef(TOP, {"n1": (0.001, 1.0)}),
     )
     run(BlockLiberty(BlockLibertyParameters("tt")), files | {"netlist": tmp_path / "block.json"}, tmp_path / "own")
     by_cells = run(
@@ -64,7 +64,9 @@ def test_the_liberty_of_a_block_stands_for_its_cells(tmp_path):
     step = StaBlocks(StaBlocksParameters("sky130", "Top", "tt", ("Shift",)))
     assert step.inputs["Shift"] == "macro.Shift.tt"
     by_blocks = run(
-        step, files | {"netlist": tmp_path / "top.json", "Shift": tmp_path / "own" / "block.lib"}, tmp_path / "blocks"
+        step,
+        files | {"netlist": tmp_path / "top.json", "spef": files["outside"], "Shift": tmp_path / "own" / "block.lib"},
+        tmp_path / "blocks",
     )
     assert by_blocks["blocks_wns_ns"] == pytest.approx(by_cells["wns_ns"], abs=0.02)
     assert by_blocks["blocks_whs_ns"] == pytest.approx(by_cells["whs_ns"], abs=0.02)

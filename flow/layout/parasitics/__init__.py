@@ -1,0 +1,1 @@
+"""Capacitances and resistances of the nets of a finished layout."""

@@ -1,0 +1,81 @@
+"""Which boxes of a layout are which net, pin and port of the netlist."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from base.gds import db
+from base.steps import StepError
+from platforms.coriolis import CoriolisPlatform
+
+from ..netlist.netlist import Netlist
+from .shapes import Labels, Shapes, labels
+
+# Hurricane's orientations of cells in rows: KLayout's transformation
+ORIENTATIONS = {"0": "R0", "2": "R180", "4": "M90", "6": "M0"}
+Pin = tuple[str, str]  # instance and its pin, or "" and a port's bit
+
+
+@dataclass(frozen=True)
+class Place:
+    """A pin on the layout. cell: its cell, "" for a port. box: in Shapes.boxes. at: dbu."""
+
+    pin: Pin
+    cell: str
+    box: int
+    at: tuple[int, int]
+
+
+def places(
+    netlist: Netlist, placement: Path, layout: "db.Layout", tech: CoriolisPlatform, shapes: Shapes
+) -> dict[str, list[Place]]:
+    """Every net's pins and ports, by the texts in the cells and in the top cell.
+
+    placement: JSON of `routed.placement`. Raises StepError for a pin without metal, and for a net whose pins the layout
+    does not connect.
+    """
+    found: dict[str, list[Place]] = {}
+    for net, pin, cell, at in _texts(netlist, placement, layout, tech):
+        boxes = [(shapes.at(*point), point) for point in at]
+        box, point = next((pair for pair in boxes if pair[0] >= 0), (-1, (0, 0, 0)))
+        if box < 0:
+            raise StepError(f"extraction: {'.'.join(filter(None, pin))} has no metal under its label")
+        found.setdefault(net, []).append(Place(pin, cell, box, point[1:]))
+    numbers: dict[int, str] = {}
+    for net, ends in found.items():
+        own = {int(shapes.nets[end.box]) for end in ends}
+        if len(own) > 1 or numbers.setdefault(min(own), net) != net:
+            raise StepError(f"extraction: the layout does not connect {net} as the netlist does")
+    return found
+
+
+def _texts(
+    netlist: Netlist, placement: Path, layout: "db.Layout", tech: CoriolisPlatform
+) -> Iterator[tuple[str, Pin, str, list[tuple[int, int, int]]]]:
+    """(net, pin, cell, [(level, x, y)]) of every pin and port."""
+    placed = json.loads(placement.read_text())["instances"]
+    cells: dict[str, Labels] = {}
+    for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
+        if not instance.pins:
+            continue
+        turn = getattr(db.Trans, ORIENTATIONS[orientation])
+        trans = db.Trans(turn, round(x / layout.dbu), round(y / layout.dbu))
+        if layout.cell(cell) is None:  # a macro's black box, larger than the macro in its place
+            cell, trans = instance.cell, _nearest(layout, instance.cell, trans.disp)
+        if cell not in cells:
+            cells[cell] = labels(layout, layout.cell(cell), tech)
+        for pin, net in instance.pins.items():
+            points = [(level, trans * db.Point(*at)) for level, *at in cells[cell].get(pin, ())]
+            yield net, (instance.name, pin), cell, [(level, point.x, point.y) for level, point in points]
+    ports = labels(layout, layout.top_cell(), tech)
+    for port in netlist.ports:
+        for bit in port.bits():
+            yield bit, ("", bit), "", ports.get(bit, [])
+
+
+def _nearest(layout: "db.Layout", cell: str, at: "db.Vector") -> "db.Trans":
+    """Where the instance of ``cell`` nearest to a point is in the top cell."""
+    index = layout.cell(cell).cell_index()
+    found = [instance.trans for instance in layout.top_cell().each_inst() if instance.cell_index == index]
+    return min(found, key=lambda trans: (trans.disp - at).sq_length())
