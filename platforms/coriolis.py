@@ -36,8 +36,8 @@ class CoriolisPlatform:
     metals: from the cells' pins up; vias[k] connects metals[k] and metals[k + 1]; straps run on the last metal,
     strap_um wide, and meet a rail over rail_overlap_um; a rail, on metals[rail], is rail_um wide, half of that at the
     edge unless rails_over_edge: the outermost ones then are half outside. pin_pitch_um: tracks of the pins' two layers,
-    'horizontal' (west and east) and 'vertical'. route_step_um: of the router's grid, along x and y. label_datatype, pin_datatype: GDS datatypes of labels and of what the
-    decks take for pins. outline: GDS layer of the die's.
+    'horizontal' (west and east) and 'vertical'. route_step_um: of the router's grid, along x and y. label_datatype,
+    pin_datatype: GDS datatypes of labels and of what the decks take for pins. outline: GDS layer of the die's.
     blockage_layer: of GDS, to drop. poly, active, contact: GDS layers, the last between the first two and the lowest
     metal. fill: of all metals but the lowest. wires: by platforms.wires.CORNERS. corners: at which cells are timed,
     that of synthesis first; () where there are no models of the devices. antenna_walls: whether antenna ratios are

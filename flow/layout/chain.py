@@ -99,7 +99,12 @@ def routing_steps(design: Design, options: Options) -> list[Step]:
     clock, macros, pdk = design.clock.port, macro_modules(design), options.pdk
     assemble = [Assemble(AssembleParameters(pdk, macros))] if macros else []
     checks = [step(PdkParameters(pdk)) for step in (Fill, Drc, Antenna)]
-    return [Route(RouteParameters(pdk, clock)), *assemble, StreamOut(StreamOutParameters(pdk, clock, bool(macros))), *checks]
+    return [
+        Route(RouteParameters(pdk, clock)),
+        *assemble,
+        StreamOut(StreamOutParameters(pdk, clock, bool(macros))),
+        *checks,
+    ]
 
 
 def signoff_steps(design: Design, options: Options) -> list[Step]:

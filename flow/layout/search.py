@@ -16,8 +16,9 @@ def lay_out_smallest(
 ) -> list[Attempt]:
     """Run all steps with ``runner``; the attempts, of which the last closes if any does.
 
-    An attempt closes when every net is routed and no rule of design or antennas is broken. signoff: function (design, options) -> the steps after it. Raises ParameterError where macros find no place
-    in any attempt, ToolError for a missing tool, before anything runs.
+    An attempt closes when every net is routed and no rule of design or antennas is broken. signoff: function
+    (design, options) -> the steps after it. Raises ParameterError where macros find no place in any attempt, ToolError
+    for a missing tool, before anything runs.
     """
     version(f"python {coriolis_platform(options.pdk).wheel}")
     for step in all_steps(design, options, signoff):

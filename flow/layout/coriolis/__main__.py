@@ -1,6 +1,7 @@
-"""Place one netlist, with clock tree and power straps: reads request.json, writes result.json and <cell>.gds into the working directory.
+"""Place one netlist, with clock tree and power straps.
 
-Coriolis prints to the terminal.
+Reads request.json, writes result.json and <cell>.gds into the working directory. Coriolis prints to
+the terminal.
 """
 
 import json

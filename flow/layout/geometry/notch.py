@@ -1,6 +1,6 @@
 """Notches and holes of one net's metal that are narrower or smaller than a process allows are filled.
 
-A route that `reroute` leads to a macro's pin ends in a pad beside it, sometimes a few nm away: one shape with a slit.
+A route to a macro's pin ends in a pad beside it, sometimes a few nm away: one shape with a slit.
 What fills a slit joins nothing that was not one shape before.
 """
 
@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 
 from base.gds import db
 from platforms.layers import Layer
+
+from .boxes import on_grid
 
 
 def fill(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: Mapping[str, float]) -> int:
@@ -17,7 +19,7 @@ def fill(layout: "db.Layout", top: "db.Cell", metals: Iterable[Layer], spaces: M
         layer = layout.layer(*of.gds)
         metal = db.Region(top.begin_shapes_rec(layer)).merged()
         narrow = metal.notch_check(round(spaces[of.name] / layout.dbu), False, db.Region.Projection)
-        found = [db.Polygon(pair.bbox()) for pair in narrow.each()]
+        found = [db.Polygon(db.Box(*on_grid(pair.bbox()))) for pair in narrow.each()]
         holes = (metal + db.Region(found)).merged().holes()
         found += [hole for hole in holes.each() if hole.area() * layout.dbu**2 < of.min_hole_um2]
         for polygon in found:

@@ -1,10 +1,13 @@
-"""Rip-up and reroute with negotiated congestion (PathFinder) of a layout that is nearly routed.
+"""Routing of all nets by negotiated congestion (PathFinder) on a grid of tracks.
 
 rules       rules of the metal layers and vias, in nm
+index       boxes by place
+grid        places, what is at them, and the cheapest path over them
 board       the layout, net by net
-window      a part of it as a grid, as one net sees it: the cost of a segment or a via at a place
-search      the cheapest path between two sets of places
+view        the board as one net sees it
+access      how a pin is met
 route       the shapes of a net
+area        the least area and width of a route's pieces
 nets        a net from pin to pin
 violations  where rules of space and antennas are broken
 negotiate   nets that contend for the same places

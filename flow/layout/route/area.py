@@ -4,7 +4,7 @@ from typing import Any
 
 from base.gds import db
 
-from ..geometry.boxes import Box
+from ..geometry.boxes import Box, on_grid
 from .route import Route
 from .view import NetView
 
@@ -21,7 +21,7 @@ def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
         region = _merged(boxes)
         gap = layer.space // 2
         for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():
-            boxes.append(_corners(polygon.bbox()))
+            boxes.append(on_grid(polygon.bbox()))
         for _ in range(ROUNDS):  # pieces corner to corner, or that overlap by less than the least width
             merged = _merged(boxes)
             pairs = (*merged.space_check(layer.space).each(), *merged.width_check(layer.width).each())
@@ -55,7 +55,7 @@ def _corners(box: "db.Box", left: int = 0, bottom: int = 0, right: int = 0, top:
 def _at_least(box: "db.Box", width: int) -> Box:
     """``box`` with sides of at least ``width``, on a grid of 5 nm."""
     x, y = (max(0, -(-(width - side) // 10) * 5) for side in (box.width(), box.height()))
-    return _corners(box, x, y, x, y)
+    return on_grid(box.enlarged(x, y))
 
 
 def _longer(view: NetView, level: int, box: "db.Box", lack: int, alone: bool) -> Box | None:

@@ -33,9 +33,9 @@ class Board:
     """A KLayout layout with the shapes of the nets ``shapes`` lifted out into ``boxes``.
 
     What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
-    [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above their
-    pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all nets, and
-    where nets CONTENDED. grid: both as places.
+    [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above
+    their pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all
+    nets, and where nets CONTENDED. grid: both as places.
     """
 
     def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:

@@ -58,10 +58,7 @@ class Grid:
 
     def inside(self, place: Place) -> bool:
         """Whether a place is on the grid."""
-        return (
-            0 < place[1] - self.first[0] < self.columns - 1
-            and 0 < place[2] - self.first[1] < self.rows - 1
-        )
+        return 0 < place[1] - self.first[0] < self.columns - 1 and 0 < place[2] - self.first[1] < self.rows - 1
 
     def at(self, i: int, j: int) -> Point:
         """(x, y) in nm of a place."""
@@ -107,7 +104,7 @@ class Grid:
         """Numbers of those of ``places`` that are within the window."""
         found = np.array(list(places), np.int64).reshape(-1, 3) - (1, *self.first)
         inside = ((found[:, 1:] >= low) & (found[:, 1:] <= high)).all(1)
-        return np.ravel_multi_index(tuple(found[inside].T), self.fixed.shape[1:])
+        return np.asarray(np.ravel_multi_index(tuple(found[inside].T), self.fixed.shape[1:]), np.int64)
 
 
 def _reaches(rules: RoutingRules) -> Rows:
@@ -226,7 +223,7 @@ def _search(
 
 
 @njit(cache=True)
-def _least(here: int, layer: int, rows: int, levels: int, box: Rows, least: Rows) -> np.int64:
+def _least(here: int | np.int64, layer: int, rows: int, levels: int, box: Rows, least: Rows) -> np.int64:
     """Lower bound of the cost from a place to the box around the targets: up to the best level, along, and down."""
     level, i, j = here // layer, here % layer // rows, here % rows
     across, along = max(box[0] - i, i - box[1], 0), max(box[2] - j, j - box[3], 0)

@@ -5,7 +5,7 @@ That is negotiated congestion as in PathFinder (McMurchie and Ebeling, FPGA 1995
 
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -93,12 +93,12 @@ def _hpwl(board: Board, net: str) -> float:
 
 def route(board: Board, nets: Collection[str], tech: CoriolisPlatform) -> Routed:
     """Route ``nets``, then again those with a violation; what was changed is checked again."""
-    state = negotiate(board, nets)
-    for turn in range(ROUNDS):
+    state, changed = negotiate(board, nets), None
+    for _ in range(ROUNDS):
         if state.open:
             break
-        found = check(board, tech) if not turn else find(board.part(changed), board.rules, tech)
-        near, charged = found.nets(board, None if not turn else changed)
+        found = check(board, tech) if changed is None else find(board.part(changed), board.rules, tech)
+        near, charged = found.nets(board, changed)
         state.respaced |= {*near}
         state.charged |= {*charged}
         wanted = {*near, *charged}
@@ -116,4 +116,5 @@ def check(board: Board, tech: CoriolisPlatform) -> Violations:
         gds = Path(folder) / "routed.gds"
         write_gds(board.drawn(), gds)
         tasks = (joblib.delayed(find_in_file)(gds, board.rules, tech, at) for at in split_levels(board.rules, JOBS))
-        return sum(joblib.Parallel(n_jobs=JOBS)(tasks), Violations())
+        found: Any = joblib.Parallel(n_jobs=JOBS)(tasks)
+    return sum(found, Violations())

@@ -28,7 +28,9 @@ class NetView:
     def clear(self, level: int, box: Box, others: bool = False) -> bool:
         """Whether nothing fixed, nor any net with ``others``, is nearer to ``box`` (nm) than the least space."""
         reach = self.reach(level, box)
-        if self.board.fixed.count(level, reach, self.net) or (others and self.board.routed.count(level, reach, self.net)):
+        if self.board.fixed.count(level, reach, self.net) or (
+            others and self.board.routed.count(level, reach, self.net)
+        ):
             return False
         return not any(at == level and _touch(reach, held) for at, held in self.held)
 

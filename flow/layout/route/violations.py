@@ -1,4 +1,4 @@
-"""Where a layout breaks rules that `reroute` keeps: least space, and antennas."""
+"""Where a layout breaks rules that the router keeps: least space and width, and antennas."""
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass

@@ -4,7 +4,7 @@ import json
 import sys
 import tempfile
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,10 +18,10 @@ from platforms.coriolis import coriolis_platform
 
 from ..geometry.macro import Macro
 from ..geometry.macro_cells import OVER_UM, make_solid
-from ..geometry.ports import Port, draw_ports
 from ..netlist.names import plain_macros, plain_names
 from ..netlist.netlist import MacroNames, Netlist
 from ..netlist.placed import placed_netlist, placement
+from ..route.ports import draw_ports, label_straps
 from ..route.rules import RoutingRules
 
 MODEL = "talbot_block"  # Coriolis works in lower case
@@ -90,7 +90,7 @@ class Place(Step[PlaceParameters]):
                 outputs[name].write_text("")
             return dict.fromkeys(self.metrics) | {"stopped": result["stopped"]}
         make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
-        self.ports(result["pins"], inputs["rules"], outputs)
+        self.ports(result, inputs["rules"], outputs)
         final = placed_netlist(netlist, names, result["instances"], macros)
         final.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
@@ -101,14 +101,15 @@ class Place(Step[PlaceParameters]):
             **{name: round(result["times"].get(name.removesuffix("_s"), 0), 2) for name in PHASES},
         }
 
-    def ports(self, pins: Sequence[Port], rules: Path, outputs: Files) -> None:
-        """Draw the ports in place of Coriolis's, which may be on metal of cells."""
+    def ports(self, result: dict[str, Any], rules: Path, outputs: Files) -> None:
+        """Draw the ports in place of Coriolis's, which may be on metal of cells, and label the straps."""
         tech, layout = coriolis_platform(self.parameters.pdk), read_gds(outputs["gds"])
         shapes = json.loads(outputs["shapes"].read_text())
         replaced = {net: made.pop("ports") for net, made in shapes.items()}
-        drawn = draw_ports(layout, pins, replaced, RoutingRules.of(tech, json.loads(rules.read_text())), tech)
+        drawn = draw_ports(layout, result["pins"], replaced, RoutingRules.of(tech, json.loads(rules.read_text())), tech)
         for net, box in drawn.items():
             shapes[net]["pins"].append([box])
+        label_straps(layout, result["straps"], tech)
         write_gds(layout, outputs["gds"])
         outputs["shapes"].write_text(json.dumps(shapes))
 

@@ -43,7 +43,14 @@ class Route(Step[RouteParameters]):
         "geometry": "library.geometry",
     }
     outputs = {"gds": "routed.gds", "placement": "placement.json"}
-    metrics = {"open_nets": "", "evictions": "", "respaced_nets": "", "antenna_jumpers": "", "wire_um": "um", "vias": ""}
+    metrics = {
+        "open_nets": "",
+        "evictions": "",
+        "respaced_nets": "",
+        "antenna_jumpers": "",
+        "wire_um": "um",
+        "vias": "",
+    }
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:

@@ -97,11 +97,7 @@ def test_exactly_these_steps_run_again(step_keys, tree, file, expected):
 @pytest.mark.parametrize(
     "file, some, others",
     [
-        (
-            "platforms/sky130/coriolis.py",
-            {"library", "place", "fill", "drc", "extraction"},
-            {"gate_frames", "sta"},
-        ),
+        ("platforms/sky130/coriolis.py", {"library", "place", "fill", "drc", "extraction"}, {"gate_frames", "sta"}),
         ("rtl/quad_divider/test/quad_divider_test.py", {"gate_tests_final_icarus"}, {"drc", "gate_frames"}),
         ("flow/layout/netlist/netlist.py", {"synthesis", "lvs", "place"}, {"drc", "timing"}),
         ("models/parameters/checks.py", {"drc", "sta", "gate_frames", "timing"}, set()),

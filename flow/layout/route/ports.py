@@ -1,13 +1,13 @@
 """The ports of a block: pieces of metal at its edge, inside of it, above all that cells use."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from base.gds import db
 from platforms.coriolis import CoriolisPlatform
 
-from ..route.rules import RoutingRules
-from .boxes import Box
+from ..geometry.boxes import Box
+from .rules import RoutingRules
 
 LEVELS = {"west": 3, "east": 3, "south": 2, "north": 2}  # of the metals, from that of the cells' pins up
 Port = tuple[str, str, float]  # side, net, offset in um along the side
@@ -24,7 +24,9 @@ def draw_ports(
     top, made = layout.top_cell(), {}
     edges = top.bbox()
     numbers = {metal.name: metal.layer for metal in tech.metals}
-    old = {(numbers[name], *(round(1000 * value) for value in um)) for boxes in replaced.values() for name, *um in boxes}
+    old = {
+        (numbers[name], *(round(1000 * value) for value in um)) for boxes in replaced.values() for name, *um in boxes
+    }
     for index in layout.layer_indexes():
         number = layout.get_info(index).layer
         for shape in list(top.shapes(index).each()):
@@ -41,6 +43,16 @@ def draw_ports(
         top.shapes(layout.layer(metal.layer, 0)).insert(db.Text(net, middle))
         made[net] = [metal.name, *(value / 1000 for value in box)]
     return made
+
+
+def label_straps(layout: "db.Layout", straps: Iterable[tuple[str, float, Any]], tech: CoriolisPlatform) -> None:
+    """Write the supplies' names on all ``straps``, (supply, x in um, gaps), in their middles."""
+    top, metal = layout.top_cell(), tech.metals[-1]
+    shapes, metals = top.shapes(layout.layer(metal.layer, 0)), top.shapes(layout.layer(*metal.gds))
+    for net, x, _ in straps:
+        column = db.Box(round(1000 * x), top.bbox().bottom, round(1000 * x), top.bbox().top)
+        longest = max((shape.bbox() for shape in metals.each_touching(column)), key=db.Box.height)
+        shapes.insert(db.Text(net, db.Trans(column.left, longest.center().y)))
 
 
 def _box(side: str, at: int, edges: "db.Box", rules: RoutingRules, level: int) -> Box:
