@@ -64,7 +64,7 @@ class Conditions:
 
     @property
     def fastest(self) -> bool:
-        """Whether of an arc's states the fastest counts, as in SkyWater's tables of the fast process, or the slowest."""
+        """Whether an arc's table is that of its fastest state, as in SkyWater's tables of ff; else of its slowest."""
         return self.corner.process == "ff"
 
     @property

@@ -14,7 +14,7 @@ FIELDS = ("delay", "slew", "energy")
 
 
 def chosen(bench: Bench, arc: Arc, load: float) -> Change:
-    """The change of ``arc`` with the longest delay at the middle slew and ``load`` F, with Conditions.fastest the least.
+    """The change of ``arc`` with the longest delay at the middle slew and ``load`` F; the shortest: Conditions.fastest.
 
     Liberty without conditions has one table for an arc: that of one state. At most ``Conditions.states`` states are
     tried, spread over all.
