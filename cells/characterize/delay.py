@@ -11,15 +11,16 @@ from cells.netlist.function import Arc
 from cells.netlist.states import Change
 
 FIELDS = ("delay", "slew", "energy")
+MOST = 32  # states of an arc that are tried
 
 
 def chosen(bench: Bench, arc: Arc, load: float) -> Change:
     """The change of ``arc`` with the longest delay at the middle slew and ``load`` F; the shortest: Conditions.fastest.
 
-    Liberty without conditions has one table for an arc: that of one state. At most ``Conditions.states`` states are
-    tried, spread over all.
+    Liberty without conditions has one table for an arc: that of one state. At most MOST states are tried, spread over
+    all.
     """
-    few, slew = spread(arc.changes, bench.conditions.states), bench.conditions.middle_slew
+    few, slew = spread(arc.changes, MOST), bench.conditions.middle_slew
     choose = min if bench.conditions.fastest else max
     return few[0] if len(few) == 1 else choose(few, key=lambda c: bench.edge(c, arc.output, slew, load).delay)
 
