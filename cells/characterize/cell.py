@@ -55,7 +55,7 @@ def characterize(cell: Cell, process: ModuleType, conditions: Conditions) -> Mea
             "wall_s": 0.0,
             "cpu_s": 0.0,
         }
-        _without_clock(measured)
+        _without_pin(measured)
         if cell.storage:
             measured["constraints"] = constraints(bench, tried)
         _let_go(measured, bench, process, axes, tried)
@@ -120,10 +120,10 @@ def _let_go(measured: Measured, bench: Bench, process: ModuleType, axes: dict[st
             measured["repeated"] += held.simulator.repeated
 
 
-def _without_clock(measured: Measured) -> None:
-    """Take what the clock's edge alone needs off the energy of the edges that it triggers: the pin has that."""
+def _without_pin(measured: Measured) -> None:
+    """Take what an input's edge alone needs off the energy of the edges that it causes: the pin has that."""
     for arc in measured["arcs"]:
         alone = measured["quiet_energy"].get(arc["pin"])
-        if arc["type"] in ("rising_edge", "falling_edge") and alone and "energy" in arc:
-            clock = np.interp(arc["slews"], measured["slews"], alone[arc["pin_edge"]])
-            arc["energy"] = (np.array(arc["energy"]) - clock[:, None]).tolist()
+        if alone and "energy" in arc:
+            quiet = np.interp(arc["slews"], measured["slews"], alone[arc["pin_edge"]])
+            arc["energy"] = (np.array(arc["energy"]) - quiet[:, None]).tolist()
