@@ -21,10 +21,10 @@ class Conditions:
     lower, upper, middle: of slews and delays, SkyWater's 20 %, 80 %, 50 % without derating. slews: the input slews of a
     table, shortest first; by default SkyWater's, to 5 ns where a slow process has a low supply, else to 1.5 ns. loads:
     points of its load axis, which ends where the output's slew is the last of these. least_load: its first.
-    longest_slew: the limit (max_transition) within the table, at which an output has its largest load
+    longest_slew: the limit (max_transition), within the table, at which an output has its largest load
     (max_capacitance). constraint_slews: of setup and hold tables. degrade: share by which the clock-to-output delay
-    may grow at the least setup or hold time. states: most states that are tried to choose one. bend: error of an
-    interpolated value from which a point is added; extra: most points that are added.
+    may grow at the least setup or hold time. states: most of which an input's capacitance is the mean. bend: error of
+    an interpolated value from which a point is added; extra: most points that are added.
     """
 
     corner: Corner
@@ -47,14 +47,13 @@ class Conditions:
         slow = self.corner.process == "ss" and self.corner.supply < LOW_SUPPLY
         for name, default in (("slews", SLEWS), ("constraint_slews", CONSTRAINT_SLEWS)):
             object.__setattr__(self, name, getattr(self, name) or default[slow])
+        object.__setattr__(self, "longest_slew", min(self.longest_slew, max(self.slews)))
         if not 0 < self.lower < self.middle < self.upper < 1:
             raise ParameterError("thresholds = lower, middle, upper: must rise between 0 and 1")
         for name in ("slews", "constraint_slews"):
             values = getattr(self, name)
             if not values or list(values) != sorted(set(values)) or values[0] <= 0:
                 raise ParameterError(f"{name} = {values}: must be above 0 and rise")
-        if self.longest_slew > self.slews[-1]:
-            raise ParameterError(f"longest_slew = {self.longest_slew}: must be at most the last of slews")
         if self.loads < 2:
             raise ParameterError(f"loads = {self.loads}: must be 2 or more")
         if self.extra < 0 or self.bend <= 0:
