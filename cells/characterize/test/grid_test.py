@@ -87,7 +87,7 @@ def test_an_arc_is_its_slowest_state_and_at_ff_its_fastest(corner, delay):
 def test_margins_are_for_what_skywaters_tables_have_longer():
     slews = (1e-11, 1e-9)
     setup, hold = margin("setup_rising", 400e-12, slews), margin("hold_falling", 400e-12, slews)
-    assert setup == pytest.approx(np.array([[14.1e-12, 24e-12]] * 2))  # data's slews along a row
+    assert setup == pytest.approx(np.array([[16.1e-12, 26e-12]] * 2))  # data's slews along a row
     assert hold == pytest.approx(np.array([[4.1e-12] * 2, [14e-12] * 2]))
     assert not margin("recovery_rising", 400e-12, slews).any()
 
