@@ -170,7 +170,7 @@ cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cel
 
 .PHONY: cells-report
 cells-report: $(LAYOUT_READY) have-tools  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
-	@$(PY) -m talbot cells-report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER))
+	@$(PY) -m talbot cells-report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER)) $(if $(CELLS),--cells $(call quoted,$(CELLS)))
 
 .PHONY: cells-stability
 cells-stability: $(LAYOUT_READY) have-tools  ## stiff and extreme cases of the characterizer: bound against measured

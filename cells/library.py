@@ -32,12 +32,12 @@ def characterize_library(
 
     summary.json: that of this corner, and under 'corners' that of every corner whose .lib is in the folder; LEF and
     Verilog have the cells of all of them. wanted: names of cells, None for all. netlist: one of sources.NETLISTS.
-    against: folder of SkyWater's tables. workers: processes, -1 for all cores.
+    against: folder of SkyWater's tables, with those of other corners perhaps. workers: processes, -1 for all cores.
     """
     started, process, corner, title = time.monotonic(), sources.process(library), c.corner.name, sources.title(library)
     if unknown := sorted(set(wanted or ()) - set(sources.names(library))):
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
-    known = reference.folder(against) if against else None
+    known = reference.folder(against, corner) if against else None
     names = sorted(wanted or sources.names(library))
     found = [sources.source(library, name, netlist) for name in tqdm(names, "netlists", disable=None)]
     cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
@@ -52,7 +52,9 @@ def characterize_library(
     tree = build.library(f"{title}__{corner}", c, entries, process, {} if wanted else sources.constants(library))
     with staged(folder) as part:
         (part / f"{corner}.lib").write_text(text(tree))
-        summary = _summary(measured, tree) | (compare.summary(compare.library(tree, known)) if known else {})
+        summary = _summary(measured, tree) | (
+            compare.summary(compare.library(tree, known), process.FITTED) if known else {}
+        )
         summary |= {"wall_s": round(time.monotonic() - started, 1), "names": names}
         summary["left_out"] = {} if wanted else sources.left_out(library)
         summary["read_by"] = read_by = accept.readers(part / f"{corner}.lib")

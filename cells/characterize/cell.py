@@ -3,6 +3,7 @@
 import resource
 import time
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,18 +29,22 @@ def characterize(cell: Cell, process: ModuleType, conditions: Conditions) -> Mea
     with Bench(cell, process, conditions) as bench:
         tried_axes = {output: tried(f"{output}: axes", axes_of, bench, output) for output in machine.outputs}
         axes = {output: axis for output, axis in tried_axes.items() if axis}
-        for output, (_, loads, _) in axes.items():
-            bench.middle[output] = _between(loads, 1 / 2)
-            bench.pressed[output] = _between(loads, 2 / 3)
+        for output, axis in axes.items():
+            bench.middle[output] = _between(conditions.least_load, axis.limit, 1 / 2)
+            bench.pressed[output] = _between(conditions.least_load, axis.limit, 2 / 3)
         edges = [arc for arc in cell.arcs if arc.output in axes and arc.type != LETS_GO]
         names = [f"{arc.pin} {arc.pin_edge} to {arc.output} {arc.edge}" for arc in edges]
-        arcs = [tried(n, _arc, bench, a, *axes[a.output][:2]) for n, a in zip(names, edges, strict=True)]
+        arcs = [
+            tried(n, _arc, bench, a, axes[a.output].slews, axes[a.output].loads)
+            for n, a in zip(names, edges, strict=True)
+        ]
         measured: Measured = {
             "name": cell.name,
             "failed": tried.failed,
             "slews": conditions.slews,
-            "largest_load": {output: loads[-1] for output, (_, loads, _) in axes.items()},
-            "interpolation_error": {output: error for output, (_, _, error) in axes.items()},
+            "longest_slew": conditions.longest_slew,
+            "largest_load": {output: axis.limit for output, axis in axes.items()},
+            "interpolation_error": {output: axis.error for output, axis in axes.items()},
             "arcs": [arc for arc in arcs if arc],
             "capacitance": {pin: tried(f"{pin}: capacitance", capacitance, bench, pin) for pin in machine.inputs},
             "quiet_energy": {pin: tried(f"{pin}: energy", quiet_energy, bench, pin) for pin in machine.inputs},
@@ -50,7 +55,7 @@ def characterize(cell: Cell, process: ModuleType, conditions: Conditions) -> Mea
             "wall_s": 0.0,
             "cpu_s": 0.0,
         }
-        _without_clock(measured)
+        _without_pin(measured)
         if cell.storage:
             measured["constraints"] = constraints(bench, tried)
         _let_go(measured, bench, process, axes, tried)
@@ -69,32 +74,40 @@ def cpu_seconds() -> float:
     return sum(part.ru_utime + part.ru_stime for part in parts)
 
 
-def axes_of(bench: Bench, output: str) -> tuple[Axis, Axis, float]:
-    """Slews, loads and interpolation error of ``output``; loads end where the slower edge reaches the longest slew."""
+class Axes(NamedTuple):
+    """Slews (s), loads (F) and interpolation error of an output's tables; limit: F at Conditions.longest_slew."""
+
+    slews: Axis
+    loads: Axis
+    error: float
+    limit: float
+
+
+def axes_of(bench: Bench, output: str) -> Axes:
+    """The axes of ``output``; loads end where the slower edge reaches the last of Conditions.slews."""
     arcs = [arc for arc in bench.cell.arcs if arc.output == output and not arc.type.startswith("three_state")]
     number = bench.machine.outputs.index(output)
     edges = list({arc.changes[0].after.outputs[number]: arc.changes[0] for arc in arcs}.values())
-    loads = delay.load_axis(bench.conditions, delay.largest_load(bench, edges, output))
-    return refined(bench, edges, output, loads)
+    c = bench.conditions
+    end, limit = (delay.largest_load(bench, edges, output, slew) for slew in (c.slews[-1], c.longest_slew))
+    return Axes(*refined(bench, edges, output, delay.load_axis(c, end)), limit)
 
 
-def _between(loads: Axis, share: float) -> float:
-    """F at a ``share`` of an axis, by its ends: more points in it change nothing."""
-    return float(loads[0] ** (1 - share) * loads[-1] ** share)
+def _between(least: float, most: float, share: float) -> float:
+    """The F at a ``share`` of the way from ``least`` to ``most``, by factors."""
+    return float(least ** (1 - share) * most**share)
 
 
 def _arc(bench: Bench, arc: Arc, slews: Axis, loads: Axis) -> ArcTables:
-    change = delay.slowest(bench, arc, loads[len(loads) // 2])
+    change = delay.chosen(bench, arc, loads[len(loads) // 2])
     values = delay.table(bench, change, arc.output, loads, slews).values
     tables = arc_tables(arc, slews, loads, change.before, values["delay"].tolist(), values["slew"].tolist())
     return {**tables, "energy": values["energy"].tolist()}
 
 
-def _let_go(
-    measured: Measured, bench: Bench, process: ModuleType, axes: dict[str, tuple[Axis, Axis, float]], tried: Tries
-) -> None:
+def _let_go(measured: Measured, bench: Bench, process: ModuleType, axes: dict[str, Axes], tried: Tries) -> None:
     """Add what is measured of outputs that are let go."""
-    for output, (slews, loads, _) in axes.items():
+    for output, (slews, loads, *_) in axes.items():
         arcs = [arc for arc in bench.cell.arcs if arc.output == output and arc.type == LETS_GO]
         if not arcs:
             continue
@@ -107,10 +120,10 @@ def _let_go(
             measured["repeated"] += held.simulator.repeated
 
 
-def _without_clock(measured: Measured) -> None:
-    """Take what the clock's edge alone needs off the energy of the edges that it triggers: the pin has that."""
+def _without_pin(measured: Measured) -> None:
+    """Take what an input's edge alone needs off the energy of the edges that it causes: the pin has that."""
     for arc in measured["arcs"]:
         alone = measured["quiet_energy"].get(arc["pin"])
-        if arc["type"] in ("rising_edge", "falling_edge") and alone and "energy" in arc:
-            clock = np.interp(arc["slews"], measured["slews"], alone[arc["pin_edge"]])
-            arc["energy"] = (np.array(arc["energy"]) - clock[:, None]).tolist()
+        if alone and "energy" in arc:
+            quiet = np.interp(arc["slews"], measured["slews"], alone[arc["pin_edge"]])
+            arc["energy"] = (np.array(arc["energy"]) - quiet[:, None]).tolist()

@@ -6,16 +6,25 @@ from cells.corner import Corner
 from cells.spice.settings import Settings
 from models.parameters import ParameterError
 
+LOW_SUPPLY = 1.7  # V, below which SkyWater's tables of the slow process run to 5 ns
+SLEWS = (
+    (0.01e-9, 0.0230506e-9, 0.0531329e-9, 0.122474e-9, 0.282311e-9, 0.650743e-9, 1.5e-9),
+    (0.01e-9, 0.0281727e-9, 0.0793701e-9, 0.223607e-9, 0.629961e-9, 1.77477e-9, 5e-9),
+)
+CONSTRAINT_SLEWS = (0.01e-9, 0.5e-9, 1.5e-9), (0.01e-9, 0.5e-9, 2.5e-9, 5e-9)
+
 
 @dataclass(frozen=True)
 class Conditions:
     """Thresholds are fractions of the supply, times s, loads F.
 
     lower, upper, middle: of slews and delays, SkyWater's 20 %, 80 %, 50 % without derating. slews: the input slews of a
-    table, shortest first. loads: points of its load axis. least_load: its first. longest_slew: at the output, where
-    the load axis ends. constraint_slews: of setup and hold tables. degrade: share by which the clock-to-output delay
-    may grow at the least setup or hold time. states: most states that are tried to choose one. bend: error of an
-    interpolated value from which a point is added; extra: most points that are added.
+    table, shortest first; by default SkyWater's, to 5 ns where a slow process has a low supply, else to 1.5 ns. loads:
+    points of its load axis, which ends where the output's slew is the last of these. least_load: its first.
+    longest_slew: the limit (max_transition), within the table, at which an output has its largest load
+    (max_capacitance). constraint_slews: of setup and hold tables. degrade: share by which the clock-to-output delay
+    may grow at the least setup or hold time. states: most of which an input's capacitance is the mean. bend: error of
+    an interpolated value from which a point is added; extra: most points that are added.
     """
 
     corner: Corner
@@ -23,11 +32,11 @@ class Conditions:
     lower: float = 0.2
     upper: float = 0.8
     middle: float = 0.5
-    slews: tuple[float, ...] = (0.01e-9, 0.0230506e-9, 0.0531329e-9, 0.122474e-9, 0.282311e-9, 0.650743e-9, 1.5e-9)
+    slews: tuple[float, ...] = ()
     loads: int = 7
     least_load: float = 0.5e-15
     longest_slew: float = 1.5e-9
-    constraint_slews: tuple[float, ...] = (0.01e-9, 0.5e-9, 1.5e-9)
+    constraint_slews: tuple[float, ...] = ()
     degrade: float = 0.1
     states: int = 4
     bend: float = 0.015
@@ -35,6 +44,10 @@ class Conditions:
     settings: Settings = field(default_factory=lambda: Settings(reltol=1e-4, method="gear", steps=50))
 
     def __post_init__(self) -> None:
+        slow = self.corner.process == "ss" and self.corner.supply < LOW_SUPPLY
+        for name, default in (("slews", SLEWS), ("constraint_slews", CONSTRAINT_SLEWS)):
+            object.__setattr__(self, name, getattr(self, name) or default[slow])
+        object.__setattr__(self, "longest_slew", min(self.longest_slew, max(self.slews)))
         if not 0 < self.lower < self.middle < self.upper < 1:
             raise ParameterError("thresholds = lower, middle, upper: must rise between 0 and 1")
         for name in ("slews", "constraint_slews"):
@@ -47,6 +60,11 @@ class Conditions:
             raise ParameterError(f"extra, bend = {self.extra}, {self.bend}: must be 0 or more, above 0")
         if not 0 < self.degrade < 1:
             raise ParameterError(f"degrade = {self.degrade}: must be between 0 and 1")
+
+    @property
+    def fastest(self) -> bool:
+        """Whether an arc's table is that of its fastest state, as in SkyWater's tables of ff; else of its slowest."""
+        return self.corner.process == "ff"
 
     @property
     def middle_slew(self) -> float:

@@ -11,16 +11,18 @@ from cells.netlist.function import Arc
 from cells.netlist.states import Change
 
 FIELDS = ("delay", "slew", "energy")
+MOST = 32  # states of an arc that are tried
 
 
-def slowest(bench: Bench, arc: Arc, load: float) -> Change:
-    """The change of ``arc`` with the longest delay at the middle slew and ``load`` F.
+def chosen(bench: Bench, arc: Arc, load: float) -> Change:
+    """The change of ``arc`` with the longest delay at the middle slew and ``load`` F; the shortest: Conditions.fastest.
 
-    Liberty without conditions has one table for an arc: that of the slowest state. At most ``Conditions.states`` states
-    are tried, spread over all.
+    Liberty without conditions has one table for an arc: that of one state. At most MOST states are tried, spread over
+    all.
     """
-    few, slew = spread(arc.changes, bench.conditions.states), bench.conditions.middle_slew
-    return few[0] if len(few) == 1 else max(few, key=lambda c: bench.edge(c, arc.output, slew, load).delay)
+    few, slew = spread(arc.changes, MOST), bench.conditions.middle_slew
+    choose = min if bench.conditions.fastest else max
+    return few[0] if len(few) == 1 else choose(few, key=lambda c: bench.edge(c, arc.output, slew, load).delay)
 
 
 def table(
@@ -33,24 +35,24 @@ def table(
     return Table(tuple(slews), tuple(loads), values)
 
 
-def largest_load(bench: Bench, changes: Iterable[Change], output: str) -> float:
-    """F at which the slew of ``output`` reaches Conditions.longest_slew, for the slower of ``changes``.
+def largest_load(bench: Bench, changes: Iterable[Change], output: str, longest: float) -> float:
+    """F at which the slew of ``output`` reaches ``longest`` s, as the input's has, for the slower of ``changes``.
 
     Secant steps on an almost straight line, to 0.1 %.
     """
-    return min(_largest(bench, change, output) for change in changes)
+    return min(_largest(bench, change, output, longest) for change in changes)
 
 
-def _largest(bench: Bench, change: Change, output: str) -> float:
-    c, loads = bench.conditions, [50e-15, 100e-15]
-    slews = [bench.edge(change, output, c.slews[-1], load).slew for load in loads]
+def _largest(bench: Bench, change: Change, output: str, longest: float) -> float:
+    loads = [50e-15, 100e-15]
+    slews = [bench.edge(change, output, longest, load).slew for load in loads]
     for _ in range(8):
         rate = (slews[-1] - slews[-2]) / (loads[-1] - loads[-2])
-        load = max(loads[-1] + (c.longest_slew - slews[-1]) / rate, loads[-1] / 10, 1e-15)
+        load = max(loads[-1] + (longest - slews[-1]) / rate, loads[-1] / 10, 1e-15)
         if abs(load - loads[-1]) < 1e-3 * load:
             return load
         loads.append(load)
-        slews.append(bench.edge(change, output, c.slews[-1], load).slew)
+        slews.append(bench.edge(change, output, longest, load).slew)
     return loads[-1]
 
 

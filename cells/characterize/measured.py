@@ -51,14 +51,16 @@ class Constraint(TypedDict):
 class Measured(TypedDict):
     """Everything measured of one cell at one corner.
 
-    largest_load, interpolation_error: of every output. capacitance: (rise, fall) of every input and of outputs that
-    float. quiet_energy: of every input, by edge and slew. leakage: (levels of the inputs, of the outputs, W) of every
-    state. wall_s: by the clock; cpu_s: of this process and ngspice.
+    longest_slew (s), largest_load (F at which an output's slew is that long): the limits of pins. interpolation_error:
+    of every output. capacitance: (rise, fall) of every input and of outputs that float. quiet_energy: of every input,
+    by edge and slew. leakage: (levels of the inputs, of the outputs, W) of every state. wall_s: by the clock; cpu_s: of
+    this process and ngspice.
     """
 
     name: str
     failed: list[Failure]
     slews: Sequence[float]
+    longest_slew: float
     largest_load: dict[str, float]
     interpolation_error: dict[str, float]
     arcs: list[ArcTables]

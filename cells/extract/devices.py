@@ -1,6 +1,7 @@
 """Nets and transistors of a laid-out cell, found by KLayout."""
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import klayout.db as db
@@ -200,12 +201,30 @@ def _device(device: db.Device, found: CellLayout, marks: dict[str, db.Region]) -
     value, at = device.parameter, device.trans.disp
     point = db.Point(round(at.x / found.dbu), round(at.y / found.dbu))
     spot = db.Region(db.Box(point.x - 5, point.y - 5, point.x + 5, point.y + 5))
-    box = found.active.bbox()
-    line = db.Region(db.Box(box.left, point.y - 1, box.right, point.y + 1)) & found.active
-    run = next(part.bbox() for part in line.each_merged() if part.inside(point))
     drain, gate, source, bulk = (net[terminal] for terminal in "DGSB")
     width, length, *sides = (value(name) for name in ("W", "L", "AD", "AS", "PD", "PS"))
-    sa, sb = ((dbu * found.dbu - length / 2) for dbu in (point.x - run.left, run.right - point.x))
+    sa, sb = _stress(found, point, width, length)
     over = frozenset(mark for mark, region in marks.items() if not region.interacting(spot).is_empty())
     kind = device.device_class().name
     return Device(kind, drain, gate, source, bulk, width, length, *sides, sa=sa, sb=sb, marks=over, at=point)
+
+
+def _stress(found: CellLayout, point: db.Point, width: float, length: float) -> tuple[float, float]:
+    """SA and SB (um) of a gate with its middle at ``point``: where the diffusion's end has steps, BSIM4's equivalent.
+
+    1 / (SA + L / 2) is the mean over the gate's width of that of each strip (BSIM4.5 manual, 13.4, SA and SB for
+    irregular shapes): most of the stress comes from the nearest edge.
+    """
+    box, half = found.active.bbox(), round(width / found.dbu / 2)
+    gate = db.Box(point.x - 1, point.y - half, point.x + 1, point.y + half)
+    band = db.Region(db.Box(box.left, gate.bottom, box.right, gate.top)) & found.active
+    corners = {corner.y for part in band.each_merged() for corner in part.each_point_hull()}
+    levels = sorted(y for y in corners | {gate.bottom, gate.top} if gate.bottom <= y <= gate.top)
+    inverse = [0.0, 0.0]
+    for low, high in pairwise(levels):
+        strip = db.Region(db.Box(box.left, low, box.right, high)) & band
+        run = next(part.bbox() for part in strip.each_merged() if part.bbox().contains(db.Point(point.x, low)))
+        for side, dbu in enumerate((point.x - run.left, run.right - point.x)):
+            inverse[side] += (high - low) / (2 * half) / (dbu * found.dbu)
+    sa, sb = (1 / value - length / 2 for value in inverse)
+    return sa, sb

@@ -152,6 +152,7 @@ def _input(group: Group, cell: Cell, measured: Measured, name: str) -> None:
     if storage and storage.kind == "gate":
         role = {storage.clock: "clock", storage.data_pins[0]: "enable"}.get(name, "test")
         pin.attributes[f"clock_gate_{role}_pin"] = True
+    pin.attributes["max_transition"] = NS * measured["longest_slew"]  # OpenSTA takes the default for outputs alone
     _capacitance(pin, measured["capacitance"].get(name))
     _rails(pin, cell)
     if energy := measured["quiet_energy"].get(name):
@@ -195,7 +196,7 @@ def _output(group: Group, cell: Cell, measured: Measured, name: str) -> None:
         pin.attributes["clock_gate_out_pin"] = True
     if name in measured["largest_load"]:
         pin.attributes["max_capacitance"] = PF * measured["largest_load"][name]
-    pin.attributes["max_transition"] = NS * measured["slews"][-1]
+    pin.attributes["max_transition"] = NS * measured["longest_slew"]
     _rails(pin, cell)
     arcs = {}
     for arc in measured["arcs"]:

@@ -1,7 +1,7 @@
 """Two Liberty descriptions of one cell, table by table; what only one of them has is reported by name."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -146,27 +146,38 @@ def _at(mine: Group, theirs: Group) -> Floats:
     return np.array([[bilinear(*axes, row, column) for column in columns] for row in rows])
 
 
-def summary(found: Sequence[Difference]) -> dict[str, Any]:
-    """Absolute errors over all entries, and the tables that only one has, by name: what summary.json holds.
+def summary(found: Sequence[Difference], fitted: Container[str] = ()) -> dict[str, Any]:
+    """The errors of cells that are not among ``fitted`` ('error') and of those ('error_of_fit'): summary.json has them.
 
-    'error': by kind its unit ('%', of constraints 'ps'), number of entries, of missing ones, median, 95th percentile
-    (p95) and worst. 'only_theirs', 'only_ours': names.
+    By kind: see `errors`. 'only_theirs', 'only_ours': names of tables that one alone has.
+    """
+    return {
+        "error": errors([d for d in found if d.cell not in fitted]),
+        "error_of_fit": errors([d for d in found if d.cell in fitted]),
+        "only_theirs": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.ours).all()],
+        "only_ours": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.theirs).all()],
+    }
+
+
+def errors(found: Sequence[Difference]) -> dict[str, dict[str, Any]]:
+    """Absolute errors over all entries, by kind.
+
+    Of each its unit ('%', of constraints 'ps'), number of entries, of missing ones, median, 95th percentile (p95) and
+    worst; of constraints 'optimistic', the most by which ours is shorter.
     """
     out: dict[str, dict[str, Any]] = {}
     both = [d for d in found if not np.isnan(d.theirs).all()]
     for kind in dict.fromkeys(d.kind for d in both):
         same = [d for d in both if d.kind == kind]
         if kind in CONSTRAINTS.values():
-            errors, unit = np.concatenate([np.ravel(d.ours - d.theirs) * 1e3 for d in same]), "ps"
+            signed, unit = np.concatenate([np.ravel(d.ours - d.theirs) * 1e3 for d in same]), "ps"
         else:
-            errors, unit = np.concatenate([np.ravel(d.relative) * 100 for d in same]), "%"
-        finite = np.abs(errors[np.isfinite(errors)])
-        out[kind] = {"unit": unit, "entries": int(errors.size), "missing": int(errors.size - finite.size)}
+            signed, unit = np.concatenate([np.ravel(d.relative) * 100 for d in same]), "%"
+        finite = np.abs(signed[np.isfinite(signed)])
+        out[kind] = {"unit": unit, "entries": int(signed.size), "missing": int(signed.size - finite.size)}
         if finite.size:
-            errors = {"median": np.median(finite), "p95": np.percentile(finite, 95), "worst": finite.max()}
-            out[kind] |= {name: round(float(error), 3) for name, error in errors.items()}
-    return {
-        "error": out,
-        "only_theirs": [f"{d.cell}: {d.what}" for d in both if np.isnan(d.ours).all()],
-        "only_ours": [f"{d.cell}: {d.what}" for d in found if np.isnan(d.theirs).all()],
-    }
+            found_errors = {"median": np.median(finite), "p95": np.percentile(finite, 95), "worst": finite.max()}
+            if unit == "ps":
+                found_errors["optimistic"] = max(0.0, -np.nanmin(signed))
+            out[kind] |= {name: round(float(error), 3) for name, error in found_errors.items()}
+    return out

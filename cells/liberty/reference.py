@@ -8,12 +8,24 @@ from base.liberty.group import Group
 from models.parameters import ParameterError
 
 
-def folder(path: str | Path) -> dict[str, Group]:
-    """The cells of a folder of *.lib.json, by name without library and corner. Raises ParameterError."""
-    files = sorted(Path(path).glob("*.lib.json"))
-    if not files:
-        raise ParameterError(f"reference = {str(path)!r}: must be a folder with <cell>.lib.json")
-    return {_short(file.name): cell(file) for file in files}
+def files(path: str | Path, corner: str) -> dict[str, Path]:
+    """The files *.lib.json of ``corner`` in a folder and all within it, by name of the cell. Raises ParameterError.
+
+    SkyWater's (<library>__<cell>__<corner>[_ccsnoise].lib.json) name their corner, others (<cell>.lib.json) fit any.
+    """
+    found: dict[str, Path] = {}
+    for file in sorted(Path(path).rglob("*.lib.json")):
+        parts = file.name.removesuffix(".lib.json").split("__")
+        if len(parts) < 3 or parts[2].removesuffix("_ccsnoise") == corner:
+            found[_short(file.name)] = file
+    if not found:
+        raise ParameterError(f"reference = {str(path)!r}: must be a folder with <cell>.lib.json of {corner}")
+    return found
+
+
+def folder(path: str | Path, corner: str) -> dict[str, Group]:
+    """The cells of the `files` of a folder, by name. Raises ParameterError."""
+    return {name: cell(file) for name, file in files(path, corner).items()}
 
 
 def cell(path: str | Path) -> Group:

@@ -77,8 +77,8 @@ def one(library: str, name: str, label: str, conditions: Conditions, truth: Sequ
     started = cpu_seconds()
     with Bench(cell, sources.process(library), conditions) as bench:
         grid = {output: axes_of(bench, output) for output in cell.machine.outputs}
-        arcs = ((arc, *grid[arc.output]) for arc in cell.arcs)
-        tables = [delay.table(bench, arc.changes[0], arc.output, loads, slews) for arc, slews, loads, _ in arcs]
+        arcs = ((arc.changes[0], arc.output, grid[arc.output]) for arc in cell.arcs)
+        tables = [delay.table(bench, change, output, axes.loads, axes.slews) for change, output, axes in arcs]
     seconds, errors = cpu_seconds() - started, []
     for table, points in zip(tables, truth, strict=True):
         for slew, load, exact in points:
@@ -92,7 +92,8 @@ def truth(library: str, name: str, base: Conditions) -> list[list[Truth]]:
     cell = cell_of(sources.source(library, name), process)
     with Bench(cell, process, replace(base, settings=DENSE)) as bench:
         changes = {output: [a.changes[0] for a in cell.arcs if a.output == output] for output in cell.machine.outputs}
-        largest = {output: delay.largest_load(bench, same, output) for output, same in changes.items()}
+        end = base.slews[-1]
+        largest = {output: delay.largest_load(bench, same, output, end) for output, same in changes.items()}
         for arc in cell.arcs:
             slews = np.exp(rng.uniform(np.log(base.slews[0]), np.log(base.slews[-1]), OFF_GRID))
             loads = np.exp(rng.uniform(np.log(base.least_load), np.log(largest[arc.output]), OFF_GRID))

@@ -1,6 +1,6 @@
 """Sources of the error: device models, parasitics, the drawn transistors."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -10,6 +10,7 @@ import numpy as np
 
 from base import jobs
 from cells import sources
+from cells.characterize import delay
 from cells.characterize.bench import Bench
 from cells.characterize.conditions import Conditions
 from cells.characterize.job import cell_of, job
@@ -31,16 +32,15 @@ class Errors(TypedDict):
 
 
 def separate(
-    library: str, names: Sequence[str], conditions: Conditions, folder: Path, store: Path, workers: int
+    library: str, files: Mapping[str, Path], conditions: Conditions, store: Path, workers: int
 ) -> list[Errors]:
-    """Errors of every cell in every variant, at the reference's own points.
+    """Errors of every cell of ``files`` in every variant, at the reference's own points.
 
     Nothing is interpolated, so that only models and netlist cause them.
     """
     process = sources.process(library)
     todo = []
-    for name in names:
-        file = next(folder.glob(f"{name}.lib.json"), None) or next(folder.glob(f"*__{name}__*.lib.json"))
+    for name, file in files.items():
         for models, netlist in product(process.SETS, sources.NETLISTS):
             source, at = sources.source(library, name, netlist), replace(conditions, models=models)
             arguments, inputs = (library, name, at, netlist, str(file)), (*job(source, at, process).inputs, file)
@@ -59,11 +59,15 @@ def errors(library: str, name: str, conditions: Conditions, netlist: str, file: 
             pin = theirs.one("pin", arc.output)
             wanted = {"related_pin": arc.pin, "timing_type": arc.type, "timing_sense": arc.sense}
             for timing in pin.all("timing", **wanted) if pin else ():
+                middle = timing.one(f"cell_{arc.edge}")
+                if middle is None:
+                    continue
+                change = delay.chosen(bench, arc, 1e-12 * float(middle.array("index_2")[3]))
                 for field, kind in (("delay", f"cell_{arc.edge}"), ("slew", f"{arc.edge}_transition")):
                     table = timing.one(kind)
                     if table is None:
                         continue
-                    values, change = table.array("values")[POINTS, POINTS], arc.changes[0]
+                    values = table.array("values")[POINTS, POINTS]
                     slews, loads = (table.array(f"index_{k}")[POINTS] for k in (1, 2))
                     edges = [[bench.edge(change, arc.output, s * 1e-9, f * 1e-12) for f in loads] for s in slews]
                     ours = [[getattr(edge, field) * 1e9 for edge in row] for row in edges]
@@ -71,9 +75,9 @@ def errors(library: str, name: str, conditions: Conditions, netlist: str, file: 
     return found
 
 
-def table(found: Sequence[Errors]) -> list[Variant]:
-    """Summarize every variant over all cells, delay and slew together."""
+def table(found: Sequence[Errors], fitted: Container[str] = ()) -> list[Variant]:
+    """Summarize every variant over all cells but those ``fitted``, delay and slew together."""
     errors: dict[tuple[str, str], list[float]] = {}
-    for f in found:
+    for f in (f for f in found if f["cell"] not in fitted):
         errors.setdefault((f["models"], f["netlist"]), []).extend((*f["delay"], *f["slew"]))
     return [(*variant, len(values), *spread(values)) for variant, values in errors.items()]

@@ -75,6 +75,29 @@ def test_a_library_has_what_it_must(gates):
 
 
 @ready
+def test_every_pin_has_the_limits_that_its_tables_cover(gates):
+    library, _ = gates
+    for pin in library.one("cell", "sky130_fd_sc_hd__nand2_1").all("pin"):
+        assert pin.number("max_transition") == pytest.approx(1.5)
+    pin = library.one("cell", "sky130_fd_sc_hd__nand2_1").one("pin", "Y")
+    table = pin.all("timing", related_pin="A")[0].one("cell_fall")
+    assert pin.number("max_capacitance") == pytest.approx(table.array("index_2")[-1])
+
+
+@ready
+def test_a_slow_corner_has_its_leakage_and_tables_beyond_its_limits(tmp_path):
+    """Published for inv_1 at ss_100C_1v60: 4.03 nW, slews to 5 ns, the limits still at 1.5 ns."""
+    library, _ = make(tmp_path, "--cells", "inv_1", "--corner", "ss_100C_1v60")
+    cell = library.one("cell", "sky130_fd_sc_hd__inv_1")
+    assert cell.number("cell_leakage_power") == pytest.approx(4.03, rel=0.25)
+    pin = cell.one("pin", "Y")
+    table = pin.all("timing")[0].one("rise_transition")
+    loads, limit = table.array("index_2"), pin.number("max_capacitance")
+    assert table.array("index_1")[-1] == pytest.approx(5) and loads[-1] > 2 * limit
+    assert pin.number("max_transition") == pytest.approx(1.5)
+
+
+@ready
 def test_the_checker_sees_what_was_taken_away(gates):
     library, path = gates
     broken = read(path)

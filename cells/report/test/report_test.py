@@ -48,13 +48,18 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
     found = [Difference("c", "delay", "Y A cell_rise", full, 2 * full), Difference("c", "slew", "Y B", none, full)]
     picture = pictures.heat_maps(found)
     assert picture.startswith("data:image/png;base64,") and picture == pictures.heat_maps(found[:1])
-    found_summary = summary(found)
+    found += [Difference("fit", "delay", "Y A cell_rise", full, full)]
+    found_summary = summary(found, fitted=("fit",))
     page = {
         "corner": "tt",
         "default": curve.DEFAULT,
         "points": 1,
         "alone": found_summary,
-        "kinds": {kind: {**e, "bound": (5, 12)} for kind, e in found_summary["error"].items()},
+        "tables": {
+            title: {kind: {**e, "bound": (5, 12)} for kind, e in found_summary[key].items()}
+            for title, key in (("held out", "error"), ("of the fit", "error_of_fit"))
+        },
+        "kinds": ["delay", "slew"],
         "cells": {"c": {**found_summary, "picture": picture}},
         "variants": [("fitted", "extracted", 8, 1.0, 2.0)],
         "curve": curve.table(ERRORS),
@@ -63,4 +68,6 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
     }
     html = render(Path(report.__file__).with_name("index.html"), **page)
     assert "In the reference alone: c: Y B." in html and "Here alone: nothing." in html
+    assert html.index("held out") < html.index("of the fit")
+    assert found_summary["error"]["delay"]["median"] == 50 and found_summary["error_of_fit"]["delay"]["median"] == 0
     assert "<td>dfxtp_1</td><td>1</td>" in html and "<td>50.0</td>" in html
