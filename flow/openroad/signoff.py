@@ -1,0 +1,87 @@
+"""Checks of what the stages made, by the steps that check the layouts of the embedded back end."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from base.liberty.read import only
+from base.steps import Runner, Step
+from base.tools import run
+from flow.layout.chain import netlist_tests, timing_steps
+from flow.layout.design import Design
+from flow.layout.options import Options
+from flow.layout.steps.antenna import Antenna
+from flow.layout.steps.drc import Drc
+from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from flow.layout.steps.fill import Fill
+from flow.layout.steps.ir_drop import IrDrop
+from flow.layout.steps.library import Library
+from flow.layout.steps.parameters import PdkParameters
+from flow.layout.steps.sta import Sta
+from flow.layout.timing.constraints import sdc
+from platforms.openroad import CORNERS, WIRES, OpenRoadPlatform
+
+from .lvs import Lvs
+from .routed import routed_netlist
+
+ELSEWHERE = Sta, IrDrop  # OpenROAD itself times all corners and solves the power grid
+CORNER_ORDER = "tt", "ss", "ff"  # as in platforms.coriolis: of the chip, the first alone is simulated with delays
+
+
+def checks(design: Design, tech: OpenRoadPlatform) -> list[Step]:
+    """The steps, in order."""
+    timing = timing_steps(design, Options(pdk=tech.name, liberty=(), utilization=tech.utilization))
+    return [
+        *(step(PdkParameters(tech.name)) for step in (Fill, Drc, Antenna)),
+        Equivalence(EquivalenceParameters(design.top, design.clock.port)),
+        *netlist_tests(design),
+        Lvs(PdkParameters(tech.name)),
+        *(step for step in timing if not isinstance(step, ELSEWHERE)),
+    ]
+
+
+def given(design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size_um: tuple[float, float]) -> dict[str, Path]:
+    """The steps' inputs by name, of the run in ``folder`` with the PDK in ``root``; files are written beside it."""
+    made = folder / "signoff"
+    made.mkdir(exist_ok=True)
+    netlist = routed_netlist(folder / "final.v", design.top)
+    netlist.write(made / "netlist.json")
+    (made / "final.sdc").write_text(sdc(design))
+    (made / "floorplan.json").write_text(json.dumps({"width_um": size_um[0], "height_um": size_um[1]}))
+    cells = {instance.cell for instance in netlist.instances}
+    for corner in CORNERS:
+        (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), cells))
+    run(["yosys", "-q", "-p", f"read_liberty -ignore_miss_func {made}/tt.lib; proc; write_verilog -noattr {made}/cells.v"])
+    return {
+        "rtl": folder / f"{design.top}.v",
+        "sdc": made / "final.sdc",
+        "place_route.netlist": made / "netlist.json",
+        "floorplan.floorplan": made / "floorplan.json",
+        "synthesis.verilog": folder / "netlist.v",
+        "stream_out.verilog": folder / "final.v",
+        "stream_out.gds": folder / "final.gds",
+        "powered": folder / "final.power.v",
+        "cells.spice": root / tech.cell_spice,
+        "extraction.spef": folder / f"{WIRES[0]}.spef",
+        **{f"timing.{corner}": made / f"{corner}.lib" for corner in CORNERS},
+        **{f"sta_{corner}.sdf": folder / f"{WIRES[0]}.{corner}.sdf" for corner in CORNERS},
+    }
+
+
+def check(
+    design: Design,
+    tech: OpenRoadPlatform,
+    root: Path,
+    folder: Path,
+    size_um: tuple[float, float],
+    note: Callable[[str], object],
+) -> Runner:
+    """Run all checks of the run in ``folder``; their Runner. size_um: of the die. Raises ToolError, StepError."""
+    runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note, folder.parent / "shared")
+    runner.run(Library(PdkParameters(tech.name)))
+    runner.paths |= {
+        "library.liberty": folder / "signoff" / "tt.lib",
+        "library.verilog": folder / "signoff" / "cells.v",
+    }
+    runner.run_all(checks(design, tech))
+    return runner
