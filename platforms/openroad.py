@@ -29,17 +29,18 @@ class Strap:
 class OpenRoadPlatform:
     """A process with its standard cells for OpenROAD.
 
-    library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty: path for each of
-    CORNERS. tech_lef, cell_lef, cell_gds, cell_spice, cell_models: paths; cell_models: of Verilog. rcx_rules: paths by
-    corner of WIRES, of which the first that the PDK has is read; nom is required. supply, ground: (net, pins of cells).
-    high, low: cell and pin of a constant, 'cell/pin'. registers: pattern of the flip-flops' cells. diode: cell against antennas. tap: cell, every tap_um. endcap:
-    cell at the rows' ends. clock_root, clock_buffers: of the clock tree. straps: connected in their order. pins: layers
-    of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks
-    that global routing leaves to the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um) of a
-    layer's wires, via_rc: kohm of a via, for estimates before extraction. signal_rc, clock_rc: layers whose mean
-    represents all before global routing. fill: cells by their full names, since OpenROAD took patterns for regular
-    expressions once, for globs later; the largest first. dont_use: patterns of cells. gds: LEF name of a layer or via
-    -> GDS layer. outline: GDS layer of the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a template. utilization: area of the
+    library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty, volts: path and
+    supply for each of CORNERS. tech_lef, cell_lef, cell_gds, cell_spice, cell_models: paths; cell_models: of Verilog.
+    rcx_rules: paths by corner of WIRES, of which the first that the PDK has is read; nom is required. supply, ground:
+    (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. registers: pattern of the flip-flops'
+    cells. diode: cell against antennas. tap: cell, every tap_um. endcap: cell at the rows' ends. clock_root,
+    clock_buffers: of the clock tree. straps: connected in their order. pins: layers of (horizontal, vertical) pins.
+    signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks that global routing leaves to
+    the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um) of a layer's wires, via_rc: kohm of a
+    via, for estimates before extraction. signal_rc, clock_rc: layers whose mean represents all before global routing.
+    fill: cells by their full names, since OpenROAD took patterns for regular expressions once, for globs later; the
+    largest first. dont_use: patterns of cells. gds: LEF name of a layer or via -> GDS layer. outline: GDS layer of
+    the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a template. utilization: area of the
     synthesized cells over that of the core. density_addon: share of the way from the least feasible density of
     placement to 1. padding: sites kept free on both sides of a cell in placement. setup_margin_ns, hold_margin_ns:
     slack that repair leaves at estimated parasitics.
@@ -50,6 +51,7 @@ class OpenRoadPlatform:
     orfs_platform: str
     pdk: str
     liberty: dict[str, str]
+    volts: dict[str, float]
     tech_lef: str
     cell_lef: str
     cell_gds: str

@@ -14,33 +14,39 @@ from flow.layout.steps.antenna import Antenna
 from flow.layout.steps.drc import Drc
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from flow.layout.steps.fill import Fill
-from flow.layout.steps.ir_drop import IrDrop
+from flow.layout.steps.ir_drop import IrDrop as MeshDrop
 from flow.layout.steps.library import Library
 from flow.layout.steps.parameters import PdkParameters
+from flow.layout.steps.power import Power
 from flow.layout.steps.sta import Sta
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import CORNERS, WIRES, OpenRoadPlatform
 
+from .ir_drop import IrDrop, IrDropParameters
 from .lvs import Lvs
 from .routed import routed_netlist
 
-ELSEWHERE = Sta, IrDrop  # OpenROAD itself times all corners and solves the power grid
-CORNER_ORDER = "tt", "ss", "ff"  # as in platforms.coriolis: of the chip, the first alone is simulated with delays
+ELSEWHERE = Sta, MeshDrop  # OpenROAD itself times all corners and solves the power grid
 
 
 def checks(design: Design, tech: OpenRoadPlatform) -> list[Step]:
     """The steps, in order."""
-    timing = timing_steps(design, Options(pdk=tech.name, liberty=(), utilization=tech.utilization))
+    timing = timing_steps(design, Options(pdk=tech.name, utilization=tech.utilization))
+    powered = [step.parameters.corner for step in timing if isinstance(step, Power)]
+    nets = tech.supply[0], tech.ground[0]
     return [
         *(step(PdkParameters(tech.name)) for step in (Fill, Drc, Antenna)),
         Equivalence(EquivalenceParameters(design.top, design.clock.port)),
         *netlist_tests(design),
         Lvs(PdkParameters(tech.name)),
         *(step for step in timing if not isinstance(step, ELSEWHERE)),
+        *(IrDrop(IrDropParameters(corner, tech.volts[corner], *nets)) for corner in powered),
     ]
 
 
-def given(design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size_um: tuple[float, float]) -> dict[str, Path]:
+def given(
+    design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size_um: tuple[float, float]
+) -> dict[str, Path]:
     """The steps' inputs by name, of the run in ``folder`` with the PDK in ``root``; files are written beside it."""
     made = folder / "signoff"
     made.mkdir(exist_ok=True)
@@ -51,7 +57,14 @@ def given(design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size
     cells = {instance.cell for instance in netlist.instances}
     for corner in CORNERS:
         (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), cells))
-    run(["yosys", "-q", "-p", f"read_liberty -ignore_miss_func {made}/tt.lib; proc; write_verilog -noattr {made}/cells.v"])
+    run(
+        [
+            "yosys",
+            "-q",
+            "-p",
+            f"read_liberty -ignore_miss_func {made}/tt.lib; proc; write_verilog -noattr {made}/cells.v",
+        ]
+    )
     return {
         "rtl": folder / f"{design.top}.v",
         "sdc": made / "final.sdc",
@@ -60,6 +73,7 @@ def given(design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size
         "synthesis.verilog": folder / "netlist.v",
         "stream_out.verilog": folder / "final.v",
         "stream_out.gds": folder / "final.gds",
+        "database": folder / "route.odb",
         "powered": folder / "final.power.v",
         "cells.spice": root / tech.cell_spice,
         "extraction.spef": folder / f"{WIRES[0]}.spef",

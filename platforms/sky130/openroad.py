@@ -26,6 +26,7 @@ PLATFORM = OpenRoadPlatform(
         corner: f"{_CELLS}/lib/{LIBRARY}__{name}.lib"
         for corner, name in (("ss", "ss_100C_1v60"), ("tt", "tt_025C_1v80"), ("ff", "ff_n40C_1v95"))
     },
+    volts={"ss": 1.6, "tt": 1.8, "ff": 1.95},
     tech_lef=f"{_CELLS}/techlef/{LIBRARY}__nom.tlef",
     cell_lef=f"{_CELLS}/lef/{LIBRARY}.lef",
     cell_gds=f"{_CELLS}/gds/{LIBRARY}.gds",

@@ -21,6 +21,6 @@ for {set turn 0} {$turn < 3 && [check_antennas] > 0} {incr turn} {
 filler_placement $fill
 global_connect
 check_placement -verbose
-measured drc_violations [detailed_route_num_drvs]
-measured antenna_violations [check_antennas]
+measured router_drc_violations [detailed_route_num_drvs]
+measured router_antennas [check_antennas]
 write_db route.odb
