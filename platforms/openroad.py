@@ -11,7 +11,6 @@ from .layers import GdsLayer
 from .processes import package
 
 PROCESSES = ("sky130",)
-CORNERS = "ss", "tt", "ff"  # the slowest first
 WIRES = "nom", "min", "max"  # corners of the wires' parasitics
 
 
@@ -30,20 +29,20 @@ class OpenRoadPlatform:
     """A process with its standard cells for OpenROAD.
 
     library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty, volts: path and
-    supply for each of CORNERS. tech_lef, cell_lef, cell_gds, cell_spice, cell_models: paths; cell_models: of Verilog.
-    rcx_rules: paths by corner of WIRES, of which the first that the PDK has is read; nom is required. supply, ground:
-    (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. registers: pattern of the flip-flops'
-    cells. diode: cell against antennas. tap: cell, every tap_um. endcap: cell at the rows' ends. clock_root,
-    clock_buffers: of the clock tree. straps: connected in their order. pins: layers of (horizontal, vertical) pins.
-    signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks that global routing leaves to
-    the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um) of a layer's wires, via_rc: kohm of a
-    via, for estimates before extraction. signal_rc, clock_rc: layers whose mean represents all before global routing.
-    fill: cells by their full names, since OpenROAD took patterns for regular expressions once, for globs later; the
-    largest first. dont_use: patterns of cells. gds: LEF name of a layer or via -> GDS layer. outline: GDS layer of
-    the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a template. utilization: area of the
-    synthesized cells over that of the core. density_addon: share of the way from the least feasible density of
-    placement to 1. padding: sites kept free on both sides of a cell in placement. setup_margin_ns, hold_margin_ns:
-    slack that repair leaves at estimated parasitics.
+    supply for each corner of the cells, the slowest first. tech_lef, cell_lef, cell_gds, cell_spice, cell_models:
+    paths; cell_models: of Verilog. rcx_rules: paths by corner of WIRES, of which the first that the PDK has is read;
+    nom is required. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'.
+    registers: pattern of the flip-flops' cells. diode: cell against antennas. tap: cell, every tap_um. endcap: cell
+    at the rows' ends. clock_root, clock_buffers: of the clock tree. straps: connected in their order. pins: layers of
+    (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks
+    that global routing leaves to the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um) of a
+    layer's wires, via_rc: kohm of a via, for estimates before extraction. signal_rc, clock_rc: layers whose mean
+    represents all before global routing. fill: cells by their full names, since OpenROAD took patterns for regular
+    expressions once, for globs later; the largest first. dont_use: patterns of cells. gds: LEF name of a layer or via
+    -> GDS layer. outline: GDS layer of the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a
+    template. utilization: area of the synthesized cells over that of the core. density_addon: share of the way from
+    the least feasible density of placement to 1. padding: sites kept free on both sides of a cell in placement.
+    setup_margin_ns, hold_margin_ns: slack that repair leaves at estimated parasitics.
     """
 
     name: str
@@ -93,6 +92,11 @@ class OpenRoadPlatform:
     kept_free: float = 0.3
     setup_margin_ns: float = field(default=0.2, metadata={"unit": "ns"})
     hold_margin_ns: float = field(default=0.05, metadata={"unit": "ns"})
+
+    @property
+    def corners(self) -> tuple[str, ...]:
+        """Names of the cells' corners, the slowest first."""
+        return tuple(self.liberty)
 
 
 def openroad_platform(pdk: str) -> OpenRoadPlatform:

@@ -45,7 +45,7 @@ def run(options: Namespace) -> int:
     if missing_tools():
         raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {written}")
     root = pdk_root(tech)
-    names = [stage.log.removesuffix(".log") for stage in stages(wire_corners(tech, root))]
+    names = [stage.log.removesuffix(".log") for stage in stages(tech, wire_corners(tech, root))]
     with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))]) as bar:
         found = run_stages(folder, tech, root, bar.note)
         bar.note("gds")

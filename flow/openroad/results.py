@@ -1,6 +1,6 @@
 """The summary of a run: the figures of the contract of flow.layout, of OpenROAD's stages and of the checks."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from flow.layout.report.metrics import Attempt
 from flow.layout.report.metrics import broken as breaks
 from flow.layout.report.metrics import summarize as of_steps
 from flow.layout.steps.power import wire_pf
-from platforms.openroad import CORNERS, WIRES, OpenRoadPlatform
+from platforms.openroad import WIRES, OpenRoadPlatform
 
 RULES = LAYOUT_RULES | {
     name: {"is": 0}
@@ -38,10 +38,10 @@ def summarize(
     """
     netlist = Netlist.read(checked.paths["place_route.netlist"])
     um2 = areas(checked.paths["library.liberty"])
-    slacks = {name: worst(found, name) for name in ("wns_ns", "whs_ns")}
+    slacks = {name: worst(found, name, tech.corners) for name in ("wns_ns", "whs_ns")}
     spefs = {"placement": "placement", "global routes": "global"} | {wires: wires for wires in WIRES}
     wires = {name: total_pf(folder / f"{file}.spef") for name, file in spefs.items()}
-    slowest = slacks["wns_ns"][CORNERS[0]]
+    slowest = slacks["wns_ns"][tech.corners[0]]
     options = Options(pdk=tech.name, utilization=tech.utilization)
     made = of_steps(design, options, checked, [Attempt(tech.utilization, 1.0, 0.0)])
     by_wires = {
@@ -67,16 +67,16 @@ def summarize(
         "wire_pf_by_source": wires,
         "f_max_mhz": None if slowest is None else round(1000 / (design.clock.period_ns - slowest), 2),
         "placement_density": found.get("placement_density"),
-        "timing_rests_on": f"{tech.library} at {', '.join(CORNERS)}; OpenRCX, with coupling, at {', '.join(WIRES)}",
+        "timing_rests_on": f"{tech.library}'s Liberty; OpenRCX, with coupling, at {', '.join(WIRES)}",
         "wall_s": {key.removeprefix("seconds."): v for key, v in found.items() if key.startswith("seconds.")}
         | made["wall_s"],
         "tools": made["tools"] | {"openroad": version("openroad")},
     }
 
 
-def worst(found: Mapping[str, float], name: str) -> dict[str, float | None]:
+def worst(found: Mapping[str, float], name: str, corners: Sequence[str]) -> dict[str, float | None]:
     """The least of the figure ``name`` over the wires' corners, by corner of the cells."""
-    return {corner: min((v for key, v in found.items() if _of(key, name, corner)), default=None) for corner in CORNERS}
+    return {corner: min((v for key, v in found.items() if _of(key, name, corner)), default=None) for corner in corners}
 
 
 def _of(key: str, name: str, corner: str) -> bool:

@@ -20,7 +20,7 @@ from flow.layout.steps.parameters import PdkParameters
 from flow.layout.steps.power import Power
 from flow.layout.steps.sta import Sta
 from flow.layout.timing.constraints import sdc
-from platforms.openroad import CORNERS, WIRES, OpenRoadPlatform
+from platforms.openroad import WIRES, OpenRoadPlatform
 
 from .ir_drop import IrDrop, IrDropParameters
 from .lvs import Lvs
@@ -55,16 +55,10 @@ def given(
     (made / "final.sdc").write_text(sdc(design))
     (made / "floorplan.json").write_text(json.dumps({"width_um": size_um[0], "height_um": size_um[1]}))
     cells = {instance.cell for instance in netlist.instances}
-    for corner in CORNERS:
+    for corner in tech.corners:
         (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), cells))
-    run(
-        [
-            "yosys",
-            "-q",
-            "-p",
-            f"read_liberty -ignore_miss_func {made}/tt.lib; proc; write_verilog -noattr {made}/cells.v",
-        ]
-    )
+    read = f"read_liberty -ignore_miss_func {made}/{tech.corners[0]}.lib"
+    run(["yosys", "-q", "-p", f"{read}; proc; write_verilog -noattr {made}/cells.v"])
     return {
         "rtl": folder / f"{design.top}.v",
         "sdc": made / "final.sdc",
@@ -77,8 +71,8 @@ def given(
         "powered": folder / "final.power.v",
         "cells.spice": root / tech.cell_spice,
         "extraction.spef": folder / f"{WIRES[0]}.spef",
-        **{f"timing.{corner}": made / f"{corner}.lib" for corner in CORNERS},
-        **{f"sta_{corner}.sdf": folder / f"{WIRES[0]}.{corner}.sdf" for corner in CORNERS},
+        **{f"timing.{corner}": made / f"{corner}.lib" for corner in tech.corners},
+        **{f"sta_{corner}.sdf": folder / f"{WIRES[0]}.{corner}.sdf" for corner in tech.corners},
     }
 
 
@@ -94,7 +88,7 @@ def check(
     runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note, folder.parent / "shared")
     runner.run(Library(PdkParameters(tech.name)))
     runner.paths |= {
-        "library.liberty": folder / "signoff" / "tt.lib",
+        "library.liberty": folder / "signoff" / f"{tech.corners[0]}.lib",
         "library.verilog": folder / "signoff" / "cells.v",
     }
     runner.run_all(checks(design, tech))

@@ -11,7 +11,7 @@ from pathlib import Path
 from base.liberty.read import without
 from base.tools import ToolError, finish
 from models.parameters import ParameterError
-from platforms.openroad import CORNERS, WIRES, OpenRoadPlatform
+from platforms.openroad import WIRES, OpenRoadPlatform
 
 SCRIPTS = Path(__file__).parent / "tcl"
 INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"
@@ -36,11 +36,11 @@ class Stage:
         return [*program.split(), f"{self.name}.tcl"]
 
 
-def stages(wires: Sequence[str] = WIRES) -> list[Stage]:
+def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:
     """Every Stage. wires: corners of parasitics that the PDK has."""
     databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "repair", "route")]
     extraction = [Stage("extract", f"{corner}.spef", corner) for corner in wires]
-    timing = [Stage("sta", f"{corner}.{CORNERS[-1]}.sdf", corner) for corner in wires]
+    timing = [Stage("sta", f"{corner}.{tech.corners[-1]}.sdf", corner) for corner in wires]
     return [Stage("synth", "netlist.v"), *databases, Stage("finish", "final.v"), *extraction, *timing]
 
 
@@ -73,10 +73,10 @@ def run(folder: Path, tech: OpenRoadPlatform, root: Path, note: Callable[[str], 
     Of each stage also 'seconds.<stage>'. note: called with each stage's name. Raises ToolError with the last lines of a
     stage that failed.
     """
-    text = (root / tech.liberty[CORNERS[0]]).read_text()  # cells are chosen by their slowest delays
+    text = (root / tech.liberty[tech.corners[0]]).read_text()  # cells are chosen by their slowest delays
     (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
     found = {}
-    for stage in stages(wire_corners(tech, root)):
+    for stage in stages(tech, wire_corners(tech, root)):
         name = stage.log.removesuffix(".log")
         note(name)
         begin = time.perf_counter()

@@ -1,7 +1,7 @@
 """The file design.tcl: all that the stages' Tcl reads of a design and of its process."""
 
 from flow.layout.design import Design
-from platforms.openroad import CORNERS, OpenRoadPlatform
+from platforms.openroad import OpenRoadPlatform
 
 CORE_SPACE_UM = 10.0  # from core to die: pins and their way in
 
@@ -21,7 +21,7 @@ def variables(design: Design, tech: OpenRoadPlatform) -> str:
     )
     straps = [f"{{{s.layer} {s.width_um} {s.pitch_um or 0} {s.offset_um}}}" for s in tech.straps]
     lists = (
-        {"corners": CORNERS, "supply_pins": tech.supply[1], "ground_pins": tech.ground[1], "straps": straps}
+        {"corners": tech.corners, "supply_pins": tech.supply[1], "ground_pins": tech.ground[1], "straps": straps}
         | {name: getattr(tech, name).split("/") for name in ("high", "low")}
         | {name: getattr(tech, name) for name in ("clock_buffers", "signal_rc", "clock_rc", "fill", "dont_use")}
         | {"unconnected": (*tech.fill, tech.tap), "registers": (f"t:{tech.registers}",)}
@@ -30,7 +30,7 @@ def variables(design: Design, tech: OpenRoadPlatform) -> str:
         | {f"rcx_rules({wires})": paths for wires, paths in tech.rcx_rules.items()}
     )
     files = {name: getattr(tech, name) for name in ("tech_lef", "cell_lef")}
-    files |= {f"liberty({corner})": tech.liberty[corner] for corner in CORNERS}
+    files |= {f"liberty({corner})": path for corner, path in tech.liberty.items()}
     lines = [
         f"# {design.name} with {tech.library}: written by flow.openroad",
         "set pdk_root $::env(PDK_ROOT)",

@@ -15,6 +15,7 @@ from platforms.openroad import WIRES, OpenRoadPlatform, Strap
 from . import layers
 from .cells import LIBRARY, SITE
 
+VOLTS = {"ss_100C_1v60": 1.6, "tt_025C_1v80": 1.8, "ff_n40C_1v95": 1.95}
 _CELLS = f"sky130A/libs.ref/{LIBRARY}"
 
 PLATFORM = OpenRoadPlatform(
@@ -22,11 +23,8 @@ PLATFORM = OpenRoadPlatform(
     library=LIBRARY,
     orfs_platform="sky130hd",
     pdk="sky130A",
-    liberty={
-        corner: f"{_CELLS}/lib/{LIBRARY}__{name}.lib"
-        for corner, name in (("ss", "ss_100C_1v60"), ("tt", "tt_025C_1v80"), ("ff", "ff_n40C_1v95"))
-    },
-    volts={"ss": 1.6, "tt": 1.8, "ff": 1.95},
+    liberty={corner: f"{_CELLS}/lib/{LIBRARY}__{corner}.lib" for corner in VOLTS},
+    volts=VOLTS,
     tech_lef=f"{_CELLS}/techlef/{LIBRARY}__nom.tlef",
     cell_lef=f"{_CELLS}/lef/{LIBRARY}.lef",
     cell_gds=f"{_CELLS}/gds/{LIBRARY}.gds",
