@@ -13,7 +13,7 @@ from platforms.openroad import openroad_platform
 
 from .routed import routed_netlist
 
-DEVICE = re.compile(r"^X(\S+) (.*) (\S+) w=(\S+) l=(\S+)$", re.I | re.M)
+DEVICE = re.compile(r"^[XR](\S+) (.*) (\S+) w=(\S+) l=(\S+)$", re.I | re.M)
 SUBCIRCUIT = re.compile(r"^\.subckt (\S+) (.*?)$(.*?)^\.ends", re.I | re.M | re.S)
 
 
@@ -77,7 +77,7 @@ def _call(number: int, instance: Instance, ports: Sequence[str]) -> str:
 def _device(match: re.Match[str]) -> str:
     """A transistor, or the resistor without resistance of the constants' cell."""
     name, nets, kind, width, length = match.groups()
-    if kind == "short":
+    if kind == "short" or "__res_" in kind:
         return f"R{name} {' '.join(nets.split()[:2])} 0 SHORT"
     return f"M{name} {nets} {'NFET' if 'nfet' in kind else 'PFET'} W={_um(width)}U L={_um(length)}U"
 
