@@ -86,7 +86,7 @@ class OpenRoadPlatform:
     pin_datatype: int
     label_datatype: int
     lvs: Path
-    utilization: float = 0.65
+    utilization: float = 0.6
     density_addon: float = 0.05
     padding: int = 0
     kept_free: float = 0.3

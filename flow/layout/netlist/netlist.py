@@ -198,7 +198,7 @@ def _buses(pins: Mapping[str, str]) -> dict[str, str]:
 
 
 def is_register(cell: str) -> bool:
-    """Whether the library's cell of that name is a flip-flop: dff_x1 of PDKMaster's, sky130_fd_sc_hd__dfxtp_1."""
+    """Whether the library's cell of that name is a flip-flop: dff_x1 of PDKMaster, <library>__dfxtp_1 of SkyWater."""
     return cell.rpartition("__")[2].startswith("df")
 
 
