@@ -85,6 +85,7 @@ class OpenRoadPlatform:
     outline: GdsLayer
     pin_datatype: int
     label_datatype: int
+    deck_layers: tuple[str, ...]
     lvs: Path
     utilization: float = 0.6
     density_addon: float = 0.05

@@ -11,7 +11,6 @@ from flow.layout.chain import netlist_tests, timing_steps
 from flow.layout.design import Design
 from flow.layout.options import Options
 from flow.layout.steps.antenna import Antenna
-from flow.layout.steps.drc import Drc
 from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
 from flow.layout.steps.fill import Fill
 from flow.layout.steps.ir_drop import IrDrop as MeshDrop
@@ -22,6 +21,7 @@ from flow.layout.steps.sta import Sta
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import WIRES, OpenRoadPlatform
 
+from .drc import Drc
 from .ir_drop import IrDrop, IrDropParameters
 from .lvs import Lvs
 from .routed import routed_netlist

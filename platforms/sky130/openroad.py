@@ -77,5 +77,6 @@ PLATFORM = OpenRoadPlatform(
     outline=layers.PRBOUNDARY,
     pin_datatype=layers.PIN,
     label_datatype=layers.LABEL,
+    deck_layers=("li", "mcon", "m1", "via", "m2", "via2", "m3", "via3", "m4", "via4", "m5"),
     lvs=Path(__file__).with_name("openroad.lvs"),
 )
