@@ -2,7 +2,8 @@
 
 README: src/<module>/README.md of The-OpenROAD-Project/OpenROAD. Tcl: a command's sta::define_cmd_args there. STA: the
 OpenSTA manual. Flow: test/flow.tcl and test/sky130hd/sky130hd.pdn.tcl there, which its own regressions run. LL: the
-scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily.
+scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily. Every name, key and flag is also in the Tcl of release
+26Q2 (April 2026), but for set_extraction_rules_file, which came later.
 """
 
 from dataclasses import dataclass, replace
@@ -88,7 +89,7 @@ COMMANDS = {
     ),
     "place_pins": Command(
         "ppl README",
-        _words("-hor_layers -ver_layers -random_seed -exclude -group_pins -corner_avoidance -min_distance"),
+        _words("-hor_layers -ver_layers -random_seed -corner_avoidance -min_distance"),
         _words("-random -min_distance_in_tracks -annealing"),
     ),
     "set_wire_rc": Command(
@@ -146,7 +147,7 @@ COMMANDS = {
     ),
     "detailed_route": Command(
         "drt README",
-        _words("-output_maze -output_drc -output_cmap -droute_end_iter -or_seed -or_k -verbose -min_access_points"),
+        _words("-output_maze -output_drc -droute_end_iter -or_seed -or_k -verbose -min_access_points"),
         _words("-disable_via_gen -clean_patches -no_pin_access -save_guide_updates"),
         writes="-output_drc",
     ),
@@ -162,9 +163,7 @@ COMMANDS = {
         _words("-lef_res -no_merge_via_res"),
     ),
     "write_spef": Command("rcx README", _words("-net_id"), (), 1, 1, "argument"),
-    "read_spef": Command(
-        "STA", _words("-path -corner -reduce_to"), _words("-min -max -keep_capacitive_coupling"), 1, 1
-    ),
+    "read_spef": Command("STA", _words("-path -corner -name"), _words("-min -max -keep_capacitive_coupling"), 1, 1),
     "report_design_area": Command("rsz README"),
     "report_floating_nets": Command("rsz README", (), _words("-verbose")),
     "report_checks": Command(
