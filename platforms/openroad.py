@@ -31,12 +31,12 @@ class OpenRoadPlatform:
     library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty, volts: path and
     supply for each corner of the cells, the slowest first. tech_lef, cell_lef, cell_gds, cell_spice, cell_models:
     paths; cell_models: of Verilog. rcx_rules: paths by corner of WIRES, of which the first that the PDK has is read;
-    nom is required. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'.
-    registers: pattern of the flip-flops' cells. diode: cell against antennas. tap: cell, every tap_um. endcap: cell
-    at the rows' ends. clock_root, clock_buffers: of the clock tree. straps: connected in their order. pins: layers of
-    (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks
-    that global routing leaves to the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um) of a
-    layer's wires, via_rc: kohm of a via, for estimates before extraction. signal_rc, clock_rc: layers whose mean
+    nom is required. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. buffer:
+    cell, input, output, between two ports of one net. diode: cell against antennas. tap: cell, every tap_um. endcap:
+    cell at the rows' ends. clock_root, clock_buffers: of the clock tree. straps: connected in their order. pins:
+    layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their
+    tracks that global routing leaves to the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um)
+    of a layer's wires, via_rc: kohm of a via, for estimates before extraction. signal_rc, clock_rc: layers whose mean
     represents all before global routing. fill: cells by their full names, since OpenROAD took patterns for regular
     expressions once, for globs later; the largest first. dont_use: patterns of cells. gds: LEF name of a layer or via
     -> GDS layer. outline: GDS layer of the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a
@@ -64,7 +64,7 @@ class OpenRoadPlatform:
     ground: tuple[str, tuple[str, ...]]
     high: str
     low: str
-    registers: str
+    buffer: tuple[str, str, str]
     diode: str
     tap: str
     tap_um: float

@@ -47,7 +47,7 @@ def run(options: Namespace) -> int:
     root = pdk_root(tech)
     names = [stage.log.removesuffix(".log") for stage in stages(tech, wire_corners(tech, root))]
     with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))]) as bar:
-        found = run_stages(folder, tech, root, bar.note)
+        found = run_stages(folder, chosen.top, tech, root, bar.note)
         bar.note("gds")
         lefs = [root / tech.tech_lef, root / tech.cell_lef]
         size = merge(folder / "final.def", lefs, root / tech.cell_gds, tech, folder / "final.gds")

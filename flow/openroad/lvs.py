@@ -11,7 +11,7 @@ from flow.layout.netlist.netlist import Instance, Netlist
 from flow.layout.steps.parameters import PdkParameters
 from platforms.openroad import openroad_platform
 
-from .routed import routed_netlist
+from .netlists import routed_netlist
 
 DEVICE = re.compile(r"^[XR](\S+) (.*) (\S+) w=(\S+) l=(\S+)$", re.I | re.M)
 SUBCIRCUIT = re.compile(r"^\.subckt (\S+) (.*?)$(.*?)^\.ends", re.I | re.M | re.S)

@@ -24,7 +24,7 @@ from platforms.openroad import WIRES, OpenRoadPlatform
 from .drc import Drc
 from .ir_drop import IrDrop, IrDropParameters
 from .lvs import Lvs
-from .routed import routed_netlist
+from .netlists import routed_netlist
 
 ELSEWHERE = Sta, MeshDrop  # OpenROAD itself times all corners and solves the power grid
 

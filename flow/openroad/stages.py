@@ -13,6 +13,8 @@ from base.tools import ToolError, finish
 from models.parameters import ParameterError
 from platforms.openroad import WIRES, OpenRoadPlatform
 
+from .netlists import write_synthesized
+
 SCRIPTS = Path(__file__).parent / "tcl"
 INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"
 
@@ -41,7 +43,7 @@ def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:
     databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "repair", "route")]
     extraction = [Stage("extract", f"{corner}.spef", corner) for corner in wires]
     timing = [Stage("sta", f"{corner}.{tech.corners[-1]}.sdf", corner) for corner in wires]
-    return [Stage("synth", "netlist.v"), *databases, Stage("finish", "final.v"), *extraction, *timing]
+    return [Stage("synth", "netlist.json"), *databases, Stage("finish", "final.v"), *extraction, *timing]
 
 
 def wire_corners(tech: OpenRoadPlatform, root: Path) -> list[str]:
@@ -67,11 +69,11 @@ def missing_tools() -> list[str]:
     return [tool for tool in ("yosys", "openroad") if not shutil.which(tool)]
 
 
-def run(folder: Path, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:
-    """Run every stage in ``folder``; returns the figures by name, of the lines 'TALBOT name value' in their logs.
+def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:
+    """Run every stage of the module ``top`` in ``folder``; returns the figures by name, of its logs.
 
-    Of each stage also 'seconds.<stage>'. note: called with each stage's name. Raises ToolError with the last lines of a
-    stage that failed.
+    They are the lines 'TALBOT name value', and 'seconds.<stage>' of each. note: called with each stage's name. Raises
+    ToolError with the last lines of a stage that failed.
     """
     text = (root / tech.liberty[tech.corners[0]]).read_text()  # cells are chosen by their slowest delays
     (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
@@ -88,6 +90,8 @@ def run(folder: Path, tech: OpenRoadPlatform, root: Path, note: Callable[[str], 
             tail = "\n".join((done.stdout + done.stderr).strip().splitlines()[-10:])
             state = f"status {done.returncode}, {stage.gives} {'written' if written else 'not written'}"
             raise ToolError(f"{stage.command()[0]} {stage.name}: {state}:\n{tail}")
+        if stage.name == "synth":
+            write_synthesized(folder, top, tech)
         found |= {key: float(value) for key, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
         found[f"seconds.{name}"] = round(time.perf_counter() - begin, 1)
     return found

@@ -24,7 +24,7 @@ def variables(design: Design, tech: OpenRoadPlatform) -> str:
         {"corners": tech.corners, "supply_pins": tech.supply[1], "ground_pins": tech.ground[1], "straps": straps}
         | {name: getattr(tech, name).split("/") for name in ("high", "low")}
         | {name: getattr(tech, name) for name in ("clock_buffers", "signal_rc", "clock_rc", "fill", "dont_use")}
-        | {"unconnected": (*tech.fill, tech.tap), "registers": (f"t:{tech.registers}",)}
+        | {"unconnected": (*tech.fill, tech.tap)}
         | {"layer_rc": [f"{name} {ohm} {farad}" for name, (ohm, farad) in tech.layer_rc.items()]}
         | {"via_rc": [f"{name} {ohm}" for name, ohm in tech.via_rc.items()]}
         | {f"rcx_rules({wires})": paths for wires, paths in tech.rcx_rules.items()}

@@ -130,7 +130,7 @@ class Netlist:
                     pins.setdefault(net, f"{called}.{net}")  # an output without a load
             name = called if cell["type"] in macros else f"u{number}"
             if is_register(cell["type"]):
-                name = register_of[cell["connections"]["q"][0]] + REGISTER
+                name = register_of[cell["connections"].get("q", cell["connections"].get("Q"))[0]] + REGISTER
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 

@@ -1,7 +1,17 @@
-# Yosys: Verilog -> netlist of cells, registers named as in the Verilog. Run: yosys -c synth.tcl
+# Yosys: Verilog -> a netlist of cells, and the registers' names in the Verilog. Run: yosys -c synth.tcl
 yosys -import
 source design.tcl
 read_verilog -sv $rtl
+design -save read
+hierarchy -top $top
+yosys proc
+flatten
+memory
+techmap
+simplemap
+opt_clean
+write_json registers.json
+design -load read
 synth -flatten -nofsm -top $top
 check -assert
 dfflibmap -liberty $synthesis_liberty
@@ -11,7 +21,4 @@ hilomap -singleton -hicell {*}$high -locell {*}$low
 splitnets
 opt_clean -purge
 tee -o synth.stat stat -liberty $synthesis_liberty
-# The cells' pins must be known for it
-read_liberty -lib -ignore_miss_func $synthesis_liberty
-yosys rename -wire -suffix _reg {*}$registers
-write_verilog -noattr -noexpr -nohex -nodec netlist.v
+write_json netlist.json

@@ -2,8 +2,8 @@
 
 README: src/<module>/README.md of The-OpenROAD-Project/OpenROAD. Tcl: a command's sta::define_cmd_args there. STA: the
 OpenSTA manual. Flow: test/flow.tcl and test/sky130hd/sky130hd.pdn.tcl there, which its own regressions run. LL: the
-scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily. Every name, key and flag is also in the Tcl of release
-26Q2 (April 2026), but for set_extraction_rules_file, which came later.
+scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily. Every name, key and flag is
+also in the Tcl of release 26Q2 (April 2026), but for set_extraction_rules_file, which came later.
 """
 
 from dataclasses import dataclass, replace

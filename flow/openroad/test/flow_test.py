@@ -13,6 +13,7 @@ from base.tools import ToolError, finish
 from flow.layout.design import DESIGNS, design
 from flow.layout.timing.constraints import sdc
 from flow.openroad import command
+from flow.openroad.netlists import write_synthesized
 from flow.openroad.signoff import given
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
 from flow.openroad.test import stub
@@ -156,7 +157,7 @@ def test_older_releases_get_the_options_that_they_want(commands, called, other, 
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
     monkeypatch.setattr("flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])  # without Yosys's
-    assert run(tmp_path, KNOWN, pdk, lambda text: None)["router_drc_violations"] == 0
+    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["router_drc_violations"] == 0
     calls = (tmp_path / "calls.txt").read_text()
     assert called in calls and other not in calls and all(f"{pdk}/{path}" in calls for path in RULES)
 
@@ -179,7 +180,7 @@ def test_routes_are_made_anew_while_diodes_help_then_fillers(
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
     monkeypatch.setattr("flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])  # without Yosys's
-    assert run(tmp_path, KNOWN, pdk, lambda text: None)["router_antennas"] == float(violations)
+    assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["router_antennas"] == float(violations)
     called = [line.split()[0] for line in (tmp_path / "calls.txt").read_text().splitlines()]
     assert called.count("detailed_route") == routed
     assert called.index("filler_placement") > max(k for k, name in enumerate(called) if name == "detailed_route")
@@ -195,7 +196,7 @@ def test_a_stage_that_fails_is_named(pdk, openroad, tmp_path, monkeypatch):
     monkeypatch.setattr("flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])  # without Yosys's
     seen = []
     with pytest.raises(ToolError, match='openroad cts: status 1, cts.odb not written:\ninvalid command name "clock_tr'):
-        run(tmp_path, KNOWN, pdk, seen.append)
+        run(tmp_path, chosen.top, KNOWN, pdk, seen.append)
     assert seen == ["floorplan", "power", "place", "cts"]
 
 
@@ -216,6 +217,7 @@ def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     (folder / "synthesis.lib").write_text(functions.small_liberty())
     done = finish(["yosys", "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
     assert done.returncode == 0, done.stderr
+    write_synthesized(folder, "QuadDividerRadix4", KNOWN)
     (folder / "netlist.v").rename(folder / "final.v")
     (folder / "nom.spef").write_text(SPEF)
     done = finish(

@@ -6,7 +6,7 @@ import pytest
 
 from base.tools import ToolError
 from flow.openroad.lvs import Lvs, spice, subcircuits
-from flow.openroad.routed import routed_netlist
+from flow.openroad.netlists import routed_netlist
 from platforms.openroad import openroad_platform
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import layers

@@ -1,4 +1,4 @@
-"""The final netlist as the steps of flow.layout take it: a Netlist, with the names of the SDF and the SPEF."""
+"""Netlists: from Yosys with registers named as in the Verilog; the final one with the names of SDF and SPEF."""
 
 import json
 import tempfile
@@ -7,7 +7,15 @@ from typing import Any
 
 from base.steps import StepError
 from base.tools import run
-from flow.layout.netlist.netlist import Instance, Netlist, Port, named_bits
+from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port, named_bits, register_names
+from platforms.openroad import OpenRoadPlatform
+
+
+def write_synthesized(folder: Path, top: str, tech: OpenRoadPlatform) -> None:
+    """Write netlist.v in ``folder`` from Yosys's netlist.json and registers.json there."""
+    names = register_names(folder / "registers.json", top)
+    netlist = Netlist.from_yosys(folder / "netlist.json", top, Buffer(*tech.buffer), registers=names)
+    (folder / "netlist.v").write_text(netlist.verilog())
 
 
 def routed_netlist(verilog: Path, top: str) -> Netlist:
