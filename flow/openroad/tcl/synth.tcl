@@ -18,7 +18,6 @@ dfflibmap -liberty $synthesis_liberty
 abc -D $period_ps -liberty $synthesis_liberty
 setundef -zero
 hilomap -singleton -hicell {*}$high -locell {*}$low
-splitnets
 opt_clean -purge
 tee -o synth.stat stat -liberty $synthesis_liberty
 write_json netlist.json
