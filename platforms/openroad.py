@@ -3,14 +3,15 @@
 Paths are those of a PDK as open_pdks installs it (ciel, volare), relative to PDK_ROOT.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
+from pathlib import Path
 
 from .layers import GdsLayer
 from .processes import package
 
 PROCESSES = ("sky130",)
-CORNERS = ("slow", "typical", "fast")
+WIRES = "nom", "min", "max"  # corners of the wires' parasitics
 
 
 @dataclass(frozen=True)
@@ -27,16 +28,21 @@ class Strap:
 class OpenRoadPlatform:
     """A process with its standard cells for OpenROAD.
 
-    library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty: path for each of
-    CORNERS. tech_lef, cell_lef, cell_gds, cell_models, rcx_rules: paths; cell_models: of Verilog; of rcx_rules the PDK
-    has one. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. diode: cell
-    against antennas. tap: cell, every tap_um. straps: connected in their order. pins: layers of (horizontal, vertical)
-    pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their tracks that global routing leaves
-    to the detailed router. signal_rc, clock_rc: layers whose resistance and capacitance represent all before routing.
-    fill: cells by their full names, since OpenROAD took patterns for regular expressions once, for globs later.
-    dont_use: patterns of cells. gds: LEF name of a layer or via -> GDS layer. outline: GDS layer of the die's.
-    pin_datatype, label_datatype: of GDS. utilization_share: of a design's utilization, which is meant for cells packed
-    without padding or timing repair.
+    library: its cells. orfs_platform, pdk: its names in flow-scripts and in LibreLane. liberty, volts: path and
+    supply for each corner of the cells, the slowest first. tech_lef, cell_lef, cell_gds, cell_spice, cell_models:
+    paths; cell_models: of Verilog. rcx_rules: paths by corner of WIRES, of which the first that the PDK has is read;
+    nom is required. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. buffer:
+    cell, input, output, between two ports of one net. diode: cell against antennas. tap: cell, every tap_um. endcap:
+    cell at the rows' ends. clock_root, clock_buffers: of the clock tree. straps: connected in their order. pins:
+    layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their
+    tracks that global routing leaves to the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um)
+    of a layer's wires, via_rc: kohm of a via, for estimates before extraction. signal_rc, clock_rc: layers whose mean
+    represents all before global routing. fill: cells by their full names, since OpenROAD took patterns for regular
+    expressions once, for globs later; the largest first. dont_use: patterns of cells. gds: LEF name of a layer or via
+    -> GDS layer. outline: GDS layer of the die's. pin_datatype, label_datatype: of GDS. lvs: KLayout's deck, a
+    template. utilization: area of the synthesized cells over that of the core. density_addon: share of the way from
+    the least feasible density of placement to 1. padding: sites kept free on both sides of a cell in placement.
+    setup_margin_ns, hold_margin_ns: slack that repair leaves at estimated parasitics.
     """
 
     name: str
@@ -44,11 +50,13 @@ class OpenRoadPlatform:
     orfs_platform: str
     pdk: str
     liberty: dict[str, str]
+    volts: dict[str, float]
     tech_lef: str
     cell_lef: str
     cell_gds: str
+    cell_spice: str
     cell_models: tuple[str, ...]
-    rcx_rules: tuple[str, ...]
+    rcx_rules: dict[str, tuple[str, ...]]
     site: str
     site_um: float
     row_um: float
@@ -56,24 +64,40 @@ class OpenRoadPlatform:
     ground: tuple[str, tuple[str, ...]]
     high: str
     low: str
+    buffer: tuple[str, str, str]
     diode: str
     tap: str
     tap_um: float
-    clock_buffer: str
+    endcap: str
+    clock_root: str
+    clock_buffers: tuple[str, ...]
     straps: tuple[Strap, ...]
     pins: tuple[str, str]
     signal: tuple[str, str]
     clock: tuple[str, str]
-    signal_rc: str
-    clock_rc: str
+    layer_rc: dict[str, tuple[float, float]]
+    via_rc: dict[str, float]
+    signal_rc: tuple[str, ...]
+    clock_rc: tuple[str, ...]
     fill: tuple[str, ...]
     dont_use: tuple[str, ...]
     gds: dict[str, GdsLayer]
     outline: GdsLayer
     pin_datatype: int
     label_datatype: int
-    utilization_share: float = 0.6
-    kept_free: float = 0.5
+    deck_layers: tuple[str, ...]
+    lvs: Path
+    utilization: float = 0.6
+    density_addon: float = 0.05
+    padding: int = 0
+    kept_free: float = 0.3
+    setup_margin_ns: float = field(default=0.2, metadata={"unit": "ns"})
+    hold_margin_ns: float = field(default=0.05, metadata={"unit": "ns"})
+
+    @property
+    def corners(self) -> tuple[str, ...]:
+        """Names of the cells' corners, the slowest first."""
+        return tuple(self.liberty)
 
 
 def openroad_platform(pdk: str) -> OpenRoadPlatform:

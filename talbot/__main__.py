@@ -25,6 +25,7 @@ COMMANDS = {
     "layout-sweep": ("flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
     "layout-compare": ("flow.layout.report.compare", "finished layouts side by side"),
     "openroad": ("flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
+    "openroad-compare": ("flow.openroad.compare", "both back ends, design by design"),
     "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
     "verilog": ("rtl.export", "the chip and its blocks as Verilog, linted"),
     "replay": ("rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),

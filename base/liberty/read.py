@@ -2,7 +2,7 @@
 
 import fnmatch
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
 from base.liberty.group import Group, Scalar, Table
@@ -48,9 +48,19 @@ def without(text: str, patterns: Sequence[str]) -> str:
 
     For mappers that have no such option; a foundry's file is not reformatted. Raises ParameterError.
     """
+    return _kept(text, lambda name: not any(fnmatch.fnmatchcase(name, pattern) for pattern in patterns))
+
+
+def only(text: str, names: Collection[str]) -> str:
+    """``text`` with no other cells than ``names``, all else byte-identical. Raises ParameterError."""
+    return _kept(text, lambda name: name in names)
+
+
+def _kept(text: str, keep: Callable[[str], bool]) -> str:
+    """``text`` without the cells whose names ``keep`` refuses."""
     kept, at = [], 0
     for match in _CELL.finditer(text):
-        if any(fnmatch.fnmatchcase(match[1], pattern) for pattern in patterns):
+        if not keep(match[1]):
             kept.append(text[at : match.start()])
             at = _end(text, match)
     return "".join([*kept, text[at:]])

@@ -13,6 +13,7 @@ COMMANDS = {
     "yosys-abc": (["yosys", "-V"], r"Yosys (\S+)"),
     "klayout": (["klayout", "-v"], r"KLayout (\S+)"),
     "sta": (["sta", "-version"], r"(\S+)"),
+    "openroad": (["openroad", "-version"], r"(\S+)"),
     "ngspice": (["ngspice", "--version"], r"ngspice-(\S+)"),
     "magic": (["magic", "--version"], r"(\S+)"),
     "iverilog": (["iverilog", "-V"], r"version (\S+)"),

@@ -15,11 +15,14 @@ from platforms.openroad import openroad_platform
 
 from .merge import merge
 from .results import broken, summarize
-from .stages import INSTALL, missing_tools, pdk_root, stages
+from .signoff import check, checks
+from .stages import INSTALL, missing_tools, pdk_root, stages, wire_corners
 from .stages import run as run_stages
 from .write import write
 
-RESULTS = ("lef", "v", "power.v", "spef", "sdc")  # of the names in the contract of flow.layout
+# Suffixes of the contract of flow.layout -> file of the run, or of a check
+RESULTS = {"lef": "final.lef", "v": "final.v", "power.v": "final.power.v", "spef": "nom.spef", "def": "final.def"}
+CHECKED = {"gds": "fill.gds", "sdc": "sdc", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report"}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -42,16 +45,19 @@ def run(options: Namespace) -> int:
     if missing_tools():
         raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {written}")
     root = pdk_root(tech)
-    with Steps([stage.log.removesuffix(".log") for stage in stages(chosen.top)] + ["gds"]) as bar:
+    names = [stage.log.removesuffix(".log") for stage in stages(tech, wire_corners(tech, root))]
+    with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))]) as bar:
         found = run_stages(folder, chosen.top, tech, root, bar.note)
         bar.note("gds")
-        with staged(folder) as part:
-            lefs = [root / tech.tech_lef, root / tech.cell_lef]
-            gds = part / f"{chosen.name}.gds"
-            box = merge(folder / f"{chosen.top}.def", lefs, root / tech.cell_gds, tech, gds)
-            for suffix in RESULTS:
-                shutil.copyfile(folder / f"{chosen.top}.{suffix}", part / f"{chosen.name}.{suffix}")
-            summary = summarize(chosen, tech, found, folder, box)
+        lefs = [root / tech.tech_lef, root / tech.cell_lef]
+        size = merge(folder / "final.def", lefs, root / tech.cell_gds, tech, folder / "final.gds")
+        checked = check(chosen, tech, root, folder, size, bar.note)
+        with staged(folder, [f"{chosen.name}.{suffix}" for suffix in (*RESULTS, *CHECKED)]) as part:
+            for suffix, file in RESULTS.items():
+                shutil.copyfile(folder / file, part / f"{chosen.name}.{suffix}")
+            for suffix, source in CHECKED.items():
+                shutil.copyfile(checked.paths[source], part / f"{chosen.name}.{suffix}")
+            summary = summarize(chosen, tech, found, folder, size, checked)
             (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     print(folder / "summary.json")
     return failures(f"{chosen.name}: {line}" for line in broken(summary))

@@ -15,7 +15,7 @@ PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPEN
 
 def librelane(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]:
     """Files of the design: text by path."""
-    utilization = round(100 * design.utilization * tech.utilization_share)
+    utilization = round(100 * tech.utilization)
     values = (
         {"DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.v]"}
         | {"CLOCK_PORT": design.clock.port, "CLOCK_PERIOD": design.clock.period_ns}

@@ -21,7 +21,7 @@ RULES = {
 def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]:
     """Files of the design: text by path. Run: make DESIGN_HOME=<folder>/orfs DESIGN_CONFIG=.../config.mk."""
     name, platform = design.name, tech.orfs_platform
-    utilization = round(100 * design.utilization * tech.utilization_share)
+    utilization = round(100 * tech.utilization)
     period_ps = round(1000 * design.clock.period_ns)  # the default is the number in the SDC, which is in ns
     values = (
         {"DESIGN_NAME": design.top, "DESIGN_NICKNAME": name, "PLATFORM": platform}

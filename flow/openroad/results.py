@@ -1,38 +1,92 @@
-"""The summary of a run: those figures of the contract of flow.layout that these stages measure."""
+"""The summary of a run: the figures of the contract of flow.layout, of OpenROAD's stages and of the checks."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from base.liberty.read import areas
+from base.steps import Runner
+from base.steps.versions import version
 from flow.layout.design import Design
+from flow.layout.netlist.netlist import Netlist, is_register
+from flow.layout.options import Options
+from flow.layout.report.metrics import RULES as LAYOUT_RULES
+from flow.layout.report.metrics import Attempt
 from flow.layout.report.metrics import broken as breaks
-from platforms.openroad import CORNERS, OpenRoadPlatform
+from flow.layout.report.metrics import summarize as of_steps
+from flow.layout.steps.power import wire_pf
+from platforms.openroad import WIRES, OpenRoadPlatform
 
-from .stat import counted
-
-RULES = {name: {"is": 0} for name in ("drc_violations", "antenna_violations")}
-RULES |= {f"{slack}.{corner}": {"least": 0} for slack in ("wns_ns", "whs_ns") for corner in CORNERS}
+RULES = LAYOUT_RULES | {
+    name: {"is": 0}
+    for name in ("router_drc_violations", "router_antennas", "slew_violations", "capacitance_violations")
+}
+RULES |= {name: {"least": 0} for name in ("wns_ns", "whs_ns")}
 
 
 def summarize(
-    design: Design, tech: OpenRoadPlatform, found: Mapping[str, float], folder: Path, box: tuple[float, float]
+    design: Design,
+    tech: OpenRoadPlatform,
+    found: Mapping[str, float],
+    folder: Path,
+    size_um: tuple[float, float],
+    checked: Runner,
 ) -> dict[str, Any]:
     """The figures of a run; None for those that are not measured.
 
-    found: figures of the stages' logs. folder: of the run. box: (width, height) in um.
+    found: figures of the stages' logs. folder: of the run. size_um: (width, height) of the die. checked: the checks.
     """
-    slacks = {name: {corner: found.get(f"{name}.{corner}") for corner in CORNERS} for name in ("wns_ns", "whs_ns")}
-    cells, area = counted((folder / "synth.stat").read_text())
-    slack = slacks["wns_ns"]["slow"]
-    f_max = None if slack is None else round(1000 / (design.clock.period_ns - slack), 2)
-    utilization = round(design.utilization * tech.utilization_share, 4)
-    return (
-        {"design": design.name, "top": design.top, "backend": "openroad", "pdk": tech.name}
-        | {"cells": cells, "cell_area_um2": area, "area_um2": round(box[0] * box[1], 2), "utilization": utilization}
-        | {name: found.get(name) for name in ("drc_violations", "antenna_violations")}
-        | dict.fromkeys(("lvs_match", "equivalence", "gate_tests"))
-        | {**slacks, "f_max_mhz": f_max}
-    )
+    netlist = Netlist.read(checked.paths["place_route.netlist"])
+    um2 = areas(checked.paths["library.liberty"])
+    slacks = {name: worst(found, name, tech.corners) for name in ("wns_ns", "whs_ns")}
+    spefs = {"placement": "placement", "global routes": "global"} | {wires: wires for wires in WIRES}
+    wires = {name: total_pf(folder / f"{file}.spef") for name, file in spefs.items()}
+    slowest = slacks["wns_ns"][tech.corners[0]]
+    options = Options(pdk=tech.name, utilization=tech.utilization)
+    made = of_steps(design, options, checked, [Attempt(tech.utilization, 1.0, 0.0)])
+    by_wires = {
+        name: sum(value for key, value in found.items() if key.startswith(f"{name}.")) or 0
+        for name in ("slew_violations", "capacitance_violations")
+    }
+    return made | {
+        "backend": "openroad",
+        "cells": len(netlist.instances),
+        "flip_flops": sum(is_register(i.cell) for i in netlist.instances),
+        "cell_area_um2": round(sum(um2.get(i.cell, 0.0) for i in netlist.instances), 2),
+        "area_um2": round(size_um[0] * size_um[1], 2),
+        "attempts": [],
+        **{name: found.get(name) for name in ("wire_um", "open_nets", "router_drc_violations", "router_antennas")},
+        "clock_buffers": sum(i.name.startswith("clkbuf") for i in netlist.instances),
+        "rerouted_nets": 0,
+        "antenna_diodes": sum(i.cell == tech.diode for i in netlist.instances),
+        **by_wires,
+        **slacks,
+        "slacks_by_wires": {key: value for key, value in found.items() if key.startswith(("wns_ns.", "whs_ns."))},
+        "estimated_ns": {name: found.get(f"estimated_{name}_ns") for name in ("setup", "hold")},
+        "wire_pf": wires.get(WIRES[0]),
+        "wire_pf_by_source": wires,
+        "f_max_mhz": None if slowest is None else round(1000 / (design.clock.period_ns - slowest), 2),
+        "placement_density": found.get("placement_density"),
+        "timing_rests_on": f"{tech.library}'s Liberty; OpenRCX, with coupling, at {', '.join(WIRES)}",
+        "wall_s": {key.removeprefix("seconds."): v for key, v in found.items() if key.startswith("seconds.")}
+        | made["wall_s"],
+        "tools": made["tools"] | {"openroad": version("openroad")},
+    }
+
+
+def worst(found: Mapping[str, float], name: str, corners: Sequence[str]) -> dict[str, float | None]:
+    """The least of the figure ``name`` over the wires' corners, by corner of the cells."""
+    return {corner: min((v for key, v in found.items() if _of(key, name, corner)), default=None) for corner in corners}
+
+
+def _of(key: str, name: str, corner: str) -> bool:
+    """Whether ``key`` is 'name.<wires>.corner'."""
+    return key.startswith(f"{name}.") and key.endswith(f".{corner}")
+
+
+def total_pf(path: Path) -> float | None:
+    """Capacitance of all nets of a SPEF, pF; None without the file."""
+    return round(sum(wire_pf(path.read_text()).values()), 3) if path.is_file() else None
 
 
 def broken(summary: dict[str, Any]) -> list[str]:

@@ -3,14 +3,17 @@
 import os
 import re
 import shutil
-from collections.abc import Callable, Mapping
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from base.liberty.read import without
 from base.tools import ToolError, finish
 from models.parameters import ParameterError
-from platforms.openroad import CORNERS, OpenRoadPlatform
+from platforms.openroad import WIRES, OpenRoadPlatform
+
+from .netlists import write_synthesized
 
 SCRIPTS = Path(__file__).parent / "tcl"
 INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"
@@ -18,7 +21,7 @@ INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or 
 
 @dataclass(frozen=True)
 class Stage:
-    """A script and its log. gives: file without which it failed. corner: of the timing, or ''."""
+    """A script and its log. gives: file without which it failed. corner: of the wires, or ''."""
 
     name: str
     gives: str
@@ -35,11 +38,17 @@ class Stage:
         return [*program.split(), f"{self.name}.tcl"]
 
 
-def stages(top: str) -> list[Stage]:
-    """Every Stage for the module ``top``."""
-    databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "hold", "route")]
-    timing = [Stage("sta", f"{top}.{corner}.sdf", corner) for corner in CORNERS]
-    return [Stage("synth", "netlist.v"), *databases, Stage("finish", f"{top}.spef"), *timing]
+def stages(tech: OpenRoadPlatform, wires: Sequence[str] = WIRES) -> list[Stage]:
+    """Every Stage. wires: corners of parasitics that the PDK has."""
+    databases = [Stage(name, f"{name}.odb") for name in ("floorplan", "power", "place", "cts", "repair", "route")]
+    extraction = [Stage("extract", f"{corner}.spef", corner) for corner in wires]
+    timing = [Stage("sta", f"{corner}.{tech.corners[-1]}.sdf", corner) for corner in wires]
+    return [Stage("synth", "netlist.json"), *databases, Stage("finish", "final.v"), *extraction, *timing]
+
+
+def wire_corners(tech: OpenRoadPlatform, root: Path) -> list[str]:
+    """Corners of parasitics for which the PDK in ``root`` has rules."""
+    return [name for name in WIRES if any((root / path).is_file() for path in tech.rcx_rules[name])]
 
 
 def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ) -> Path:
@@ -49,7 +58,7 @@ def pdk_root(tech: OpenRoadPlatform, environment: Mapping[str, str] = os.environ
         install = f"pip install ciel; ciel enable --pdk-family {tech.name} <version>"
         raise ParameterError(f"PDK_ROOT = '': must be the folder of an installed PDK ({install})")
     needed = [(path,) for path in (*tech.liberty.values(), tech.tech_lef, tech.cell_lef, tech.cell_gds)]
-    for paths in (*needed, tech.rcx_rules):
+    for paths in (*needed, tech.rcx_rules[WIRES[0]]):
         if not any((Path(root) / path).is_file() for path in paths):
             raise ParameterError(f"PDK_ROOT = {root}: must hold {' or '.join(paths)}")
     return Path(root)
@@ -61,15 +70,18 @@ def missing_tools() -> list[str]:
 
 
 def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:
-    """Run every stage in ``folder``; returns the figures by name, of the lines 'TALBOT name value' in their logs.
+    """Run every stage of the module ``top`` in ``folder``; returns the figures by name, of its logs.
 
-    note: called with each stage's name. Raises ToolError with the last lines of a stage that failed.
+    They are the lines 'TALBOT name value', and 'seconds.<stage>' of each. note: called with each stage's name. Raises
+    ToolError with the last lines of a stage that failed.
     """
-    text = (root / tech.liberty["typical"]).read_text()
+    text = (root / tech.liberty[tech.corners[0]]).read_text()  # cells are chosen by their slowest delays
     (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
     found = {}
-    for stage in stages(top):
-        note(stage.log.removesuffix(".log"))
+    for stage in stages(tech, wire_corners(tech, root)):
+        name = stage.log.removesuffix(".log")
+        note(name)
+        begin = time.perf_counter()
         (folder / stage.gives).unlink(missing_ok=True)
         done = finish(stage.command(), cwd=folder, env={"PDK_ROOT": str(root), "CORNER": stage.corner})
         (folder / stage.log).write_text(done.stdout + done.stderr)
@@ -78,5 +90,8 @@ def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callab
             tail = "\n".join((done.stdout + done.stderr).strip().splitlines()[-10:])
             state = f"status {done.returncode}, {stage.gives} {'written' if written else 'not written'}"
             raise ToolError(f"{stage.command()[0]} {stage.name}: {state}:\n{tail}")
-        found |= {name: float(value) for name, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
+        if stage.name == "synth":
+            write_synthesized(folder, top, tech)
+        found |= {key: float(value) for key, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
+        found[f"seconds.{name}"] = round(time.perf_counter() - begin, 1)
     return found

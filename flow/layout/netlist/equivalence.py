@@ -105,7 +105,7 @@ def match(gold: Cut, gate: Cut, netlist: Netlist) -> tuple[dict[Bit, str], dict[
     states, gate_states = {}, {}
     for instance in netlist.instances:
         if is_register(instance.cell):
-            register, net = instance.name.removesuffix(REGISTER), nets.get(instance.pins["q"])
+            register, net = instance.name.removesuffix(REGISTER), nets.get(instance.net("q"))
             if register not in by_name or net not in gate.registers:
                 raise StepError(f"equivalence: the RTL has no register {register}")
             states[by_name[register]] = gate_states[net] = f"state{len(states)}"

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 from base.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
-OUTPUT_PINS = ("q", "nq", "zero", "one", "sum", "carry")  # of the library's cells
+# Of the cells of PDKMaster, and of SkyWater
+OUTPUT_PINS = "q", "nq", "zero", "one", "sum", "carry", "X", "Y", "Q", "Q_N", "HI", "LO", "SUM", "COUT"
 MacroNames = Mapping[str, tuple[str, Mapping[str, str]]]  # by instance the cell and its pins by names for Coriolis
 REGISTER = "_reg"  # after a register's name: its flip-flop
 
@@ -48,6 +49,10 @@ class Instance:
     name: str
     cell: str
     pins: dict[str, str]
+
+    def net(self, pin: str) -> str:
+        """The net of a pin whose name a library writes in small or in capital letters."""
+        return self.pins[pin] if pin in self.pins else self.pins[pin.upper()]
 
     def with_nets(self, names: Mapping[str, str]) -> "Instance":
         """The same with other nets, by name, where ``names`` has them."""
@@ -125,7 +130,7 @@ class Netlist:
                     pins.setdefault(net, f"{called}.{net}")  # an output without a load
             name = called if cell["type"] in macros else f"u{number}"
             if is_register(cell["type"]):
-                name = register_of[cell["connections"]["q"][0]] + REGISTER
+                name = register_of[cell["connections"].get("q", cell["connections"].get("Q"))[0]] + REGISTER
             instances.append(Instance(name, cell["type"], pins))
         return cls(top, tuple(ports), (*instances, *extra))
 
@@ -193,8 +198,8 @@ def _buses(pins: Mapping[str, str]) -> dict[str, str]:
 
 
 def is_register(cell: str) -> bool:
-    """Whether the library's cell of that name is a flip-flop."""
-    return cell.startswith("dff")
+    """Whether the library's cell of that name is a flip-flop: dff_x1 of PDKMaster, <library>__dfxtp_1 of SkyWater."""
+    return cell.rpartition("__")[2].startswith("df")
 
 
 def _escaped(name: str) -> str:

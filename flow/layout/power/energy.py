@@ -167,7 +167,7 @@ def blocks(netlist: Netlist) -> dict[str, str]:
 def _most(after: list[tuple[Instance, str]], found: Mapping[str, str]) -> str:
     votes: dict[str, int] = {}
     for sink, pin in after:
-        clock = is_register(sink.cell) and re.fullmatch("clk|ck", pin) or found.get(sink.name) == "clock tree"
+        clock = is_register(sink.cell) and re.fullmatch("clk|ck|CLK", pin) or found.get(sink.name) == "clock tree"
         name = "clock tree" if clock else found.get(sink.name, "ports")
         votes[name] = votes.get(name, 0) + 1
     return max(sorted(votes), key=votes.__getitem__) if votes else "ports"

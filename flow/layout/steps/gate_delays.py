@@ -12,7 +12,7 @@ from ..timing.delays import read
 from ..timing.replay import Timing, replay
 from .corner import CornerStep
 
-CONSTANTS = {"zero", "one"}  # pins of cells without a path
+CONSTANTS = {"zero", "one", "HI", "LO", "DIODE"}  # pins of cells without a path
 
 
 @dataclass(frozen=True)

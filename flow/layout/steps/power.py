@@ -82,6 +82,9 @@ class Power(CornerStep[PowerParameters]):
 
 
 def wire_pf(spef: str) -> dict[str, float]:
-    """Capacitance (pF) of each net in a SPEF of the extraction step (fF)."""
+    """Capacitance (pF) of each net in a SPEF in fF or pF, of the extraction step or of another tool's."""
+    unit = re.search(r"(?m)^\*C_UNIT (\S+) (\w+)", spef)
+    scale = float(unit[1]) * (1.0 if unit[2].upper() == "PF" else 1e-3) if unit else 1e-3
+    names = dict(re.findall(r"(?m)^(\*\d+) (\S+)$", spef))
     found = re.findall(r"(?m)^\*D_NET (\S+) (\S+)$", spef)
-    return {name.replace("\\", ""): float(value) / 1000 for name, value in found}
+    return {names.get(name, name).replace("\\", ""): float(value) * scale for name, value in found}

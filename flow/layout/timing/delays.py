@@ -9,7 +9,7 @@ both edges.
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from flow.layout.netlist.netlist import Instance, Netlist, is_register
@@ -67,7 +67,16 @@ def read(text: str) -> Delays:
                 for _, data, _, value in _groups(group, kind):
                     worst = found.checks.setdefault(name, {}).setdefault(data[-1], [-1e9, -1e9])
                     worst[k] = max(worst[k], _late(value))
-    return found
+    return replace(found, paths={name: _slowest(arcs) for name, arcs in found.paths.items()})
+
+
+def _slowest(arcs: list[Arc]) -> list[Arc]:
+    """One arc a pair of pins: a Liberty may have several, each under a condition on other pins."""
+    found: dict[tuple[str, str], Arc] = {}
+    for arc in arcs:
+        before = found.get((arc.source, arc.target), arc)
+        found[arc.source, arc.target] = arc._replace(rise=max(arc.rise, before.rise), fall=max(arc.fall, before.fall))
+    return list(found.values())
 
 
 def icarus(delays: Delays, netlist: Netlist, names: Mapping[str, str]) -> str:

@@ -173,7 +173,7 @@ def _netlist(
     for i in netlist.instances:
         renamed.append(Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}))
     for k, check in enumerate(constrained(delays, netlist) if delays else ()):
-        clock, data = (short[check.instance.pins[pin]] for pin in (CLOCK_PIN, check.pin))
+        clock, data = (short[check.instance.net(pin)] for pin in (CLOCK_PIN, check.pin))
         times = f".SETUP({check.setup:.4f}), .HOLD({check.hold:.4f})"
         lines.append(f"  Check #({times}) k{k} (.clk({clock}), .d({data}));")
     if count:

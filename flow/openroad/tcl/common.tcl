@@ -1,20 +1,47 @@
-# What every stage needs: the design's variables, and the database of the stage before at one corner.
+# What every stage needs: the design's variables, the cells at all corners, and the database of the stage before.
 source design.tcl
 
-proc open_stage {before corner} {
-  global liberty constraints signal_rc clock_rc dont_use
-  read_liberty $liberty($corner)
+proc read_cells {} {
+  global corners liberty
+  define_corners {*}$corners
+  foreach corner $corners {
+    read_liberty -corner $corner $liberty($corner)
+  }
+}
+
+proc open_stage {before} {
+  global constraints dont_use
+  read_cells
   read_db $before.odb
   read_sdc $constraints
-  set_wire_rc -signal -layer $signal_rc
-  set_wire_rc -clock -layer $clock_rc
+  wires
   set_dont_use $dont_use
+}
+
+# Resistance and capacitance for estimates: the technology LEF has neither coupling nor the layers above and below.
+proc wires {} {
+  global layer_rc via_rc signal_rc clock_rc
+  foreach {layer resistance capacitance} $layer_rc {
+    set_layer_rc -layer $layer -resistance $resistance -capacitance $capacitance
+  }
+  foreach {via resistance} $via_rc {
+    set_layer_rc -via $via -resistance $resistance
+  }
+  set_wire_rc -signal -layers $signal_rc
+  set_wire_rc -clock -layers $clock_rc
 }
 
 proc routing_layers {} {
   global signal_layers clock_layers kept_free
   set_routing_layers -signal $signal_layers -clock $clock_layers
   set_global_routing_layer_adjustment $signal_layers $kept_free
+}
+
+proc legalize {} {
+  global padding
+  set_placement_padding -global -left $padding -right $padding
+  detailed_placement
+  check_placement -verbose
 }
 
 # One line a figure, in a form that is ours: no report of the tool has to be understood.

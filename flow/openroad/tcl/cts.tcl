@@ -1,15 +1,15 @@
-# The clock's tree, then setup at the slow corner.
+# The clock's tree, then setup and hold at all corners.
 source common.tcl
-open_stage place slow
+open_stage place
 estimate_parasitics -placement
 repair_clock_inverters
-clock_tree_synthesis -root_buf $clock_buffer -buf_list $clock_buffer -sink_clustering_enable
+clock_tree_synthesis -root_buf $clock_root -buf_list $clock_buffers -sink_clustering_enable
 set_propagated_clock [all_clocks]
 estimate_parasitics -placement
 repair_clock_nets
-detailed_placement
+legalize
 estimate_parasitics -placement
-repair_timing -setup
-detailed_placement
-check_placement -verbose
+repair_timing -setup -setup_margin $setup_margin
+repair_timing -hold -hold_margin $hold_margin
+legalize
 write_db cts.odb

@@ -1,20 +1,24 @@
-# Extracted wires and what leaves: DEF, LEF, netlists.
+# What leaves: DEF, LEF, netlists. Cells without a function are not in the netlist for checks and timing.
 source common.tcl
-open_stage route typical
-foreach path $rcx_rules {
-  if {[file isfile $pdk_root/$path]} { set rules $pdk_root/$path }
-}
-define_process_corner -ext_model_index 0 X
-if {[llength [info commands set_extraction_rules_file]]} {
-  set_extraction_rules_file $rules
-  extract_parasitics
-} else {
-  extract_parasitics -ext_model_file $rules
-}
-write_spef $top.spef
-write_def $top.def
-write_abstract_lef $top.lef
-write_verilog -remove_cells $fill $top.v
-write_verilog -include_pwr_gnd $top.power.v
+open_stage route
+write_def final.def
+write_abstract_lef final.lef
+write_verilog -remove_cells $unconnected final.v
+write_verilog -include_pwr_gnd final.power.v
 report_design_area
 report_floating_nets -verbose
+
+# Wire length, and nets of several pins that have no wire
+set length 0
+set open 0
+foreach net [[ord::get_db_block] getNets] {
+  if {[$net getSigType] eq "POWER" || [$net getSigType] eq "GROUND"} { continue }
+  set wire [$net getWire]
+  if {$wire ne "NULL"} {
+    incr length [$wire getLength]
+  } elseif {[$net getITermCount] + [$net getBTermCount] > 1} {
+    incr open
+  }
+}
+measured wire_um [expr {$length / double([[ord::get_db_block] getDbUnitsPerMicron])}]
+measured open_nets $open

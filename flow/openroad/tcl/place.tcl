@@ -1,14 +1,17 @@
-# Pins and cells, at the slow corner, where slews are worst.
+# Pins and cells, by wire length, congestion and timing; slews and loads, then setup before the clock has its tree.
 source common.tcl
-open_stage power slow
+open_stage power
 routing_layers
-global_placement -density $density -pad_left 1 -pad_right 1 -skip_io
+set room [list -pad_left $padding -pad_right $padding]
+set least [gpl::get_global_placement_uniform_density {*}$room]
+set density [expr {min(1.0, $least + (1 - $least) * $density_addon + 0.01)}]
+measured placement_density $density
+global_placement -density $density {*}$room -skip_io
 place_pins -hor_layers $pin_horizontal -ver_layers $pin_vertical
-global_placement -routability_driven -density $density -pad_left 1 -pad_right 1
+global_placement -density $density {*}$room -routability_driven -timing_driven
 estimate_parasitics -placement
 repair_design
 repair_tie_fanout [join $low /]
 repair_tie_fanout [join $high /]
-detailed_placement
-check_placement -verbose
+legalize
 write_db place.odb

@@ -1,6 +1,6 @@
 # Supplies: the cells' pins to the nets, rails, straps.
 source common.tcl
-open_stage floorplan typical
+open_stage floorplan
 foreach pin $supply_pins {
   add_global_connection -net $supply -inst_pattern {.*} -pin_pattern "^$pin\$" -power
 }

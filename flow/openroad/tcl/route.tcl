@@ -1,6 +1,6 @@
 # Routes, with diodes where a gate's wire is too long an antenna; fillers last, since a diode wants a free site.
 source common.tcl
-open_stage hold typical
+open_stage repair
 set_propagated_clock [all_clocks]
 routing_layers
 
@@ -21,6 +21,6 @@ for {set turn 0} {$turn < 3 && [check_antennas] > 0} {incr turn} {
 filler_placement $fill
 global_connect
 check_placement -verbose
-measured drc_violations [detailed_route_num_drvs]
-measured antenna_violations [check_antennas]
+measured router_drc_violations [detailed_route_num_drvs]
+measured router_antennas [check_antennas]
 write_db route.odb

@@ -1,14 +1,23 @@
-# Yosys: Verilog -> netlist of cells. Run: yosys -c synth.tcl
+# Yosys: Verilog -> a netlist of cells, and the registers' names in the Verilog. Run: yosys -c synth.tcl
 yosys -import
 source design.tcl
 read_verilog -sv $rtl
-synth -flatten -top $top
+design -save read
+hierarchy -top $top
+yosys proc
+flatten
+memory
+techmap
+simplemap
+opt_clean
+write_json registers.json
+design -load read
+synth -flatten -nofsm -top $top
 check -assert
 dfflibmap -liberty $synthesis_liberty
 abc -D $period_ps -liberty $synthesis_liberty
 setundef -zero
 hilomap -singleton -hicell {*}$high -locell {*}$low
-splitnets
 opt_clean -purge
 tee -o synth.stat stat -liberty $synthesis_liberty
-write_verilog -noattr -noexpr -nohex -nodec netlist.v
+write_json netlist.json

@@ -2,7 +2,8 @@
 
 README: src/<module>/README.md of The-OpenROAD-Project/OpenROAD. Tcl: a command's sta::define_cmd_args there. STA: the
 OpenSTA manual. Flow: test/flow.tcl and test/sky130hd/sky130hd.pdn.tcl there, which its own regressions run. LL: the
-scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily.
+scripts of LibreLane 3.0.17, SC: of SiliconCompiler 0.38.11, which run on OpenROAD daily. Every name, key and flag is
+also in the Tcl of release 26Q2 (April 2026), but for set_extraction_rules_file, which came later.
 """
 
 from dataclasses import dataclass, replace
@@ -30,6 +31,7 @@ COMMANDS = {
     "read_lef": Command("odb, main README", (), _words("-tech -library"), 1, 1),
     "read_liberty": Command("STA", _words("-corner"), _words("-min -max -infer_latches"), 1, 1),
     "read_verilog": Command("main README", (), (), 1, 1),
+    "define_corners": Command("STA; test/gcd_sky130hd_fast_slow.tcl", (), (), 1, 9),
     "link_design": Command("main README", (), _words("-hier"), 0, 1),
     "read_sdc": Command("STA", (), _words("-echo"), 1, 1),
     "read_db": Command("main README", (), _words("-hier"), 1, 1),
@@ -87,14 +89,19 @@ COMMANDS = {
     ),
     "place_pins": Command(
         "ppl README",
-        _words("-hor_layers -ver_layers -random_seed -exclude -group_pins -corner_avoidance -min_distance"),
+        _words("-hor_layers -ver_layers -random_seed -corner_avoidance -min_distance"),
         _words("-random -min_distance_in_tracks -annealing"),
     ),
     "set_wire_rc": Command(
         "est and rsz README", _words("-layer -layers -resistance -capacitance -corner"), _words("-clock -signal -data")
     ),
+    "set_layer_rc": Command(
+        "est README; test/sky130hd/sky130hd.rc", _words("-layer -via -capacitance -resistance -corner")
+    ),
     "set_dont_use": Command("rsz README", (), (), 1, 1),
-    "estimate_parasitics": Command("est and rsz README", _words("-spef_file"), _words("-placement -global_routing")),
+    "estimate_parasitics": Command(
+        "est and rsz README", _words("-spef_file"), _words("-placement -global_routing"), writes="-spef_file"
+    ),
     "repair_design": Command(
         "rsz README",
         _words("-max_wire_length -slew_margin -cap_margin -max_utilization"),
@@ -110,6 +117,8 @@ COMMANDS = {
     ),
     "repair_clock_inverters": Command("rsz README"),
     "repair_clock_nets": Command("rsz README; LL, SC", _words("-max_wire_length")),
+    "set_placement_padding": Command("dpl README", _words("-masters -instances -left -right"), _words("-global"), 0, 1),
+    "gpl::get_global_placement_uniform_density": Command("Tcl, replace", _words("-pad_left -pad_right"), says="0.6"),
     "detailed_placement": Command(
         "dpl README", _words("-max_displacement -report_file_name"), _words("-disallow_one_site_gaps")
     ),
@@ -120,7 +129,7 @@ COMMANDS = {
     "clock_tree_synthesis": Command(
         "cts README",
         _words("-buf_list -root_buf -wire_unit -clk_nets -sink_clustering_size -sink_clustering_max_diameter"),
-        _words("-sink_clustering_enable"),
+        _words("-sink_clustering_enable -balance_levels -obstruction_aware"),
     ),
     "global_route": Command(
         "grt README",
@@ -138,7 +147,7 @@ COMMANDS = {
     ),
     "detailed_route": Command(
         "drt README",
-        _words("-output_maze -output_drc -output_cmap -droute_end_iter -or_seed -or_k -verbose -min_access_points"),
+        _words("-output_maze -output_drc -droute_end_iter -or_seed -or_k -verbose -min_access_points"),
         _words("-disable_via_gen -clean_patches -no_pin_access -save_guide_updates"),
         writes="-output_drc",
     ),
@@ -154,9 +163,7 @@ COMMANDS = {
         _words("-lef_res -no_merge_via_res"),
     ),
     "write_spef": Command("rcx README", _words("-net_id"), (), 1, 1, "argument"),
-    "read_spef": Command(
-        "STA", _words("-path -corner -reduce_to"), _words("-min -max -keep_capacitive_coupling"), 1, 1
-    ),
+    "read_spef": Command("STA", _words("-path -corner -name"), _words("-min -max -keep_capacitive_coupling"), 1, 1),
     "report_design_area": Command("rsz README"),
     "report_floating_nets": Command("rsz README", (), _words("-verbose")),
     "report_checks": Command(
@@ -169,6 +176,9 @@ COMMANDS = {
     ),
     "report_power": Command("STA", _words("-digits -corner -instances")),
     "worst_slack": Command("STA", _words("-corner"), _words("-max -min"), says="1.5"),
+    "sta::max_slew_violation_count": Command("STA, Search.i", says="0"),
+    "sta::max_capacitance_violation_count": Command("STA, Search.i", says="0"),
+    "ord::get_db_block": Command("Tcl, OpenRoad.i", says="block"),
     "write_sdf": Command(
         "STA", _words("-corner -divider -digits"), _words("-gzip -no_timestamp -no_version"), 1, 1, "argument"
     ),

@@ -17,7 +17,6 @@ from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
 
 KNOWN = openroad_platform("sky130")
-CORNERS = {"tt_025C_1v80": "typical", "ss_100C_1v60": "slow", "ff_n40C_1v95": "fast"}
 AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.1]}
 UNITS = {
     "voltage_unit": "1V",
@@ -38,7 +37,7 @@ def make(root):
     for folder in (
         library,
         cells / "verilog",
-        *((root / path).parent for path in (KNOWN.cell_lef, KNOWN.tech_lef, KNOWN.liberty["slow"])),
+        *((root / path).parent for path in (KNOWN.cell_lef, KNOWN.tech_lef, KNOWN.liberty[KNOWN.corners[0]])),
     ):
         folder.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(sky130_hd.folder() / "tech" / Path(KNOWN.tech_lef).name, root / KNOWN.tech_lef)
@@ -51,7 +50,7 @@ def make(root):
     )
     (cells / "verilog" / f"{KNOWN.library}.v").write_text(ports)
     timed = with_delays(functions.small_liberty())
-    for corner in CORNERS.values():
+    for corner in KNOWN.corners:
         (root / KNOWN.liberty[corner]).write_text(timed)
     (library / "empty").write_text("")
     (tech / "config.tcl").write_text(_tcl({"STD_CELL_LIBRARY": KNOWN.library}))
@@ -95,8 +94,8 @@ def _variables(root, cells, empty):
         "CELL_LEFS": root / KNOWN.cell_lef,
         "CELL_GDS": empty,
         "CELL_VERILOG_MODELS": cells / "verilog" / f"{KNOWN.library}.v",
-        "LIB": " ".join(f"*_{pvt} {root / KNOWN.liberty[corner]}" for pvt, corner in CORNERS.items()),
-        "STA_CORNERS": " ".join(f"nom_{pvt}" for pvt in CORNERS),
+        "LIB": " ".join(f"*_{corner} {root / KNOWN.liberty[corner]}" for corner in KNOWN.corners),
+        "STA_CORNERS": " ".join(f"nom_{corner}" for corner in KNOWN.corners),
         "DEFAULT_CORNER": "nom_tt_025C_1v80",
         "TIMING_VIOLATION_CORNERS": "*tt*",
         "RCX_RULESETS": f"nom_* {empty}",

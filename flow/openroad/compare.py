@@ -1,0 +1,74 @@
+"""Both back ends, design by design: figures of finished layouts, as a table."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from base.files import insert
+from base.paths import ROOT
+from flow.layout.design import design
+from flow.layout.report.metrics import broken as broken_of_layout
+
+from .results import broken
+
+DESIGNS = "quad_divider", "amp_ctrl", "asp_chip"
+HEAD = (
+    "design | back end | area, mm2 | cells | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
+    "power at tt, uW | wire, mm | wire, pF | seconds | limits broken"
+)
+NOT_RUN = "not run"
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot openroad-compare`."""
+    parser.add_argument("designs", nargs="*", default=DESIGNS, metavar="DESIGN", help="designs that are laid out")
+    parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+    parser.add_argument("--document", type=Path, help="also put the table between the marks of this file")
+
+
+def run(options: Namespace) -> int:
+    """Print the table of the designs' summaries; a back end that has not run has none of the figures."""
+    text = table([design(name).name for name in options.designs], options.out)
+    if options.document:
+        insert(options.document, "back ends", text)
+    print(text)
+    return 0
+
+
+def table(names: Sequence[str], out: Path) -> str:
+    """The table in Markdown."""
+    columns = HEAD.count("|") + 1
+    lines = [f"| {HEAD} |", "|---" * 2 + "|---:" * (columns - 2) + "|"]
+    for name in names:
+        for backend, folder in (("embedded", name), ("OpenROAD", f"{name}-openroad")):
+            path = out / folder / "summary.json"
+            cells = row(json.loads(path.read_text())) if path.is_file() else [NOT_RUN] + [""] * (columns - 3)
+            lines.append(f"| {' | '.join([name, backend, *cells])} |")
+    return "\n".join(lines)
+
+
+def row(summary: Mapping[str, Any]) -> list[str]:
+    """The figures of one summary; '' for one that it does not have."""
+    slacks = [min(summary[name].values()) if summary[name] else None for name in ("wns_ns", "whs_ns")]
+    power = next((uw for corner, uw in (summary["power_uw"] or {}).items() if corner.startswith("tt")), None)
+    own = broken if summary["backend"] == "openroad" else broken_of_layout
+    figures = (
+        (summary["area_um2"], 1e-6, ".4f"),
+        (summary["cells"], 1, ",d"),
+        (summary["cell_area_um2"], 1, ",.0f"),
+        (summary["f_max_mhz"], 1, ".1f"),
+    )
+    more = (power, 1, ",.0f"), (summary["wire_um"], 1e-3, ",.1f"), (summary["wire_pf"], 1, ",.1f")
+    seconds = sum(summary["wall_s"].values()), 1, ",.0f"
+    return [
+        *(_written(*figure) for figure in figures),
+        ", ".join(_written(slack, 1, "+.2f") for slack in slacks),
+        *(_written(*figure) for figure in (*more, seconds)),
+        str(len(own(dict(summary)))),
+    ]
+
+
+def _written(value: float | None, scale: float, form: str) -> str:
+    return "" if value is None else format(value if scale == 1 else value * scale, form)

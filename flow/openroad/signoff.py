@@ -1,0 +1,95 @@
+"""Checks of what the stages made, by the steps that check the layouts of the embedded back end."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from base.liberty.read import only
+from base.steps import Runner, Step
+from base.tools import run
+from flow.layout.chain import netlist_tests, timing_steps
+from flow.layout.design import Design
+from flow.layout.options import Options
+from flow.layout.steps.antenna import Antenna
+from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from flow.layout.steps.fill import Fill
+from flow.layout.steps.ir_drop import IrDrop as MeshDrop
+from flow.layout.steps.library import Library
+from flow.layout.steps.parameters import PdkParameters
+from flow.layout.steps.power import Power
+from flow.layout.steps.sta import Sta
+from flow.layout.timing.constraints import sdc
+from platforms.openroad import WIRES, OpenRoadPlatform
+
+from .drc import Drc
+from .ir_drop import IrDrop, IrDropParameters
+from .lvs import Lvs
+from .netlists import routed_netlist
+
+ELSEWHERE = Sta, MeshDrop  # OpenROAD itself times all corners and solves the power grid
+
+
+def checks(design: Design, tech: OpenRoadPlatform) -> list[Step]:
+    """The steps, in order."""
+    timing = timing_steps(design, Options(pdk=tech.name, utilization=tech.utilization))
+    powered = [step.parameters.corner for step in timing if isinstance(step, Power)]
+    nets = tech.supply[0], tech.ground[0]
+    return [
+        *(step(PdkParameters(tech.name)) for step in (Fill, Drc, Antenna)),
+        Equivalence(EquivalenceParameters(design.top, design.clock.port)),
+        *netlist_tests(design),
+        Lvs(PdkParameters(tech.name)),
+        *(step for step in timing if not isinstance(step, ELSEWHERE)),
+        *(IrDrop(IrDropParameters(corner, tech.volts[corner], *nets)) for corner in powered),
+    ]
+
+
+def given(
+    design: Design, tech: OpenRoadPlatform, root: Path, folder: Path, size_um: tuple[float, float]
+) -> dict[str, Path]:
+    """The steps' inputs by name, of the run in ``folder`` with the PDK in ``root``; files are written beside it."""
+    made = folder / "signoff"
+    made.mkdir(exist_ok=True)
+    netlist = routed_netlist(folder / "final.v", design.top)
+    netlist.write(made / "netlist.json")
+    (made / "final.sdc").write_text(sdc(design))
+    (made / "floorplan.json").write_text(json.dumps({"width_um": size_um[0], "height_um": size_um[1]}))
+    cells = {instance.cell for instance in netlist.instances}
+    for corner in tech.corners:
+        (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), cells))
+    read = f"read_liberty -ignore_miss_func {made}/{tech.corners[0]}.lib"
+    run(["yosys", "-q", "-p", f"{read}; proc; write_verilog -noattr {made}/cells.v"])
+    return {
+        "rtl": folder / f"{design.top}.v",
+        "sdc": made / "final.sdc",
+        "place_route.netlist": made / "netlist.json",
+        "floorplan.floorplan": made / "floorplan.json",
+        "synthesis.verilog": folder / "netlist.v",
+        "stream_out.verilog": folder / "final.v",
+        "stream_out.gds": folder / "final.gds",
+        "database": folder / "route.odb",
+        "powered": folder / "final.power.v",
+        "cells.spice": root / tech.cell_spice,
+        "extraction.spef": folder / f"{WIRES[0]}.spef",
+        **{f"timing.{corner}": made / f"{corner}.lib" for corner in tech.corners},
+        **{f"sta_{corner}.sdf": folder / f"{WIRES[0]}.{corner}.sdf" for corner in tech.corners},
+    }
+
+
+def check(
+    design: Design,
+    tech: OpenRoadPlatform,
+    root: Path,
+    folder: Path,
+    size_um: tuple[float, float],
+    note: Callable[[str], object],
+) -> Runner:
+    """Run all checks of the run in ``folder``; their Runner. size_um: of the die. Raises ToolError, StepError."""
+    runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note, folder.parent / "shared")
+    runner.run(Library(PdkParameters(tech.name)))
+    runner.paths |= {
+        "library.liberty": folder / "signoff" / f"{tech.corners[0]}.lib",
+        "library.verilog": folder / "signoff" / "cells.v",
+    }
+    runner.run_all(checks(design, tech))
+    return runner

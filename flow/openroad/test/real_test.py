@@ -1,0 +1,25 @@
+"""The flow on a real `openroad`, where it is on PATH and PDK_ROOT names a PDK: the divider keeps every limit."""
+
+import json
+import os
+import shutil
+
+import pytest
+
+from base.command import main
+from flow.openroad import command
+
+pytestmark = [
+    pytest.mark.skipif(not shutil.which("openroad"), reason="openroad is not installed: not run"),
+    pytest.mark.skipif(not os.environ.get("PDK_ROOT"), reason="PDK_ROOT names no PDK: not run"),
+    pytest.mark.slow,
+]
+
+
+def test_the_divider_closes(tmp_path, capsys):
+    assert main(command, ["quad_divider", "--out", str(tmp_path)]) == 0, capsys.readouterr().err
+    summary = json.loads((tmp_path / "quad_divider-openroad" / "summary.json").read_text())
+    assert summary["equivalence"] == "proven" and summary["lvs_match"] is True
+    assert summary["area_um2"] < 13_000 and summary["gate_tests"]["failed"] == 0
+    by_source = summary["wire_pf_by_source"]
+    assert by_source["global routes"] == pytest.approx(by_source["nom"], rel=0.3)
