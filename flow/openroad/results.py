@@ -36,7 +36,7 @@ def summarize(
 
     found: figures of the stages' logs. folder: of the run. size_um: (width, height) of the die. checked: the checks.
     """
-    netlist = Netlist.read(checked.paths["place_route.netlist"])
+    netlist = Netlist.read(checked.paths["place.netlist"])
     um2 = areas(checked.paths["library.liberty"])
     slacks = {name: worst(found, name, tech.corners) for name in ("wns_ns", "whs_ns")}
     spefs = {"placement": "placement", "global routes": "global"} | {wires: wires for wires in WIRES}
@@ -57,7 +57,7 @@ def summarize(
         "attempts": [],
         **{name: found.get(name) for name in ("wire_um", "open_nets", "router_drc_violations", "router_antennas")},
         "clock_buffers": sum(i.name.startswith("clkbuf") for i in netlist.instances),
-        "rerouted_nets": 0,
+        "evictions": 0,
         "antenna_diodes": sum(i.cell == tech.diode for i in netlist.instances),
         **by_wires,
         **slacks,

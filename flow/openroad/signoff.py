@@ -20,6 +20,7 @@ from flow.layout.steps.power import Power
 from flow.layout.steps.sta import Sta
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import WIRES, OpenRoadPlatform
+from platforms.wires import CORNERS
 
 from .drc import Drc
 from .ir_drop import IrDrop, IrDropParameters
@@ -62,7 +63,7 @@ def given(
     return {
         "rtl": folder / f"{design.top}.v",
         "sdc": made / "final.sdc",
-        "place_route.netlist": made / "netlist.json",
+        "place.netlist": made / "netlist.json",
         "floorplan.floorplan": made / "floorplan.json",
         "synthesis.verilog": folder / "netlist.v",
         "stream_out.verilog": folder / "final.v",
@@ -70,7 +71,7 @@ def given(
         "database": folder / "route.odb",
         "powered": folder / "final.power.v",
         "cells.spice": root / tech.cell_spice,
-        "extraction.spef": folder / f"{WIRES[0]}.spef",
+        **{f"extraction.{own}": folder / f"{wires}.spef" for own, wires in zip(CORNERS, WIRES, strict=True)},
         **{f"timing.{corner}": made / f"{corner}.lib" for corner in tech.corners},
         **{f"sta_{corner}.sdf": folder / f"{WIRES[0]}.{corner}.sdf" for corner in tech.corners},
     }
