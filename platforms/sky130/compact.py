@@ -16,7 +16,7 @@ PLATFORM = replace(
     rail_overlap_um=0.38,
     rails_over_edge=True,
     pin_pitch_um={"horizontal": 0.52, "vertical": 0.52},
-    route_step_um=(0.26, 0.195),
+    route_step_um=(0.17, 0.195),
     utilization_most=0.64,
     masks=Path(__file__).with_name("masks.drc"),
 )

@@ -14,6 +14,7 @@ from .route import Point, Route
 from .rules import RoutingRules
 
 FIXED, CONTENDED = -1, -2  # owners that are no net
+PRESENT = 4  # cost of a net that has a place, in that of one conflict there before
 CUTS = 0  # level of `Board.fixed` that holds vias
 Key = TypeVar("Key")
 
@@ -88,19 +89,19 @@ class Board:
         made = [(self.levels[name], *box) for name, box in self.boxes[net] if name in self.levels]
         rows = as_rows(made, self.numbers[net])
         self.rows[net] = rows, self.routed.insert(rows)
-        self.grid.use(rows[rows[:, 0] > 0])
+        self.grid.use(rows[rows[:, 0] > 0], PRESENT)
 
-    def add_history(self, places: Iterable[tuple[int, Box]], times: int = 1) -> None:
-        """Raise the history cost of ``places``, pairs (level, Box), by that of ``times`` nets."""
+    def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
+        """Raise the history cost of ``places``, pairs (level, Box)."""
         rows = as_rows([(level, *box) for level, box in places], CONTENDED)
         self.routed.insert(rows)
-        self.grid.use(rows, times)
+        self.grid.use(rows)
 
     def rip_up(self, net: str) -> None:
         """Take the shapes of ``net`` off the board."""
         rows, numbers = self.rows[net]
         self.routed.remove(numbers)
-        self.grid.use(rows[rows[:, 0] > 0], -1)
+        self.grid.use(rows[rows[:, 0] > 0], -PRESENT)
         self.boxes[net], self.rows[net] = [], (rows[:0], numbers[:0])
 
     def put(self, net: str, route: Route) -> None:

@@ -14,7 +14,7 @@ from .rules import RoutingRules
 WRONG_WAY = 3  # cost of a step against the preferred direction of a layer, in steps along it
 LAYER_COSTS = 3.0, 1.5  # of a step on the lowest layers, where pins are met, in steps on another
 VIA_NM = 2000  # cost of a via, as that of so long a segment
-CONFLICT_NM = 1500  # cost of a place that a net has, or that nets contended for, as that of so long a segment
+CONFLICT_NM = 500  # cost of a place where nets contended once, as that of so long a segment
 HASTE = 5, 4  # factor of the remaining cost: paths of up to so much more are taken for a search so much shorter
 FREE, BLOCKED = 0, -1  # of `Grid.fixed`; else the number of the only net that may pass, and 1
 HELD = 1000  # so many shapes that no path passes

@@ -22,8 +22,8 @@ from .violations import Violations, find, find_in_file, split_levels
 
 PATIENCE = 6  # evicted nets for every one that is to be routed, at most
 TRIES = 3  # of a net without a path, while others move
+HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 JUMPER_TRIES = 3  # times that a net is routed with antenna jumpers; then it goes without, and keeps its antenna
-MOST_HISTORY = 8  # times that a place is charged for one conflict: as many as it has been turns, so that all settle
 JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
@@ -56,13 +56,14 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
     for net in waiting:
         board.rip_up(net)
     patience = PATIENCE * len(waiting) + 1000
-    turn = 0
     while waiting:
-        evicted, turn = [], turn + 1
+        evicted = []
         for net in waiting:
             state.tries[net] += 1
             jumpers = net in state.charged and state.tries[net] <= JUMPER_TRIES
-            found = (jumpers and route_net(board, net, jumpers)) or route_net(board, net, hasty=state.tries[net] == 1)
+            found = (jumpers and route_net(board, net, jumpers)) or route_net(
+                board, net, hasty=state.tries[net] <= HASTY_TRIES
+            )
             if not found or patience < len(found.evicted):
                 state.lost[net] += 1
                 state.routes.pop(net, None)
@@ -75,7 +76,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
             state.evictions += len(found.evicted)
             for other in found.evicted:
                 board.rip_up(other)
-            board.add_history(found.places, min(turn, MOST_HISTORY))
+            board.add_history(found.places)
             board.put(net, found.route)
             state.routes[net] = found.route
             evicted += sorted(found.evicted)
