@@ -220,11 +220,15 @@ def _stress(found: CellLayout, point: db.Point, width: float, length: float) -> 
     band = db.Region(db.Box(box.left, gate.bottom, box.right, gate.top)) & found.active
     corners = {corner.y for part in band.each_merged() for corner in part.each_point_hull()}
     levels = sorted(y for y in corners | {gate.bottom, gate.top} if gate.bottom <= y <= gate.top)
-    inverse = [0.0, 0.0]
+    inverse, covered = [0.0, 0.0], 0
     for low, high in pairwise(levels):
         strip = db.Region(db.Box(box.left, low, box.right, high)) & band
-        run = next(part.bbox() for part in strip.each_merged() if part.bbox().contains(db.Point(point.x, low)))
+        runs = (part.bbox() for part in strip.each_merged())
+        run = next((run for run in runs if run.contains(db.Point(point.x, low))), None)
+        if run is None:  # half a database unit beside a gate of an odd width
+            continue
+        covered += high - low
         for side, dbu in enumerate((point.x - run.left, run.right - point.x)):
-            inverse[side] += (high - low) / (2 * half) / (dbu * found.dbu)
-    sa, sb = (1 / value - length / 2 for value in inverse)
+            inverse[side] += (high - low) / (dbu * found.dbu)
+    sa, sb = (covered / value - length / 2 for value in inverse)
     return sa, sb

@@ -162,5 +162,5 @@ def _pins(
             else:
                 for part in (shape & bands).decompose_trapezoids_to_region(db.Polygon.TD_htrapezoids).each():
                     pin = part.bbox()  # of an L, which a rerouted net may have there, both arms
-                    if pin.left <= die.left or pin.right >= die.right:
+                    if (pin.left <= die.left or pin.right >= die.right) and (pin & die).area():
                         yield net, pin & die
