@@ -16,8 +16,10 @@ def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
 
     alone: no other net is to make room for that.
     """
+    pins = [box for pin in view.board.pins[view.board.nets[view.net]] for box in pin]
     for level, boxes in route.segments.items():
         layer = view.rules.layers[level]
+        boxes += [(left, bottom, right, top) for at, left, bottom, right, top in pins if at == level]
         region = _merged(boxes)
         gap = layer.space // 2
         for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():

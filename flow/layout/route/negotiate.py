@@ -33,14 +33,16 @@ MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 class Routed:
     """What a negotiation came to.
 
-    routes: of the nets that were routed. open: nets without a route. tries, lost: of every net. evictions: times that a
-    net was. respaced, charged: nets that were too near to others, nets that had an antenna.
+    routes: of the nets that were routed. open: nets without a route. tries, lost, jumps: of every net, how often it was
+    routed at all, found no path, was given antenna jumpers. evictions: times that a net was. respaced, charged: nets
+    that were too near to others, nets that had an antenna.
     """
 
     routes: dict[str, Route] = field(default_factory=dict)
     open: list[str] = field(default_factory=list)
     tries: Counter[str] = field(default_factory=Counter)
     lost: Counter[str] = field(default_factory=Counter)
+    jumps: Counter[str] = field(default_factory=Counter)
     evictions: int = 0
     respaced: set[str] = field(default_factory=set)
     charged: set[str] = field(default_factory=set)
@@ -60,7 +62,8 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
         evicted = []
         for net in waiting:
             state.tries[net] += 1
-            jumpers = net in state.charged and state.tries[net] <= JUMPER_TRIES
+            jumpers = net in state.charged and state.jumps[net] < JUMPER_TRIES
+            state.jumps[net] += jumpers
             found = (jumpers and route_net(board, net, jumpers)) or route_net(
                 board, net, hasty=state.tries[net] <= HASTY_TRIES
             )
