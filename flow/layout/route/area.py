@@ -16,7 +16,8 @@ def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
 
     alone: no other net is to make room for that.
     """
-    pins = [box for pin in view.board.pins[view.board.nets[view.net]] for box in pin]
+    own = [] if alone else view.board.pins[view.board.nets[view.net]]  # a jumper's end is no port
+    pins = [box for pin in own for box in pin]
     for level, boxes in route.segments.items():
         layer = view.rules.layers[level]
         boxes += [(left, bottom, right, top) for at, left, bottom, right, top in pins if at == level]
