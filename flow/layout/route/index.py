@@ -144,7 +144,7 @@ def _numbers(
                     first = max(a, _span(box[1], box[1], corner[0], shape[1])[0])
                     low = max(b, _span(box[2], box[2], corner[1], shape[2])[0])
                     if i == first and j == low:  # once, of all buckets that it shares with the box
-                        found.append(links[link, 1])
+                        found.append(np.int32(links[link, 1]))
                 link = links[link, 0]
     return np.array(found, np.int32)
 
