@@ -30,6 +30,6 @@ class Steps:
         """Show ``text``: a step's name, which moves the bar, or a line about the step."""
         if text in self.names:
             self.bar.n = self.names.index(text)
-        elif self.bar.disable:
-            print(f"  {text} ...", file=sys.stderr, flush=True)
+        if self.bar.disable:
+            print(f"{self.bar.n + 1:>3}/{len(self.names)} {text}", file=sys.stderr, flush=True)
         self.bar.set_description_str(text)

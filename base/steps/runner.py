@@ -56,10 +56,10 @@ class Runner:
         tools = {tool: version(tool) for tool in step.tools}
         parameters = asdict(step.parameters)
         key = digest(source_of(step, self.root), json.dumps([parameters, hashes, tools], sort_keys=True, default=str))
-        self.note(step.name)
 
         def make(part: Path) -> None:
             """Run the step into ``part``, with its record."""
+            self.note(step.name)
             begin = time.perf_counter()
             outputs = {name: part / file for name, file in step.outputs.items()}
             metrics, peak = alone(step.run, inputs, outputs)

@@ -1,0 +1,13 @@
+"""Where there is no terminal, a step and a line about it are one line each."""
+
+import pytest
+
+from base.progress import Steps
+
+
+def test_lines_without_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
+    with Steps(["place", "route"]) as steps:
+        steps.note("place")
+        steps.note("route")
+        steps.note("turn 2")
+    assert capsys.readouterr().err == "  1/2 place\n  2/2 route\n  2/2 turn 2\n"
