@@ -13,6 +13,8 @@ from cells.compact.write import BLOCKAGES, export_gds, exported
 from platforms.coriolis import coriolis_platform
 from platforms.processes import package
 
+COMPACT = ("sky130",)  # the processes that cells.compact draws for
+
 
 @dataclass(frozen=True)
 class StandardCells:
@@ -24,11 +26,11 @@ class StandardCells:
 
 
 def standard_cells(pdk: str, store: Path) -> StandardCells:
-    """The cells of ``pdk``: of sky130-compact those of cells.compact, else c4m-flexcell's. Raises ParameterError.
+    """The cells of ``pdk``: those of cells.compact where they are drawn for it, else c4m-flexcell's.
 
-    store: folder of the drawn cells.
+    Raises ParameterError. store: folder of the drawn cells.
     """
-    if pdk == "sky130-compact":
+    if pdk in COMPACT:
         made = library(store=store)
         return StandardCells(made, partial(export_gds, made), BLOCKAGES)
     tech = coriolis_platform(pdk)

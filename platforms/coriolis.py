@@ -6,7 +6,7 @@ from importlib import import_module
 from pathlib import Path
 
 from .layers import GdsLayer, Layer, Via
-from .processes import OTHER_CELLS, package
+from .processes import package
 from .wires import Wires
 
 
@@ -79,5 +79,4 @@ class CoriolisPlatform:
 
 def coriolis_platform(pdk: str) -> CoriolisPlatform:
     """The process ``pdk`` for the layout flow. Raises ParameterError."""
-    folder, (_, module) = package(pdk), OTHER_CELLS.get(pdk, ("", "coriolis"))
-    return import_module(f"platforms.{folder}.{module}").PLATFORM
+    return import_module(f"platforms.{package(pdk)}.coriolis").PLATFORM

@@ -10,7 +10,7 @@ from models.parameters import ParameterError
 
 from .processes import package
 
-PROCESSES = "sky130", "sky130-compact"
+PROCESSES = ("sky130",)
 
 
 @dataclass(frozen=True)

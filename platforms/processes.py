@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 from models.parameters import ParameterError
 
-PROCESSES = "sky130", "ihp-sg13g2", "sky130-compact"
-OTHER_CELLS = {"sky130-compact": ("sky130", "compact")}  # the process's folder, the module with the cells' platform
+PROCESSES = "sky130", "ihp-sg13g2"
 
 
 def package(pdk: str, choices: Sequence[str] = PROCESSES, use: str = "") -> str:
     """Name of the folder of ``pdk``. Raises ParameterError for one not in ``choices``; use: end of its message."""
     if pdk not in choices:
         raise ParameterError(f"pdk = {pdk!r}: must be one of {', '.join(choices)}{use}")
-    return OTHER_CELLS[pdk][0] if pdk in OTHER_CELLS else pdk.replace("-", "_")
+    return pdk.replace("-", "_")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from models.parameters import ParameterError
-from platforms.sky130.compact import PLATFORM
+from platforms.sky130.coriolis import PLATFORM
 
 
 @dataclass(frozen=True)

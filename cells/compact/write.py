@@ -18,7 +18,7 @@ from cells.compact.transistors import Schematic
 from cells.compact.verilog import verilog
 from cells.lef.abstract import PinKind, abstract
 from platforms.extraction import extraction_platform
-from platforms.sky130.compact import PLATFORM
+from platforms.sky130.coriolis import PLATFORM
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
 BLOCKAGES = f'''"""What the router must go round inside the cells: their own met1, and the least space around it."""

@@ -74,7 +74,7 @@ def publish(folder: Path, name: str, options: Options, runner: Runner, summary: 
 def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Picture]:
     """Draw the cells by block; pictures of this and of the IR drop, none where the layout has no power."""
     first = next(iter(options.corners), "")
-    step = "assemble" if "assemble.netlist" in runner.paths else "place"
+    step = "assemble" if "assemble.netlist" in runner.paths else "repair"
     if f"{step}.netlist" not in runner.paths or f"ir_drop_{first}.picture" not in runner.paths:
         return []
     keys = f"{step}.placement", "library.areas", "floorplan.floorplan"

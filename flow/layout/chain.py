@@ -1,10 +1,11 @@
 """The steps of a layout with Coriolis, in order, for a design and a process."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from base.steps import Step
 from platforms.coriolis import coriolis_platform
+from platforms.wires import wire_corner
 from rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
@@ -28,6 +29,7 @@ from .steps.lvs import Lvs
 from .steps.parameters import PdkParameters
 from .steps.place import Place, PlaceParameters
 from .steps.power import Power, PowerParameters
+from .steps.repair import Repair, RepairParameters
 from .steps.route import Route, RouteParameters
 from .steps.sta import Sta, StaParameters
 from .steps.sta_blocks import StaBlocks, StaBlocksParameters
@@ -43,8 +45,8 @@ FAN_OUT = 12  # most cells that one signal drives, where synthesis knows the cel
 # Of the whole chip, whose netlist with delays simulates a thousand times slower than a block's
 CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 # Inputs of the steps after `assemble` in a design with macros: the flat netlist and placement
-ASSEMBLED = {"place.netlist": "assemble.netlist"}
-ASSEMBLED |= dict.fromkeys(("place.placement", "route.placement"), "assemble.placement")
+ASSEMBLED = {"repair.netlist": "assemble.netlist"}
+ASSEMBLED |= dict.fromkeys(("repair.placement", "route.placement"), "assemble.placement")
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
 EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second attempt has the one that its first has not
 ASPECTS = 1.0, 1.25  # width by height of a round's attempts
@@ -95,16 +97,25 @@ def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Plac
 
 
 def routing_steps(design: Design, options: Options) -> list[Step]:
-    """The steps after a placement that decide whether the routing keeps the design rules; `route` is first."""
-    clock, macros, pdk = design.clock.port, macro_modules(design), options.pdk
+    """The steps after a placement that decide whether the routing keeps the design rules.
+
+    `repair` and `route` are first.
+    """
+    macros, pdk = macro_modules(design), options.pdk
     assemble = [Assemble(AssembleParameters(pdk, macros))] if macros else []
     checks = [step(PdkParameters(pdk)) for step in (Fill, Drc, Antenna)]
     return [
-        Route(RouteParameters(pdk, clock)),
+        Repair(RepairParameters(pdk, slowest(options.corners), load_pf=design.io.load_pf)),
+        Route(RouteParameters(pdk)),
         *assemble,
-        StreamOut(StreamOutParameters(pdk, clock, bool(macros))),
+        StreamOut(StreamOutParameters(pdk, bool(macros))),
         *checks,
     ]
+
+
+def slowest(corners: Sequence[str]) -> str:
+    """That of ``corners`` with the slowest cells and wires; '' where there is none."""
+    return next((corner for corner in corners if wire_corner(corner) == "max"), next(iter(corners), ""))
 
 
 def signoff_steps(design: Design, options: Options) -> list[Step]:

@@ -10,7 +10,7 @@ from .netlist.verilog import modules
 
 # Of a macro's run, what the design around it is given as macro.<module>.<part>
 PARTS = {"lef": "lef.lef", "gds": "fill.gds", "verilog": "stream_out.verilog", "spice": "stream_out.spice"}
-PARTS |= {"netlist": "place.netlist", "placement": "route.placement"}
+PARTS |= {"netlist": "repair.netlist", "placement": "route.placement"}
 
 
 def macro_files(design: Design, runners: Mapping[str, Runner], corners: Sequence[str] = ()) -> dict[str, Path]:

@@ -40,7 +40,8 @@ def lay_out_smallest(
         found = runner.run(place)["metrics"]
         if found["stopped"] is not None:
             continue
-        route, *checks = routing_steps(design, options)
+        repair, route, *checks = routing_steps(design, options)
+        runner.run(repair)
         attempt.open_nets = runner.run(route)["metrics"]["open_nets"]
         if not attempt.open_nets:
             pairs = zip(checks, runner.run_all(checks), strict=True)

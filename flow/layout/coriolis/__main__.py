@@ -18,7 +18,7 @@ def main(path: str) -> int:
     begin = time.perf_counter()
     configure(request)
     from .block import make_block
-    from .dump import instances, shapes
+    from .dump import instances, masters, shapes
     from .macros import make_macros
 
     make_macros(request)
@@ -29,8 +29,8 @@ def main(path: str) -> int:
     times.update(block.times)
     begin = time.perf_counter()
     block.save()
-    Path("shapes.json").write_text(json.dumps(shapes(cell)))
     result = {"straps": block.straps, "pins": block.pins, "instances": instances(cell)}
+    result |= {"shapes": shapes(cell), "masters": masters(cell)}
     result |= {"times": times | {"save": time.perf_counter() - begin}}
     Path("result.json").write_text(json.dumps(result))
     return 0

@@ -25,13 +25,13 @@ def shapes(cell: Any) -> dict[str, dict[str, list[Any]]]:
     """Where each signal net is, for routing.
 
     Lists of 'segments' [layer, left, bottom, right, top] and 'vias' [layer, x, y], of the clock tree's trunk alone,
-    'ports', boxes as segments, and 'pins': of every cell on the net the boxes of which any one is to be met.
+    and 'ports', boxes as segments.
     """
     nets = {}
     for net in cell.getNets():
         if net.isSupply():
             continue
-        made = nets[net.getName()] = {"segments": [], "vias": [], "ports": [], "pins": []}
+        made = nets[net.getName()] = {"segments": [], "vias": [], "ports": []}
         for component in net.getComponents():
             name = component.getLayer().getName() if component.getLayer() is not None else ".block"
             if isinstance(component, Pin):
@@ -40,11 +40,21 @@ def shapes(cell: Any) -> dict[str, dict[str, list[Any]]]:
                 made["segments"].append(_box(component.getLayer(), component.getBoundingBox()))
             elif isinstance(component, Contact) and "_" in name:
                 made["vias"].append([name, _um(component.getX()), _um(component.getY())])
-        for plug in net.getPlugs():
-            place = plug.getInstance().getTransformation()
-            parts = plug.getMasterNet().getExternalComponents()
-            made["pins"].append([_box(part.getLayer(), place.getBox(part.getBoundingBox())) for part in parts])
     return nets
+
+
+def masters(cell: Any) -> dict[str, dict[str, list[Any]]]:
+    """Of every cell of the libraries that ``cell`` uses, by pin, the boxes of which any one is to be met."""
+    libraries = {instance.getMasterCell().getLibrary().getName(): instance for instance in cell.getInstances()}
+    made = {}
+    for instance in libraries.values():
+        for master in instance.getMasterCell().getLibrary().getCells():
+            nets = [net for net in master.getNets() if net.isExternal() and not net.isSupply()]
+            made[master.getName()] = {
+                net.getName(): [_box(part.getLayer(), part.getBoundingBox()) for part in net.getExternalComponents()]
+                for net in nets
+            }
+    return made
 
 
 def _box(layer: Any, box: Any) -> list[Any]:

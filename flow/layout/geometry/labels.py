@@ -1,6 +1,6 @@
 """Labels of a streamed layout: the design's names on the layers that the process's decks read."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 
 from base.gds import db
 from base.steps import StepError
@@ -9,10 +9,10 @@ from platforms.coriolis import CoriolisPlatform
 from ..netlist.netlist import SUPPLIES
 
 
-def relabel(layout: "db.Layout", names: Mapping[str, str], ports: Collection[str], tech: CoriolisPlatform) -> None:
-    """Give the labels of ``ports`` the names of the design and drop all others, and Coriolis's blockages.
+def relabel(layout: "db.Layout", ports: Collection[str], tech: CoriolisPlatform) -> None:
+    """Put the labels of ``ports`` on the layers that decks read; drop all others, and Coriolis's blockages.
 
-    names: by Coriolis's name. Of a port's labels that at the west or the east edge stays, and all of the supplies:
+    Of a port's labels that at the west or the east edge stays, and all of the supplies:
     where a net was rerouted, the others are where its segments were, and fill may come there. Raises StepError when a
     port has no label.
     """
@@ -24,7 +24,7 @@ def relabel(layout: "db.Layout", names: Mapping[str, str], ports: Collection[str
         texts = top.shapes(layout.layer(metal.layer, 0))
         labels = list(texts.each(db.Shapes.STexts))
         for shape in labels:
-            net = names.get(shape.text.string, shape.text.string)
+            net = shape.text.string
             if net in ports:
                 from_edge = min(shape.text.x - edges.left, edges.right - shape.text.x)
                 found.setdefault(net, []).append((from_edge, (label, pin), shape.text.trans))

@@ -1,12 +1,16 @@
 """The netlist and the placement by the names of the design."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from base.steps import StepError
 
 from .netlist import SUPPLIES, Instance, MacroNames, Netlist
+
+# Hurricane's orientations of cells in rows: KLayout's transformation, factors of x and y
+TURNS = {"0": "R0", "2": "R180", "4": "M90", "6": "M0"}
+MIRRORED = {"0": (1, 1), "2": (-1, -1), "4": (-1, 1), "6": (1, -1)}
 
 
 def placed_netlist(
@@ -17,9 +21,9 @@ def placed_netlist(
     names: see `plain_names`. placed: [name, cell, x, y, orientation, {pin: net}] of every instance. macros: see
     `plain_macros`. Raises StepError if an instance is lost.
     """
-    nets, instances, seen = {plain: net for net, plain in names.items()}, [], set()
+    own, instances, seen = own_name(names), [], set()
     for name, cell, *_, plain_pins in placed:
-        pins = {pin: nets.get(net, f"cts_{net}") for pin, net in plain_pins.items() if pin not in SUPPLIES}
+        pins = {pin: own(net) for pin, net in plain_pins.items() if pin not in SUPPLIES}
         number = _number(name)
         if number is not None:
             seen.add(number)
@@ -35,12 +39,38 @@ def placed_netlist(
 
 def placement(names: Mapping[str, str], result: Mapping[str, Any]) -> dict[str, Any]:
     """Coriolis's ``result`` as reports and extraction read it, nets by their own names: for JSON."""
-    nets = {plain: net for net, plain in names.items()}
+    own = own_name(names)
     return {
         "straps": result["straps"],
-        "pins": [[side, nets[net], at] for side, net, at in result["pins"]],
+        "pins": [[side, own(net), at] for side, net, at in result["pins"]],
         "instances": [[_number(name), *rest[:4]] for name, *rest in result["instances"]],
     }
+
+
+def own_name(names: Mapping[str, str]) -> Callable[[str], str]:
+    """The design's name of a net of Coriolis's; nets of the clock tree have none. names: see `plain_names`."""
+    nets = {plain: net for net, plain in names.items()}
+    return lambda plain: nets.get(plain, f"cts_{plain}")
+
+
+def pin_boxes(
+    netlist: Netlist, placed: Sequence[Sequence[Any]], masters: Mapping[str, Mapping[str, list[list[Any]]]]
+) -> dict[str, list[list[list[Any]]]]:
+    """By net, of every pin the boxes of which any one is to be met, [layer, left, bottom, right, top] in um.
+
+    placed: [number, cell, x, y, orientation] of every instance. masters: by cell and pin such boxes, as drawn.
+    """
+    made: dict[str, list[list[list[Any]]]] = {}
+    for instance, (_, _, x, y, orientation) in zip(netlist.instances, placed, strict=True):
+        across, up = MIRRORED[orientation]
+        for pin, net in instance.pins.items():
+            boxes = []
+            for layer, *box in masters[instance.cell][pin]:
+                left, right = sorted(x + across * box[k] for k in (0, 2))
+                bottom, top = sorted(y + up * box[k] for k in (1, 3))
+                boxes.append([layer, *(round(value, 4) for value in (left, bottom, right, top))])
+            made.setdefault(net, []).append(boxes)
+    return made
 
 
 def _number(name: str) -> int | None:

@@ -10,10 +10,9 @@ from base.steps import StepError
 from platforms.coriolis import CoriolisPlatform
 
 from ..netlist.netlist import Netlist
+from ..netlist.placed import TURNS
 from .shapes import Labels, Shapes, labels
 
-# Hurricane's orientations of cells in rows: KLayout's transformation
-ORIENTATIONS = {"0": "R0", "2": "R180", "4": "M90", "6": "M0"}
 Pin = tuple[str, str]  # instance and its pin, or "" and a port's bit
 
 
@@ -59,7 +58,7 @@ def _texts(
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if not instance.pins:
             continue
-        turn = getattr(db.Trans, ORIENTATIONS[orientation])
+        turn = getattr(db.Trans, TURNS[orientation])
         trans = db.Trans(turn, round(x / layout.dbu), round(y / layout.dbu))
         if layout.cell(cell) is None:  # a macro's black box, larger than the macro in its place
             cell, trans = instance.cell, _nearest(layout, instance.cell, trans.disp)

@@ -51,7 +51,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
 
     first = next(iter(options.corners), "")
     slowed = ChipParameters().f_clk * design.clock.period_ns * 1e-9  # factor to the chip's clock
-    cells = "assemble" if design.macros else "synthesis"  # with those of its macros and all clock buffers, or without
+    cells = "assemble" if design.macros else "repair"  # with those of its macros, or without; with all buffers
     tools = {}
     for record in records.values():
         tools |= record["tools"]
@@ -60,7 +60,8 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "top": design.top,
         "backend": "coriolis",
         "pdk": options.pdk,
-        **own(cells, "cells", "flip_flops", "cell_area_um2"),
+        **own(cells, "cells", "cell_area_um2"),
+        "flip_flops": metric("assemble", "flip_flops") or metric("synthesis", "flip_flops"),
         "area_um2": metric("stream_out", "area_um2") or metric("floorplan", "core_area_um2"),
         "utilization": attempts[-1].utilization,
         "attempts": [asdict(attempt) for attempt in attempts],
@@ -68,6 +69,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "wire_um": metric("assemble", "wire_um") or metric("route", "wire_um"),
         **own("route", "open_nets", "evictions", "antenna_jumpers"),
         "clock_buffers": metric("place", "clock_buffers"),
+        **own("repair", "sized", "buffers"),
         "drc_violations": metric("drc", "drc_violations"),
         "lvs_match": metric("lvs", "lvs_match"),
         **{f"{step}_violations": metric(step, f"{step}_violations") for step in CHECKS},

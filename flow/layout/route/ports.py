@@ -1,6 +1,6 @@
 """The ports of a block: pieces of metal at its edge, inside of it, above all that cells use."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from base.gds import db
@@ -14,25 +14,22 @@ Port = tuple[str, str, float]  # side, net, offset in um along the side
 
 
 def draw_ports(
-    layout: "db.Layout", ports: Sequence[Port], replaced: Mapping[str, Sequence[Sequence[Any]]],
+    layout: "db.Layout", ports: Sequence[Port], replaced: Iterable[Sequence[Any]],
     rules: RoutingRules, tech: CoriolisPlatform,
 ) -> dict[str, list[Any]]:  # fmt: skip
-    """Draw ``ports`` with their texts in place of the boxes ``replaced``, [layer, left, bottom, right, top] in um.
+    """Draw ``ports`` with their texts in place of all texts and ``replaced``, [layer, left, bottom, right, top] in um.
 
     By net the box of its port, in the same form.
     """
     top, made = layout.top_cell(), {}
     edges = top.bbox()
     numbers = {metal.name: metal.layer for metal in tech.metals}
-    old = {
-        (numbers[name], *(round(1000 * value) for value in um)) for boxes in replaced.values() for name, *um in boxes
-    }
+    old = {(numbers[name], *(round(1000 * value) for value in um)) for name, *um in replaced}
     for index in layout.layer_indexes():
         number = layout.get_info(index).layer
         for shape in list(top.shapes(index).each()):
             box = shape.bbox()
-            text = shape.is_text() and shape.text.string in replaced
-            if text or (number, box.left, box.bottom, box.right, box.top) in old:
+            if shape.is_text() or (number, box.left, box.bottom, box.right, box.top) in old:
                 shape.delete()
     for side, net, offset in ports:
         level = min(LEVELS[side], len(tech.metals) - 1)

@@ -30,7 +30,7 @@ class Assemble(Step[AssembleParameters]):
 
     name = "assemble"
     inputs = {
-        "netlist": "place.netlist",
+        "netlist": "repair.netlist",
         "placement": "route.placement",
         "floorplan": "floorplan.floorplan",
         "cells": "library.spice",

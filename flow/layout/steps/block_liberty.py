@@ -47,7 +47,7 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
     """
 
     name = "block_liberty_{corner}"
-    inputs = {"netlist": "place.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
+    inputs = {"netlist": "repair.netlist", "verilog": "stream_out.verilog", "spef": "extraction.{wires}"}
     inputs |= {"liberty": "timing.{corner}", "areas": "floorplan.floorplan"}
     outputs = {"liberty": "block.lib"}
     metrics = {"model_error_ns": "ns", "arcs": ""}

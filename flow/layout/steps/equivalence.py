@@ -47,7 +47,7 @@ class Equivalence(Step[EquivalenceParameters]):
     """
 
     name = "equivalence"
-    inputs = {"rtl": "rtl", "netlist": "place.netlist", "verilog": "stream_out.verilog", "liberty": "library.liberty"}
+    inputs = {"rtl": "rtl", "netlist": "repair.netlist", "verilog": "stream_out.verilog", "liberty": "library.liberty"}
     outputs = {"summary": "equivalence.json"}
     metrics = {"equivalence": "", "registers": "", "constant_registers": "", "double_registers": ""}
     tools = ("yosys",)

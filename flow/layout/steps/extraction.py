@@ -21,7 +21,7 @@ class Extraction(Step[PdkParameters]):
     """
 
     name = "extraction"
-    inputs = {"gds": "fill.gds", "netlist": "place.netlist", "placement": "route.placement"}
+    inputs = {"gds": "fill.gds", "netlist": "repair.netlist", "placement": "route.placement"}
     outputs = {"typ": "parasitics.spef", "min": "parasitics.min.spef", "max": "parasitics.max.spef"}
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
     tools = ("python klayout",)

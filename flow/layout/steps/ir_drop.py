@@ -38,7 +38,7 @@ class IrDrop(CornerStep[IrDropParameters]):
     """
 
     name = "ir_drop_{corner}"
-    inputs = {"netlist": "place.netlist", "placement": "place.placement", "plan": "floorplan.floorplan"}
+    inputs = {"netlist": "repair.netlist", "placement": "repair.placement", "plan": "floorplan.floorplan"}
     inputs |= {"areas": "library.areas", "power": "power_{corner}.instances"}
     outputs = {"picture": "ir_drop.png", "cells": "ir_drop.json"}
     metrics = {"supply_drop_mv": "mV", "ground_rise_mv": "mV", "ir_drop_percent": "%"}

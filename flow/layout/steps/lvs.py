@@ -19,7 +19,7 @@ class Lvs(Step[PdkParameters]):
     """
 
     name = "lvs"
-    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "place.netlist", "deck": "library.lvs"}
+    inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "repair.netlist", "deck": "library.lvs"}
     outputs = {"report": "lvs.lvsdb", "deck": "ports.lvs"}
     metrics = {"lvs_match": ""}
     tools = ("klayout",)

@@ -20,7 +20,7 @@ from ..geometry.macro import Macro
 from ..geometry.macro_cells import OVER_UM, make_solid
 from ..netlist.names import plain_macros, plain_names
 from ..netlist.netlist import MacroNames, Netlist
-from ..netlist.placed import placed_netlist, placement
+from ..netlist.placed import own_name, placed_netlist, placement
 from ..route.ports import draw_ports, label_straps
 from ..route.rules import RoutingRules
 
@@ -68,6 +68,7 @@ class Place(Step[PlaceParameters]):
         "netlist": "netlist.json",
         "placement": "placement.json",
         "shapes": "shapes.json",
+        "masters": "masters.json",
         "log": "coriolis.log",
     }
     metrics = {"stopped": "", "clock_buffers": ""} | dict.fromkeys(PHASES, "s")
@@ -86,14 +87,21 @@ class Place(Step[PlaceParameters]):
         with tempfile.TemporaryDirectory(dir=outputs["log"].parent) as work:
             result = self.coriolis(Path(work), netlist.blif(MODEL, names, macros), request, outputs)
         if "stopped" in result:
-            for name in ("gds", "netlist", "placement", "shapes"):
+            for name in ("gds", "netlist", "placement", "shapes", "masters"):
                 outputs[name].write_text("")
             return dict.fromkeys(self.metrics) | {"stopped": result["stopped"]}
         make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
-        self.ports(result, inputs["rules"], outputs)
+        placed, own = placement(names, result), own_name(names)
+        shapes = {own(net): made for net, made in result["shapes"].items()}
+        self.ports(placed, shapes, inputs["rules"], outputs)
+        masters = result["masters"]
+        for name, (cell, pins) in macros.items():
+            module = next(instance.cell for instance in netlist.instances if instance.name == name)
+            masters[module] = {pin: masters[cell][plain] for pin, plain in pins.items()}
+        outputs["masters"].write_text(json.dumps(masters))
         final = placed_netlist(netlist, names, result["instances"], macros)
         final.write(outputs["netlist"])
-        outputs["placement"].write_text(json.dumps(placement(names, result), indent=0) + "\n")
+        outputs["placement"].write_text(json.dumps(placed, indent=0) + "\n")
         cells = sum(bool(instance.pins) for instance in final.instances)
         return {
             "stopped": None,
@@ -101,15 +109,14 @@ class Place(Step[PlaceParameters]):
             **{name: round(result["times"].get(name.removesuffix("_s"), 0), 2) for name in PHASES},
         }
 
-    def ports(self, result: dict[str, Any], rules: Path, outputs: Files) -> None:
+    def ports(self, placed: dict[str, Any], shapes: dict[str, Any], rules: Path, outputs: Files) -> None:
         """Draw the ports in place of Coriolis's, which may be on metal of cells, and label the straps."""
         tech, layout = coriolis_platform(self.parameters.pdk), read_gds(outputs["gds"])
-        shapes = json.loads(outputs["shapes"].read_text())
-        replaced = {net: made.pop("ports") for net, made in shapes.items()}
-        drawn = draw_ports(layout, result["pins"], replaced, RoutingRules.of(tech, json.loads(rules.read_text())), tech)
-        for net, box in drawn.items():
-            shapes[net]["pins"].append([box])
-        label_straps(layout, result["straps"], tech)
+        replaced = [box for made in shapes.values() for box in made["ports"]]
+        drawn = draw_ports(layout, placed["pins"], replaced, RoutingRules.of(tech, json.loads(rules.read_text())), tech)
+        for net, made in shapes.items():
+            made["ports"] = [drawn[net]] if net in drawn else []
+        label_straps(layout, placed["straps"], tech)
         write_gds(layout, outputs["gds"])
         outputs["shapes"].write_text(json.dumps(shapes))
 
@@ -124,7 +131,6 @@ class Place(Step[PlaceParameters]):
             lines = [line for line in outputs["log"].read_text().splitlines() if "rror" in line or "coriolis:" in line]
             return {"stopped": (lines or ["it ended with no message"])[-1].strip()}
         next(work.glob("*.gds")).replace(outputs["gds"])
-        (work / "shapes.json").replace(outputs["shapes"])
         return json.loads((work / "result.json").read_text())
 
     def request(

@@ -8,8 +8,8 @@ from base.gds import read_gds, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
-from ..netlist.names import plain_names
 from ..netlist.netlist import Netlist
+from ..netlist.placed import pin_boxes
 from ..route.board import Board
 from ..route.negotiate import route
 from ..route.rules import RoutingRules
@@ -17,13 +17,9 @@ from ..route.rules import RoutingRules
 
 @dataclass(frozen=True)
 class RouteParameters:
-    """Parameters of `Route`.
-
-    pdk: process. clock: name of the clock port.
-    """
+    """Parameters of `Route`. pdk: process."""
 
     pdk: str = "sky130"
-    clock: str = "clk"
 
 
 class Route(Step[RouteParameters]):
@@ -35,10 +31,11 @@ class Route(Step[RouteParameters]):
 
     name = "route"
     inputs = {
-        "gds": "place.gds",
-        "placement": "place.placement",
+        "gds": "repair.gds",
+        "netlist": "repair.netlist",
+        "placement": "repair.placement",
         "shapes": "place.shapes",
-        "synthesized": "synthesis.netlist",
+        "masters": "place.masters",
         "rules": "library.rules",
         "geometry": "library.geometry",
     }
@@ -54,14 +51,19 @@ class Route(Step[RouteParameters]):
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
-        placement = json.loads(inputs["placement"].read_text())
-        names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
+        tech = coriolis_platform(self.parameters.pdk)
+        placement, shapes, masters = (
+            json.loads(inputs[name].read_text()) for name in ("placement", "shapes", "masters")
+        )
+        pins = pin_boxes(Netlist.read(inputs["netlist"]), placement["instances"], masters)
+        for net in pins.keys() | shapes.keys():
+            made = shapes.setdefault(net, {"segments": [], "vias": [], "ports": []})
+            made["pins"] = [*pins.get(net, []), *([box] for box in made.pop("ports"))]
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
-        board = Board(read_gds(inputs["gds"]), rules, json.loads(inputs["shapes"].read_text()))
+        board = Board(read_gds(inputs["gds"]), rules, dict(sorted(shapes.items())))
         found = route(board, [net for net, pins in board.pins.items() if len(pins) > 1], tech)
         segments = {net: found.routes[net].listed(rules) if net in found.routes else [] for net in board.nets}
-        placement["segments"] = {names.get(net, f"cts_{net}"): made for net, made in segments.items()}
+        placement["segments"] = segments
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         lengths = [length for made in segments.values() for _, length, _ in made]

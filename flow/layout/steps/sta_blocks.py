@@ -25,7 +25,7 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
     """Worst slack of setup (blocks_wns_ns) and hold (blocks_whs_ns)."""
 
     name = "sta_blocks_{corner}"
-    inputs = {"netlist": "place.netlist", "spef": "extraction_blocks.{wires}", "sdc": "sdc"}
+    inputs = {"netlist": "repair.netlist", "spef": "extraction_blocks.{wires}", "sdc": "sdc"}
     inputs |= {"liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt"}
     metrics = {"blocks_wns_ns": "ns", "blocks_whs_ns": "ns"}

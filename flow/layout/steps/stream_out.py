@@ -4,13 +4,12 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import db, read_gds, write_gds
+from base.gds import read_gds, write_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
 from ..geometry import area, notch, trim
 from ..geometry.labels import relabel
-from ..netlist.names import plain_names
 from ..netlist.netlist import SUPPLIES, Netlist
 
 COUNTS = ("instances", "trimmed", "grown", "notches")
@@ -20,24 +19,15 @@ COUNTS = ("instances", "trimmed", "grown", "notches")
 class StreamOutParameters:
     """Parameters of `StreamOut`.
 
-    pdk: process. clock: name of the clock port. assembled: whether there are macros in it.
+    pdk: process. assembled: whether there are macros in it.
     """
 
     pdk: str = "sky130"
-    clock: str = "clk"
     assembled: bool = False
 
 
-def draw_cells(layout: "db.Layout", library: "db.Layout") -> None:
-    """Draw the cells as in ``library``: Coriolis does not know all of their masks."""
-    for cell in library.each_cell():
-        if drawn := layout.cell(cell.name):
-            drawn.clear()
-            drawn.copy_shapes(cell)
-
-
 class StreamOut(Step[StreamOutParameters]):
-    """Cells with all their masks, ports labelled, narrow notches filled, segment ends trimmed, small pads grown.
+    """Ports labelled, narrow notches filled, segment ends trimmed, small pads grown.
 
     The Verilog has no hierarchy; in the SPICE a macro is a subcircuit.
     """
@@ -45,10 +35,8 @@ class StreamOut(Step[StreamOutParameters]):
     name = "stream_out"
     inputs = {
         "gds": "route.gds",
-        "netlist": "place.netlist",
-        "synthesized": "synthesis.netlist",
+        "netlist": "repair.netlist",
         "cells": "library.spice",
-        "masks": "library.gds",
         "rules": "library.rules",
         "geometry": "library.geometry",
     }
@@ -63,14 +51,12 @@ class StreamOut(Step[StreamOutParameters]):
             self.inputs = {**self.inputs, **assembled}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, tech, layout = self.parameters, coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
+        tech, layout = coriolis_platform(self.parameters.pdk), read_gds(inputs["gds"])
         netlist = Netlist.read(inputs["netlist"])
-        names = {plain: net for net, plain in plain_names(Netlist.read(inputs["synthesized"]), p.clock).items()}
         rules = json.loads(inputs["rules"].read_text())
         (top,) = layout.top_cells()
         top.name = netlist.name
-        draw_cells(layout, read_gds(inputs["masks"]))
-        relabel(layout, names, {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES), tech)
+        relabel(layout, {net for port in netlist.ports for net in port.bits()} | set(SUPPLIES), tech)
         changed = {
             "notches": notch.fill(layout, top, tech.metals, rules["space_um"]),
             "trimmed": trim.trim(layout, top, tech.metals, rules["space_um"]),

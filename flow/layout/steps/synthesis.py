@@ -15,7 +15,10 @@ from ..netlist.pins import pins
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
 BARE_PF = 0.1  # load of an output above which it has its own buffer
 AIM = 0.25  # share of the period that the mapper aims at: it knows one corner and no parasitics
-MAPPING = "strash\nifraig\nscorr\ndc2\ndch -f\nmap -B 0.9\ntopo\n"
+# Area first (&syn4), then fewer levels (if -g) twice, each with the structures before it as choices (dch)
+MAPPING = (
+    "strash\nifraig\nscorr\ndc2\n&get -n\n&syn4\n&put\n" + 2 * "if -g -K 6\nstrash\ndch -f\n" + "map -B 0.9\ntopo\n"
+)
 LIMIT = "buffer -c -N {most}\ntopo\nupsize -D {aim:.0f}\ndnsize -D {aim:.0f}\n"  # of the fan-out
 SCRIPT = """
 read_verilog -sv {rtl}

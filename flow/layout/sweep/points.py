@@ -73,7 +73,8 @@ def effort_point(
     made |= {"seconds": found["wall_s"], "stopped": found["metrics"]["stopped"]}
     if found["metrics"]["stopped"] is not None:
         return made
-    route, *others = routing_steps(design, options)
+    repair, route, *others = routing_steps(design, options)
+    runner.run(repair)
     wires = runner.run(route)
     made["seconds"] = round(made["seconds"] + wires["wall_s"], 2)
     if wires["metrics"]["open_nets"]:

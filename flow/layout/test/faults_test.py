@@ -32,7 +32,7 @@ def runner(tmp_path_factory):
     floorplan, place = next(attempts(design, options))
     made.run(floorplan)
     assert made.run(place)["metrics"]["stopped"] is None
-    for step in routing_steps(design, options)[:3]:  # rerouted, streamed out, filled
+    for step in routing_steps(design, options)[:4]:  # repaired, routed, streamed out, filled
         made.run(step)
     return made
 

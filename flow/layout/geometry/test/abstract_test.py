@@ -1,5 +1,7 @@
 """The LEF made from a small GDS: size, pins and obstructions, and that KLayout's LEF reader takes it."""
 
+from dataclasses import replace
+
 import pytest
 
 from base.lef.read import read_macro
@@ -13,7 +15,7 @@ NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"
 
 @pytest.fixture
 def tech():
-    return coriolis_platform("sky130")
+    return replace(coriolis_platform("sky130"), row_um=5.6, site_um=0.8, rail=0)
 
 
 @pytest.fixture

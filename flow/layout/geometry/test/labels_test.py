@@ -11,13 +11,13 @@ db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layo
 
 @pytest.fixture
 def routed():
-    """As Coriolis writes it, texts on datatype 0: net w0 is the port a, on the west; a second of its labels is on
+    """As Coriolis writes it, texts on datatype 0: net a is a port, on the west; a second of its labels is on
     nothing; the supplies are strapped."""
     tech, layout = coriolis_platform("sky130"), db.Layout()
     top = layout.create_cell("block")
     for metal, box, texts in (
-        (tech.metals[1], (-0.1, 1.0, 3.0, 1.3), [("w0", 0.0, 1.15), ("w0", 5.0, 8.0)]),
-        (tech.metals[2], (0.0, 8.0, 10.0, 8.2), [("w1", 2.0, 8.1)]),
+        (tech.metals[1], (-0.1, 1.0, 3.0, 1.3), [("a", 0.0, 1.15), ("a", 5.0, 8.0)]),
+        (tech.metals[2], (0.0, 8.0, 10.0, 8.2), [("n1", 2.0, 8.1)]),
         (tech.metals[-1], (1.0, 0.0, 2.2, 10.0), [("vdd", 1.6, 0.0), ("vdd", 1.6, 5.0)]),
     ):
         top.shapes(layout.layer(*metal.gds)).insert(db.DBox(*box))
@@ -38,7 +38,7 @@ def texts(layout, layer, datatype):
 
 def test_a_port_is_labelled_where_it_is(routed):
     tech, layout = routed
-    relabel(layout, {"w0": "a", "w1": "n1"}, {"a", "vdd"}, tech)
+    relabel(layout, {"a", "vdd"}, tech)
     for datatype in (tech.label_datatype, tech.pin_datatype):
         assert texts(layout, 68, datatype) == [("a", 0, 1150)]
         assert texts(layout, 69, datatype) == []
@@ -48,7 +48,7 @@ def test_a_port_is_labelled_where_it_is(routed):
 
 def test_of_a_port_only_its_own_place_is_a_pin(routed):
     tech, layout = routed
-    relabel(layout, {"w0": "a", "w1": "n1"}, {"a", "vdd"}, tech)
+    relabel(layout, {"a", "vdd"}, tech)
     pins = layout.top_cell().shapes(layout.layer(68, tech.pin_datatype)).each(db.Shapes.SAll - db.Shapes.STexts)
     assert [shape.dbbox() for shape in pins] == [db.DBox(-0.1, 1.0, 0.1, 1.3)]
 
@@ -56,4 +56,4 @@ def test_of_a_port_only_its_own_place_is_a_pin(routed):
 def test_a_port_without_a_label_is_told(routed):
     tech, layout = routed
     with pytest.raises(StepError, match="ports without a pin in the layout: b"):
-        relabel(layout, {"w0": "a"}, {"a", "b"}, tech)
+        relabel(layout, {"a", "b"}, tech)

@@ -1,5 +1,7 @@
 """Macros: what is read of their LEF, where they may be placed, and the room for the clock tree beside them."""
 
+from dataclasses import replace
+
 import pytest
 
 from flow.layout.geometry.floorplan import largest_free, place_macros
@@ -53,7 +55,7 @@ END Block
 
 @pytest.fixture
 def tech():
-    return coriolis_platform("sky130")
+    return replace(coriolis_platform("sky130"), row_um=5.6, site_um=0.8)
 
 
 @pytest.fixture

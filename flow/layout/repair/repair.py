@@ -1,0 +1,171 @@
+"""Drivers that are too weak for their nets get larger ones, or buffers behind them."""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..netlist.buffering import clusters
+from ..netlist.netlist import OUTPUT_PINS, Buffer, Instance, Netlist
+from ..netlist.placed import MIRRORED
+from .drive import Drives
+from .rows import Place, Rows
+
+BUFFER = Buffer("buf_x1", "i", "q")  # and its larger forms
+ROUNDS = 8
+NEAR, HALF = 0.1, 0.5  # of the way from a driver to the middle of its sinks: its only buffer, one of many
+FULL = 0.9  # of what the largest buffer drives, at most, in a group of sinks
+OWN = "_repair"  # ends the name of a buffer that is inserted here
+Point = tuple[float, float]  # um
+Sinks = list[tuple[str, str]]  # instance and pin
+
+
+@dataclass
+class Plan:
+    """A placed netlist while it is repaired.
+
+    instances, places: of all cells but fill, by name. widths: of the library's cells, um. row_um: their height. rows:
+    what is free. ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port.
+    """
+
+    instances: dict[str, Instance]
+    places: dict[str, Place]
+    widths: Mapping[str, float]
+    row_um: float
+    rows: Rows
+    ports: Mapping[str, Point]
+    femtofarad_um: float
+    outside: Mapping[str, float]
+    added: int = 0
+
+    def point(self, name: str) -> Point:
+        """The middle of a cell; of a macro its origin."""
+        x, y, orientation = self.places[name]
+        across, up = MIRRORED[orientation]
+        width = self.widths.get(self.instances[name].cell)
+        return (x, y) if width is None else (x + across * width / 2, y + up * self.row_um / 2)
+
+    def put(self, instance: Instance, at: Point) -> bool:
+        """Place a new ``instance`` near ``at``; False where there is no room."""
+        width = self.widths[instance.cell]
+        found = self.rows.take(width, at[0] - width / 2, at[1])
+        if found:
+            self.instances[instance.name], self.places[instance.name] = instance, found
+        return found is not None
+
+    def load(self, drives: Drives, net: str, points: Sequence[Point], sinks: Sinks) -> float:
+        """Load (pF) of a wire over ``points``, the place of the net's port if it is one's, and ``sinks``."""
+        ends = [*points, *(self.point(name) for name, _ in sinks)]
+        ends += [self.ports[net]] if net in self.ports else []
+        pins = sum(drives.inputs.get((self.instances[name].cell, pin), 0.0) for name, pin in sinks)
+        return length(ends) * self.femtofarad_um / 1000 + pins + self.outside.get(net, 0.0)
+
+    def listed(
+        self, netlist: Netlist, placed: Sequence[Sequence[Any]], fill: Sequence[str]
+    ) -> tuple[Netlist, list[list[Any]]]:
+        """Netlist and places ([number, cell, x, y, orientation]) of all cells, ``fill`` in what is free.
+
+        netlist, placed: those before.
+        """
+        numbers = {i.name: place[0] for i, place in zip(netlist.instances, placed, strict=True)}
+        made = [(i, [numbers.get(name), i.cell, *self.places[name]]) for name, i in self.instances.items()]
+        for k, (cell, place) in enumerate(self.rows.filled({cell: self.widths[cell] for cell in fill})):
+            made.append((Instance(f"fill_{k}", cell, {}), [None, cell, *place]))
+        instances, places = zip(*made, strict=True)
+        return replace(netlist, instances=instances), list(places)
+
+
+def length(points: list[Point]) -> float:
+    """Estimated length (um) of a net: half of its box's perimeter, more for more than three pins."""
+    if len(points) < 2:
+        return 0.0
+    x, y = zip(*points, strict=True)
+    return (max(x) - min(x) + max(y) - min(y)) * (1.0 + 0.03 * max(0, len(points) - 3))
+
+
+def clock_nets(netlist: Netlist) -> set[str]:
+    """All nets between the clock's port and the registers."""
+    found = {instance.pins["clk"] for instance in netlist.instances if "clk" in instance.pins}
+    drivers = {net: i for i in netlist.instances for pin, net in i.pins.items() if pin in OUTPUT_PINS}
+    waiting = list(found)
+    while waiting:
+        driver = drivers.get(waiting.pop())
+        above = {net for pin, net in driver.pins.items() if pin in ("i", "clk")} if driver else set[str]()
+        waiting += above - found
+        found |= above
+    return found
+
+
+def repaired(plan: Plan, drives: Drives, kept: Collection[str]) -> dict[str, int]:
+    """Size and buffer until every driver's load is within its limit: how many cells were sized, how many buffers.
+
+    kept: nets that stay as they are.
+    """
+    counts = {"sized": 0, "buffers": 0}
+    for _ in range(ROUNDS):
+        before = dict(counts)
+        for net, (driver, pin, sinks) in connected(plan.instances).items():
+            cell = plan.instances[driver].cell
+            if net in kept or (cell, pin) not in drives.limits:
+                continue
+            load = plan.load(drives, net, [plan.point(driver)], sinks)
+            if load <= drives.limits[cell, pin]:
+                continue
+            larger = drives.stronger(cell, pin, load)
+            if larger:
+                counts["sized"] += swap(plan, driver, larger)
+            else:
+                counts["buffers"] += split(plan, drives, net, driver, sinks)
+        if counts == before:
+            break
+    return counts
+
+
+def connected(instances: Mapping[str, Instance]) -> dict[str, tuple[str, str, Sinks]]:
+    """By net its driver, the pin of it, and what it drives."""
+    drivers, sinks = {}, {}
+    for name, instance in instances.items():
+        for pin, net in instance.pins.items():
+            if pin in OUTPUT_PINS:
+                drivers[net] = name, pin
+            else:
+                sinks.setdefault(net, []).append((name, pin))
+    return {net: (*driver, sinks.get(net, [])) for net, driver in drivers.items()}
+
+
+def swap(plan: Plan, name: str, cell: str) -> bool:
+    """Let the instance be another form of its cell; False where there is no room."""
+    was, place, at = plan.instances[name], plan.places[name], plan.point(name)
+    plan.rows.give(plan.widths[was.cell], place)
+    if plan.put(replace(was, cell=cell), at):
+        return True
+    plan.put(was, at)
+    return False
+
+
+def split(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks) -> int:
+    """Insert buffers between a net and its ``sinks``, near ones together; how many."""
+    if len(sinks) - sum(name.endswith(OWN) for name, _ in sinks) < 1 and len(sinks) < 2:
+        return 0  # the port alone is left, or one buffer, which no other one would relieve
+    forms = [BUFFER.cell, *drives.sizes[BUFFER.cell]]
+    limits = {cell: drives.limits[cell, BUFFER.output] for cell in forms}
+    start, points = plan.point(driver), np.array([plan.point(name) for name, _ in sinks])
+    total = plan.load(drives, net, [start], sinks)
+    count = min(len(sinks), int(-(-total // (FULL * limits[forms[-1]]))))
+    made = 0
+    for group in clusters(points, -(-len(sinks) // count)):
+        middle, ends = points[group].mean(axis=0), [sinks[k] for k in group]
+        at = np.array(start) + (NEAR if count == 1 else HALF) * (middle - start)
+        called = f"{net}_{plan.added}"
+        load = plan.load(drives, called, [(at[0], at[1])], ends)
+        cell = next((cell for cell in forms if limits[cell] >= load), forms[-1])
+        name = f"{called}{OWN}"
+        if not plan.put(BUFFER._replace(cell=cell).instance(name, net, called), (at[0], at[1])):
+            continue
+        plan.added += 1
+        for owner, pin in ends:
+            was = plan.instances[owner]
+            plan.instances[owner] = replace(was, pins=was.pins | {pin: called})
+        made += 1
+    return made
