@@ -27,17 +27,19 @@ def add_cell(
     functions: Mapping[str, str],
     ff: Mapping[str, str] | None = None,
     clock: str = "",
+    latch: Mapping[str, str] | None = None,
     **attributes: Value,
 ) -> Group:
     """Add a cell with its ``area`` (um2) and return it.
 
-    Its ``pins`` are outputs where ``functions`` names them ('' for one without a function), inputs else. ff: what the
-    group of a flip-flop says (clocked_on, next_state, clear, preset); its outputs are IQ and IQ_N. clock: the pin that
-    is marked as one.
+    Its ``pins`` are outputs where ``functions`` names them ('' for one without a function), inputs else. ff, latch:
+    what the group of a flip-flop (clocked_on, next_state, clear, preset) or a latch (enable, data_in) says; its outputs
+    are IQ and IQ_N. clock: the pin that is marked as one.
     """
     cell = library.add("cell", name, area=round(area, 4), **attributes)
-    if ff:
-        cell.add("ff", "IQ", "IQ_N", **ff)
+    for kind, storage in (("ff", ff), ("latch", latch)):
+        if storage:
+            cell.add(kind, "IQ", "IQ_N", **storage)
     for pin in pins:
         more: dict[str, Value] = {"function": functions[pin]} if functions.get(pin) else {}
         if pin == clock:

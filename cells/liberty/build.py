@@ -97,7 +97,7 @@ def _cell(entry: Entry, process: ModuleType) -> Group:
             group.add("pg_pin", rail, pg_type=kind, voltage_name=rail)
     if cell.storage:
         if cell.storage.kind == "gate":
-            group.attributes["clock_gating_integrated_cell"] = _gating(cell.storage)
+            group.attributes["clock_gating_integrated_cell"] = gating(cell.storage)
         group.add("ff" if cell.storage.kind == "ff" else "latch", "IQ", "IQ_N", **storage_attributes(cell.storage))
     for pin in machine.inputs:
         _input(group, cell, measured, pin)
@@ -140,7 +140,8 @@ def storage_attributes(storage: Storage) -> dict[str, str]:
     return inside
 
 
-def _gating(storage: Storage) -> str:
+def gating(storage: Storage) -> str:
+    """Liberty's name for what a clock gate does."""
     edge = "posedge" if storage.active else "negedge"
     return f"latch_{edge}" + ("_precontrol" if len(storage.data_pins) > 1 else "")
 

@@ -71,10 +71,11 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
 def synthesis_steps(design: Design, options: Options) -> list[Step]:
     """The steps before a floorplan."""
     library, macros, load = Library(PdkParameters(options.pdk)), macro_modules(design), design.io.load_pf
+    named = design.top, design.clock.port, design.clock.period_ns
     if not options.corners:
-        return [library, Synthesis(SynthesisParameters(design.top, design.clock.period_ns, 0, load, macros))]
+        return [library, Synthesis(SynthesisParameters(*named, 0, load, macros))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
-    parameters = SynthesisParameters(design.top, design.clock.period_ns, FAN_OUT, load, macros)
+    parameters = SynthesisParameters(*named, FAN_OUT, load, macros)
     return [library, *timing, TimedSynthesis(parameters, options.corners[0])]
 
 

@@ -77,33 +77,34 @@ class EdgeAdc(Component):
             else:
                 if s.full & s.out.rdy:
                     s.full <<= 0
-                if s.state != IDLE:
-                    if s.found:
-                        if ~s.full | s.out.rdy:
-                            s.state <<= IDLE
-                            s.full <<= 1
-                            s.code <<= s.result
-                            s.search_made <<= (s.state == SEARCH) | (s.state == WAIT)
+                if (s.state != IDLE) | s.go:  # else the lane rests, and its clock may stop
+                    if s.state != IDLE:
+                        if s.found:
+                            if ~s.full | s.out.rdy:
+                                s.state <<= IDLE
+                                s.full <<= 1
+                                s.code <<= s.result
+                                s.search_made <<= (s.state == SEARCH) | (s.state == WAIT)
+                            elif s.state == SEARCH:
+                                s.trial <<= s.kept
+                                s.state <<= WAIT
+                            elif s.state == BELOW:
+                                s.state <<= WAIT_ZERO
                         elif s.state == SEARCH:
-                            s.trial <<= s.kept
-                            s.state <<= WAIT
-                        elif s.state == BELOW:
-                            s.state <<= WAIT_ZERO
-                    elif s.state == SEARCH:
-                        s.trial <<= s.kept | ((s.trial & (~s.trial + 1)) >> 1)
-                    elif s.state == ABOVE:
-                        s.trial <<= 129 - zext(s.threshold, 8)  # level(1 - T)
-                        s.state <<= OUTSIDE if s.comparator else BELOW
-                    else:
-                        s.trial <<= MIDDLE
-                        s.state <<= SEARCH
-                if s.go:
-                    if (s.state == IDLE) | ((s.state == SEARCH) & s.trial[0] & ~s.full):
-                        s.trial <<= MIDDLE
-                        s.state <<= SEARCH
-                        if ~s.unsigned_ & (s.threshold != 0):
-                            s.trial <<= zext(s.threshold, 8) | MIDDLE  # level(T)
-                            s.state <<= ABOVE
+                            s.trial <<= s.kept | ((s.trial & (~s.trial + 1)) >> 1)
+                        elif s.state == ABOVE:
+                            s.trial <<= 129 - zext(s.threshold, 8)  # level(1 - T)
+                            s.state <<= OUTSIDE if s.comparator else BELOW
+                        else:
+                            s.trial <<= MIDDLE
+                            s.state <<= SEARCH
+                    if s.go:
+                        if (s.state == IDLE) | ((s.state == SEARCH) & s.trial[0] & ~s.full):
+                            s.trial <<= MIDDLE
+                            s.state <<= SEARCH
+                            if ~s.unsigned_ & (s.threshold != 0):
+                                s.trial <<= zext(s.threshold, 8) | MIDDLE  # level(T)
+                                s.state <<= ABOVE
 
     def line_trace(s):
         return f"{'iaboswz'[int(s.state)]}{s.trial}{'*' if s.full else ' '}"

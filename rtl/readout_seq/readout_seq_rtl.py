@@ -34,6 +34,7 @@ class ReadoutSeq(Component):
         s.integrating = Wire()  # the amplifiers expose or read a row
         s.failing = Wire()  # aborted as soon as the offered message is taken
         s.row = Wire(10)  # the row that converts
+        s.count_low, s.count_high = Wire(8), Wire(56)  # of `cycles`, the higher bits clocked at a carry alone
         s.unmasked = Wire(24)  # by position, six to a row of the tile
         s.columns = Wire(24)  # of these, those in tile column col0 that exist
         s.window_ok = Wire()
@@ -64,6 +65,8 @@ class ReadoutSeq(Component):
         s.step.val //= s.state[2]
         s.step.msg.row //= s.row
         s.step.msg.kind //= s.state[0:2]
+        s.cycles[0:8] //= s.count_low
+        s.cycles[8:64] //= s.count_high
 
         # Logic: configuration
         @update
@@ -156,15 +159,19 @@ class ReadoutSeq(Component):
             if s.reset:
                 s.done <<= 0
                 s.cfg_err <<= 0
-                s.cycles <<= 0
+                s.count_low <<= 0
+                s.count_high <<= 0
             else:
                 s.done <<= s.taken & (s.state == OFFER + END)
                 if s.abort | (s.idle & s.start):
                     s.cfg_err <<= ~s.accept
                 if s.accept:
-                    s.cycles <<= 0
+                    s.count_low <<= 0
+                    s.count_high <<= 0
                 elif s.busy:
-                    s.cycles <<= s.cycles + 1
+                    s.count_low <<= s.count_low + 1
+                    if s.count_low == 255:
+                        s.count_high <<= s.count_high + 1
 
     def line_trace(s):
         states = ("idle", "check", "wait", "drain", "frame", "row", "steps", "end")

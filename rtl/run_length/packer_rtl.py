@@ -37,6 +37,7 @@ class PayloadPacker(Component):
         s.count = Wire(Bits5)
 
         s.take = Wire()
+        s.moved = Wire(Bits31)  # `gathered` after the byte is taken, and with the next token
         s.behind = Wire(Bits5)  # bits after the next token; at most 7 of them are before it
 
         # Connections
@@ -54,6 +55,11 @@ class PayloadPacker(Component):
             s.take @= s.val & s.rdy
             s.ready @= (s.count[3:5] == 0) | ((s.count[3:5] == 1) & s.rdy)
             s.behind @= zext(s.count[0:3], 5) + s.coder.length
+            s.moved @= s.gathered
+            if s.take:
+                s.moved @= concat(s.gathered[0:23], Bits8(0))
+            if s.push:
+                s.moved @= s.moved | (zext(s.coder.bits, 31) << zext(Bits5(31) - s.behind, 31))
 
         @update_ff
         def gather():
@@ -65,11 +71,8 @@ class PayloadPacker(Component):
                     s.count <<= s.count - 8
                 if s.push:
                     s.count <<= s.behind
-                    s.gathered <<= (concat(s.gathered[0:23], Bits8(0)) if s.take else s.gathered) | (
-                        zext(s.coder.bits, 31) << zext(Bits5(31) - s.behind, 31)
-                    )
-                elif s.take:
-                    s.gathered <<= concat(s.gathered[0:23], Bits8(0))
+                if s.push | s.take:
+                    s.gathered <<= s.moved
                 if s.flush:
                     s.count <<= Bits5(8) if (s.count[0:3] != 0) | s.coder.open else Bits5(0)
 

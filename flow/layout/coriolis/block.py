@@ -16,7 +16,6 @@ from .macros import fix_macros
 from .straps import PIN_CLEARANCE_UM, Strap, Straps
 
 SIDES = {"west": IoPin.WEST, "east": IoPin.EAST, "south": IoPin.SOUTH, "north": IoPin.NORTH}
-SPARE_ROWS = 8  # side of a leaf of the clock tree, in rows; Coriolis takes no less than 7
 
 
 def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
@@ -32,7 +31,7 @@ def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
     cfg.etesian.antennaGateMaxWL = u(40000.0)
     cfg.etesian.antennaDiodeMaxWL = u(80000.0)
     cfg.anabatic.topRoutingLayer = request["metals"][-1]["name"]
-    cfg.block.spareSide = u(request["row_um"] * SPARE_ROWS)
+    cfg.block.spareSide = u(request["leaf_um"])
     conf.useSpares = conf.useClockTree = request["clock_tree"]
     conf.useHFNS = False
     conf.bColumns = conf.bRows = 2

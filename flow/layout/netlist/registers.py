@@ -14,6 +14,7 @@ from typing import Any
 
 from base.steps import StepError
 
+from .enables import LATCHES, REGISTER, pins_of, with_enables
 from .netlist import named_bits
 
 Bit = int | str  # of Yosys's JSON: a net, or a constant '0', '1', 'x'
@@ -34,7 +35,6 @@ GATES: dict[str, tuple[str, list[str], Callable[..., int]]] = {
     "$_ORNOT_": ("AB", ["01 0"], lambda a, b: a | ~b),
     "$_MUX_": ("ABS", ["1-0 1", "-11 1"], lambda a, b, s: (a & ~s) | (b & s)),
 }
-REGISTER = "$_DFF_P_"
 LANES, RESET_CYCLES = 1 << 16, 4  # of the simulation that finds constant registers and duplicates
 TURNS, SURE = 60, 5  # at most; without a change, the last
 ALL = (1 << LANES) - 1
@@ -49,12 +49,16 @@ class Cut:
 
     @classmethod
     def read(cls, path: Path, top: str, clock: str) -> "Cut":
-        """Read the module ``top``. Raises StepError on other cells than simple gates and flip-flops."""
-        made = cls(json.loads(path.read_text())["modules"][top], clock)
-        wrong = {cell["type"] for cell in made.module["cells"].values()} - {REGISTER, *GATES}
+        """Read the module ``top``, clock gates as enables.
+
+        Raises StepError on other cells than simple gates and flip-flops, and as `with_enables`.
+        """
+        module = json.loads(path.read_text())["modules"][top]
+        wrong = {cell["type"] for cell in module["cells"].values()} - {REGISTER, *LATCHES, *GATES}
         if wrong:
             raise StepError(f"equivalence: {top} has cells of {', '.join(sorted(wrong))}")
-        return made
+        module["cells"] = with_enables(module["cells"], module["ports"][clock]["bits"][0])
+        return cls(module, clock)
 
     @cached_property
     def names(self) -> dict[Bit, list[str]]:
@@ -76,22 +80,9 @@ class Cut:
 
     @cached_property
     def registers(self) -> dict[Bit, Bit]:
-        """D bit by Q bit of every flip-flop. Raises StepError for one that is not on the clock."""
-        clock, made = self.module["ports"][self.clock]["bits"][0], {}
-        for name, cell in self.module["cells"].items():
-            if cell["type"] == REGISTER:
-                pins = {pin: bits[0] for pin, bits in cell["connections"].items()}
-                if self._source(pins["C"]) != (clock, False):
-                    raise StepError(f"equivalence: flip-flop {name} is not on the rising edge of {self.clock}")
-                made[pins["Q"]] = pins["D"]
-        return made
-
-    def _source(self, bit: Bit, inverted: bool = False) -> tuple[Bit, bool]:
-        """(bit, whether inverted) that ``bit`` is a copy of, through buffers and inverters."""
-        while bit in self.gates and self.gates[bit][0] in ("$_BUF_", "$_NOT_"):
-            kind, (bit,) = self.gates[bit]
-            inverted ^= kind == "$_NOT_"
-        return bit, inverted
+        """D bit by Q bit of every flip-flop."""
+        found = [pins_of(cell) for cell in self.module["cells"].values() if cell["type"] == REGISTER]
+        return {pins["Q"]: pins["D"] for pins in found}
 
     @cached_property
     def inputs(self) -> dict[Bit, str]:

@@ -21,6 +21,7 @@ ROWS = (
     ("area_um2", "area, um2"),
     ("cells", "cells, clock buffers included"),
     ("flip_flops", "flip-flops"),
+    ("clock_gates", "clock gates"),
     ("utilization", "utilization beside macros"),
     ("wire_um", "wire length, um"),
     ("wire_pf", "wire capacitance, pF"),

@@ -70,6 +70,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         **own("route", "open_nets", "evictions", "antenna_jumpers"),
         "clock_buffers": metric("place", "clock_buffers"),
         **own("repair", "sized", "buffers"),
+        "clock_gates": metric("synthesis", "clock_gates"),
         "drc_violations": metric("drc", "drc_violations"),
         "lvs_match": metric("lvs", "lvs_match"),
         **{f"{step}_violations": metric(step, f"{step}_violations") for step in CHECKS},

@@ -59,7 +59,7 @@ class Library(Step[PdkParameters]):
         ports = {cell.name: [port.name for port in cell.circuit.ports if port.name not in SUPPLIES] for cell in cells}
         logic = [name for name in ports if not name.startswith(UNUSED)]
         found = liberty.functions(outputs["gds"], logic, device_models(pdk), extraction_platform(pdk))
-        chosen = {name: cell for name, cell in found.items() if not cell.storage or cell.storage.kind == "ff"}
+        chosen = {name: cell for name, cell in found.items() if not cell.storage or cell.storage.kind != "latch"}
         outputs["liberty"].write_text(liberty.liberty(chosen, ports, areas))
         script = f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"
         run(["yosys", "-q", "-p", script])

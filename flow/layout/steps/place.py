@@ -27,6 +27,7 @@ from ..route.rules import RoutingRules
 MODEL = "talbot_block"  # Coriolis works in lower case
 OPTIONS = ("effort", "density_variation", "strap_pitch_um")  # in a request, as those of the technology
 OF_TECH = ("row_um", "grid_um", "strap_um", "rail", "rail_um", "rail_overlap_um", "rails_over_edge", "pin_pitch_um")
+LEAF_ROWS, LEAF_SINKS = 8, 6  # of a leaf of the clock tree: its least side (Coriolis takes no less than 7), its sinks
 PHASES = ("clock_tree_s", "placement_s", "power_s")
 
 
@@ -142,6 +143,7 @@ class Place(Step[PlaceParameters]):
             "cell": MODEL,
             "library": str(inputs["coriolis"].resolve()),
             "clock_tree": bool(p.clock),
+            "leaf_um": self.leaf_um(plan, netlist),
             **{name: plan[name] for name in ("width_um", "height_um", "tree")},
             "macros": [
                 self.macro(Macro.read(inputs[macro["cell"]], tech), macro, netlist, *macros[macro["instance"]])
@@ -154,6 +156,13 @@ class Place(Step[PlaceParameters]):
             "over_um": OVER_UM,
             **{name: getattr(p, name) for name in OPTIONS},
         }
+
+    def leaf_um(self, plan: dict[str, Any], netlist: Netlist) -> float:
+        """Side of a leaf of the clock tree, um, with LEAF_SINKS cells. Coriolis makes it up to twice as long."""
+        sinks = sum(self.parameters.clock in instance.pins.values() for instance in netlist.instances)
+        per_um2 = sinks / (plan["width_um"] * plan["height_um"])
+        least = LEAF_ROWS * coriolis_platform(self.parameters.pdk).row_um
+        return max(least, round((LEAF_SINKS / per_um2) ** 0.5, 3)) if sinks else least
 
     def macro(
         self, macro: Macro, placed: dict[str, Any], netlist: Netlist, name: str, pins: Mapping[str, str]

@@ -1,6 +1,8 @@
 """Verilog -> a netlist of the library's cells, registers with the names that they have in the Verilog."""
 
+import tempfile
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from base.liberty.read import areas
@@ -9,10 +11,14 @@ from base.tools import run
 from models.parameters import check_int, check_real
 
 from ..netlist.buffering import buffer_fan_out, buffer_outputs
+from ..netlist.gating import GATES, ClockCells, ClockGate, drive_registers
 from ..netlist.netlist import Buffer, Netlist, is_register, register_names
 from ..netlist.pins import pins
 
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
+CLOCK_CELLS = [ClockCells(ClockGate(f"cg_{x}", "i", "clk", "q"), Buffer(f"buf_{x}", "i", "q")) for x in ("x1", "x2")]
+CLOCK_GATE = CLOCK_CELLS[0].gate
+REGISTERS = 12  # most that a clock gate or buffer drives
 BARE_PF = 0.1  # load of an output above which it has its own buffer
 AIM = 0.25  # share of the period that the mapper aims at: it knows one corner and no parasitics
 # Area first (&syn4), then fewer levels (if -g) twice, each with the structures before it as choices (dch)
@@ -34,6 +40,7 @@ opt_clean
 write_json {registers}
 design -load read
 synth -flatten -nofsm -top {top}
+{gates}
 dfflibmap -liberty {liberty}
 abc -D {aim:.0f} -liberty {timing} -script {mapping}
 setundef -zero
@@ -47,11 +54,12 @@ write_json {json}
 class SynthesisParameters:
     """Parameters of `Synthesis`.
 
-    top: module. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit. load_pf: of an output.
-    macros: modules laid out before, black boxes here.
+    top: module. clock: its port, '' without one. period_ns: of the clock. fan_out: most loads of a net, 0 for no limit.
+    load_pf: of an output. macros: modules laid out before, black boxes here.
     """
 
     top: str = ""
+    clock: str = "clk"
     period_ns: float = field(default=10.0, metadata={"unit": "ns"})
     fan_out: int = 16
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
@@ -64,12 +72,15 @@ class SynthesisParameters:
 
 
 class Synthesis(Step[SynthesisParameters]):
-    """Yosys. FSMs keep their codes and registers their names, so that each can be compared with the Verilog."""
+    """Yosys. Registers with an enable are behind clock gates where the library has such cells.
+
+    FSMs keep their codes and registers their names, so that each can be compared with the Verilog.
+    """
 
     name = "synthesis"
     inputs = {"rtl": "rtl", "liberty": "library.liberty"}
     outputs = {"netlist": "netlist.json", "verilog": "netlist.v"}
-    metrics = {"cells": "", "flip_flops": "", "cell_area_um2": "um2"}
+    metrics = {"cells": "", "flip_flops": "", "clock_gates": "", "cell_area_um2": "um2"}
     tools = ("yosys",)
 
     def __init__(self, parameters: SynthesisParameters) -> None:
@@ -85,22 +96,32 @@ class Synthesis(Step[SynthesisParameters]):
         )
         blocks = "\n".join(f"blackbox {name}" for name in p.macros)
         read = {"rtl": inputs["rtl"], "liberty": inputs["liberty"], "timing": inputs.get("timing", inputs["liberty"])}
-        files["script"].write_text(SCRIPT.format(top=p.top, blocks=blocks, aim=aim, **read, **files))
-        run(["yosys", "-q", "-s", files["script"]])
+        um2 = areas(inputs["liberty"])
+        gated = bool(p.clock) and CLOCK_GATE.cell in um2
+        with tempfile.TemporaryDirectory(prefix="talbot-") as name:
+            for path, text in CLOCK_GATE.files(Path(name)).items():
+                path.write_text(text)
+            gates = f"script {name}/{GATES}" if gated else ""
+            script = SCRIPT.format(top=p.top, blocks=blocks, aim=aim, gates=gates, **read, **files)
+            files["script"].write_text(script)
+            run(["yosys", "-q", "-s", files["script"]])
         names = register_names(files["registers"], p.top)
         netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros, names).with_input_buffers(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
             netlist = buffer_outputs(netlist, DRIVER)
         if p.fan_out:
             netlist = buffer_fan_out(netlist, pins(netlist.ports), BUFFER, p.fan_out)
+        if gated:
+            netlist = drive_registers(netlist, pins(netlist.ports), p.clock, CLOCK_CELLS, REGISTERS)
         netlist.write(outputs["netlist"])
         outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
-        um2 = areas(inputs["liberty"])
         area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
         for name in ("json", "registers"):
             files[name].unlink()
         registers = sum(is_register(i.cell) for i in netlist.instances)
-        return {"cells": len(netlist.instances), "cell_area_um2": round(area, 2), "flip_flops": registers}
+        gates = sum(i.cell in (cells.gate.cell for cells in CLOCK_CELLS) for i in netlist.instances)
+        sizes = {"cells": len(netlist.instances), "cell_area_um2": round(area, 2)}
+        return sizes | {"flip_flops": registers, "clock_gates": gates}
 
 
 class TimedSynthesis(Synthesis):

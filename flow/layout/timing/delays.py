@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
-from flow.layout.netlist.netlist import Instance, Netlist, is_register
+from flow.layout.netlist.netlist import Instance, Netlist
 
 TOKEN = re.compile(r'\(|\)|"[^"]*"|[^\s()]+')
 
@@ -109,11 +109,10 @@ def specified(cells: str, delays: Delays, netlist: Netlist) -> str:
 
 
 def constrained(delays: Delays, netlist: Netlist) -> list[Check]:
-    """Checks of every register's inputs."""
+    """Checks of the inputs of every register and clock gate."""
     return [
         Check(instance, pin, *values)
         for instance in netlist.instances
-        if is_register(instance.cell)
         for pin, values in delays.checks.get(instance.name, {}).items()
     ]
 

@@ -46,10 +46,12 @@ def functions(gds: Path, names: Iterable[str], models: ModuleType, tech: "Extrac
 
 
 def liberty(cells: Mapping[str, Function], ports: Mapping[str, Iterable[str]], areas: Mapping[str, float]) -> str:
-    """Text of the Liberty file of combinational cells and flip-flops. ports: pins without supplies; areas: um2."""
-    from cells.liberty.build import storage_attributes
+    """Text of the Liberty file of ``cells`` without latches. ports: pins without supplies; areas: um2."""
+    from cells.liberty.build import gating, storage_attributes
 
     made = library("cells")
     for name, (outputs, storage) in cells.items():
-        add_cell(made, name, areas[name], ports[name], outputs, storage and storage_attributes(storage))
+        group = {"latch" if storage.kind == "gate" else "ff": storage_attributes(storage)} if storage else {}
+        kind = {"clock_gating_integrated_cell": gating(storage)} if storage and storage.kind == "gate" else {}
+        add_cell(made, name, areas[name], ports[name], outputs, **group, **kind)
     return text(made)

@@ -52,7 +52,7 @@ def synthesized(folder, verilog):
     """What Synthesis says of ``verilog``; in ``folder`` rtl.v, cells.lib and what the step made."""
     (folder / "rtl.v").write_text(verilog)
     (folder / "cells.lib").write_text(LIBERTY)
-    step = Synthesis(SynthesisParameters("Counter", 10.0, 0))
+    step = Synthesis(SynthesisParameters("Counter", "clk", 10.0, 0))
     return step.run(
         {"rtl": folder / "rtl.v", "liberty": folder / "cells.lib"},
         {name: folder / file for name, file in step.outputs.items()},
