@@ -7,6 +7,12 @@ from typing import Any, Self
 from tqdm import tqdm
 
 
+def line(text: str) -> None:
+    """Print a line about a long part of a step, where no terminal shows a bar."""
+    if not sys.stderr.isatty():
+        print(f"        {text}", file=sys.stderr, flush=True)
+
+
 class Steps:
     """A bar over the steps named in ``names``."""
 

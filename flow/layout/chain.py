@@ -76,7 +76,7 @@ def synthesis_steps(design: Design, options: Options) -> list[Step]:
         return [library, Synthesis(SynthesisParameters(*named, 0, load, macros))]
     timing = [] if options.liberty else [Timing(TimingParameters(options.pdk, options.corners))]
     parameters = SynthesisParameters(*named, FAN_OUT, load, macros)
-    return [library, *timing, TimedSynthesis(parameters, options.corners[0])]
+    return [library, *timing, TimedSynthesis(parameters, options.corners[0], slowest(options.corners))]
 
 
 def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Place]]:

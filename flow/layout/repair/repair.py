@@ -14,11 +14,14 @@ from .rows import Place, Rows
 
 BUFFER = Buffer("buf_x1", "i", "q")  # and its larger forms
 ROUNDS = 8
+BUFFER_NS = 0.5  # that a sink behind a buffer is later, about
+OHM_UM, VIAS_OHM = 0.5, 30.0  # of a net: a um of wire, its vias
 NEAR, HALF = 0.1, 0.5  # of the way from a driver to the middle of its sinks: its only buffer, one of many
 FULL = 0.9  # of what the largest buffer drives, at most, in a group of sinks
 OWN = "_repair"  # ends the name of a buffer that is inserted here
 Point = tuple[float, float]  # um
 Sinks = list[tuple[str, str]]  # instance and pin
+Slacks = Mapping[tuple[str, str], float]  # ns
 
 
 @dataclass
@@ -61,6 +64,15 @@ class Plan:
         pins = sum(drives.inputs.get((self.instances[name].cell, pin), 0.0) for name, pin in sinks)
         return length(ends) * self.femtofarad_um / 1000 + pins + self.outside.get(net, 0.0)
 
+    def wires(self, netlist: Netlist) -> dict[str, tuple[float, float]]:
+        """(fF, ohm) of every net as it is placed now."""
+        ends: dict[str, list[Point]] = {net: [at] for net, at in self.ports.items()}
+        for instance in netlist.instances:
+            for net in instance.pins.values():
+                ends.setdefault(net, []).append(self.point(instance.name))
+        lengths = {net: length(points) for net, points in ends.items()}
+        return {net: (self.femtofarad_um * um, OHM_UM * um + VIAS_OHM) for net, um in lengths.items()}
+
     def listed(
         self, netlist: Netlist, placed: Sequence[Sequence[Any]], fill: Sequence[str]
     ) -> tuple[Netlist, list[list[Any]]]:
@@ -97,10 +109,12 @@ def clock_nets(netlist: Netlist) -> set[str]:
     return found
 
 
-def repaired(plan: Plan, drives: Drives, kept: Collection[str]) -> dict[str, int]:
+def repaired(
+    plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks | None = None, enough: float = 0.0
+) -> dict[str, int]:
     """Size and buffer until every driver's load is within its limit: how many cells were sized, how many buffers.
 
-    kept: nets that stay as they are.
+    kept: nets that stay as they are. slacks: ns of setup, where only drivers with less than ``enough`` count.
     """
     counts = {"sized": 0, "buffers": 0}
     for _ in range(ROUNDS):
@@ -109,6 +123,8 @@ def repaired(plan: Plan, drives: Drives, kept: Collection[str]) -> dict[str, int
             cell = plan.instances[driver].cell
             if net in kept or (cell, pin) not in drives.limits:
                 continue
+            if slacks is not None and slacks.get((driver, pin), enough) >= enough:
+                continue
             load = plan.load(drives, net, [plan.point(driver)], sinks)
             if load <= drives.limits[cell, pin]:
                 continue
@@ -116,10 +132,26 @@ def repaired(plan: Plan, drives: Drives, kept: Collection[str]) -> dict[str, int
             if larger:
                 counts["sized"] += swap(plan, driver, larger)
             else:
-                counts["buffers"] += split(plan, drives, net, driver, sinks)
+                counts["buffers"] += split(plan, drives, net, driver, late(plan, drives, net, driver, sinks, slacks))
         if counts == before:
             break
     return counts
+
+
+def late(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks, slacks: Slacks | None) -> Sinks:
+    """The sinks that can wait for a buffer, where the others alone are no load that is too large; else all."""
+    if not slacks:
+        return sinks
+    least = min((slacks[end] for end in sinks if end in slacks), default=0.0)
+    urgent = [end for end in sinks if slacks.get(end, np.inf) < least + BUFFER_NS]
+    load = plan.load(drives, net, [plan.point(driver)], urgent)
+    (cell, pin), rest = (plan.instances[driver].cell, driver_pin(plan.instances[driver], net)), set(urgent)
+    return [end for end in sinks if end not in rest] if load <= FULL * drives.limits[cell, pin] else sinks
+
+
+def driver_pin(instance: Instance, net: str) -> str:
+    """The pin of ``instance`` that drives ``net``."""
+    return next(pin for pin, own in instance.pins.items() if own == net and pin in OUTPUT_PINS)
 
 
 def connected(instances: Mapping[str, Instance]) -> dict[str, tuple[str, str, Sinks]]:
@@ -146,7 +178,7 @@ def swap(plan: Plan, name: str, cell: str) -> bool:
 
 def split(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks) -> int:
     """Insert buffers between a net and its ``sinks``, near ones together; how many."""
-    if len(sinks) - sum(name.endswith(OWN) for name, _ in sinks) < 1 and len(sinks) < 2:
+    if not sinks or len(sinks) == 1 and sinks[0][0].endswith(OWN):
         return 0  # the port alone is left, or one buffer, which no other one would relieve
     forms = [BUFFER.cell, *drives.sizes[BUFFER.cell]]
     limits = {cell: drives.limits[cell, BUFFER.output] for cell in forms}

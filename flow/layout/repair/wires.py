@@ -3,7 +3,7 @@
 from platforms.coriolis import CoriolisPlatform
 from platforms.wires import SUBSTRATE
 
-SPACE_UM = 1.0  # from a wire to the next one on either side, as a mean over layouts
+SPACE_UM = 0.6  # from a wire to the next one on either side, as a mean over layouts
 
 
 def femtofarad_um(tech: CoriolisPlatform, corner: str) -> float:

@@ -13,6 +13,7 @@ from typing import Any
 import joblib
 
 from base.gds import write_gds
+from base.progress import line
 from platforms.coriolis import CoriolisPlatform
 
 from .board import Board
@@ -26,6 +27,7 @@ HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 JUMPER_TRIES = 3  # times that a net is routed with antenna jumpers; then it goes without, and keeps its antenna
 JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
+TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 
 
@@ -49,7 +51,7 @@ class Routed:
 
 
 def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None) -> Routed:
-    """Route the nets ``wanted`` on the ``board`` and every net that they evict.
+    """Route the nets ``wanted`` on the ``board`` and every net that they evict, turn by turn.
 
     state: what this call goes on with; its ``charged`` nets are routed with antenna jumpers where there is room.
     """
@@ -59,6 +61,8 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
         board.rip_up(net)
     patience = PATIENCE * len(waiting) + 1000
     while waiting:
+        if len(waiting) >= TOLD:
+            line(f"{len(waiting)} nets to route")
         evicted = []
         for net in waiting:
             state.tries[net] += 1

@@ -1,7 +1,8 @@
 """Cells sized and buffered for their wires, in the empty places of a placement."""
 
 import json
-from dataclasses import dataclass, field
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from base.gds import db, read_gds, write_gds
@@ -16,30 +17,35 @@ from ..repair.drive import Drives
 from ..repair.repair import Plan, clock_nets, repaired
 from ..repair.rows import free_rows
 from ..repair.wires import femtofarad_um
+from ..timing.estimate import setup_slacks
+
+MARGIN_NS = 0.8  # of the estimated setup slack
 
 
 @dataclass(frozen=True)
 class RepairParameters:
     """Parameters of `Repair`.
 
-    pdk: process. corner: of the cells' timing that decides. slew_ns: that every driver is to keep. load_pf: of an
-    output.
+    pdk: process. corner: of the cells' timing that decides. slews_ns: the first is what every driver is to keep, the
+    others, one after the other, those of paths that are too slow. load_pf: of an output.
     """
 
     pdk: str = "sky130"
     corner: str = ""
-    slew_ns: float = field(default=0.5, metadata={"unit": "ns"})
+    slews_ns: tuple[float, ...] = field(default=(1.2, 0.8, 0.6, 0.5, 0.4, 0.4, 0.3), metadata={"unit": "ns"})
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
 
     def __post_init__(self) -> None:
-        check_real("slew_ns", self.slew_ns, 0.05, 10)
+        for slew in self.slews_ns:
+            check_real("slews_ns", slew, 0.05, 10)
         check_real("load_pf", self.load_pf, 0, 1000)
 
 
 class Repair(Step[RepairParameters]):
     """Drivers that are too weak at the slowest corner for the wires that a placement implies get larger or a buffer.
 
-    Without timing nothing changes but that all masks of the cells are drawn, which Coriolis does not know.
+    estimate_ns: the setup slack that is expected. Without timing nothing changes but that all
+    masks of the cells are drawn, which Coriolis does not know.
     """
 
     name = "repair"
@@ -52,22 +58,23 @@ class Repair(Step[RepairParameters]):
         "areas": "library.areas",
     }
     outputs = {"gds": "repaired.gds", "netlist": "netlist.json", "placement": "placement.json"}
-    metrics = {"sized": "", "buffers": "", "cells": "", "cell_area_um2": "um2"}
+    metrics = {"sized": "", "buffers": "", "cells": "", "cell_area_um2": "um2", "estimate_ns": "ns"}
     tools = ("python klayout",)
 
     def __init__(self, parameters: RepairParameters) -> None:
         super().__init__(parameters)
         if parameters.corner:
-            self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}"}
+            self.inputs = {**self.inputs, "liberty": f"timing.{parameters.corner}", "sdc": "sdc"}
+            self.tools = (*self.tools, "sta")
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         netlist, placement = Netlist.read(inputs["netlist"]), json.loads(inputs["placement"].read_text())
         areas = json.loads(inputs["areas"].read_text())
-        layout, counts = read_gds(inputs["gds"]), {"sized": 0, "buffers": 0}
+        layout, counts = read_gds(inputs["gds"]), {"sized": 0, "buffers": 0, "estimate_ns": None}
         if p.corner:
-            plan = self.plan(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
-            counts = repaired(plan, Drives.of(inputs["liberty"], p.slew_ns), clock_nets(netlist))
+            begin = self.plan(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
+            plan, counts = self.best(begin, netlist, inputs)
             netlist, placement["instances"] = plan.listed(netlist, placement["instances"], tech.fill_cells)
         draw(layout, read_gds(inputs["masks"]), areas, placement["instances"])
         write_gds(layout, outputs["gds"])
@@ -75,6 +82,22 @@ class Repair(Step[RepairParameters]):
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
         cells = [instance.cell for instance in netlist.instances if instance.pins]
         return counts | {"cells": len(cells), "cell_area_um2": round(sum(areas.get(cell, 0) for cell in cells), 2)}
+
+    def best(self, plan: Plan, netlist: Netlist, inputs: Files) -> tuple[Plan, dict[str, float]]:
+        """The best plan that ``plan`` leads to, and what of it is counted."""
+        kept, found = clock_nets(netlist), list[tuple[float, Plan, dict[str, float]]]()
+        first, *slews = self.parameters.slews_ns
+        counts = repaired(plan, Drives.of(inputs["liberty"], first), kept)
+        for slew in (*slews, 0.0):
+            now = replace(netlist, instances=tuple(plan.instances.values()))
+            slacks = setup_slacks(now, plan.wires(now), inputs["liberty"], inputs["sdc"])
+            worst = min(slacks.values())
+            found.append((worst, deepcopy(plan), counts | {"estimate_ns": round(worst, 3)}))
+            if worst >= MARGIN_NS or not slew:
+                break
+            more = repaired(plan, Drives.of(inputs["liberty"], slew), kept, slacks, MARGIN_NS)
+            counts = {name: counts[name] + more[name] for name in counts}
+        return max(found, key=lambda one: one[0])[1:]
 
     def plan(
         self, netlist: Netlist, placement: dict[str, Any], floorplan: dict[str, Any], areas: dict[str, float],

@@ -14,6 +14,7 @@ from ..netlist.buffering import buffer_fan_out, buffer_outputs
 from ..netlist.gating import GATES, ClockCells, ClockGate, drive_registers
 from ..netlist.netlist import Buffer, Netlist, is_register, register_names
 from ..netlist.pins import pins
+from ..timing.estimate import UNLOADED, setup_slack, unplaced
 
 BUFFER, DRIVER = Buffer("buf_x1", "i", "q"), Buffer("buf_x4", "i", "q")
 CLOCK_CELLS = [ClockCells(ClockGate(f"cg_{x}", "i", "clk", "q"), Buffer(f"buf_{x}", "i", "q")) for x in ("x1", "x2")]
@@ -21,12 +22,16 @@ CLOCK_GATE = CLOCK_CELLS[0].gate
 REGISTERS = 12  # most that a clock gate or buffer drives
 BARE_PF = 0.1  # load of an output above which it has its own buffer
 AIM = 0.25  # share of the period that the mapper aims at: it knows one corner and no parasitics
-# Area first (&syn4), then fewer levels (if -g) twice, each with the structures before it as choices (dch)
-MAPPING = (
-    "strash\nifraig\nscorr\ndc2\n&get -n\n&syn4\n&put\n" + 2 * "if -g -K 6\nstrash\ndch -f\n" + "map -B 0.9\ntopo\n"
+START, LEVELS = "strash\nifraig\nscorr\ndc2\n", "if -g -K 6\nstrash\ndch -f\n"
+# From the least area to the least delay: structures of fewer levels (if -g), those before them as choices (dch)
+MAPPINGS = (
+    "dch -f\namap\ntopo\n",
+    "dch -f\nmap -B 0.9\ntopo\n",
+    "&get -n\n&syn4\n&put\n" + 2 * LEVELS + "map -B 0.9\ntopo\n",
 )
+SHORT = 0.1  # of the period: what a mapping may be too slow by, which `repair` makes up for
 LIMIT = "buffer -c -N {most}\ntopo\nupsize -D {aim:.0f}\ndnsize -D {aim:.0f}\n"  # of the fan-out
-SCRIPT = """
+READ = """
 read_verilog -sv {rtl}
 {blocks}
 design -save read
@@ -42,6 +47,10 @@ design -load read
 synth -flatten -nofsm -top {top}
 {gates}
 dfflibmap -liberty {liberty}
+write_rtlil {design}
+"""
+MAP = """
+read_rtlil {design}
 abc -D {aim:.0f} -liberty {timing} -script {mapping}
 setundef -zero
 hilomap -hicell one_x1 one -locell zero_x1 zero
@@ -80,7 +89,7 @@ class Synthesis(Step[SynthesisParameters]):
     name = "synthesis"
     inputs = {"rtl": "rtl", "liberty": "library.liberty"}
     outputs = {"netlist": "netlist.json", "verilog": "netlist.v"}
-    metrics = {"cells": "", "flip_flops": "", "clock_gates": "", "cell_area_um2": "um2"}
+    metrics = {"cells": "", "flip_flops": "", "clock_gates": "", "cell_area_um2": "um2", "mappings": ""}
     tools = ("yosys",)
 
     def __init__(self, parameters: SynthesisParameters) -> None:
@@ -88,45 +97,70 @@ class Synthesis(Step[SynthesisParameters]):
         self.inputs = {**self.inputs, **{name: f"macro.{name}.verilog" for name in parameters.macros}}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        p, folder = self.parameters, outputs["netlist"].parent
-        files = {name: folder / f"{name}.log" for name in ("mapping", "json", "registers", "script")}
-        aim = AIM * p.period_ns * 1000
-        files["mapping"].write_text(
-            MAPPING + (LIMIT.format(most=p.fan_out, aim=aim) if p.fan_out else "") + "print_stats\n"
-        )
-        blocks = "\n".join(f"blackbox {name}" for name in p.macros)
-        read = {"rtl": inputs["rtl"], "liberty": inputs["liberty"], "timing": inputs.get("timing", inputs["liberty"])}
-        um2 = areas(inputs["liberty"])
+        p, um2 = self.parameters, areas(inputs["liberty"])
         gated = bool(p.clock) and CLOCK_GATE.cell in um2
         with tempfile.TemporaryDirectory(prefix="talbot-") as name:
-            for path, text in CLOCK_GATE.files(Path(name)).items():
+            folder = Path(name)
+            for path, text in CLOCK_GATE.files(folder).items():
                 path.write_text(text)
-            gates = f"script {name}/{GATES}" if gated else ""
-            script = SCRIPT.format(top=p.top, blocks=blocks, aim=aim, gates=gates, **read, **files)
-            files["script"].write_text(script)
-            run(["yosys", "-q", "-s", files["script"]])
-        names = register_names(files["registers"], p.top)
+            made = {"registers": folder / "registers.json", "design": folder / "design.il"}
+            blocks = "\n".join(f"blackbox {macro}" for macro in p.macros)
+            gates = f"script {folder / GATES}" if gated else ""
+            yosys(folder, READ.format(top=p.top, blocks=blocks, gates=gates, **inputs, **made))
+            names = register_names(made["registers"], p.top)
+            netlist, tried = self.best(folder, inputs, names, gated)
+        netlist.write(outputs["netlist"])
+        outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
+        area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
+        registers = sum(is_register(i.cell) for i in netlist.instances)
+        clock_gates = sum(i.cell in (cells.gate.cell for cells in CLOCK_CELLS) for i in netlist.instances)
+        sizes = {"cells": len(netlist.instances), "cell_area_um2": round(area, 2)}
+        return sizes | {"flip_flops": registers, "clock_gates": clock_gates, "mappings": tried}
+
+    def best(self, folder: Path, inputs: Files, names: set[str], gated: bool) -> tuple[Netlist, int]:
+        """The netlist, and how many mappings were tried. names: of registers."""
+        return self.mapped(folder, inputs, MAPPINGS[0], names, gated), 1
+
+    def mapped(self, folder: Path, inputs: Files, mapping: str, names: set[str], gated: bool) -> Netlist:
+        """The netlist of the design in ``folder``, by a mapping."""
+        p, aim = self.parameters, AIM * self.parameters.period_ns * 1000
+        files = {name: folder / name for name in ("mapping", "json")} | {"design": folder / "design.il"}
+        limit = LIMIT.format(most=p.fan_out, aim=aim) if p.fan_out else ""
+        files["mapping"].write_text(START + mapping + limit + "print_stats\n")
+        yosys(folder, MAP.format(aim=aim, timing=inputs.get("timing", inputs["liberty"]), **files))
         netlist = Netlist.from_yosys(files["json"], p.top, BUFFER, p.macros, names).with_input_buffers(p.macros, BUFFER)
         if p.load_pf > BARE_PF:
             netlist = buffer_outputs(netlist, DRIVER)
         if p.fan_out:
             netlist = buffer_fan_out(netlist, pins(netlist.ports), BUFFER, p.fan_out)
-        if gated:
-            netlist = drive_registers(netlist, pins(netlist.ports), p.clock, CLOCK_CELLS, REGISTERS)
-        netlist.write(outputs["netlist"])
-        outputs["verilog"].write_text("\n".join([netlist.verilog(), *(inputs[name].read_text() for name in p.macros)]))
-        area = sum(um2[i.cell] for i in netlist.instances if i.cell not in p.macros)
-        for name in ("json", "registers"):
-            files[name].unlink()
-        registers = sum(is_register(i.cell) for i in netlist.instances)
-        gates = sum(i.cell in (cells.gate.cell for cells in CLOCK_CELLS) for i in netlist.instances)
-        sizes = {"cells": len(netlist.instances), "cell_area_um2": round(area, 2)}
-        return sizes | {"flip_flops": registers, "clock_gates": gates}
+        return drive_registers(netlist, pins(netlist.ports), p.clock, CLOCK_CELLS, REGISTERS) if gated else netlist
 
 
 class TimedSynthesis(Synthesis):
-    """With characterized cells at ``corner``: the mapper sizes and buffers by their tables."""
+    """With characterized cells: the mapper sizes and buffers by their tables at the first of two corners.
 
-    def __init__(self, parameters: SynthesisParameters, corner: str) -> None:
+    The mapping of the least area that is not too slow at the second, slowest one, else the fastest.
+    """
+
+    tools = ("yosys", "sta")
+
+    def __init__(self, parameters: SynthesisParameters, corner: str, slowest: str) -> None:
         super().__init__(parameters)
-        self.inputs = {**self.inputs, "timing": f"timing.{corner}"}
+        self.inputs = {**self.inputs, "timing": f"timing.{corner}", "slowest": f"timing.{slowest}", "sdc": "sdc"}
+
+    def best(self, folder: Path, inputs: Files, names: set[str], gated: bool) -> tuple[Netlist, int]:
+        """See `Synthesis.best`."""
+        p, found = self.parameters, []
+        for mapping in MAPPINGS:
+            netlist = self.mapped(folder, inputs, mapping, names, gated)
+            slack = setup_slack(netlist, unplaced(netlist, p.clock), inputs["slowest"], inputs["sdc"], UNLOADED)
+            if slack >= -SHORT * p.period_ns:
+                return netlist, len(found) + 1
+            found.append((slack, netlist))
+        return max(found, key=lambda pair: pair[0])[1], len(found)
+
+
+def yosys(folder: Path, script: str) -> None:
+    """Run a script of Yosys in ``folder``. Raises ToolError."""
+    (folder / "script.ys").write_text(script)
+    run(["yosys", "-q", "-s", folder / "script.ys"])

@@ -1,0 +1,73 @@
+"""Setup slacks of a netlist that is not routed, its wires estimated."""
+
+import re
+import tempfile
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+from base.steps import StepError
+
+from ..netlist.netlist import OUTPUT_PINS, Netlist
+from .opensta import opensta
+from .parasitics import spef
+
+# Of a net that is not placed: fF a driven pin, as many at most; what drives more gets a buffer once it is placed
+SINK_FF, MOST = 3.0, 6
+OHM = 30.0  # of such a net
+PINS = """
+foreach pin [get_pins */*] {
+  puts "PIN [get_property $pin full_name] [get_property $pin max_rise_slack] [get_property $pin max_fall_slack]"
+}
+"""
+UNLOADED = "set_load 0 [all_outputs]"  # a weak driver of a port gets a buffer, too
+SCRIPT = """
+read_liberty {liberty}
+read_verilog {verilog}
+link_design {top}
+source {sdc}
+read_spef {spef}
+{more}
+puts "WORST setup [worst_slack -max]"
+"""
+
+
+def unplaced(netlist: Netlist, clock: str) -> dict[str, tuple[float, float]]:
+    """(fF, ohm) by net from its fan-out alone; ``clock`` has none, since its tree is not there."""
+    sinks = Counter(net for i in netlist.instances for pin, net in i.pins.items() if pin not in OUTPUT_PINS)
+    return {net: (SINK_FF * min(count, MOST), OHM) for net, count in sinks.items() if net != clock}
+
+
+def setup_slack(
+    netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path, more: str = ""
+) -> float:
+    """Worst setup slack, ns. nets: (fF, ohm) by net. more: commands after the SDC. Raises StepError without a slack."""
+    found = re.search(r"WORST setup (\S+)", _report(netlist, nets, liberty, sdc, more))
+    if not found:
+        raise StepError("estimate: OpenSTA: no slack")
+    return float(found[1])
+
+
+def setup_slacks(
+    netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path
+) -> dict[tuple[str, str], float]:
+    """Setup slack (ns) of every (instance, pin) on a path that is timed. Arguments: see `setup_slack`."""
+    numbered = replace(
+        netlist, instances=tuple(replace(i, name=f"i{k}") for k, i in enumerate(netlist.instances))
+    )  # else names come back escaped
+    names, found = [i.name for i in netlist.instances], {}
+    for number, pin, *slacks in re.findall(
+        r"(?m)^PIN i(\d+)/(\w+) (\S+) (\S+)$", _report(numbered, nets, liberty, sdc, PINS)
+    ):
+        found[names[int(number)], pin] = min(map(float, slacks))
+    return found
+
+
+def _report(netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path, more: str) -> str:
+    with tempfile.TemporaryDirectory(prefix="talbot-") as name:
+        files = {kind: Path(name) / kind for kind in ("verilog", "spef")}
+        files["verilog"].write_text(netlist.verilog())
+        files["spef"].write_text(spef(netlist, nets))
+        script = SCRIPT.format(liberty=liberty, top=netlist.name, sdc=sdc, more=more, **files)
+        return opensta(Path(name) / "sta.log", script)
