@@ -46,3 +46,19 @@ def add_cell(
             more["clock"] = True
         cell.add("pin", pin, direction="output" if pin in functions else "input", **more)
     return cell
+
+
+def with_latches(library: Group) -> Group:
+    """Give the clock gates of ``library`` a latch and a function in place of a state table, which Yosys does not read.
+
+    Of those that Liberty calls latch_posedge: a latch, open while the clock is low, and an AND. Changes and returns it.
+    """
+    for cell in library.all("cell", clock_gating_integrated_cell="latch_posedge"):
+        if cell.one("latch"):
+            continue
+        roles = ("enable", "clock", "out")
+        pins = {role: pin for pin in cell.all("pin") for role in roles if pin.text(f"clock_gate_{role}_pin") == "true"}
+        cell.groups = [g for g in cell.groups if g.kind != "statetable" and g.text("direction") != "internal"]
+        cell.add("latch", "IQ", "IQ_N", enable=f"!{pins['clock'].name}", data_in=pins["enable"].name)
+        pins["out"].attributes["function"] = f"{pins['clock'].name} & IQ"
+    return library

@@ -4,7 +4,9 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
-from base.liberty.read import only
+from base.liberty.functional import with_latches
+from base.liberty.read import only, read
+from base.liberty.write import text
 from base.steps import Runner, Step
 from base.tools import run
 from flow.layout.chain import netlist_tests, timing_steps
@@ -55,11 +57,12 @@ def given(
     netlist.write(made / "netlist.json")
     (made / "final.sdc").write_text(sdc(design))
     (made / "floorplan.json").write_text(json.dumps({"width_um": size_um[0], "height_um": size_um[1]}))
-    cells = {instance.cell for instance in netlist.instances}
+    used = {instance.cell for instance in netlist.instances}
     for corner in tech.corners:
-        (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), cells))
-    read = f"read_liberty -ignore_miss_func {made}/{tech.corners[0]}.lib"
-    run(["yosys", "-q", "-p", f"{read}; proc; write_verilog -noattr {made}/cells.v"])
+        (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), used))
+    (made / "functional.lib").write_text(text(with_latches(read(made / f"{tech.corners[0]}.lib"))))
+    cells = f"read_liberty -ignore_miss_func {made}/functional.lib"
+    run(["yosys", "-q", "-p", f"{cells}; proc; write_verilog -noattr {made}/cells.v"])
     return {
         "rtl": folder / f"{design.top}.v",
         "sdc": made / "final.sdc",
@@ -89,7 +92,7 @@ def check(
     runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note, folder.parent / "shared")
     runner.run(Library(PdkParameters(tech.name)))
     runner.paths |= {
-        "library.liberty": folder / "signoff" / f"{tech.corners[0]}.lib",
+        "library.liberty": folder / "signoff" / "functional.lib",
         "library.verilog": folder / "signoff" / "cells.v",
     }
     runner.run_all(checks(design, tech))

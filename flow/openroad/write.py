@@ -4,6 +4,7 @@ from pathlib import Path
 
 from base.files import staged
 from flow.layout.design import Design
+from flow.layout.netlist.gating import ClockGate
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import OpenRoadPlatform
 from rtl.verilog import export_verilog
@@ -33,6 +34,7 @@ def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
     }
     if design.name in PROJECTS:
         files |= project_files(PROJECTS[design.name], design, verilog)
+    files |= {str(path): text for path, text in ClockGate(*tech.clock_gate).files().items()}
     files |= {script.name: script.read_text() for script in SCRIPTS.glob("*.tcl")}
     for name, text in files.items():
         with staged((folder / name).parent) as part:

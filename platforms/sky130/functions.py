@@ -17,6 +17,7 @@ FLIP_FLOPS = {
     "dfxtp": {"clocked_on": "CLK", "next_state": "D"},
     "dfrtp": {"clocked_on": "CLK", "next_state": "D", "clear": "!RESET_B"},
 }
+CLOCK_GATE, LATCH = "dlclkp_1", {"enable": "!CLK", "data_in": "GATE"}
 FLIP_FLOP, CONSTANT = "dfxtp_1", "conb_1"
 THRESHOLDS = {
     f"{name}_{edge}": percent
@@ -48,13 +49,15 @@ def liberty() -> str:
 
 
 def small_liberty() -> str:
-    """The Liberty text of a small library: gates of one output, the plain multiplexer, one flip-flop, the constants."""
+    """The Liberty text of a small library: gates of one output, the plain multiplexer, one flip-flop, one clock gate, constants."""
     made = library(f"{LIBRARY}_functional", time_unit="1ns", capacitive_load_unit=(1.0, "pf"), **THRESHOLDS)
     for cell in cells():
         found = functions(_verilog(cell)) if not cell.startswith((*LEFT_OUT, "mux2i", "mux4")) else {}
         if len(found) == 1:
             _add(made, cell, found)
     _add(made, FLIP_FLOP, {"Q": "IQ"}, FLIP_FLOPS["dfxtp"])
+    gate = "latch_posedge"
+    _add(made, CLOCK_GATE, {"GCLK": "CLK & IQ"}, latch=LATCH, clock_gating_integrated_cell=gate)
     _add(made, CONSTANT, {"HI": "1", "LO": "0"})
     return text(made)
 
@@ -93,9 +96,16 @@ def _expression(kind: str, inputs: Sequence[str]) -> str:
     return f"(!{joined})" if kind in _INVERTING else joined
 
 
-def _add(made: Group, cell: str, found: dict[str, str], ff: dict[str, str] | None = None) -> None:
+def _add(
+    made: Group,
+    cell: str,
+    found: dict[str, str],
+    ff: dict[str, str] | None = None,
+    latch: dict[str, str] | None = None,
+    **attributes: str,
+) -> None:
     pins = [*_pins(_verilog(cell), "input"), *found]
-    add_cell(made, f"{LIBRARY}__{cell}", area(cell), pins, found, ff, clock="CLK")
+    add_cell(made, f"{LIBRARY}__{cell}", area(cell), pins, found, ff, "CLK", latch, **attributes)
 
 
 def _verilog(cell: str) -> str:

@@ -50,6 +50,7 @@ PLATFORM = OpenRoadPlatform(
     tap=f"{LIBRARY}__tapvpwrvgnd_1",
     tap_um=14.0,
     endcap=f"{LIBRARY}__decap_3",
+    clock_gate=(f"{LIBRARY}__dlclkp_1", "GATE", "CLK", "GCLK"),
     clock_root=f"{LIBRARY}__clkbuf_16",
     clock_buffers=tuple(f"{LIBRARY}__clkbuf_{size}" for size in (2, 4, 8)),
     straps=(Strap("met1", 0.48), Strap("met4", 1.6, 27.14, 13.57), Strap("met5", 1.6, 27.2, 13.6)),

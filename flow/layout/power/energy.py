@@ -15,9 +15,11 @@ from base.liberty.group import Group
 from base.steps import StepError
 from flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
 
+CLOCK = re.compile("clk|ck|CLK")  # pins
 SLEW_NS = 0.1  # of a pin that OpenSTA has no slew for: constants
 Energy = Callable[[float, float], float]  # (slew ns, load pF) -> pJ
 Activity = Mapping[str, tuple[float, float]]  # net -> (transitions a cycle, share of time at 1)
+Sinks = Mapping[str, list[tuple[Instance, str]]]  # net -> (instance, pin) that it leads to
 Slews = Mapping[tuple[str, str], float]  # (instance, pin) -> ns
 
 
@@ -141,7 +143,8 @@ def _power(
 def blocks(netlist: Netlist) -> dict[str, str]:
     """Map each instance to a block: of a register, the first part of its name; of a cell, that of most that it drives.
 
-    A cell that only drives clocks is in 'clock tree', one that drives nothing but ports in 'ports'.
+    A cell that only drives clocks is in 'clock tree', one that drives nothing but ports in 'ports'; what makes the
+    enable of a clock gate belongs to the registers behind it.
     """
     sinks: dict[str, list[tuple[Instance, str]]] = {}
     for instance in netlist.instances:
@@ -154,7 +157,7 @@ def blocks(netlist: Netlist) -> dict[str, str]:
         stack = [start] if start.pins else []
         while stack:
             instance = stack[-1]
-            after = [sink for pin, net in instance.pins.items() if pin in OUTPUT_PINS for sink in sinks.get(net, ())]
+            after = [end for sink, pin in _after(instance, sinks) for end in _enabled(sink, pin, sinks)]
             todo = [sink for sink, _ in after if sink.name not in found and sink not in stack]
             if instance.name in found or not todo:
                 found.setdefault(instance.name, _most(after, found))
@@ -164,10 +167,21 @@ def blocks(netlist: Netlist) -> dict[str, str]:
     return found
 
 
+def _after(instance: Instance, sinks: Sinks) -> list[tuple[Instance, str]]:
+    return [sink for pin, net in instance.pins.items() if pin in OUTPUT_PINS for sink in sinks.get(net, ())]
+
+
+def _enabled(sink: Instance, pin: str, sinks: Sinks) -> list[tuple[Instance, str]]:
+    """The pin itself, or of a clock gate's enable the outputs of the registers behind the gate."""
+    behind = _after(sink, sinks)
+    gate = behind and all(CLOCK.fullmatch(end) for _, end in behind) and any(map(CLOCK.fullmatch, sink.pins))
+    return [(register, "") for register, _ in behind] if gate and not CLOCK.fullmatch(pin) else [(sink, pin)]
+
+
 def _most(after: list[tuple[Instance, str]], found: Mapping[str, str]) -> str:
     votes: dict[str, int] = {}
     for sink, pin in after:
-        clock = is_register(sink.cell) and re.fullmatch("clk|ck|CLK", pin) or found.get(sink.name) == "clock tree"
+        clock = CLOCK.fullmatch(pin) or found.get(sink.name) == "clock tree"
         name = "clock tree" if clock else found.get(sink.name, "ports")
         votes[name] = votes.get(name, 0) + 1
     return max(sorted(votes), key=votes.__getitem__) if votes else "ports"

@@ -123,11 +123,18 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
         raise StepError("stimulus: the chip's frame is not the golden chip's")
-    lines = [line for line in (folder / "tap.trace").read_text().splitlines() if "x" not in line.partition(" ")[2]]
-    lines[0] = "1" + lines[0][1:]
+    lines = [line for line in map(settled, (folder / "tap.trace").read_text().splitlines()) if line]
     trace.write_text("\n".join(lines) + "\n")
     head = {"source": "frame", "scene": SCENE, "instance": ".".join(path)}
     return head | {"ports": ports, "cycles": len(lines), "results": results(lines, ports)}
+
+
+def settled(line: str) -> str:
+    """A line of the tap as one of a trace, fresh where an output is X, so that a reset lasts; '' without inputs."""
+    fresh, inputs, outputs = line.split()
+    if "x" in inputs:
+        return ""
+    return f"{'1' if 'x' in outputs else fresh} {inputs} {outputs.replace('x', '0')}"
 
 
 def middle(full: "Window", tiles: int) -> "Window":

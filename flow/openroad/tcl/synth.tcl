@@ -13,6 +13,7 @@ opt_clean
 write_json registers.json
 design -load read
 synth -flatten -nofsm -top $top
+script gates.ys
 check -assert
 dfflibmap -liberty $synthesis_liberty
 abc -D $period_ps -liberty $synthesis_liberty

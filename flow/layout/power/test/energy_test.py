@@ -1,5 +1,7 @@
 """Power of a shift register, by hand."""
 
+from dataclasses import replace
+
 import pytest
 
 from base.liberty.read import parse
@@ -46,6 +48,11 @@ def test_a_cell_belongs_to_what_it_drives():
     moved = tuple(
         Instance(i.name, i.cell, i.pins | {"clk": "leaf"}) if is_register(i.cell) else i for i in netlist.instances
     )
+    gate = Instance("g", "cg_x1", {"i": "n_go", "clk": "clk", "q": "gated"})
+    enable = Instance("e", "inv_x1", {"i": "a", "nq": "n_go"})
+    gated = tuple(replace(i, pins=i.pins | {"clk": "gated"}) if i.name.startswith("second") else i for i in moved)
+    found = blocks(Netlist("Shift", netlist.ports, (*gated, *clock, gate, enable)))
+    assert found["g"] == "clock tree" and found["e"] == "second"
     assert blocks(Netlist("Shift", netlist.ports, moved + clock)) == {
         "first.d_reg": "first",
         "second.d_reg": "second",

@@ -3,7 +3,7 @@
 import pytest
 
 from flow.layout.netlist.verilog import modules
-from flow.layout.steps.stimulus import instance_of, middle, results
+from flow.layout.steps.stimulus import instance_of, middle, results, settled
 from models.parameters import Window
 
 BLOCK = """
@@ -36,6 +36,12 @@ def test_the_first_instance_is_found():
 def test_the_tiles_of_the_middle(tiles, columns):
     made = middle(Window(0, 6, 0, 4), tiles)
     assert (made.row0, made.row1, made.col0, made.col1) == (3, 3, *columns)
+
+
+def test_a_reset_lasts_as_long_as_outputs_are_unknown():
+    assert settled("0 1f x3") == "1 1f 03"
+    assert settled("1 1f 3") == "1 1f 3" and settled("0 1f 3") == "0 1f 3"
+    assert settled("1 x 3") == ""
 
 
 def test_results_are_what_left():
