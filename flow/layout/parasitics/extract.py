@@ -18,7 +18,7 @@ from platforms.extraction import ExtractionPlatform
 from platforms.wires import Wires
 
 from ..netlist.netlist import OUTPUT_PINS, Netlist
-from ..timing.parasitics import Tree
+from ..timing.spef import Tree
 from .capacitance import Capacitances, Flags, Floats, Numbers, capacitances
 from .nets import Place, places
 from .shapes import METAL_LEVEL, Shapes, labels, shapes

@@ -9,7 +9,7 @@ from platforms.extraction import extraction_platform
 
 from ..netlist.netlist import Netlist
 from ..parasitics.extract import extract
-from ..timing.parasitics import spef
+from ..timing.spef import spef
 from .parameters import PdkParameters
 
 

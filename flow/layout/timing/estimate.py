@@ -11,7 +11,7 @@ from base.steps import StepError
 
 from ..netlist.netlist import OUTPUT_PINS, Netlist
 from .opensta import opensta
-from .parasitics import spef
+from .spef import spef
 
 # Of a net that is not placed: fF a driven pin, as many at most; what drives more gets a buffer once it is placed
 SINK_FF, MOST = 3.0, 6

@@ -11,7 +11,7 @@ from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.parasitics.capacitance import capacitances
 from flow.layout.parasitics.extract import extract
 from flow.layout.parasitics.shapes import shapes
-from flow.layout.timing.parasitics import spef
+from flow.layout.timing.spef import spef
 
 from .planted import CONTACT, DEVICES, LI, M1, M2, POLY, TECH, VIA, draw, net
 

@@ -9,7 +9,7 @@ from base.steps import StepError
 from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from flow.layout.timing.boundary import Sources, measure, reach
-from flow.layout.timing.parasitics import spef
+from flow.layout.timing.spef import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")

@@ -3,7 +3,8 @@
 import pytest
 
 from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.timing.parasitics import parasitics, spef
+from flow.layout.timing.parasitics import parasitics
+from flow.layout.timing.spef import spef
 from platforms.coriolis import coriolis_platform
 
 

@@ -10,7 +10,7 @@ from flow.layout.power.energy import Cells, powers
 from flow.layout.power.test.energy_test import ACTIVITY
 from flow.layout.steps.ir_drop import IrDrop, IrDropParameters
 from flow.layout.steps.power import Power, PowerParameters, wire_pf
-from flow.layout.timing.parasitics import spef
+from flow.layout.timing.spef import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 

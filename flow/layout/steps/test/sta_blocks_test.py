@@ -13,7 +13,7 @@ from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from flow.layout.steps.sta import Sta, StaParameters
 from flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
 from flow.layout.timing.constraints import sdc
-from flow.layout.timing.parasitics import spef
+from flow.layout.timing.spef import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")

@@ -13,7 +13,7 @@ from flow.layout.netlist.test import shift_register as small
 from flow.layout.steps import power, sta
 from flow.layout.timing import boundary
 from flow.layout.timing.constraints import sdc
-from flow.layout.timing.parasitics import spef
+from flow.layout.timing.spef import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 SCRIPTS = {

@@ -9,7 +9,7 @@ from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.report.metrics import RULES, broken
 from flow.layout.steps.sta import Sta, StaParameters
 from flow.layout.timing.constraints import sdc
-from flow.layout.timing.parasitics import Tree, spef
+from flow.layout.timing.spef import Tree, spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 
