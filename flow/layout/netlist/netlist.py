@@ -140,7 +140,7 @@ class Netlist:
         Else a net from outside would end in a macro alone, with nothing here that keeps it from being an antenna.
         """
         inputs = {net for port in self.ports if port.direction == "input" for net in port.bits()}
-        inputs -= {i.pins["clk"] for i in self.instances if is_register(i.cell)}
+        inputs -= {i.pins["clk"] for i in self.instances if "clk" in i.pins and i.cell not in macros}
         shared = sorted({net for i in self.instances if i.cell in macros for net in i.pins.values()} & inputs)
         inner = {net: f"{net}_inside" for net in shared}
         instances = [i.with_nets(inner) if i.cell in macros else i for i in self.instances]

@@ -3,7 +3,7 @@ source common.tcl
 open_stage place
 estimate_parasitics -placement
 repair_clock_inverters
-clock_tree_synthesis -root_buf $clock_root -buf_list $clock_buffers -sink_clustering_enable -balance_levels
+clock_tree_synthesis -root_buf $clock_root -buf_list $clock_buffers -sink_clustering_enable
 set_propagated_clock [all_clocks]
 estimate_parasitics -placement
 repair_clock_nets
