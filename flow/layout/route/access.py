@@ -13,13 +13,14 @@ Accesses = dict[Place, Route]  # by place the route from there into a pin
 
 
 def accesses(view: NetView, net: str, number: int) -> Accesses:
-    """Routes into the pin ``number`` of ``net`` from every place from which it can be met with the least congestion."""
-    found: dict[int, Accesses] = {}
+    """Routes into the pin ``number`` of ``net`` from every place from which it can be met; their costs in ``view``."""
+    found: Accesses = {}
     for place, level, point in _possible(view, net, number):
         route = _access(view.board, level, point, place)
-        congestion = sum(view.congestion(at, box) for at, boxes in route.segments.items() for box in boxes)
-        found.setdefault(congestion, {})[place] = route
-    return found[min(found)] if found else {}
+        cost = sum(view.congestion(at, box) for at, boxes in route.segments.items() for box in boxes)
+        if place not in found or cost < view.costs[place]:
+            found[place], view.costs[place] = route, cost
+    return found
 
 
 def reserve(board: Board) -> None:

@@ -14,7 +14,9 @@ from .route import Point, Route
 from .rules import RoutingRules
 
 FIXED, CONTENDED = -1, -2  # owners that are no net
-PRESENT = 4  # cost of a net that has a place, in that of one conflict there before
+# Cost of a net that has a place, in that of one conflict there before: at first, from turn to turn, at last
+PRESENT, GROWTH, PRESENT_MOST = 4, 3, 200
+HISTORY = 4  # conflicts that cost as much as a net that has a place
 CUTS = 0  # level of `Board.fixed` that holds vias
 Key = TypeVar("Key")
 
@@ -36,7 +38,7 @@ class Board:
     What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
     [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above
     their pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all
-    nets, and where nets CONTENDED. grid: both as places.
+    nets, and where nets CONTENDED. grid: both as places. present: see PRESENT.
     """
 
     def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:
@@ -52,6 +54,7 @@ class Board:
         self.fixed, self.routed = Index(area, len(rules.layers)), Index(area, len(rules.layers))
         self.grid = Grid(area, rules)
         self.rows: dict[str, tuple[Rows, Links]] = {}
+        self.present = PRESENT
         self.accesses: dict[str, dict[int, Any]] = {}  # by net and pin, see access
         self._fix()
         for net in self.nets:
@@ -89,19 +92,30 @@ class Board:
         made = [(self.levels[name], *box) for name, box in self.boxes[net] if name in self.levels]
         rows = as_rows(made, self.numbers[net])
         self.rows[net] = rows, self.routed.insert(rows)
-        self.grid.use(rows[rows[:, 0] > 0], PRESENT)
+        self.grid.use(rows[rows[:, 0] > 0], self.present)
 
     def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
         """Raise the history cost of ``places``, pairs (level, Box)."""
         rows = as_rows([(level, *box) for level, box in places], CONTENDED)
         self.routed.insert(rows)
-        self.grid.use(rows)
+        self.grid.use(rows, self.conflict())
+
+    def raise_present(self) -> None:
+        """Let places that nets have cost others more, up to PRESENT_MOST."""
+        more = min(GROWTH * self.present, PRESENT_MOST) - self.present
+        for rows, _ in self.rows.values():
+            self.grid.use(rows[rows[:, 0] > 0], more)
+        self.present += more
+
+    def conflict(self) -> int:
+        """What a conflict adds to the cost of a place."""
+        return max(1, self.present // HISTORY)
 
     def rip_up(self, net: str) -> None:
         """Take the shapes of ``net`` off the board."""
         rows, numbers = self.rows[net]
         self.routed.remove(numbers)
-        self.grid.use(rows[rows[:, 0] > 0], -PRESENT)
+        self.grid.use(rows[rows[:, 0] > 0], -self.present)
         self.boxes[net], self.rows[net] = [], (rows[:0], numbers[:0])
 
     def put(self, net: str, route: Route) -> None:

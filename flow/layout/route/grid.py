@@ -1,7 +1,7 @@
 """Places for the middles of segments and vias: what blocks them, which nets have them, the cheapest path over them."""
 
 import heapq
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -17,10 +17,11 @@ VIA_NM = 2000  # cost of a via, as that of so long a segment
 CONFLICT_NM = 500  # cost of a place where nets contended once, as that of so long a segment
 HASTE = 5, 4  # factor of the remaining cost: paths of up to so much more are taken for a search so much shorter
 FREE, BLOCKED = 0, -1  # of `Grid.fixed`; else the number of the only net that may pass, and 1
-HELD = 1000  # so many shapes that no path passes
+PAID = 1 << 27  # marks a place in the queue as the end of a path
+HELD = 1_000_000  # so many shapes that no path passes
 METAL, BELOW, ABOVE = range(3)  # what is at a place of a layer: a segment, the pad of a via upwards, of one from below
 Owners = npt.NDArray[np.int32]
-Counts = npt.NDArray[np.int16]
+Counts = npt.NDArray[np.int32]
 Rows = npt.NDArray[np.int64]  # (n, 6): level, left, bottom, right, top (nm), owner
 
 
@@ -37,14 +38,14 @@ class Grid:
         shape = np.array(area[2:]) // self.step - self.first + 2
         self.levels, self.columns, self.rows = len(rules.layers) - 1, *shape.tolist()
         self.fixed: Owners = np.zeros((2, self.levels, *shape), np.int32)
-        self.used: Counts = np.zeros((2, self.levels, *shape), np.int16)
+        self.used: Counts = np.zeros((2, self.levels, *shape), np.int32)
         self.reach = _reaches(rules)
         directions = [(1, WRONG_WAY) if layer.horizontal else (WRONG_WAY, 1) for layer in rules.layers[1:]]
         self.prices = np.array(directions) * self.step
         for level, factor in enumerate(LAYER_COSTS[: self.levels - 1]):
             self.prices[level] = self.prices[level] * factor
         size = int(np.prod(self.fixed.shape[1:]))
-        self.cost, self.seen, self.goal = (np.zeros(size, np.int32) for _ in range(3))
+        self.cost, self.seen, self.goal, self.due = (np.zeros(size, np.int32) for _ in range(4))
         self.came = np.zeros(size, np.int8)
         self.searches = 0
 
@@ -76,16 +77,18 @@ class Grid:
         return ((self.fixed[at] == FREE) | (self.fixed[at] == net + 1)) & (self.used[at] == 0)
 
     def search(
-        self, net: int, box: Box, sources: Collection[Place], targets: Collection[Place],
-        factors: Mapping[int, int] | None = None,
+        self, net: int, box: Box, sources: Sequence[Place], targets: Sequence[Place],
+        factors: Mapping[int, int] | None = None, costs: Mapping[Place, int] | None = None,
     ) -> list[Place] | None:  # fmt: skip
         """Return the places of the cheapest path within ``box`` (nm) from a source to a target, or None.
 
-        net: its number. factors: by level, of the cost of a step.
+        net: its number. factors: by level, of the cost of a step. costs: of sources and targets, in conflicts.
         """
         low = np.maximum(np.array(box[:2]) // self.step - self.first, 1)
         high = np.minimum(np.array(box[2:]) // self.step - self.first, (self.columns - 2, self.rows - 2))
-        begins, ends = (self._numbers(places, low, high) for places in (sources, targets))
+        (begins, at_begin), (ends, at_end) = (
+            self._numbers(places, low, high, costs or {}) for places in (sources, targets)
+        )
         if not len(begins) or not len(ends):
             return None
         prices = self.prices.copy()
@@ -93,18 +96,19 @@ class Grid:
             prices[level - 1] *= factor
         self.searches += 1
         path = _search(
-            self.fixed, self.used, self.cost, self.seen, self.came, self.goal, self.searches, net + 1, begins, ends,
-            low, high, prices,
+            self.fixed, self.used, self.cost, self.seen, self.came, self.goal, self.due, self.searches, net + 1, begins,
+            ends, at_begin, at_end, low, high, prices,
         )  # fmt: skip
         levels, columns, rows = np.unravel_index(path[::-1], self.fixed.shape[1:])
         made = zip((levels + 1).tolist(), (columns + self.first[0]).tolist(), (rows + self.first[1]).tolist())
         return list(made) or None
 
-    def _numbers(self, places: Iterable[Place], low: Rows, high: Rows) -> Rows:
-        """Numbers of those of ``places`` that are within the window."""
-        found = np.array(list(places), np.int64).reshape(-1, 3) - (1, *self.first)
+    def _numbers(self, places: Sequence[Place], low: Rows, high: Rows, costs: Mapping[Place, int]) -> tuple[Rows, Rows]:
+        """Numbers of those of ``places`` that are within the window, and what each costs."""
+        found = np.array(places, np.int64).reshape(-1, 3) - (1, *self.first)
         inside = ((found[:, 1:] >= low) & (found[:, 1:] <= high)).all(1)
-        return np.asarray(np.ravel_multi_index(tuple(found[inside].T), self.fixed.shape[1:]), np.int64)
+        numbers = np.asarray(np.ravel_multi_index(tuple(found[inside].T), self.fixed.shape[1:]), np.int64)
+        return numbers, np.array([costs.get(place, 0) for place in places], np.int64)[inside] * CONFLICT_NM
 
 
 def _reaches(rules: RoutingRules) -> Rows:
@@ -163,14 +167,17 @@ def _use(used: Counts, rows: Rows, reach: Rows, step: Rows, first: Rows, times: 
 
 @njit(cache=True)
 def _search(
-    fixed: Owners, used: Counts, cost: Owners, seen: Owners, came: npt.NDArray[np.int8], goal: Owners, search: int,
-    owner: int, sources: Rows, ends: Rows, low: Rows, high: Rows, prices: Rows,
+    fixed: Owners, used: Counts, cost: Owners, seen: Owners, came: npt.NDArray[np.int8], goal: Owners,
+    due: Owners, search: int, owner: int, sources: Rows, ends: Rows, at_begin: Rows, at_end: Rows, low: Rows,
+    high: Rows, prices: Rows,
 ) -> Rows:  # fmt: skip
     """Numbers of the places of the path, from its end to its begin; none without one."""
     levels, columns, rows = fixed.shape[1:]
     layer = columns * rows
     box = np.array((columns, 0, rows, 0, levels))
-    for end in ends:
+    for k in range(len(ends)):
+        end = ends[k]
+        due[end] = at_end[k] if goal[end] != search else min(due[end], at_end[k])
         goal[end] = search
         box[4] = min(box[4], end // layer)
         i, j = end % layer // rows, end % rows
@@ -184,20 +191,24 @@ def _search(
     moves = (rows, -rows, 1, -1, layer, -layer)
     heap = [np.int64(0)]
     heap.pop()
-    for place in sources:
-        cost[place], seen[place], came[place] = 0, search, -1
-        heapq.heappush(heap, _least(place, layer, rows, levels, box, least) << 28 | place)
+    for k in range(len(sources)):
+        place = sources[k]
+        if seen[place] != search or at_begin[k] < cost[place]:
+            cost[place], seen[place], came[place] = at_begin[k], search, -1
+            heapq.heappush(heap, (at_begin[k] + _least(place, layer, rows, levels, box, least)) << 28 | place)
     while heap:
         entry = heapq.heappop(heap)
-        here = entry & ((1 << 28) - 1)
-        level, at = here // layer, here % layer
-        if (entry >> 28) - _least(here, layer, rows, levels, box, least) > cost[here]:
-            continue
-        if goal[here] == search:
+        here = entry & (PAID - 1)
+        if entry & PAID:  # the cheapest path and what its end costs
             path = [here]
             while came[path[-1]] >= 0:
                 path.append(path[-1] - moves[came[path[-1]]])
             return np.array(path)
+        level, at = here // layer, here % layer
+        if (entry >> 28) - _least(here, layer, rows, levels, box, least) > cost[here]:
+            continue
+        if goal[here] == search:
+            heapq.heappush(heap, (cost[here] + due[here]) << 28 | PAID | here)
         i, j = at // rows, at % rows
         for move in range(6):
             there = here + moves[move]

@@ -88,6 +88,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
             state.routes[net] = found.route
             evicted += sorted(found.evicted)
         waiting = list(dict.fromkeys(evicted))
+        board.raise_present()
     return state
 
 

@@ -82,7 +82,7 @@ def _connected(view: NetView, pins: Sequence[Accesses], margin: int, jumpers: bo
 def _path(
     view: NetView, box: Box, sources: Mapping[Place, object], targets: Accesses, factors: Mapping[int, int] | None
 ) -> list[Place] | None:
-    return view.board.grid.search(view.net, box, list(sources), list(targets), factors)
+    return view.board.grid.search(view.net, box, list(sources), list(targets), factors, view.costs)
 
 
 def _nearest(view: NetView, places: Sequence[Place], joined: Boxes) -> tuple[int, Point, Point]:

@@ -2,18 +2,24 @@
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ..geometry.boxes import Box
 from .board import CONTENDED, Board, as_rows
 from .grid import HELD
-from .route import Route
+from .route import Place, Route
 
 
 class NetView:
-    """The board as the net with the number ``net`` sees it. held: boxes of its own that its other segments avoid."""
+    """The board as the net with the number ``net`` sees it.
+
+    held: boxes of its own that its other segments avoid. costs: of places from which its pins are met, in conflicts.
+    """
 
     def __init__(self, board: Board, net: int) -> None:
         self.board, self.rules, self.net = board, board.rules, net
         self.held: list[tuple[int, Box]] = []
+        self.costs: dict[Place, int] = {}
 
     def hold(self, boxes: Sequence[tuple[int, Box]]) -> None:
         """Let pairs (level, box in nm) be obstacles, until `release`."""
@@ -35,8 +41,10 @@ class NetView:
         return not any(at == level and _touch(reach, held) for at, held in self.held)
 
     def congestion(self, level: int, box: Box) -> int:
-        """Segments of others, and places that nets contended for, nearer to ``box`` (nm) than the least space."""
-        return self.board.routed.count(level, self.reach(level, box), self.net)
+        """Cost of others' segments, and of conflicts before, nearer to ``box`` (nm) than the least space."""
+        owners = self.board.routed.touching(level, self.reach(level, box))[:, -1]
+        nets = np.unique(owners[(owners >= 0) & (owners != self.net)])
+        return len(nets) * self.board.present + int((owners == CONTENDED).sum()) * self.board.conflict()
 
     def conflicts(self, route: Route) -> tuple[set[str], list[tuple[int, Box]]]:
         """Return the board's nets that are nearer to ``route`` than the least space, and (level, box) of where."""
