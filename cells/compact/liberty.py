@@ -11,13 +11,15 @@ def liberty(cells: Iterable[Schematic], areas: Mapping[str, float]) -> str:
     """Text for ``cells`` of ``areas`` (um2). No delays: pins have directions, functions and areas only."""
     made = functional.library("compact", **functional.UNITS)
     for s in cells:
-        ff, more = None, {}
+        ff = None
         functions = {pin: s.functions.get(pin, "") for pin in s.outputs}
         if s.storage == "ff":
             ff = {name: s.functions[name] for name in ("next_state", "clear") if name in s.functions}
             ff, functions = {"clocked_on": "clk", **ff}, {"q": "IQ"}
         if s.storage == "gate":
-            functions, more = {"q": ""}, {"clock_gating_integrated_cell": "latch_posedge"}
+            functions = {"q": ""}
         if s.outputs:
-            functional.add_cell(made, s.name, areas[s.name], (*s.inputs, *s.outputs), functions, ff, "clk", **more)
+            cell = functional.add_cell(made, s.name, areas[s.name], (*s.inputs, *s.outputs), functions, ff, "clk")
+            if s.storage == "gate":
+                cell.attributes["clock_gating_integrated_cell"] = "latch_posedge"
     return text(made)

@@ -51,7 +51,10 @@ def liberty(cells: Mapping[str, Function], ports: Mapping[str, Iterable[str]], a
 
     made = library("cells")
     for name, (outputs, storage) in cells.items():
-        group = {"latch" if storage.kind == "gate" else "ff": storage_attributes(storage)} if storage else {}
-        kind = {"clock_gating_integrated_cell": gating(storage)} if storage and storage.kind == "gate" else {}
-        add_cell(made, name, areas[name], ports[name], outputs, **group, **kind)
+        inside = storage_attributes(storage) if storage else None
+        if storage and storage.kind == "gate":
+            cell = add_cell(made, name, areas[name], ports[name], outputs, latch=inside)
+            cell.attributes["clock_gating_integrated_cell"] = gating(storage)
+        else:
+            add_cell(made, name, areas[name], ports[name], outputs, inside)
     return text(made)
