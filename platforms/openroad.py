@@ -33,9 +33,10 @@ class OpenRoadPlatform:
     paths; cell_models: of Verilog. rcx_rules: paths by corner of WIRES, of which the first that the PDK has is read;
     nom is required. supply, ground: (net, pins of cells). high, low: cell and pin of a constant, 'cell/pin'. buffer:
     cell, input, output, between two ports of one net. diode: cell against antennas. tap: cell, every tap_um. endcap:
-    cell at the rows' ends. clock_gate: cell, enable, clock, output. clock_root, clock_buffers: of the clock tree. straps: connected in their order. pins:
-    layers of (horizontal, vertical) pins. signal, clock: (lowest, highest) routing layers. kept_free: share of their
-    tracks that global routing leaves to the detailed router. layer_rc: resistance (kohm/um) and capacitance (pF/um)
+    cell at the rows' ends. clock_gate: cell, enable, clock, output. clock_root, clock_buffers: of the clock tree.
+    straps: connected in their order. pins: layers of (horizontal, vertical) pins. signal, clock: (lowest, highest)
+    routing layers. kept_free: share of their tracks that global routing leaves to the detailed router. layer_rc:
+    resistance (kohm/um) and capacitance (pF/um)
     of a layer's wires, via_rc: kohm of a via, for estimates before extraction. signal_rc, clock_rc: layers whose mean
     represents all before global routing. fill: cells by their full names, since OpenROAD took patterns for regular
     expressions once, for globs later; the largest first. dont_use: patterns of cells. gds: LEF name of a layer or via

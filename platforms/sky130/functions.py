@@ -49,7 +49,7 @@ def liberty() -> str:
 
 
 def small_liberty() -> str:
-    """The Liberty text of a small library: gates of one output, the plain multiplexer, one flip-flop, one clock gate, constants."""
+    """The Liberty text of a small library: gates of one output, a multiplexer, a flip-flop, a clock gate, constants."""
     made = library(f"{LIBRARY}_functional", time_unit="1ns", capacitive_load_unit=(1.0, "pf"), **THRESHOLDS)
     for cell in cells():
         found = functions(_verilog(cell)) if not cell.startswith((*LEFT_OUT, "mux2i", "mux4")) else {}

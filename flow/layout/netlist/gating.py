@@ -1,8 +1,8 @@
 """Clock gates: registers that share an enable are clocked only while it is high.
 
-Debian's Yosys (0.23) has no pass `clockgate`. Here a flip-flop with an enable becomes a plain one behind a gate of its own,
-then gates with the same inputs are merged. Synchronous resets go to the data and the enable; groups of fewer than LEAST
-flip-flops keep their multiplexers.
+Debian's Yosys (0.23) has no pass `clockgate`. Here a flip-flop with an enable becomes a plain one behind a gate of its
+own, then gates with the same inputs are merged. Synchronous resets go to the data and the enable; groups of fewer than
+LEAST flip-flops keep their multiplexers.
 """
 
 from collections.abc import Mapping, Sequence

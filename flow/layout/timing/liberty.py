@@ -51,10 +51,10 @@ def liberty(cells: Mapping[str, Function], ports: Mapping[str, Iterable[str]], a
 
     made = library("cells")
     for name, (outputs, storage) in cells.items():
-        stored = storage and storage_attributes(storage)
-        gate = storage is not None and storage.kind == "gate"
-        ff, latch = (None, stored) if gate else (stored, None)
-        cell = add_cell(made, name, areas[name], ports[name], outputs, ff, latch=latch)
-        if storage and gate:
+        inside = storage_attributes(storage) if storage else None
+        if storage and storage.kind == "gate":
+            cell = add_cell(made, name, areas[name], ports[name], outputs, latch=inside)
             cell.attributes["clock_gating_integrated_cell"] = gating(storage)
+        else:
+            add_cell(made, name, areas[name], ports[name], outputs, inside)
     return text(made)
