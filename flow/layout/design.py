@@ -108,8 +108,8 @@ DESIGNS = {
             utilization=0.44,
             asynchronous=SPI_INPUTS,
         ),
-        chip("asp_chip", utilization=0.56),
-        chip("asp_chip_macros", utilization=0.5, density_variation=0.3, macros=TWO),
+        chip("asp_chip", utilization=0.41),
+        chip("asp_chip_macros", utilization=0.41, density_variation=0.3, macros=TWO),
     )
 }
 

@@ -36,6 +36,6 @@ PLATFORM = CoriolisPlatform(
     fill=Fill(sides_um=(2.0, 1.0, 0.5), space_um=0.4, clearance_um=0.6, density=0.3, density_most=0.6, window_um=700.0),
     wires=wires.WIRES,
     masks=Path(__file__).with_name("masks.drc"),
-    utilization_most=0.64,
+    utilization_most=0.6,
     corners=("tt_025C_1v80", "ss_100C_1v60", "ff_n40C_1v95"),
 )
