@@ -1,5 +1,6 @@
 """The summary of a run: the figures of the contract of flow.layout, of OpenROAD's stages and of the checks."""
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from flow.layout.report.metrics import summarize as of_steps
 from flow.layout.steps.power import wire_pf
 from platforms.openroad import WIRES, OpenRoadPlatform
 
+ROUTE = re.compile(r"(?:\+ ROUTED|NEW) ([^+;]*?)(?=\bNEW\b|[+;])")
 RULES = LAYOUT_RULES | {
     name: {"is": 0}
     for name in ("router_drc_violations", "router_antennas", "slew_violations", "capacitance_violations")
@@ -39,7 +41,8 @@ def summarize(
     netlist = Netlist.read(checked.paths["place.netlist"])
     um2 = areas(checked.paths["library.liberty"])
     slacks = {name: worst(found, name, tech.corners) for name in ("wns_ns", "whs_ns")}
-    spefs = {"placement": "placement", "global routes": "global"} | {wires: wires for wires in WIRES}
+    spefs = {"placement": f"placement_{tech.corners[0]}", "global routes": f"global_{tech.corners[0]}"}
+    spefs |= {wires: wires for wires in WIRES}  # estimates have a file a corner, extraction one
     wires = {name: total_pf(folder / f"{file}.spef") for name, file in spefs.items()}
     slowest = slacks["wns_ns"][tech.corners[0]]
     options = Options(pdk=tech.name, utilization=tech.utilization)
@@ -55,7 +58,8 @@ def summarize(
         "cell_area_um2": round(sum(um2.get(i.cell, 0.0) for i in netlist.instances), 2),
         "area_um2": round(size_um[0] * size_um[1], 2),
         "attempts": [],
-        **{name: found.get(name) for name in ("wire_um", "open_nets", "router_drc_violations", "router_antennas")},
+        "wire_um": wire_um((folder / "final.def").read_text()),
+        **{name: found.get(name) for name in ("open_nets", "router_drc_violations", "router_antennas")},
         "clock_buffers": sum(i.name.startswith("clkbuf") for i in netlist.instances),
         "evictions": 0,
         "antenna_diodes": sum(i.cell == tech.diode for i in netlist.instances),
@@ -87,6 +91,26 @@ def _of(key: str, name: str, corner: str) -> bool:
 def total_pf(path: Path) -> float | None:
     """Capacitance of all nets of a SPEF, pF; None without the file."""
     return round(sum(wire_pf(path.read_text()).values()), 3) if path.is_file() else None
+
+
+def wire_um(text: str) -> float:
+    """Length of all nets' routes in the DEF ``text``, um, without those of the supplies."""
+    units = re.search(r"UNITS DISTANCE MICRONS (\d+)", text)
+    nets = re.search(r"(?ms)^NETS .*?^END NETS", text)
+    if not units or not nets:
+        return 0.0
+    length = 0
+    for segment in ROUTE.findall(nets[0]):
+        x = y = None
+        for point in re.findall(r"\(([^()]*)\)", segment):
+            words = point.split()
+            if len(words) > 3:  # a patch
+                continue
+            to_x, to_y = (old if word == "*" else int(word) for word, old in zip(words, (x, y), strict=False))
+            if x is not None and y is not None:
+                length += abs(to_x - x) + abs(to_y - y)
+            x, y = to_x, to_y
+    return round(length / int(units[1]), 3)
 
 
 def broken(summary: dict[str, Any]) -> list[str]:
