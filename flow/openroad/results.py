@@ -72,8 +72,7 @@ def summarize(
         "f_max_mhz": None if slowest is None else round(1000 / (design.clock.period_ns - slowest), 2),
         "placement_density": found.get("placement_density"),
         "timing_rests_on": f"{tech.library}'s Liberty; OpenRCX, with coupling, at {', '.join(WIRES)}",
-        "wall_s": {key.removeprefix("seconds."): v for key, v in found.items() if key.startswith("seconds.")}
-        | made["wall_s"],
+        **{name: _parts(found, part) | made[name] for name, part in (("wall_s", "seconds."), ("peak_mib", "mib."))},
         "tools": made["tools"] | {"openroad": version("openroad")},
     }
 
@@ -81,6 +80,10 @@ def summarize(
 def worst(found: Mapping[str, float], name: str, corners: Sequence[str]) -> dict[str, float | None]:
     """The least of the figure ``name`` over the wires' corners, by corner of the cells."""
     return {corner: min((v for key, v in found.items() if _of(key, name, corner)), default=None) for corner in corners}
+
+
+def _parts(found: Mapping[str, float], prefix: str) -> dict[str, float]:
+    return {key.removeprefix(prefix): value for key, value in found.items() if key.startswith(prefix)}
 
 
 def _of(key: str, name: str, corner: str) -> bool:
