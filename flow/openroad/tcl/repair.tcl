@@ -10,4 +10,5 @@ repair_design
 repair_timing -setup -setup_margin $setup_margin
 repair_timing -hold -hold_margin $hold_margin
 legalize
+shorten
 write_db repair.odb
