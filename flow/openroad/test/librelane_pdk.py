@@ -74,11 +74,16 @@ def _delay(cell):
         pin.attributes["capacitance"] = 0.002
     for pin in cell.all("pin", direction="output"):
         pin.attributes["max_capacitance"] = 0.2
-        kind = {"timing_type": "rising_edge"} if flip_flop else {"timing_sense": "non_unate"}
+        kind = {"timing_type": "rising_edge"} if flip_flop else {"timing_sense": _sense(pin.attributes["function"])}
         for related in ["CLK"] if flip_flop else [pin.name for pin in inputs]:
             timing = pin.add("timing", related_pin=related, **kind)
             for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition"):
                 timing.add(name, "t", **AXES, values=[[0.05, 0.5], [0.1, 0.6]])
+
+
+def _sense(function):
+    """How an output follows an input, roughly: abc wants an inverter that inverts."""
+    return "non_unate" if "^" in function else "negative_unate" if function.startswith("(!") else "positive_unate"
 
 
 def _variables(root, cells, empty):
