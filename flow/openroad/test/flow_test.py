@@ -88,7 +88,8 @@ def unchecked(design, tech, root, folder, size_um, note):
     """In place of the checks: their inputs alone."""
     runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note)
     runner.paths |= {"library.liberty": folder / "signoff" / f"{CORNERS[0]}.lib"}
-    runner.paths |= dict.fromkeys(("fill.gds", "drc.report", "lvs.report"), folder / "final.gds")
+    made = "fill.gds", "drc.report", "lvs.report", *(f"block_liberty_{corner}.liberty" for corner in CORNERS)
+    runner.paths |= dict.fromkeys(made, folder / "final.gds")
     return runner
 
 
@@ -109,7 +110,8 @@ def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monk
     assert (folder / "QuadDividerRadix4.v").read_text().count("module QuadDividerRadix4") == 1
     assert "dfxtp" not in (folder / "QuadDividerRadix4.v").read_text()  # the RTL is left as it was
     assert summary["area_um2"] == 600
-    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc")} <= {
+    timed = [f"{corner}.{suffix}" for corner in CORNERS for suffix in ("lib", "sdf")]
+    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc", *timed)} <= {
         path.name for path in folder.iterdir()
     }
     called = [line.split()[0] for line in (folder / "calls.txt").read_text().splitlines()]

@@ -17,7 +17,7 @@ from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
 
 KNOWN = openroad_platform("sky130")
-AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.1]}
+AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.05, 0.1]}  # abc takes the slope between all loads but the last
 UNITS = {
     "voltage_unit": "1V",
     "current_unit": "1mA",
@@ -74,16 +74,11 @@ def _delay(cell):
         pin.attributes["capacitance"] = 0.002
     for pin in cell.all("pin", direction="output"):
         pin.attributes["max_capacitance"] = 0.2
-        kind = {"timing_type": "rising_edge"} if flip_flop else {"timing_sense": _sense(pin.attributes["function"])}
+        kind = {"timing_type": "rising_edge"} if flip_flop else {"timing_sense": "non_unate"}
         for related in ["CLK"] if flip_flop else [pin.name for pin in inputs]:
             timing = pin.add("timing", related_pin=related, **kind)
             for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition"):
-                timing.add(name, "t", **AXES, values=[[0.05, 0.5], [0.1, 0.6]])
-
-
-def _sense(function):
-    """How an output follows an input, roughly: abc wants an inverter that inverts."""
-    return "non_unate" if "^" in function else "negative_unate" if function.startswith("(!") else "positive_unate"
+                timing.add(name, "t", **AXES, values=[[0.05, 0.25, 0.5], [0.1, 0.35, 0.6]])
 
 
 def _variables(root, cells, empty):
