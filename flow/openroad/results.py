@@ -104,15 +104,14 @@ def wire_um(text: str) -> float:
         return 0.0
     length = 0
     for segment in ROUTE.findall(nets[0]):
-        x = y = None
+        at: list[int] = []
         for point in re.findall(r"\(([^()]*)\)", segment):
             words = point.split()
             if len(words) > 3:  # a patch
                 continue
-            to_x, to_y = (old if word == "*" else int(word) for word, old in zip(words, (x, y), strict=False))
-            if x is not None and y is not None:
-                length += abs(to_x - x) + abs(to_y - y)
-            x, y = to_x, to_y
+            to = [at[k] if word == "*" else int(word) for k, word in enumerate(words[:2])]
+            length += sum(abs(new - old) for new, old in zip(to, at or to, strict=True))
+            at = to
     return round(length / int(units[1]), 3)
 
 
