@@ -28,21 +28,23 @@ def finish(
     env: Mapping[str, str] | None = None,
     cwd: Path | str | None = None,
     seconds: float | None = None,
+    log: Path | None = None,
 ) -> subprocess.CompletedProcess[str]:
     """Run ``command`` to its end and return its status and text output.
 
     env: variables added to this process's. The command has a process group of its own, which any exception (Ctrl-C too)
-    ends as a whole, with what the command started. seconds: time limit. Raises ToolError when there is no such program,
-    ToolTimeout.
+    ends as a whole, with what the command started. seconds: time limit. log: file that gets both outputs as they come,
+    then returned as stdout. Raises ToolError when there is no such program, ToolTimeout.
     """
     words = [str(part) for part in command]
     name = Path(words[0]).name
+    output = log.open("w") if log else None
     try:
         child = subprocess.Popen(
             words,
             stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
+            stdout=output or subprocess.PIPE,
+            stderr=subprocess.STDOUT if output else subprocess.PIPE,
             text=True,
             errors="replace",
             env=dict(os.environ, **(env or {})),
@@ -51,6 +53,9 @@ def finish(
         )
     except FileNotFoundError as error:
         raise ToolError(f"{name}: not found; install it with: make tools (Debian: apt-get install {name})") from error
+    finally:
+        if output:
+            output.close()
     with child:
         try:
             out, err = child.communicate(timeout=seconds)
@@ -60,6 +65,8 @@ def finish(
         except BaseException:
             os.killpg(child.pid, signal.SIGKILL)
             raise
+    if log:
+        out, err = log.read_text(errors="replace"), ""
     return subprocess.CompletedProcess(words, child.returncode, out, err)
 
 

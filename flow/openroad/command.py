@@ -22,6 +22,7 @@ from .write import write
 
 # Suffixes of the contract of flow.layout -> file of the run, or of a check
 RESULTS = {"lef": "final.lef", "v": "final.v", "power.v": "final.power.v", "spef": "nom.spef", "def": "final.def"}
+BY_CORNER = {"sdf": "sta_{}.sdf", "lib": "block_liberty_{}.liberty"}
 CHECKED = {"gds": "fill.gds", "sdc": "sdc", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report"}
 
 
@@ -52,10 +53,15 @@ def run(options: Namespace) -> int:
         lefs = [root / tech.tech_lef, root / tech.cell_lef]
         size = merge(folder / "final.def", lefs, root / tech.cell_gds, tech, folder / "final.gds")
         checked = check(chosen, tech, root, folder, size, bar.note)
-        with staged(folder, [f"{chosen.name}.{suffix}" for suffix in (*RESULTS, *CHECKED)]) as part:
+        results = CHECKED | {
+            f"{corner}.{suffix}": source.format(corner)
+            for corner in tech.corners
+            for suffix, source in BY_CORNER.items()
+        }
+        with staged(folder, [f"{chosen.name}.{suffix}" for suffix in (*RESULTS, *results)]) as part:
             for suffix, file in RESULTS.items():
                 shutil.copyfile(folder / file, part / f"{chosen.name}.{suffix}")
-            for suffix, source in CHECKED.items():
+            for suffix, source in results.items():
                 shutil.copyfile(checked.paths[source], part / f"{chosen.name}.{suffix}")
             summary = summarize(chosen, tech, found, folder, size, checked)
             (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")

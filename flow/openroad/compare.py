@@ -16,7 +16,7 @@ from .results import broken
 DESIGNS = "quad_divider", "amp_ctrl", "asp_chip"
 HEAD = (
     "design | back end | area, mm2 | cells | cell area, um2 | f_max at ss, MHz | setup, hold, ns | "
-    "power at tt, uW | wire, mm | wire, pF | seconds | limits broken"
+    "power at tt, uW | wire, mm | wire, pF | seconds | MiB | limits broken"
 )
 NOT_RUN = "not run"
 
@@ -61,11 +61,11 @@ def row(summary: Mapping[str, Any]) -> list[str]:
         (summary["f_max_mhz"], 1, ".1f"),
     )
     more = (power, 1, ",.0f"), (summary["wire_um"], 1e-3, ",.1f"), (summary["wire_pf"], 1, ",.1f")
-    seconds = sum(summary["wall_s"].values()), 1, ",.0f"
+    run = (sum(summary["wall_s"].values()), 1, ",.0f"), (max(summary["peak_mib"].values()), 1, ",d")
     return [
         *(_written(*figure) for figure in figures),
         ", ".join(_written(slack, 1, "+.2f") for slack in slacks),
-        *(_written(*figure) for figure in (*more, seconds)),
+        *(_written(*figure) for figure in (*more, *run)),
         str(len(own(dict(summary)))),
     ]
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base.liberty.read import without
+from base.steps.alone import alone
 from base.tools import ToolError, finish
 from models.parameters import ParameterError
 from platforms.openroad import WIRES, OpenRoadPlatform
@@ -16,6 +17,8 @@ from platforms.openroad import WIRES, OpenRoadPlatform
 from .netlists import write_synthesized
 
 SCRIPTS = Path(__file__).parent / "tcl"
+# Threads that wait give their core away: beside other jobs, placement of the divider took 15 times its CPU time
+ENVIRONMENT = {"OMP_WAIT_POLICY": "passive"}
 INSTALL = "https://openroad.readthedocs.io (packages, source) or a LibreLane or flow-scripts container"
 
 
@@ -72,8 +75,8 @@ def missing_tools() -> list[str]:
 def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callable[[str], None]) -> dict[str, float]:
     """Run every stage of the module ``top`` in ``folder``; returns the figures by name, of its logs.
 
-    They are the lines 'TALBOT name value', and 'seconds.<stage>' of each. note: called with each stage's name. Raises
-    ToolError with the last lines of a stage that failed.
+    They are the lines 'TALBOT name value', and 'seconds.<stage>' and 'mib.<stage>' (peak memory) of each. note: called
+    with each stage's name. Raises ToolError with the last lines of a stage that failed.
     """
     text = (root / tech.liberty[tech.corners[0]]).read_text()  # cells are chosen by their slowest delays
     (folder / "synthesis.lib").write_text(without(text, tech.dont_use))
@@ -83,15 +86,15 @@ def run(folder: Path, top: str, tech: OpenRoadPlatform, root: Path, note: Callab
         note(name)
         begin = time.perf_counter()
         (folder / stage.gives).unlink(missing_ok=True)
-        done = finish(stage.command(), cwd=folder, env={"PDK_ROOT": str(root), "CORNER": stage.corner})
-        (folder / stage.log).write_text(done.stdout + done.stderr)
+        variables = ENVIRONMENT | {"PDK_ROOT": str(root), "CORNER": stage.corner}
+        done, peak = alone(finish, stage.command(), variables, folder, None, folder / stage.log)
         written = (folder / stage.gives).is_file()
         if done.returncode or not written:
-            tail = "\n".join((done.stdout + done.stderr).strip().splitlines()[-10:])
+            tail = "\n".join(done.stdout.strip().splitlines()[-10:])
             state = f"status {done.returncode}, {stage.gives} {'written' if written else 'not written'}"
             raise ToolError(f"{stage.command()[0]} {stage.name}: {state}:\n{tail}")
         if stage.name == "synth":
             write_synthesized(folder, top, tech)
         found |= {key: float(value) for key, value in re.findall(r"^TALBOT (\S+) (\S+)$", done.stdout, re.M)}
-        found[f"seconds.{name}"] = round(time.perf_counter() - begin, 1)
+        found |= {f"seconds.{name}": round(time.perf_counter() - begin, 1), f"mib.{name}": peak}
     return found

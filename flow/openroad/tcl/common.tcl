@@ -44,6 +44,14 @@ proc legalize {} {
   check_placement -verbose
 }
 
+# Shorter wires by swaps of neighbours and mirrored cells; releases before 2025 lack the swaps.
+proc shorten {} {
+  foreach command {improve_placement optimize_mirroring} {
+    if {[llength [info commands $command]]} { $command }
+  }
+  check_placement -verbose
+}
+
 # One line a figure, in a form that is ours: no report of the tool has to be understood.
 proc measured {name value} {
   puts "TALBOT $name $value"

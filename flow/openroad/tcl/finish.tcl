@@ -8,17 +8,10 @@ write_verilog -include_pwr_gnd final.power.v
 report_design_area
 report_floating_nets -verbose
 
-# Wire length, and nets of several pins that have no wire
-set length 0
+# Nets of several pins that have no wire
 set open 0
 foreach net [[ord::get_db_block] getNets] {
   if {[$net getSigType] eq "POWER" || [$net getSigType] eq "GROUND"} { continue }
-  set wire [$net getWire]
-  if {$wire ne "NULL"} {
-    incr length [$wire getLength]
-  } elseif {[$net getITermCount] + [$net getBTermCount] > 1} {
-    incr open
-  }
+  if {[$net getWire] eq "NULL" && [$net getITermCount] + [$net getBTermCount] > 1} { incr open }
 }
-measured wire_um [expr {$length / double([[ord::get_db_block] getDbUnitsPerMicron])}]
 measured open_nets $open

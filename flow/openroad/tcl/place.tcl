@@ -1,4 +1,4 @@
-# Pins and cells, by wire length, congestion and timing; slews and loads, then setup before the clock has its tree.
+# Pins and cells, by wire length and timing; slews and loads, then setup before the clock has its tree.
 source common.tcl
 open_stage power
 routing_layers
@@ -8,10 +8,11 @@ set density [expr {min(1.0, $least + (1 - $least) * $density_addon + 0.01)}]
 measured placement_density $density
 global_placement -density $density {*}$room -skip_io
 place_pins -hor_layers $pin_horizontal -ver_layers $pin_vertical
-global_placement -density $density {*}$room -routability_driven -timing_driven
+global_placement -density $density {*}$room -timing_driven
 estimate_parasitics -placement
 repair_design
 repair_tie_fanout [join $low /]
 repair_tie_fanout [join $high /]
 legalize
+shorten
 write_db place.odb

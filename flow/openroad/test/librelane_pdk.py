@@ -17,7 +17,7 @@ from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
 
 KNOWN = openroad_platform("sky130")
-AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.1]}
+AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.05, 0.1]}  # abc takes the slope between all loads but the last
 UNITS = {
     "voltage_unit": "1V",
     "current_unit": "1mA",
@@ -78,7 +78,7 @@ def _delay(cell):
         for related in ["CLK"] if flip_flop else [pin.name for pin in inputs]:
             timing = pin.add("timing", related_pin=related, **kind)
             for name in ("cell_rise", "cell_fall", "rise_transition", "fall_transition"):
-                timing.add(name, "t", **AXES, values=[[0.05, 0.5], [0.1, 0.6]])
+                timing.add(name, "t", **AXES, values=[[0.05, 0.25, 0.5], [0.1, 0.35, 0.6]])
 
 
 def _variables(root, cells, empty):

@@ -22,4 +22,6 @@ def test_the_divider_closes(tmp_path, capsys):
     assert summary["equivalence"] == "proven" and summary["lvs_match"] is True
     assert summary["area_um2"] < 13_000 and summary["gate_tests"]["failed"] == 0
     by_source = summary["wire_pf_by_source"]
-    assert by_source["global routes"] == pytest.approx(by_source["nom"], rel=0.3)
+    assert by_source["placement"] == pytest.approx(by_source["nom"], rel=0.2)
+    # Global routes end in the middle of a GCell, and every pin has a wire to it: repair errs on the safe side
+    assert by_source["nom"] < by_source["global routes"] < 2 * by_source["nom"]
