@@ -17,6 +17,7 @@ DETOUR_NM = 240_000  # the same where there was no path at all: round a block
 AROUND_PIN_NM = 12_000  # of that around a pin
 TOP_FACTOR = 8  # of the cost of the top layer where it is to be short
 JUMPER_NM, REACH = 1500, 40  # length of an antenna jumper; its distance from a pin, in steps of the grid
+JUMPER_PLACES, APART = 6, 5  # that are tried where there is no room below a jumper, and the steps between them
 
 
 @dataclass(frozen=True)
@@ -129,15 +130,18 @@ def _jumper(view: NetView, pin: Accesses) -> Accesses:
                     places[top, column + west, row + south] = top, a + west, b + south
     at = [grid.at(i, j) for _, i, j in pin]
     ends = min(x for x, _ in at), min(y for _, y in at), max(x for x, _ in at), max(y for _, y in at)
-    path = _path(view, _box(ends[:2], ends[2:], AROUND_PIN_NM), pin, dict.fromkeys(places, Route()), None)
-    if path is None:
-        return {}
-    route, end = Route(), places[path[-1]]
-    route.join(pin[path[0]])
-    route.draw(view.rules, path)
-    if not meet_area(view, route, alone=True):
-        return {}
-    below = [(level, box) for level, boxes in route.segments.items() if level != top for box in boxes]
-    route.draw(view.rules, [path[-1], end])
-    view.hold(below)
-    return {end: route}
+    for _ in range(JUMPER_PLACES):
+        path = _path(view, _box(ends[:2], ends[2:], AROUND_PIN_NM), pin, dict.fromkeys(places, Route()), None)
+        if path is None:
+            break
+        route, end = Route(), places[path[-1]]
+        route.join(pin[path[0]])
+        route.draw(view.rules, path)
+        if meet_area(view, route, alone=True):
+            below = [(level, box) for level, boxes in route.segments.items() if level != top for box in boxes]
+            route.draw(view.rules, [path[-1], end])
+            view.hold(below)
+            return {end: route}
+        _, i, j = path[-1]
+        places = {at: end for at, end in places.items() if abs(at[1] - i) + abs(at[2] - j) > APART}
+    return {}
