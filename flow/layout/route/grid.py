@@ -70,11 +70,14 @@ class Grid:
         dx, dy = self.step.tolist()
         return [(i, j) for i in range(x // dx, -(-x // dx) + 1) for j in range(y // dy, -(-y // dy) + 1)]
 
-    def free(self, net: int, level: int, box: Box, vias: bool = False) -> npt.NDArray[np.bool_]:
-        """Whether the places of ``box``, (i, j) to (i, j) without the last, are free to ``net``: array (n, m)."""
+    def free(self, net: int, level: int, box: Box, present: int, vias: bool = False) -> npt.NDArray[np.bool_]:
+        """Whether the places of ``box``, (i, j) to (i, j) without the last, are free to ``net``: array (n, m).
+
+        present: cost of a net that has a place; less is what is left of conflicts.
+        """
         (a, b), (c, d) = np.array(box).reshape(2, 2) - self.first
         at = int(vias), level - 1, slice(a, c), slice(b, d)
-        return ((self.fixed[at] == FREE) | (self.fixed[at] == net + 1)) & (self.used[at] == 0)
+        return ((self.fixed[at] == FREE) | (self.fixed[at] == net + 1)) & (self.used[at] < present)
 
     def search(
         self, net: int, box: Box, sources: Sequence[Place], targets: Sequence[Place],

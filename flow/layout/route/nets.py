@@ -14,9 +14,9 @@ from .view import NetView
 
 MARGINS_NM = (10_000, 40_000)  # of the window around two places to be joined: of a try, of the next
 DETOUR_NM = 240_000  # the same where there was no path at all: round a block
-AROUND_PIN_NM = 12_000  # of that around a pin
+AROUND_PIN_NM = 20_000  # of that around a pin
 TOP_FACTOR = 8  # of the cost of the top layer where it is to be short
-JUMPER_NM, REACH = 1500, 40  # length of an antenna jumper; its distance from a pin, in steps of the grid
+JUMPER_NM, REACHES = 1500, (40, 80)  # length of an antenna jumper; its distance from a pin, in steps: or farther
 JUMPER_PLACES, APART = 6, 5  # that are tried where there is no room below a jumper, and the steps between them
 
 
@@ -116,12 +116,16 @@ def _jumper(view: NetView, pin: Accesses) -> Accesses:
     grid, top = view.board.grid, len(view.rules.layers) - 1
     dx, dy = view.rules.step
     right, up = (-(-JUMPER_NM // dx), 0) if view.rules.layers[top].horizontal else (0, -(-JUMPER_NM // dy))
-    places = {}
-    for _, i, j in list(pin)[:1]:
-        x, y = i - REACH - right, j - REACH - up
-        box = max(x, grid.first[0]), max(y, grid.first[1]), i + REACH + right, j + REACH + up
+    places: dict[Place, Place] = {}
+    _, i, j = next(iter(pin))
+    for reach in REACHES:
+        if places:
+            break
+        x, y = i - reach - right, j - reach - up
+        box = max(x, grid.first[0]), max(y, grid.first[1]), i + reach + right, j + reach + up
         west, south = int(box[0]), int(box[1])
-        free, vias = grid.free(view.net, top, box), grid.free(view.net, top - 1, box, vias=True)
+        present = view.board.present
+        free, vias = grid.free(view.net, top, box, present), grid.free(view.net, top - 1, box, present, vias=True)
         for column, row in np.argwhere(vias).tolist():
             for a, b in (column + right, row + up), (column - right, row - up):
                 if not (0 <= a < vias.shape[0] and 0 <= b < vias.shape[1] and vias[a, b]):
