@@ -103,7 +103,8 @@ def clock_nets(netlist: Netlist) -> set[str]:
     waiting = list(found)
     while waiting:
         driver = drivers.get(waiting.pop())
-        above = {net for pin, net in driver.pins.items() if pin in ("i", "clk")} if driver else set[str]()
+        pin = "clk" if driver and "clk" in driver.pins else "i"  # of a clock gate, of a buffer
+        above = {driver.pins[pin]} if driver and pin in driver.pins else set[str]()
         waiting += above - found
         found |= above
     return found

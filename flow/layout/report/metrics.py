@@ -81,6 +81,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "timing_rests_on": timing_basis(options),
         **{name: by_corner(name) for name in ("wns_ns", "whs_ns")},
         **{name: by_corner(name, "sta_blocks") for name in ("blocks_wns_ns", "blocks_whs_ns")},
+        **{name: by_corner(name) for name in ("slew_violations", "capacitance_violations")},
         "f_max_mhz": min((by_corner("f_max_mhz") or {"": None}).values()),
         **{name: by_corner(name, "power") for name in ("power_uw", "energy_pj_cycle")},
         "power_at_chip_clock_uw": at_chip_clock(by_corner("energy_pj_cycle", "power")),

@@ -100,9 +100,9 @@ class Board:
         self.routed.insert(rows)
         self.grid.use(rows, self.conflict())
 
-    def raise_present(self) -> None:
-        """Let places that nets have cost others more, up to PRESENT_MOST."""
-        more = min(GROWTH * self.present, PRESENT_MOST) - self.present
+    def charge(self, present: int) -> None:
+        """Let places that nets have cost others so much, at most PRESENT_MOST."""
+        more = min(present, PRESENT_MOST) - self.present
         for rows, _ in self.rows.values():
             self.grid.use(rows[rows[:, 0] > 0], more)
         self.present += more

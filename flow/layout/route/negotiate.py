@@ -16,7 +16,7 @@ from base.gds import write_gds
 from base.progress import line
 from platforms.coriolis import CoriolisPlatform
 
-from .board import Board
+from .board import GROWTH, PRESENT, Board
 from .nets import route_net
 from .route import Route
 from .violations import Violations, find, find_in_file, split_levels
@@ -59,6 +59,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
     waiting = sorted(wanted, key=lambda net: -_hpwl(board, net))  # the long ones while there is room: found faster
     for net in waiting:
         board.rip_up(net)
+    board.charge(PRESENT)
     patience = PATIENCE * len(waiting) + 1000
     while waiting:
         if len(waiting) >= TOLD:
@@ -88,7 +89,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
             state.routes[net] = found.route
             evicted += sorted(found.evicted)
         waiting = list(dict.fromkeys(evicted))
-        board.raise_present()
+        board.charge(GROWTH * board.present)
     return state
 
 

@@ -32,7 +32,7 @@ class RepairParameters:
 
     pdk: str = "sky130"
     corner: str = ""
-    slews_ns: tuple[float, ...] = field(default=(1.2, 0.8, 0.6, 0.5, 0.4, 0.4, 0.3), metadata={"unit": "ns"})
+    slews_ns: tuple[float, ...] = field(default=(1.0, 0.8, 0.6, 0.5, 0.4, 0.4, 0.3), metadata={"unit": "ns"})
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
 
     def __post_init__(self) -> None:

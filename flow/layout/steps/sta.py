@@ -22,6 +22,7 @@ report_checks -path_delay min -fields {{slew capacitance net}} -digits 4
 report_check_types -all_violators
 write_sdf -digits 4 -no_timestamp {sdf}
 """
+LIMITS = {"max_transition": "slew_violations", "max_capacitance": "capacitance_violations"}  # OpenSTA's: ours
 
 
 @dataclass(frozen=True)
@@ -37,13 +38,13 @@ class Sta(CornerStep[StaParameters]):
     """Slacks, and an SDF of all delays.
 
     wns_ns, whs_ns: worst slack of setup and hold. f_max_mhz: clock at which the setup slack is 0, with the same I/O
-    delays in ns.
+    delays in ns. slew_violations, capacitance_violations: pins beyond what the cells were characterized for.
     """
 
     name = "sta_{corner}"
     inputs = {"verilog": "stream_out.verilog", "spef": "extraction.{wires}", "sdc": "sdc", "liberty": "timing.{corner}"}
     outputs = {"report": "sta.txt", "sdf": "delays.sdf"}
-    metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz"}
+    metrics = {"wns_ns": "ns", "whs_ns": "ns", "f_max_mhz": "MHz", **dict.fromkeys(LIMITS.values(), "")}
     tools = ("sta",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -52,7 +53,15 @@ class Sta(CornerStep[StaParameters]):
         outputs["report"].write_text(report)
         worst = worst_slacks(report, "sta")
         f_max = round(1000 / (self.parameters.period_ns - worst["setup"]), 2)
-        return {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4), "f_max_mhz": f_max}
+        slacks = {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4)}
+        return slacks | {"f_max_mhz": f_max} | beyond_limits(report)
+
+
+def beyond_limits(report: str) -> dict[str, int]:
+    """How many pins are beyond a limit of the Liberty, by the name of the metric, from OpenSTA's output of SCRIPT."""
+    sections = re.split(r"(?m)^(max_\w+)$", report)
+    found = dict(zip(sections[1::2], sections[2::2], strict=True))
+    return {name: found.get(limit, "").count("(VIOLATED)") for limit, name in LIMITS.items()}
 
 
 def worst_slacks(report: str, step: str) -> dict[str, float]:
