@@ -14,10 +14,13 @@ def line(text: str) -> None:
 
 
 class Steps:
-    """A bar over the steps named in ``names``."""
+    """A bar over the steps named in ``names``.
 
-    def __init__(self, names: Iterable[str]) -> None:
-        self.names = list(names)
+    lines: whether each is a line where there is no terminal: of steps that take minutes.
+    """
+
+    def __init__(self, names: Iterable[str], lines: bool = False) -> None:
+        self.names, self.lines = list(names), lines
         self.bar = tqdm(
             total=len(self.names),
             file=sys.stderr,
@@ -36,6 +39,6 @@ class Steps:
         """Show ``text``: a step's name, which moves the bar, or a line about the step."""
         if text in self.names:
             self.bar.n = self.names.index(text)
-        if self.bar.disable:
+        if self.bar.disable and (self.lines or text not in self.names):
             print(f"{self.bar.n + 1:>3}/{len(self.names)} {text}", file=sys.stderr, flush=True)
         self.bar.set_description_str(text)

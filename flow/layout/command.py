@@ -42,7 +42,7 @@ def run(arguments: Namespace) -> int:
     options = Options(arguments.pdk, start, tuple(arguments.liberty), arguments.untimed, decks=decks)
     if arguments.design == SENSOR:
         steps = [f"{CHIP}: {step.name}" for step in all_steps(chosen, options)]
-        with Steps([*steps, *(step.name for step in die_steps(chosen, options))]) as bar:
+        with Steps([*steps, *(step.name for step in die_steps(chosen, options))], lines=True) as bar:
             summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
     else:
         summary, lines = block(chosen, options, arguments)
@@ -55,6 +55,6 @@ def block(chosen: Design, options: Options, arguments: Namespace) -> tuple[Path,
     if arguments.analog:
         raise ParameterError(f"analog = {arguments.analog}: must be with DESIGN={SENSOR} alone")
     steps = [f"{macro.name}: {step.name}" for macro in macro_designs(chosen) for step in all_steps(macro, options)]
-    with Steps([*steps, *(step.name for step in all_steps(chosen, options))]) as bar:
+    with Steps([*steps, *(step.name for step in all_steps(chosen, options))], lines=True) as bar:
         _, summary = lay_out(chosen, options, arguments.out, bar.note)
     return arguments.out / folder_name(chosen, options.pdk) / "summary.json", broken(summary)

@@ -47,7 +47,7 @@ def run(options: Namespace) -> int:
         raise ToolError(f"{', '.join(missing_tools())}: not found; get it from {INSTALL}; written: {written}")
     root = pdk_root(tech)
     names = [stage.log.removesuffix(".log") for stage in stages(tech, wire_corners(tech, root))]
-    with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))]) as bar:
+    with Steps([*names, "gds", "library", *(step.name for step in checks(chosen, tech))], lines=True) as bar:
         found = run_stages(folder, chosen.top, tech, root, bar.note)
         bar.note("gds")
         lefs = [root / tech.tech_lef, root / tech.cell_lef]
