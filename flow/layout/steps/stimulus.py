@@ -123,10 +123,16 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
         raise StepError("stimulus: the chip's frame is not the golden chip's")
-    lines = [line for line in map(settled, (folder / "tap.trace").read_text().splitlines()) if line]
+    lines = recorded((folder / "tap.trace").read_text())
     trace.write_text("\n".join(lines) + "\n")
     head = {"source": "frame", "scene": SCENE, "instance": ".".join(path)}
     return head | {"ports": ports, "cycles": len(lines), "results": results(lines, ports)}
+
+
+def recorded(tap: str) -> list[str]:
+    """The lines of a trace; the first is fresh, since what was before it is unknown."""
+    first, *lines = [line for line in map(settled, tap.splitlines()) if line]
+    return ["1" + first[1:], *lines]
 
 
 def settled(line: str) -> str:

@@ -3,7 +3,7 @@
 import pytest
 
 from flow.layout.netlist.verilog import modules
-from flow.layout.steps.stimulus import instance_of, middle, results, settled
+from flow.layout.steps.stimulus import instance_of, middle, recorded, results, settled
 from models.parameters import Window
 
 BLOCK = """
@@ -42,6 +42,10 @@ def test_a_reset_lasts_as_long_as_outputs_are_unknown():
     assert settled("0 1f x3") == "1 1f 03"
     assert settled("1 1f 3") == "1 1f 3" and settled("0 1f 3") == "0 1f 3"
     assert settled("1 x 3") == ""
+
+
+def test_a_trace_begins_fresh():
+    assert recorded("1 x 3\n0 1f 3\n0 1f x3\n0 2f 3\n") == ["1 1f 3", "1 1f 03", "0 2f 3"]
 
 
 def test_results_are_what_left():
