@@ -10,7 +10,7 @@ Ints = npt.NDArray[np.int32]
 
 
 class Bins(NamedTuple):
-    """ids[first[bin] : first[bin + 1]] are the rectangles that touch a bin; bin = column * rows + row."""
+    """Rectangles by bin: ids[first[bin] : first[bin + 1]] touch the bin column * rows + row."""
 
     left: int
     bottom: int

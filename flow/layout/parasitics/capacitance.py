@@ -38,8 +38,11 @@ Flags = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True)
 class Capacitances:
-    """own: fF of each box to all other nets and the substrate. pairs: (m, 2) nets that couple, the lower number first;
-    the substrate is the last net's number + 1. coupling: fF of each pair."""
+    """Capacitances of a layout.
+
+    own: fF of each box to all other nets and the substrate. pairs: (m, 2) nets that couple, the lower number first;
+    the substrate is the last net's number + 1. coupling: fF of each pair.
+    """
 
     own: Floats
     pairs: Ints

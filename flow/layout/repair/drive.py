@@ -15,7 +15,7 @@ SIZE = re.compile(r"(\w+_x)(\d+)")  # a cell's name: what it does, and its size
 
 @dataclass(frozen=True)
 class Drives:
-    """pF by (cell, pin). inputs: of input pins. limits: that an output drives within the slew asked for.
+    """Capacitances (pF) by (cell, pin). inputs: of input pins. limits: that an output drives within the slew asked for.
 
     sizes: every cell's larger forms, the smallest first.
     """

@@ -132,6 +132,8 @@ def repaired(
             larger = drives.stronger(cell, pin, load)
             if larger:
                 counts["sized"] += swap(plan, driver, larger)
+            elif net in plan.outside:
+                counts["buffers"] += drive_port(plan, drives, net, driver, load)
             else:
                 counts["buffers"] += split(plan, drives, net, driver, late(plan, drives, net, driver, sinks, slacks))
         if counts == before:
@@ -175,6 +177,21 @@ def swap(plan: Plan, name: str, cell: str) -> bool:
         return True
     plan.put(was, at)
     return False
+
+
+def drive_port(plan: Plan, drives: Drives, net: str, driver: str, load: float) -> int:
+    """Insert a buffer between a driver and the net of an output, whose ``load`` (pF) it takes; how many."""
+    if driver.endswith(OWN):
+        return 0
+    forms = [BUFFER.cell, *drives.sizes[BUFFER.cell]]
+    cell = next((cell for cell in forms if drives.limits[cell, BUFFER.output] >= load), forms[-1])
+    called = f"{net}_{plan.added}"
+    if not plan.put(BUFFER._replace(cell=cell).instance(f"{called}{OWN}", called, net), plan.point(driver)):
+        return 0
+    plan.added += 1
+    was = plan.instances[driver]
+    plan.instances[driver] = replace(was, pins=was.pins | {driver_pin(was, net): called})
+    return 1
 
 
 def split(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks) -> int:

@@ -7,7 +7,7 @@ SPACE_UM = 0.6  # from a wire to the next one on either side, as a mean over lay
 
 
 def femtofarad_um(tech: CoriolisPlatform, corner: str) -> float:
-    """fF of a um of wire, the mean over the layers that signals take; corner: of wires."""
+    """Capacitance (fF) of a um of wire, the mean over the layers that signals take; corner: of wires."""
     wires, metals, made = tech.wires[corner], tech.metals[1:-1], 0.0
     downwards = {made.upper: made for made in wires.crossings if made.lower == SUBSTRATE}
     for metal in metals:

@@ -128,6 +128,18 @@ def test_an_urgent_sink_does_not_wait_for_a_buffer():
     assert plan.instances["u0"].pins["i"] == "n" and plan.instances["u1"].pins["i"] != "n"
 
 
+def test_a_loaded_output_has_a_buffer_of_its_own():
+    plan = chain([10.0, 12.0])
+    plan.ports, plan.outside = {"a": (0.0, 0.0), "n": (20.0, 0.0)}, {"n": 0.03}
+    table = drives()
+    table.sizes["inv_x1"] = []
+    assert repaired(plan, table, set()) == {"sized": 0, "buffers": 1}
+    buffer = plan.instances["n_0_repair"]
+    assert buffer.cell == "buf_x4" and buffer.pins == {"i": "n_0", "q": "n"}
+    assert plan.instances["first"].pins["nq"] == "n_0" and plan.instances["u0"].pins["i"] == "n"
+    check_places(plan)
+
+
 def test_without_room_nothing_changes():
     plan = chain([10.0, 380.0])
     plan.rows = Rows(SITE)
