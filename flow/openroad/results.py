@@ -38,7 +38,7 @@ def summarize(
 
     found: figures of the stages' logs. folder: of the run. size_um: (width, height) of the die. checked: the checks.
     """
-    netlist = Netlist.read(checked.paths["place.netlist"])
+    netlist = Netlist.read(checked.paths["repair.netlist"])
     um2 = areas(checked.paths["library.liberty"])
     slacks = {name: worst(found, name, tech.corners) for name in ("wns_ns", "whs_ns")}
     spefs = {"placement": f"placement_{tech.corners[0]}", "global routes": f"global_{tech.corners[0]}"}

@@ -66,7 +66,7 @@ def given(
     return {
         "rtl": folder / f"{design.top}.v",
         "sdc": made / "final.sdc",
-        "place.netlist": made / "netlist.json",
+        "repair.netlist": made / "netlist.json",
         "floorplan.floorplan": made / "floorplan.json",
         "synthesis.verilog": folder / "netlist.v",
         "stream_out.verilog": folder / "final.v",

@@ -11,10 +11,12 @@ from base.command import main
 from base.steps import Runner
 from base.tools import ToolError, finish
 from flow.layout.design import DESIGNS, design
+from flow.layout.steps.library import Library
+from flow.layout.steps.parameters import PdkParameters
 from flow.layout.timing.constraints import sdc
 from flow.openroad import command
 from flow.openroad.netlists import write_synthesized
-from flow.openroad.signoff import given
+from flow.openroad.signoff import checks, given
 from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
 from flow.openroad.test import stub
 from flow.openroad.test.commands import COMMANDS, OLDER
@@ -88,6 +90,9 @@ def unchecked(design, tech, root, folder, size_um, note):
     """In place of the checks: their inputs alone."""
     runner = Runner(folder / "steps", given(design, tech, root, folder, size_um), note)
     runner.paths |= {"library.liberty": folder / "signoff" / f"{CORNERS[0]}.lib"}
+    steps = [Library(PdkParameters(tech.name)), *checks(design, tech)]
+    known = runner.paths.keys() | {f"{step.name}.{name}" for step in steps for name in step.outputs}
+    assert {source for step in steps for source in step.inputs.values()} <= known
     made = "fill.gds", "drc.report", "lvs.report", *(f"block_liberty_{corner}.liberty" for corner in CORNERS)
     runner.paths |= dict.fromkeys(made, folder / "final.gds")
     return runner
