@@ -10,9 +10,9 @@ LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
 
 # Arguments of `make sim`, each also an option of `talbot sim`
-SIM_OPTIONS := SCENE DEPTH FOCUS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
+SIM_OPTIONS := SCENE DEPTH F_NUMBER FOCAL FOCUS SCALE PUPIL MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
 quoted = '$(subst ','\'',$(1))'
-sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o))))) $(if $(PHASE),--phase)
+sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z_ a-z-) $(call quoted,$($(o))))) $(if $(PHASE),--phase)
 
 .PHONY: help
 help:  ## this list

@@ -16,6 +16,7 @@ from models.capture.operator import rounding
 from models.parameters import (
     AmpTiming,
     ArrayParameters,
+    CameraParameters,
     ElectricalParameters,
     FrameParameters,
     OpticsParameters,
@@ -115,8 +116,8 @@ def _integrals() -> list[Case]:
     for name, optics, bound in (
         ("m = 0", OpticsParameters(m=0.0), 1e-6),
         ("m = 1", OpticsParameters(m=1.0), 1e-4),
-        ("f/0.5", OpticsParameters(f_number=0.5, subsamples=16), 1e-4),
-        ("f/32", OpticsParameters(f_number=32.0), 1e-9),
+        ("f/0.5", OpticsParameters(CameraParameters(f_number=0.5), subsamples=16), 1e-4),
+        ("f/32", OpticsParameters(CameraParameters(f_number=32.0)), 1e-9),
         ("aperture 0.01 rad", OpticsParameters(aperture_sigma=0.01, subsamples=32), 1e-4),
         ("31 views", OpticsParameters(views=31, subsamples=4), 1e-6),
     ):

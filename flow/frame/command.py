@@ -11,11 +11,21 @@ from models.parameters import LANES, MODES
 from . import arguments as text
 
 if TYPE_CHECKING:
+    from models.parameters import CameraParameters
+
     from .request import FrameRequest
 
 
 INTEGERS = {"rows": (1, 1024), "cols": (1, 1536), "lanes": (min(LANES), max(LANES)), "threshold": (0, 127)}
 INTEGERS |= {"decimation": (0, 3), "seed": (0, 2**32 - 1)}
+
+CAMERA = {
+    "f-number": "focal length over the lens's diameter, 0.5..32 (default: 1.2)",
+    "focal": "focal length in m, 0.0001..1 (default: 0.00796)",
+    "focus": "distance of the focal plane in m (default: 0.207)",
+    "scale": "the scene is a model, 1:scale of its own metres (default: 14.5)",
+    "pupil": "distance of the exit pupil from the sensor in m (default: infinity, telecentric)",
+}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -23,7 +33,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--scene", default="motorcycle", help="name of a scene (--scene list shows them) or an image file")
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
-    add("--focus", help="disparity of the focal plane, px a view step, -100..100")
+    for name, words in CAMERA.items():
+        add(f"--{name}", help=words)
     add("--mode", default="edge", help="one of " + ", ".join(MODES))
     add("--threshold", default="10", help="edge mode: |code| below this is left out, 0..127")
     add("--rows", default="384", help="pixels, 1..1024")
@@ -60,20 +71,33 @@ def _request(a: Namespace) -> "FrameRequest":
     from .request import request
 
     numbers: dict[str, Any] = {name: text.integer(name, getattr(a, name), *ends) for name, ends in INTEGERS.items()}
-    rows, focus = numbers["rows"], None if a.focus is None else text.real("focus", a.focus, -100, 100)
+    rows = numbers["rows"]
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     plain = {name: getattr(a, name) for name in ("scene", "depth", "mode", "phase", "out")}
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
     window = partial(text.window, a.window)
-    return request(**plain, **numbers, window=window, mask=mask, focus=focus, noise=noise, waves=waves)
+    return request(**plain, **numbers, window=window, mask=mask, camera=_camera(a), noise=noise, waves=waves)
+
+
+def _camera(a: Namespace) -> "CameraParameters":
+    """The camera of the options ``a``."""
+    from models.parameters import CameraParameters
+
+    field = {"focal": "focal_length", "pupil": "exit_pupil"}
+    given = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
+    chosen = {field.get(n, n): text.real(n, v, 0, float("inf")) for n, v in given.items() if v is not None}
+    return CameraParameters(**chosen)
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
+    from .figures import camera_line
+
     psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.2f} dB"
     print(
         f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "
         f"{s['stream_mismatches']} stream bytes and {s['decoded_mismatches']} decoded samples differ from the model"
     )
+    print(f"  {camera_line(s)}")
     print(f"  {s['stream_bytes']:,} bytes for {s['samples']:,} samples ({s['compression_ratio']:.2f}:1) at {psnr}")
     print(
         f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "

@@ -66,6 +66,33 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     return {**micro, "total": sum(micro.values())}
 
 
+def camera_of(result: FrameResult) -> dict[str, float | None]:
+    """The camera and how far what stands, in m; exit_pupil_m: None is infinity."""
+    optics, depth = result.request.sensor.optics, result.exposed.scene.depth
+    lens = optics.camera
+    near, far = (None, None) if depth is None else (float(depth.min()), float(depth.max()))
+    return (
+        {"f_number": lens.f_number, "focal_length_m": lens.focal_length, "focus_m": lens.focus, "scale": lens.scale}
+        | {"views": optics.views, "exit_pupil_m": lens.exit_pupil, "magnification": lens.magnification}
+        | {"nearest_m": near, "farthest_m": far}
+    )
+
+
+def camera_line(summary: dict[str, Any]) -> str:
+    """What camera this is and how far what stands, in one line."""
+    c = summary["camera"]
+    pupil = "telecentric" if c["exit_pupil_m"] is None else f"exit pupil at {1e3 * c['exit_pupil_m']:.4g} mm"
+    text = f"f/{c['f_number']:g} lens of {1e3 * c['focal_length_m']:.4g} mm, {pupil}, focused at {_far(c['focus_m'])}"
+    if c["nearest_m"] is None:
+        return text
+    near, far = _far(c["nearest_m"]), _far(c["farthest_m"])
+    return f"{text}; the scene, 1:{c['scale']:g}, stands at {near if near == far else f'{near} to {far}'}"
+
+
+def _far(metres: float) -> str:
+    return f"{100 * metres:.3g} cm" if metres < 1 else f"{metres:.3g} m"
+
+
 def summarize(result: FrameResult) -> dict[str, Any]:
     """Figures for summary.json, without `wall_s`.
 
@@ -86,7 +113,8 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
         | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed}
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
-        | {"phase": frame.phase, "focus": asked.focus, "pixels": int(golden.read.sum()), "samples": golden.samples}
+        | {"camera": camera_of(result)}
+        | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}
         | {name: status[name] for name in ("conversions_made", "conversions_left_out")}
         | {"comparator_decisions": golden.decisions, "cycles": status["cycles"]}
         | {"frame_s_at_clock": status["cycles"] / sensor.chip.f_clk, "cycles_by_pin": chip.activity}

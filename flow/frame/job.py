@@ -49,8 +49,7 @@ class Clock:
 
 def see(request: FrameRequest) -> tuple[Scene, Plan]:
     """The scene that ``request`` names and the plan of its frame. Raises ParameterError."""
-    array, optics = request.sensor.array, request.sensor.optics
-    scene = load(request.scene, Sampling(array.rows, array.cols, optics.views, request.focus), request.depth)
+    scene = load(request.scene, Sampling.of(request.sensor), request.depth)
     return scene, plan(scene, request.sensor, request.frame)
 
 

@@ -11,6 +11,8 @@ from PIL.Image import Image
 
 from base import page
 
+from .figures import camera_line
+
 
 class Picture(NamedTuple):
     """A picture of the page. name: of its file, without a suffix. title: of its section, '' for none."""
@@ -62,4 +64,12 @@ def render(
     """The page as HTML. chip, where, errors: SVG texts of the chip, of where cycles went, of error against time."""
     drawn = {"chip": Markup(chip), "where": [Markup(svg) for svg in where], "errors": [Markup(svg) for svg in errors]}
     template = Path(__file__).with_name("report.html")
-    return page.render(template, s=summary, tiles=headline(summary), pictures=pictures, sheets=sheets, **drawn)
+    return page.render(
+        template,
+        s=summary,
+        camera=camera_line(summary),
+        tiles=headline(summary),
+        pictures=pictures,
+        sheets=sheets,
+        **drawn,
+    )

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from models import parameters
-from models.parameters import ALL_TYPES, FrameParameters, ParameterError, SensorParameters, Window
+from models.parameters import ALL_TYPES, CameraParameters, FrameParameters, ParameterError, SensorParameters, Window
 
 Cut = Callable[[Window], Window]  # of the full window
 
@@ -16,7 +16,6 @@ class FrameRequest:
     """One run of the main job.
 
     scene: a name of models.scene.scenes or an image file. depth: a file, or None.
-    focus: disparity of the focal plane (px a view step), or None for the scene's own.
     noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
     out: folder for the results, or None for build/sim/<scene>.
     """
@@ -25,7 +24,6 @@ class FrameRequest:
     frame: FrameParameters
     scene: str = "motorcycle"
     depth: str | None = None
-    focus: float | None = None
     noise: float = 1.0
     seed: int = 1
     waves: tuple[int, int] | None = None
@@ -35,8 +33,6 @@ class FrameRequest:
         self.sensor.check_window(self.frame.window)
         parameters.check_real("noise", self.noise, 0, 100)
         parameters.check_int("seed", self.seed, 0, 2**32 - 1)
-        if self.focus is not None:
-            parameters.check_real("focus", self.focus, -100, 100)
         if self.waves and self.waves[1] >= self.sensor.array.rows:
             first, last = self.waves
             raise ParameterError(f"waves = {first}:{last}: rows must be in 0..{self.sensor.array.rows - 1}")
@@ -53,15 +49,21 @@ class FrameRequest:
 
 
 def request(
-    rows: int = 384, cols: int = 384, lanes: int = 8, window: Cut | None = None, mask: int = ALL_TYPES, **rest: Any
+    rows: int = 384,
+    cols: int = 384,
+    lanes: int = 8,
+    camera: CameraParameters = CameraParameters(),
+    window: Cut | None = None,
+    mask: int = ALL_TYPES,
+    **rest: Any,
 ) -> FrameRequest:
-    """A FrameRequest for an array of ``rows`` x ``cols`` pixels.
+    """A FrameRequest for an array of ``rows`` x ``cols`` pixels behind ``camera``.
 
     window: the window to read, from the full one (all of it). rest: fields of FrameRequest and FrameParameters. Raises
     ParameterError.
     """
     array, chip = parameters.ArrayParameters(rows=rows, cols=cols), parameters.ChipParameters(lanes=lanes)
-    sensor = SensorParameters(array=array, chip=chip)
+    sensor = SensorParameters(array=array, chip=chip, optics=parameters.OpticsParameters(camera=camera))
     full = sensor.full_window
     own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)

@@ -13,11 +13,12 @@ from matplotlib.figure import Figure
 from base.charts import curves
 from models.afe import FrontEnd, trim_codes
 from models.capture import CaptureOperator
-from models.parameters import ArrayParameters, SensorParameters
+from models.parameters import ArrayParameters, CameraParameters, OpticsParameters, SensorParameters
 from models.pixel import optical_gains
 from models.scene import Sampling, Scene, load
 
 REPEATS = 9
+FOCAL_LENGTH = CameraParameters.focal_length  # a longer one for larger arrays: the pair must fill them
 
 
 def points(quick: bool) -> list[tuple[str, int]]:
@@ -28,8 +29,9 @@ def points(quick: bool) -> list[tuple[str, int]]:
 @cache
 def _scene(size: int) -> tuple[SensorParameters, Scene]:
     """Sensor and default scene of ``size`` x ``size`` pixels."""
-    sensor = SensorParameters(array=ArrayParameters(rows=size, cols=size))
-    return sensor, load("motorcycle", Sampling(size, size))
+    optics = OpticsParameters(camera=CameraParameters(focal_length=FOCAL_LENGTH * max(1.0, size / 384)))
+    sensor = SensorParameters(array=ArrayParameters(rows=size, cols=size), optics=optics)
+    return sensor, load("motorcycle", Sampling.of(sensor))
 
 
 def _codes(pair: npt.NDArray[np.floating], sensor: SensorParameters) -> npt.NDArray[np.integer]:

@@ -1,6 +1,7 @@
 """Every parameter once: frozen, validated, with unit, range and source."""
 
 from .array import COLS_MAX, ROWS_MAX, ArrayParameters
+from .camera import FOCUS_MAX, CameraParameters
 from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .divider import DIVIDERS
@@ -17,6 +18,7 @@ __all__ = [
     "COLS_MAX",
     "DIVIDERS",
     "ELEMENTARY_CHARGE",
+    "FOCUS_MAX",
     "LANES",
     "MODES",
     "ROWS_MAX",
@@ -25,6 +27,7 @@ __all__ = [
     "SHORT_TIMING",
     "AmpTiming",
     "ArrayParameters",
+    "CameraParameters",
     "ChipParameters",
     "ConverterParameters",
     "ElectricalParameters",

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from .camera import CameraParameters
 from .checks import check_int, check_real
 
 
@@ -11,8 +12,8 @@ class OpticsParameters:
 
     Attributes
     ----------
-    f_number : float
-        0.5..32; the lens accepts |nu| <= 1 / (2 f_number).
+    camera : CameraParameters
+        The lens; it accepts |nu| <= camera.nu_max around the chief ray.
     m : float
         Modulation depth, 0..1.
     aperture_sigma : float
@@ -31,7 +32,7 @@ class OpticsParameters:
     [Jayasuriya2017], Sec. 3.5.1 (f/1.2), Eq. 3.1 and Ch. 4.
     """
 
-    f_number: float = 1.2
+    camera: CameraParameters = CameraParameters()
     m: float = 0.7
     aperture_sigma: float = 0.2
     vignetting_power: float = 4.0
@@ -40,7 +41,6 @@ class OpticsParameters:
     subsamples: int = 8
 
     def __post_init__(self) -> None:
-        check_real("f_number", self.f_number, 0.5, 32)
         check_real("m", self.m, 0, 1)
         check_real("aperture_sigma", self.aperture_sigma, 0.01, 10)
         check_real("vignetting_power", self.vignetting_power, 0, 8)
@@ -50,5 +50,5 @@ class OpticsParameters:
 
     @property
     def nu_max(self) -> float:
-        """Largest accepted relative two-plane coordinate nu = tan(theta)."""
-        return 1 / (2 * self.f_number)
+        """Largest accepted relative two-plane coordinate nu, the tangent against the chief ray."""
+        return self.camera.nu_max

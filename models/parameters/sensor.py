@@ -1,21 +1,25 @@
 """The whole sensor: one object from which models, RTL, netlist, layout and documents are built."""
 
 from dataclasses import dataclass
+from math import hypot
 
 from .array import ArrayParameters
-from .checks import ParameterError
+from .checks import ParameterError, check_real
 from .chip import ChipParameters
 from .electrical import ConverterParameters, ElectricalParameters
 from .frame import Window
 from .optics import OpticsParameters
 from .tile import TileParameters
 
+CORNER = 1.75  # tangent under which a lens at most sees the array's corners, and these the lens: 60 degrees
+
 
 @dataclass(frozen=True)
 class SensorParameters:
     """All parameters of a sensor; by default the thesis's: 384 x 384 pixels in tiles of 4 x 6, f/1.2, eight lanes.
 
-    The array has at most 256 x 256 tiles.
+    The array has at most 256 x 256 tiles; its corners see the lens, and the lens them, under at
+    most 60 degrees.
 
     Attributes
     ----------
@@ -43,6 +47,10 @@ class SensorParameters:
     def __post_init__(self) -> None:
         if max(self.tile_rows, self.tile_cols) > 256:
             raise ParameterError(f"array = {self.array.rows} x {self.array.cols}: must be at most 256 x 256 tiles")
+        lens, corner = self.optics.camera, self.array.pitch * hypot(self.array.rows, self.array.cols) / 2
+        check_real("focal_length", lens.focal_length, corner / CORNER, max(1.0, corner))
+        if lens.exit_pupil is not None:
+            check_real("exit_pupil", lens.exit_pupil, corner / CORNER, 1000)
 
     @property
     def tile_rows(self) -> int:

@@ -1,76 +1,89 @@
-"""The camera in front of the sensor: depth, disparity and time of flight share one geometry.
+"""From depth to disparity and back: the camera of models/parameters/camera.py before a scene.
 
-The focal length and the field of view are those of the Middlebury motorcycle pair [Scharstein2014] as scikit-image
-ships it: 994.978 px, baseline 193.001 mm, the principal points 31.086 px apart, 500 x 741 px. All scenes use them.
+A scene's own metres are divided by the camera's scale: everything here and in a `Scene` is in metres from the camera.
 """
 
 import numpy as np
 import numpy.typing as npt
 
+from models.parameters import FOCUS_MAX, CameraParameters
+
 from .sampling import Sampling
 
-FOCAL_LENGTH_PX = 994.978  # at the resolution of the stereo pair
-BASELINE = 0.193001  # m
-DOFFS_PX = 31.086
-FIELD = (480, 720)  # px of the pair that fill the array; the rest is a margin for the outer views
-APERTURE = BASELINE / 2  # m: width of the lens, all views together. Our choice: about -2..2 px per view step.
-REFERENCE_DEPTH = 3.0  # m: depth of the reference plane (disparity 0), and of a scene without depth
-
-DEPTH_MAX = 1000.0  # m: represents infinity
+REFERENCE = 3.0  # m of the scene: middle of the motorcycle and of the tilted plane
+PLANE = 3.72  # m of the scene: where pictures without depth stand, 1 px a view step behind the default focal plane
 
 
-def zoom(sampling: Sampling) -> float:
-    """Pixels of the array per pixel of the stereo pair.
+def scaled(own: npt.ArrayLike, camera: CameraParameters) -> npt.NDArray[np.float64]:
+    """Metres from the camera of a scene's own metres.
+
+    Parameters
+    ----------
+    own : array
+        In m of the scene.
+    camera : CameraParameters
+        The camera.
+
+    Returns
+    -------
+    float64
+        In m; at most FOCUS_MAX.
+    """
+    return np.minimum(np.asarray(own, float) / camera.scale, FOCUS_MAX)
+
+
+def per_inverse_metre(sampling: Sampling) -> float:
+    """Disparity of a surface by how much nearer it is than the focal plane.
 
     Parameters
     ----------
     sampling : Sampling
-        Size of the array.
+        Views and camera.
 
     Returns
     -------
     float
-        Zoom.
+        In px per view step for each 1/m.
     """
-    return max(sampling.rows / FIELD[0], sampling.cols / FIELD[1])
-
-
-def _per_inverse_metre(sampling: Sampling) -> float:
-    return FOCAL_LENGTH_PX * zoom(sampling) * APERTURE / sampling.views
+    camera = sampling.camera
+    return camera.principal_distance**2 * 2 * camera.nu_max / sampling.views / sampling.pitch
 
 
 def disparity(depth: npt.ArrayLike, sampling: Sampling) -> npt.NDArray[np.float64]:
-    """Disparity of a depth against the reference plane.
+    """Disparity of a depth against the focal plane.
 
     Parameters
     ----------
     depth : array
-        In m.
+        In m from the camera.
     sampling : Sampling
-        Size of the array, and views.
+        Views and camera.
 
     Returns
     -------
     float64
         In px per view step, positive towards the camera.
     """
-    return _per_inverse_metre(sampling) * (1 / np.asarray(depth, float) - 1 / REFERENCE_DEPTH)
+    return per_inverse_metre(sampling) * (1 / np.asarray(depth, float) - 1 / sampling.camera.focus)
 
 
-def depth(disparity_: npt.ArrayLike, sampling: Sampling) -> npt.NDArray[np.float64]:
-    """Depth of a disparity against the reference plane.
+def depth(disparity_: npt.ArrayLike, sampling: Sampling, reference: float | None = None) -> npt.NDArray[np.float64]:
+    """Depth of a disparity.
 
     Parameters
     ----------
     disparity_ : array
         In px per view step, positive towards the camera.
     sampling : Sampling
-        Size of the array, and views.
+        Views and camera.
+    reference : float, optional
+        Depth of disparity 0 in m from the camera; None is the focal plane.
 
     Returns
     -------
     float64
-        In m; DEPTH_MAX at and beyond infinity.
+        In m; FOCUS_MAX at and beyond infinity.
     """
-    inverse = np.asarray(disparity_, float) / _per_inverse_metre(sampling) + 1 / REFERENCE_DEPTH
-    return 1 / np.maximum(inverse, 1 / DEPTH_MAX)
+    start = 1 / (sampling.camera.focus if reference is None else reference)
+    inverse = np.asarray(disparity_, float) / per_inverse_metre(sampling) + start
+    return 1 / np.maximum(inverse, 1 / FOCUS_MAX)

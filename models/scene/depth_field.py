@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from .camera import DEPTH_MAX
+from models.parameters import FOCUS_MAX
+
 from .views import view
 
 
@@ -41,13 +42,13 @@ def view_depths(
                 continue
             start, slope = line
             surface = view(image, np.asarray(disparity, float), dv, du)[1]
-            yield v, u, 1 / np.maximum(start + slope * surface, 1 / DEPTH_MAX)
+            yield v, u, 1 / np.maximum(start + slope * surface, 1 / FOCUS_MAX)
 
 
 def _inverse_depth(disparity: npt.NDArray[np.floating], depth: npt.NDArray[np.floating]) -> tuple[float, float] | None:
     """(a, b) of 1 / depth = a + b * disparity, from the nearest and the farthest pixel; None where all are equal."""
     disparity, inverse = np.ravel(disparity), 1 / np.ravel(depth)
-    finite = inverse > 2 / DEPTH_MAX  # at infinity depth is cut off
+    finite = inverse > 2 / FOCUS_MAX  # at infinity depth is cut off
     if not finite.any() or not np.ptp(disparity[finite]):
         return None
     near, far = np.argmax(np.where(finite, disparity, -np.inf)), np.argmin(np.where(finite, disparity, np.inf))

@@ -1,7 +1,8 @@
-"""From a depth file next to a picture to disparity against the reference plane (models/scene/camera.py).
+"""From a depth file next to a picture to metres from the camera. The files hold metres of the scene (1:scale).
 
 .npy                (rows, cols), depth in m, 0.1..1000
-.npz                one array: `depth` (m, the same) or `disparity` (px per view step, -100..100, at the array's size)
+.npz                one array: `depth` (m, the same) or `disparity` (px per view step, -100..100, against
+                    `camera.REFERENCE`, at the array's size)
 16-bit image        depth in mm, 100..65535
 8-bit image         inverse depth: 0 is 6 m, 255 is 2 m, linear in 1/m (brighter is nearer)
 """
@@ -23,7 +24,7 @@ NEAR, FAR = 2.0, 6.0  # m, of 8-bit images
 BYTES_MAX = 2**30  # of an array in an .npz
 
 
-def read_disparity(path: str | Path, sampling: Sampling, picture_shape: tuple[int, int]) -> npt.NDArray[np.float64]:
+def read_depth(path: str | Path, sampling: Sampling, picture_shape: tuple[int, int]) -> npt.NDArray[np.float64]:
     """Read a depth file.
 
     Parameters
@@ -39,7 +40,7 @@ def read_disparity(path: str | Path, sampling: Sampling, picture_shape: tuple[in
     Returns
     -------
     float64 (rows, cols)
-        Disparity against the reference plane in px per view step.
+        Depth in m from the camera.
 
     Raises
     ------
@@ -55,13 +56,13 @@ def read_disparity(path: str | Path, sampling: Sampling, picture_shape: tuple[in
     values = resample.pick(values, *sampling.shape, box=resample.centre_box(height, width, *sampling.shape))
     if kind == "disparity":
         check_values("disparity", values, -100, 100)
-        return values
+        return camera.depth(values, sampling, float(camera.scaled(camera.REFERENCE, sampling.camera)))
     if kind == "inverse":
-        return camera.disparity(1 / (1 / FAR + values / 255 * (1 / NEAR - 1 / FAR)), sampling)
+        return camera.scaled(1 / (1 / FAR + values / 255 * (1 / NEAR - 1 / FAR)), sampling.camera)
     if kind == "mm":
         values = values / 1000
     check_values("depth", values, 0.1, 1000)
-    return camera.disparity(values, sampling)
+    return camera.scaled(values, sampling.camera)
 
 
 def _read(path: Path) -> tuple[npt.NDArray[np.generic], str]:

@@ -1,4 +1,8 @@
-"""The Middlebury motorcycle pair of scikit-image [Scharstein2014] as a light field: the default scene."""
+"""The Middlebury motorcycle pair of scikit-image [Scharstein2014] as a light field: the default scene.
+
+The pair's calibration: focal length 994.978 px, baseline 193.001 mm, the principal points 31.086 px apart,
+500 x 741 px. A camera of another focal length sees another part of it.
+"""
 
 from collections.abc import Callable
 
@@ -6,10 +10,16 @@ import numpy as np
 import numpy.typing as npt
 from skimage.data import stereo_motorcycle
 
+from models.parameters import check_real
+
 from . import camera, resample, warp
 from .sampling import Sampling
 from .scene import Scene
 from .views import Second, light_field
+
+FOCAL_LENGTH_PX = 994.978
+BASELINE = 0.193001  # m
+DOFFS_PX = 31.086
 
 
 def motorcycle(sampling: Sampling) -> Scene:
@@ -18,7 +28,7 @@ def motorcycle(sampling: Sampling) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
 
     Returns
     -------
@@ -30,15 +40,15 @@ def motorcycle(sampling: Sampling) -> Scene:
     [Scharstein2014].
     """
     left, right, measured = stereo_motorcycle()
-    zoom = camera.zoom(sampling)
+    lens = sampling.camera
+    _check_field(measured.shape, sampling)
+    zoom = lens.principal_distance / sampling.pitch / FOCAL_LENGTH_PX  # px of the array per px of the pair
     measured = np.ascontiguousarray(measured, float)
     unknown = ~np.isfinite(measured)
     measured[unknown] = 0
     warp.fill_rows(measured, unknown)
-    inverse_depth = (measured + camera.DOFFS_PX) / (camera.FOCAL_LENGTH_PX * camera.BASELINE)
-
-    focus = sampling.focus_or(0.0)
-    disparity = camera.disparity(1 / inverse_depth, sampling) - focus
+    inverse_depth = (measured + DOFFS_PX) / (FOCAL_LENGTH_PX * BASELINE) * lens.scale
+    disparity = camera.disparity(1 / inverse_depth, sampling)
     margin = _margin(measured.shape, disparity, sampling, zoom)
     crop = _Crop(measured.shape, sampling, zoom, margin)
     disparity = crop(disparity, resample.pick)
@@ -46,8 +56,8 @@ def motorcycle(sampling: Sampling) -> Scene:
 
     # A pixel of the left picture is measured * zoom to the left in the right one, whose crop
     # starts `start` px further left so that it holds the content of the left crop.
-    scale = camera.BASELINE * sampling.views / camera.APERTURE
-    offset = (focus - float(camera.disparity(np.inf, sampling))) * scale - camera.DOFFS_PX * zoom
+    scale = FOCAL_LENGTH_PX * zoom * BASELINE / lens.scale / camera.per_inverse_metre(sampling)
+    offset = -float(camera.disparity(np.inf, sampling)) * scale - DOFFS_PX * zoom
     start = min(int(np.median(measured) * zoom), int(crop.box[0] * zoom))
     other = crop(resample.linear(right), resample.resize, -start / zoom)
     second = Second(other, disparity, scale, offset - start)
@@ -62,6 +72,14 @@ def motorcycle(sampling: Sampling) -> Scene:
         disparity[inner].copy(),
         1 / crop(inverse_depth, resample.pick)[inner],
     )
+
+
+def _check_field(shape: tuple[int, ...], sampling: Sampling) -> None:
+    """The pair's pictures must fill the array."""
+    lens = sampling.camera
+    needed = max(sampling.rows / shape[0], sampling.cols / shape[1]) * sampling.pitch * FOCAL_LENGTH_PX
+    low = needed * lens.focal_length / lens.principal_distance
+    check_real("focal_length (of the scene motorcycle)", lens.focal_length, low, max(1.0, low))
 
 
 class _Crop:

@@ -7,11 +7,11 @@ import numpy.typing as npt
 from skimage import data
 
 from . import camera, resample
-from .depth_file import read_disparity
+from .depth_file import read_depth
 from .picture_file import read_luminance
 from .sampling import Sampling
 from .scene import Scene
-from .targets import FOCUS
+from .targets import IN_FOCUS
 from .views import light_field
 
 PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "page", "rocket", "text")
@@ -25,7 +25,7 @@ def photograph(name: str, sampling: Sampling) -> Scene:
     name : str
         One of PHOTOGRAPHS.
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
 
     Returns
     -------
@@ -44,7 +44,7 @@ def picture(path: str | Path, sampling: Sampling, depth: str | Path | None = Non
     path : path
         The image.
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
     depth : path, optional
         A depth file (models/scene/depth_file.py); None is a plane.
 
@@ -59,21 +59,21 @@ def picture(path: str | Path, sampling: Sampling, depth: str | Path | None = Non
         For a file that is missing, damaged or of a wrong shape.
     """
     luminance = read_luminance(path, *sampling.shape)
-    disparity = None if depth is None else read_disparity(depth, sampling, luminance.shape)
-    return _on_depth(Path(path).stem, luminance, sampling, disparity)
+    metres = None if depth is None else read_depth(depth, sampling, luminance.shape)
+    return _on_depth(Path(path).stem, luminance, sampling, metres)
 
 
 def _on_depth(
-    name: str, luminance: npt.NDArray[np.float32], sampling: Sampling, raw: npt.NDArray[np.float64] | None = None
+    name: str, luminance: npt.NDArray[np.float32], sampling: Sampling, depth: npt.NDArray[np.float64] | None = None
 ) -> Scene:
-    """raw: disparity against the reference plane; None is a plane `FOCUS` px per step beyond the focal plane."""
+    """depth: in m from the camera; None is the plane of pictures without depth."""
     rows, cols = sampling.shape
     height, width = luminance.shape
     image = resample.resize(luminance, rows, cols, resample.centre_box(height, width, rows, cols))
     image = np.clip(image, 0, 1)  # rounding of the resampling
-    focus = sampling.focus_or(FOCUS if raw is None else 0.0)
-    disparity = np.zeros(sampling.shape) - focus if raw is None else raw - focus
-    flat = not disparity.any()
+    if depth is None:
+        depth = np.full(sampling.shape, camera.scaled(camera.PLANE, sampling.camera))
+    disparity = camera.disparity(depth, sampling)
+    flat = bool(np.abs(disparity).max() * sampling.views < IN_FOCUS)
     field = image[None, None].astype(sampling.dtype) if flat else light_field(image, disparity, sampling)
-    depth = camera.depth(np.zeros(sampling.shape) if raw is None else raw, sampling)
     return Scene(name, sampling.views, field, image.astype(sampling.dtype), disparity, depth)

@@ -35,7 +35,7 @@ def load(scene: str, sampling: Sampling, depth: str | Path | None = None) -> Sce
     scene : str
         A name in `scenes`, `name:number`, or a path.
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
     depth : path, optional
         Depth file of an image file.
 

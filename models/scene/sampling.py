@@ -1,18 +1,19 @@
-"""Sampling of a scene: array size, views and focal plane."""
+"""Sampling of a scene: array size, views and camera."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import check_choice, check_int, check_real
+from models.parameters import ArrayParameters, CameraParameters, SensorParameters, check_choice, check_int, check_real
 
 DTYPES = ("float32", "float64")
 
 
 @dataclass(frozen=True)
 class Sampling:
-    """One array size, one angular sampling, one focal plane.
+    """One array size, one angular sampling, one camera.
 
     Attributes
     ----------
@@ -20,9 +21,10 @@ class Sampling:
         1..1536 pixels.
     views : int
         Views along each axis, 1..31.
-    focus : float or None
-        Disparity of the focal plane against the reference plane (models/scene/camera.py), -100..100 px per view
-        step, towards the camera; None is the scene's own.
+    camera : CameraParameters
+        The lens, its focus, and the scale of the scene.
+    pitch : float
+        Of the pixels, 1e-7..1e-3 m.
     dtype : str
         'float32' or 'float64', the type of the light field.
     """
@@ -30,7 +32,8 @@ class Sampling:
     rows: int = 384
     cols: int = 384
     views: int = 5
-    focus: float | None = None
+    camera: CameraParameters = CameraParameters()
+    pitch: float = ArrayParameters.pitch
     dtype: str = "float64"
 
     def __post_init__(self) -> None:
@@ -38,8 +41,26 @@ class Sampling:
         check_int("cols", self.cols, 1, 1536)
         check_int("views", self.views, 1, 31)
         check_choice("dtype", self.dtype, DTYPES)
-        if self.focus is not None:
-            check_real("focus", self.focus, -100, 100)
+        check_real("pitch", self.pitch, 1e-7, 1e-3)
+
+    @classmethod
+    def of(cls, sensor: SensorParameters, dtype: str = "float64") -> Self:
+        """Sampling of a sensor.
+
+        Parameters
+        ----------
+        sensor : SensorParameters
+            The sensor.
+        dtype : str
+            'float32' or 'float64'.
+
+        Returns
+        -------
+        Sampling
+            With the sensor's array, views and camera.
+        """
+        array, optics = sensor.array, sensor.optics
+        return cls(array.rows, array.cols, optics.views, optics.camera, array.pitch, dtype)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -50,18 +71,3 @@ class Sampling:
     def steps(self) -> npt.NDArray[np.float64]:
         """Offset of every view from the centre, in view steps: (views,)."""
         return np.arange(self.views, dtype=np.float64) - (self.views - 1) / 2
-
-    def focus_or(self, default: float) -> float:
-        """Focal plane, or a default where none is set.
-
-        Parameters
-        ----------
-        default : float
-            In px per view step of a 5 x 5 light field.
-
-        Returns
-        -------
-        float
-            In px per view step.
-        """
-        return default * 5 / self.views if self.focus is None else float(self.focus)

@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, check_choice, check_int
+from models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int
 
-from .camera import DEPTH_MAX
 from .sampling import DTYPES
 
 RADIANCE_MAX = 16.0  # 1 = diffuse white; highlights and the saturated target go above it
@@ -69,7 +68,7 @@ class Scene:
         for name, low, high, shape in (
             ("image", 0, RADIANCE_MAX, self.shape),
             ("disparity", -1e4, 1e4, self.shape),
-            ("depth", 1e-3, DEPTH_MAX, self.shape),
+            ("depth", 1e-3, FOCUS_MAX, self.shape),
             ("polarization", -1, 1, (2, *self.shape)),
         ):
             value = getattr(self, name)

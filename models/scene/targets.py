@@ -1,7 +1,7 @@
 """Analytic targets: radiance is a formula of the position, so every view is exact.
 
-Positions are px from the middle of the array, x to the right, y down. Each target is on a plane `focus` px per view
-step beyond the focal plane (default 1, so that edges respond; 0 is in focus).
+Positions are px from the middle of the array, x to the right, y down. Each target but the tilted plane is on a plane at
+`camera.PLANE`, out of the default focus, so that edges respond.
 """
 
 from collections.abc import Callable
@@ -15,9 +15,9 @@ from .scene import Scene
 
 Floats = npt.NDArray[np.float64]
 
-FOCUS = 1.0  # px per view step
 WAVELENGTH = 24.0  # px, of the tilted plane's texture
-TILT = 4.0  # px per view step between the left and the right end of the tilted plane, both sides of focus
+TILT = 0.26  # 1/m of the scene between the left and the right end of the tilted plane, both sides of camera.REFERENCE
+IN_FOCUS = 1e-6  # px across the whole pupil: rounding of a focus that is meant to hit the plane
 POINT_SIGMA = 0.7  # px
 SATURATED = 8.0  # radiance: fills the wells several times over
 
@@ -28,7 +28,7 @@ def flat(sampling: Sampling, level: float = 50.0) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
     level : float
         Percent of white, 0..1600.
 
@@ -46,7 +46,7 @@ def saturated(sampling: Sampling) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def black(sampling: Sampling) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
 
     Returns
     -------
@@ -78,7 +78,7 @@ def point(sampling: Sampling) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
 
     Returns
     -------
@@ -94,7 +94,7 @@ def edge(sampling: Sampling, degrees: float = 20.0) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
     degrees : float
         Angle from vertical.
 
@@ -108,12 +108,12 @@ def edge(sampling: Sampling, degrees: float = 20.0) -> Scene:
 
 
 def tilted(sampling: Sampling) -> Scene:
-    """Plane turned about a vertical axis through the focal plane, with a woven texture.
+    """Plane turned about a vertical axis through the reference plane, with a woven texture.
 
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
 
     Returns
     -------
@@ -121,9 +121,11 @@ def tilted(sampling: Sampling) -> Scene:
         All views, with disparity and depth.
     """
     y, x = _places(sampling)
-    # The slope stays below that of an outer view's rays.
-    slope = min(TILT * 5 / sampling.views / max(sampling.cols - 1, 1), 0.25 / max(sampling.steps[-1], 1))
-    shift = sampling.focus_or(0.0)
+    # The slope stays below that of the outermost rays.
+    across = TILT * sampling.camera.scale * camera.per_inverse_metre(sampling)
+    slope = min(across / max(sampling.cols - 1, 1), 0.5 / sampling.views)
+    middle = camera.scaled(camera.REFERENCE, sampling.camera)
+    shift = -float(camera.disparity(middle, sampling))
 
     def _texture(v: Floats, u: Floats) -> Floats:
         k = 2 * np.pi / WAVELENGTH
@@ -135,10 +137,9 @@ def tilted(sampling: Sampling) -> Scene:
             # The disparity d = slope * place - shift at the position that this view shows: place = x + du * d, solved.
             place = (x - du * shift) / (1 - du * slope)
             field[i, j] = _texture(y + dv * (slope * place - shift), place)
-    raw = np.broadcast_to(slope * x, sampling.shape)
-    return Scene(
-        "tilted", sampling.views, field, _texture(y, x).astype(sampling.dtype), raw - shift, camera.depth(raw, sampling)
-    )
+    disparity = np.broadcast_to(slope * x - shift, sampling.shape)
+    depth = camera.depth(disparity, sampling)
+    return Scene("tilted", sampling.views, field, _texture(y, x).astype(sampling.dtype), disparity, depth)
 
 
 def polarized(sampling: Sampling, degree: float = 25.0) -> Scene:
@@ -147,7 +148,7 @@ def polarized(sampling: Sampling, degree: float = 25.0) -> Scene:
     Parameters
     ----------
     sampling : Sampling
-        Array, views and focal plane.
+        Array, views and camera.
     degree : float
         Degree of polarization in percent, 0..100.
 
@@ -168,27 +169,25 @@ def _places(sampling: Sampling) -> tuple[Floats, Floats]:
     ) / 2
 
 
+def _plane(sampling: Sampling) -> tuple[Floats, Floats]:
+    """Disparity and depth of the plane of pictures without depth."""
+    depth = np.full(sampling.shape, camera.scaled(camera.PLANE, sampling.camera))
+    return camera.disparity(depth, sampling), depth
+
+
 def _uniform(name: str, sampling: Sampling, radiance: float, polarization: Floats | None = None) -> Scene:
     image = np.full(sampling.shape, radiance, sampling.dtype)
-    return Scene(
-        name,
-        sampling.views,
-        image[None, None],
-        image,
-        depth=np.full(sampling.shape, camera.REFERENCE_DEPTH),
-        polarization=polarization,
-    )
+    return Scene(name, sampling.views, image[None, None], image, depth=_plane(sampling)[1], polarization=polarization)
 
 
 def _on_plane(name: str, sampling: Sampling, radiance: Callable[[Floats, Floats], Floats]) -> Scene:
     """``radiance(y, x)`` on a plane; in focus all views are equal, and one is kept."""
     y, x = _places(sampling)
-    d = -sampling.focus_or(FOCUS)
-    steps = sampling.steps if d else np.zeros(1)
+    disparity, depth = _plane(sampling)
+    d = disparity.flat[0]
+    steps = sampling.steps if abs(d) * sampling.views > IN_FOCUS else np.zeros(1)
     field = np.stack(
         [np.stack([np.broadcast_to(radiance(y + dv * d, x + du * d), sampling.shape) for du in steps]) for dv in steps]
     ).astype(sampling.dtype)
     image = np.broadcast_to(radiance(y, x), sampling.shape).astype(sampling.dtype)
-    return Scene(
-        name, sampling.views, field, image, np.full(sampling.shape, d), np.full(sampling.shape, camera.REFERENCE_DEPTH)
-    )
+    return Scene(name, sampling.views, field, image, disparity, depth)

@@ -12,6 +12,7 @@ from models.parameters import ArrayParameters, FrameParameters, SensorParameters
 from models.pixel import demodulate, depth_of, optical_gains, phase_of
 from models.plan import plan
 from models.scene import Sampling, Scene, load
+from models.scene.test.focused import focused
 
 ROWS, COLS = 38, 62
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS))
@@ -46,7 +47,7 @@ def test_unread_pixels(mask, window, mode):
 
 def test_one_view_where_there_is_no_angle():
     frame = FrameParameters(FULL)
-    few = _scene("coins", focus=0.0)
+    few = load("coins", focused(Sampling(ROWS, COLS), 0.0))
     made = plan(few, SENSOR, frame)
     assert not made.angular and "views" in _what(made)
     many = Scene("copies", 5, np.ascontiguousarray(few.full_light_field), few.image)

@@ -25,6 +25,7 @@ from models.reconstruct import (
 )
 from models.reconstruct.edges import laplacian
 from models.scene import Sampling, load
+from models.scene.test.focused import focused
 
 TILE = TileParameters()
 
@@ -131,7 +132,7 @@ def test_linear_estimate_from_some_types_and_from_none():
 
 def test_edge_operator_is_the_trimmed_capture_of_a_plane():
     rows, cols = 24, 36
-    scene = load("edge:30", Sampling(rows, cols, focus=1.0))  # whole steps: bilinear is exact
+    scene = load("edge:30", focused(Sampling(rows, cols), -1.0))  # whole steps: bilinear is exact
     sensor = _sensor(rows, cols)
     g = optical_gains(sensor.tile, sensor.optics)
     a, b = CaptureOperator(sensor).forward(scene.light_field)
@@ -148,7 +149,7 @@ def test_laplacian_is_symmetric_and_blind_to_the_mean():
 
 def test_image_comes_back_from_its_edges():
     rows, cols = 96, 96
-    sensor, scene = _sensor(rows, cols), load("camera", Sampling(rows, cols, focus=2.0))
+    sensor, scene = _sensor(rows, cols), load("camera", focused(Sampling(rows, cols), -2.0))
     d = EdgeOperator(sensor, scene.disparity, optical_gains(sensor.tile, sensor.optics))
     found = image_from_edges(d.forward(scene.image), d, Solver(smoothness=1e-5, iterations=80))
     assert abs(found.mean()) < 1e-12
@@ -158,7 +159,7 @@ def test_image_comes_back_from_its_edges():
 
 def test_rebuild_from_codes():
     rows, cols = 96, 96
-    sensor, scene = _sensor(rows, cols), load("camera", Sampling(rows, cols, focus=2.0))
+    sensor, scene = _sensor(rows, cols), load("camera", focused(Sampling(rows, cols), -2.0))
     trim = tuple(trim_codes(optical_gains(sensor.tile, sensor.optics)).tolist())
     values = EdgeOperator(sensor, scene.disparity, trim_gain(trim)).forward(scene.image)
     codes = np.rint(values * codes_per_unit(sensor, AmpTiming()))

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.parameters import ParameterError
+from models.parameters import CameraParameters, ParameterError
 from models.scene import Sampling, load
 
-SMALL = Sampling(rows=16, cols=24, focus=0.0)
+from .focused import focused
+
+SMALL = focused(Sampling(rows=16, cols=24), 0.0)
 
 
 def _saved(tmp_path, array, name="p.png", mode=None):
@@ -70,7 +72,7 @@ def test_huge_picture(tmp_path, suffix):
     codes[:, 5000:] = 255
     path = tmp_path / ("p." + suffix)
     Image.fromarray(codes).save(path, **({"compress_level": 1} if suffix == "png" else {}))
-    image = load(str(path), Sampling(rows=16, cols=16, focus=0.0)).image
+    image = load(str(path), focused(Sampling(rows=16, cols=16), 0.0)).image
     assert image[:, :7].max() < 0.01 and image[:, 9:].min() > 0.99
 
 
@@ -143,16 +145,18 @@ def _depths(tmp_path):
 def test_every_depth_file_says_the_same(tmp_path, picture):
     found = [load(picture, SMALL, depth=d) for d in _depths(tmp_path)]
     for scene in found:
-        np.testing.assert_allclose(scene.depth, 2.0)
+        np.testing.assert_allclose(scene.depth, 2.0 / 14.5)
         np.testing.assert_allclose(scene.disparity, found[0].disparity)
-        assert (scene.disparity > 0).all()  # nearer than the reference plane of 3 m
+        assert (scene.disparity > 0).all()  # nearer than the focal plane
         assert scene.angular
 
 
 def test_disparity_file(tmp_path, picture):
     np.savez(tmp_path / "d.npz", disparity=np.linspace(-0.05, 0.05, 48) * np.ones((32, 1)))
-    scene = load(picture, SMALL, depth=str(tmp_path / "d.npz"))
-    assert -0.05 <= scene.disparity.min() < -0.04 < 0.04 < scene.disparity.max() <= 0.05
+    sampling = Sampling(16, 24, camera=CameraParameters(focus=3 / 14.5))  # on the files' reference plane
+    scene = load(picture, sampling, depth=str(tmp_path / "d.npz"))
+    assert -0.05 < scene.disparity.min() < -0.04
+    np.testing.assert_allclose(scene.disparity.max(), 0.05)
 
 
 @pytest.mark.parametrize(

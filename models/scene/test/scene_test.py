@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
-from models.parameters import ParameterError
+from models.parameters import CameraParameters, ParameterError
 from models.scene import Sampling, Scene, load, scenes
+
+from .focused import focused
 
 SMALL = Sampling(rows=24, cols=36)
 
@@ -28,29 +30,30 @@ def test_extreme_shapes(name, shape, views):
 
 
 def test_motorcycle_disparity_and_depth_fit_the_calibration():
-    scene = load("motorcycle", Sampling(rows=96, cols=96))
-    assert 1.9 < scene.depth.min() < 2.3 and 4.5 < scene.depth.max() < 5.5
-    # 1/4 of the default array: a quarter of -2..2 px, 0 at the focal plane of 3 m, nearer is positive.
-    assert -0.6 < scene.disparity.min() < -0.4 and 0.4 < scene.disparity.max() < 0.65
-    near = scene.depth < 2.95
-    assert (scene.disparity[near] > 0).all() and (scene.disparity[scene.depth > 3.05] < 0).all()
+    scene = load("motorcycle", Sampling())
+    assert 1.9 < 14.5 * scene.depth.min() < 2.3 and 4.5 < 14.5 * scene.depth.max() < 5.5
+    assert -2.1 < scene.disparity.min() < -1.8 and 1.9 < scene.disparity.max() < 2.3
+    near = scene.depth < 0.205
+    assert (scene.disparity[near] > 0).all() and (scene.disparity[scene.depth > 0.209] < 0).all()
 
 
 def test_motorcycle_focus_moves_the_focal_plane():
-    default, shifted = (load("motorcycle", Sampling(48, 48, focus=f)) for f in (None, 0.5))
-    np.testing.assert_allclose(shifted.disparity, default.disparity - 0.5)
+    default, shifted = (load("motorcycle", Sampling(48, 48, camera=CameraParameters(focus=f))) for f in (0.207, 0.19))
+    # f**2 / N / (views pitch) px for each 1/m
+    step = 7.96e-3**2 / 1.2 / 5 / 10e-6 * (1 / 0.19 - 1 / 0.207)
+    np.testing.assert_allclose(shifted.disparity, default.disparity - step)
     np.testing.assert_array_equal(shifted.depth, default.depth)
 
 
 def test_edge_moves_between_views_by_its_disparity():
-    scene = load("edge:0", Sampling(9, 41, focus=2.0))
+    scene = load("edge:0", focused(Sampling(9, 41), -2.0))
     crossing = [np.interp(0.5, scene.light_field[2, u, 4], np.arange(41.0)) for u in range(5)]
     # l[v, u](x) = I(x + du * d) with d = -2: the edge moves by +2 px a view step.
     np.testing.assert_allclose(np.diff(crossing), 2.0, atol=1e-6)
 
 
 def test_in_focus_plane_keeps_one_view():
-    scene = load("edge:30", Sampling(9, 41, focus=0.0))
+    scene = load("edge:30", focused(Sampling(9, 41), 0.0))
     assert not scene.angular and scene.light_field.shape == (1, 1, 9, 41)
     np.testing.assert_array_equal(scene.full_light_field[0, 4], scene.image)
 
@@ -122,7 +125,7 @@ def test_bad_scenes(changes, field):
 
 
 @pytest.mark.parametrize(
-    "changes", [{"rows": 0}, {"cols": 2000}, {"views": 32}, {"dtype": "int8"}, {"focus": float("nan")}, {"rows": 2.5}]
+    "changes", [{"rows": 0}, {"cols": 2000}, {"views": 32}, {"dtype": "int8"}, {"pitch": float("nan")}, {"rows": 2.5}]
 )
 def test_bad_samplings(changes):
     with pytest.raises(ParameterError, match=next(iter(changes))):
