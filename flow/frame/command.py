@@ -35,6 +35,11 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
     for name, words in CAMERA.items():
         add(f"--{name}", help=words)
+    add(
+        "--views",
+        default="auto",
+        help="of the capture along the pupil's diameter, 1..31 (default: as many as it needs)",
+    )
     add("--mode", default="edge", help="one of " + ", ".join(MODES))
     add("--threshold", default="10", help="edge mode: |code| below this is left out, 0..127")
     add("--rows", default="384", help="pixels, 1..1024")
@@ -72,11 +77,14 @@ def _request(a: Namespace) -> "FrameRequest":
 
     numbers: dict[str, Any] = {name: text.integer(name, getattr(a, name), *ends) for name, ends in INTEGERS.items()}
     rows = numbers["rows"]
+    views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     plain = {name: getattr(a, name) for name in ("scene", "depth", "mode", "phase", "out")}
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
     window = partial(text.window, a.window)
-    return request(**plain, **numbers, window=window, mask=mask, camera=_camera(a), noise=noise, waves=waves)
+    return request(
+        **plain, **numbers, window=window, mask=mask, camera=_camera(a), views=views, noise=noise, waves=waves
+    )
 
 
 def _camera(a: Namespace) -> "CameraParameters":

@@ -73,7 +73,7 @@ def camera_of(result: FrameResult) -> dict[str, float | None]:
     near, far = (None, None) if depth is None else (float(depth.min()), float(depth.max()))
     return (
         {"f_number": lens.f_number, "focal_length_m": lens.focal_length, "focus_m": lens.focus, "scale": lens.scale}
-        | {"views": optics.views, "exit_pupil_m": lens.exit_pupil, "magnification": lens.magnification}
+        | {"views": result.exposed.views.most, "exit_pupil_m": lens.exit_pupil, "magnification": lens.magnification}
         | {"nearest_m": near, "farthest_m": far}
     )
 
@@ -98,6 +98,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
 
     stream_mismatches: bytes that differ between the chip's stream and the golden encoder's.
     decoded_mismatches: decoded samples that differ from the golden codes, bad rows' among them.
+    capture_error_codes: RMS of the captured differences against 31 x 31 views, on a probe.
     raw_bytes: one byte a sample. psnr_db: decoded samples against the noiseless analog values, peak 255 codes.
     """
     asked, golden, chip, decoded = result.request, result.golden, result.chip, result.decoded
@@ -114,6 +115,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed}
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
         | {"camera": camera_of(result)}
+        | {"capture_error_codes": result.exposed.views.error}
         | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}
         | {name: status[name] for name in ("conversions_made", "conversions_left_out")}
         | {"comparator_decisions": golden.decisions, "cycles": status["cycles"]}
@@ -123,7 +125,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         | {"decoded_mismatches": int((decoded.samples != golden.sent).sum())}
         | {"psnr_db": psnr(decoding_error(decoded.samples, ideal, golden.read, frame)), "peak": PEAK}
         | {"signal_span": float(span), "energy_uj": energy_of(result)}
-        | {"left_out": [entry._asdict() for entry in result.exposed.plan.left_out]}
+        | {"left_out": [entry._asdict() for entry in (*result.exposed.views.left_out, *result.exposed.plan.left_out)]}
         | {"rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles}
         | {"tools": {"python": sys.version.split()[0], "verilator": verilator_version(), **tools}}
     )

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -14,10 +14,11 @@ import numpy.typing as npt
 from base.files import check_folder, staged
 from flow.simulate.frame import Waves
 from models.afe import trim_codes, trim_gain
-from models.capture import Exposure, capture
+from models.capture import Exposure, Region, choose_views, currents, exposed, integrate
+from models.capture import expose as expose_pair
 from models.chip import front_end_of, golden_frame
 from models.digital.stream import decode_stream
-from models.pixel.trim import optical_gains
+from models.pixel import measured_gains
 from models.plan import Plan, plan
 from models.scene import Sampling, Scene, load
 
@@ -26,6 +27,7 @@ from .figures import summarize
 from .request import FrameRequest
 from .result import Exposed, FrameResult
 
+Values = npt.NDArray[np.float64]
 STEPS = ("setup", "capture", "build", "rtl", "decode", "report")
 
 
@@ -54,19 +56,36 @@ def see(request: FrameRequest) -> tuple[Scene, Plan]:
 
 
 def expose(request: FrameRequest, scene: Scene, todo: Plan) -> Exposed:
-    """Expose ``scene``. The trims come from the optics."""
+    """Expose ``scene``. The trims come from a frame of a flat field."""
     sensor, frame = request.sensor, request.frame
-    trims = trim_codes(optical_gains(sensor.tile, sensor.optics))
+    trims = trim_codes(measured_gains(flat_field(request), sensor.tile))
     front_end = front_end_of(sensor, trims)
+    views = choose_views(scene, sensor, frame.timing, request.views)
+    pairs = currents(scene, sensor, todo, regions=views.regions)
 
-    def samples(noise: float) -> npt.NDArray[np.float64]:
-        exposure = Exposure(sensor.electrical, frame.timing, sensor.chip.f_clk, noise, request.seed)
-        return np.asarray(capture(scene, sensor, todo, exposure, trim_gain(trims)), np.float64)
+    def samples(noise: float) -> Values:
+        return np.asarray(exposed(pairs, sensor, _exposure(request, noise), trim_gain(trims)), np.float64)
 
     noisy = samples(request.noise)
     clean = samples(0.0) if request.noise else noisy
     ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
-    return Exposed(scene, todo, front_end, noisy, ideal)
+    return Exposed(scene, todo, views, front_end, noisy, ideal)
+
+
+def flat_field(request: FrameRequest) -> Values:
+    """The sensor's diodes, (rows, cols, 2) in LSB, before a flat field at half of white, dark current taken off.
+
+    One frame of its own seed, from which the trims are measured as on a bench: each type's are many pixels.
+    """
+    sensor, frame = request.sensor, request.frame
+    pair = integrate(load("flat:50", Sampling.of(sensor)), sensor, Region(1, np.ones(sensor.shape, bool)))[0]
+    exposure = replace(_exposure(request, request.noise), timing=replace(frame.timing, n_cm=0), seed=request.seed ^ 1)
+    return expose_pair(pair, exposure) - expose_pair(0 * pair, replace(exposure, noise=0.0))
+
+
+def _exposure(request: FrameRequest, noise: float) -> Exposure:
+    sensor = request.sensor
+    return Exposure(sensor.electrical, request.frame.timing, sensor.chip.f_clk, noise, request.seed)
 
 
 def read_out(

@@ -16,6 +16,7 @@ class FrameRequest:
     """One run of the main job.
 
     scene: a name of models.scene.scenes or an image file. depth: a file, or None.
+    views: of the capture along the pupil's diameter, 1..31, or None for as many as it needs.
     noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
     out: folder for the results, or None for build/sim/<scene>.
     """
@@ -26,6 +27,7 @@ class FrameRequest:
     depth: str | None = None
     noise: float = 1.0
     seed: int = 1
+    views: int | None = None
     waves: tuple[int, int] | None = None
     out: Path | None = None
 
@@ -33,6 +35,8 @@ class FrameRequest:
         self.sensor.check_window(self.frame.window)
         parameters.check_real("noise", self.noise, 0, 100)
         parameters.check_int("seed", self.seed, 0, 2**32 - 1)
+        if self.views is not None:
+            parameters.check_int("views", self.views, 1, 31)
         if self.waves and self.waves[1] >= self.sensor.array.rows:
             first, last = self.waves
             raise ParameterError(f"waves = {first}:{last}: rows must be in 0..{self.sensor.array.rows - 1}")

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from models.afe import FrontEnd
+from models.capture import Views
 from models.chip import GoldenFrame
 from models.digital.stream.frame import DecodedFrame
 from models.plan import Plan
@@ -23,12 +24,14 @@ from .request import FrameRequest
 class Exposed:
     """One exposure of a scene.
 
+    views: how many views of which pixels.
     samples: (taps, rows, cols, 2), what the front end samples. ideal: (rows, cols, subs), the values ahead of the
     converters, in LSB, of the same exposure without noise.
     """
 
     scene: Scene
     plan: Plan
+    views: Views
     front_end: FrontEnd
     samples: npt.NDArray[np.float64]
     ideal: npt.NDArray[np.float64]

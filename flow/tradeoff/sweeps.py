@@ -14,7 +14,7 @@ from base.page import render
 from base.table import write_csv
 from models.parameters import check_choice
 
-from . import divider, noise, precision, threshold, views
+from . import divider, noise, precision, pupil, threshold, views
 
 
 class Sweep(Protocol):
@@ -39,6 +39,7 @@ SWEEPS: dict[str, Sweep] = {
     "divider": divider,
     "threshold": threshold,
     "views": views,
+    "pupil": pupil,
     "precision": precision,
     "noise": noise,
 }

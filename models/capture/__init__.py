@@ -1,8 +1,22 @@
 """From the light field to the samples that the analog front end converts."""
 
 from .expose import Exposure, expose
-from .frame import capture
+from .frame import capture, currents, exposed
 from .operator import CaptureOperator
+from .pupil import Region, integrate
 from .ratio import capture_ratio
+from .views import Views, choose_views
 
-__all__ = ["CaptureOperator", "Exposure", "capture", "capture_ratio", "expose"]
+__all__ = [
+    "CaptureOperator",
+    "Exposure",
+    "Region",
+    "Views",
+    "capture",
+    "capture_ratio",
+    "choose_views",
+    "currents",
+    "expose",
+    "exposed",
+    "integrate",
+]

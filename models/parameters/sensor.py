@@ -53,6 +53,11 @@ class SensorParameters:
             check_real("exit_pupil", lens.exit_pupil, corner / CORNER, 1000)
 
     @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of the array."""
+        return self.array.rows, self.array.cols
+
+    @property
     def tile_rows(self) -> int:
         """Tiles down the array, the last perhaps partial."""
         return -(-self.array.rows // self.tile.rows)

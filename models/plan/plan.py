@@ -10,8 +10,6 @@ from models.digital.scan import Scan
 from models.parameters import ALL_TYPES, FrameParameters, SensorParameters
 from models.scene import Scene
 
-from .flat import flat_tiles
-
 
 class LeftOut(NamedTuple):
     """Work that a plan leaves out.
@@ -43,8 +41,6 @@ class Plan:
         Passes of the capture operator, 1, 3 or 4.
     read : bool (rows, cols)
         Pixels that the frame reads.
-    flat : bool (tile rows, tile cols)
-        Tiles in which no sample can reach the threshold (edge mode, without noise).
     left_out : tuple of LeftOut
         Work that is left out.
     """
@@ -54,7 +50,6 @@ class Plan:
     taps: int
     captures: int
     read: npt.NDArray[np.bool_]
-    flat: npt.NDArray[np.bool_]
     left_out: tuple[LeftOut, ...] = ()
 
 
@@ -105,17 +100,7 @@ def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan
         why = "pixel types masked" if frame.mask != ALL_TYPES else "outside the window or between the tiles read"
         saved = f"{unread:,} of {rows * cols:,} pixels neither captured nor sequenced"
         notes.append(LeftOut("unread pixels", why, saved))
-    flat = flat_tiles(scene, sensor, frame)
-    if flat.any():
-        samples = int((read & _spread(flat, sensor)).sum())
-        notes.append(
-            LeftOut(
-                "conversions of flat tiles",
-                f"no sample there can reach threshold {frame.threshold}, noise aside",
-                f"{samples:,} conversions in {int(flat.sum()):,} of {flat.size:,} tiles",
-            )
-        )
-    return Plan(angular, polarized, taps, captures, read, flat, tuple(notes))
+    return Plan(angular, polarized, taps, captures, read, tuple(notes))
 
 
 def _captures(scene: Scene, taps: int) -> tuple[int, LeftOut | None]:
@@ -135,11 +120,6 @@ def _captures(scene: Scene, taps: int) -> tuple[int, LeftOut | None]:
             "1 of 4 capture passes",
         )
     return 4, None
-
-
-def _spread(flat: npt.NDArray[np.bool_], sensor: SensorParameters) -> npt.NDArray[np.bool_]:
-    tile = sensor.tile
-    return np.repeat(np.repeat(flat, tile.rows, 0), tile.cols, 1)[: sensor.array.rows, : sensor.array.cols]
 
 
 def _megabytes(count: int) -> str:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from models.afe import trim_gain
 from models.parameters import AmpTiming, SensorParameters
-from models.plan.flat import codes_per_unit
+from models.plan.codes import codes_per_unit
 from models.scene import Scene
 
 from .edges import EdgeOperator, Solver, image_from_edges

@@ -1,21 +1,17 @@
-"""Depth map of every view, for time of flight."""
+"""Depth of what a view shows, for time of flight."""
 
-from collections.abc import Iterator
+from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
 
 from models.parameters import FOCUS_MAX
 
-from .views import view
+Floats = npt.NDArray[np.floating]
 
 
-def view_depths(
-    depth: npt.NDArray[np.floating], disparity: npt.NDArray[np.floating] | None, steps: npt.NDArray[np.float64]
-) -> Iterator[tuple[int, int, npt.NDArray[np.floating]]]:
-    """Depth at every pixel of every view, view after view.
-
-    The disparity is warped to the view, the nearest surface wins; inverse depth is affine in disparity.
+def depth_of_surface(depth: Floats, disparity: Floats | None) -> Callable[[Floats], Floats]:
+    """Depth as a function of disparity: inverse depth is affine in it.
 
     Parameters
     ----------
@@ -23,26 +19,17 @@ def view_depths(
         Depth of the centre view in m.
     disparity : array (rows, cols) or None
         Disparity of the centre view in px per view step; None is the same depth in all views.
-    steps : float64 (views,)
-        Offset of each view from the centre in view steps.
 
-    Yields
-    ------
-    v, u : int
-        View row and column.
-    depth : array (rows, cols)
-        In m.
+    Returns
+    -------
+    callable
+        From the disparity map of a view, (rows, cols), to its depth in m.
     """
     line = None if disparity is None else _inverse_depth(disparity, depth)
-    image = np.zeros(depth.shape)
-    for v, dv in enumerate(steps):
-        for u, du in enumerate(steps):
-            if disparity is None or line is None:
-                yield v, u, depth
-                continue
-            start, slope = line
-            surface = view(image, np.asarray(disparity, float), dv, du)[1]
-            yield v, u, 1 / np.maximum(start + slope * surface, 1 / FOCUS_MAX)
+    if line is None:
+        return lambda surface: depth
+    start, slope = line
+    return lambda surface: 1 / np.maximum(start + slope * surface, 1 / FOCUS_MAX)
 
 
 def _inverse_depth(disparity: npt.NDArray[np.floating], depth: npt.NDArray[np.floating]) -> tuple[float, float] | None:

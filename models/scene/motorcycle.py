@@ -15,7 +15,7 @@ from models.parameters import check_real
 from . import camera, resample, warp
 from .sampling import Sampling
 from .scene import Scene
-from .views import Second, light_field
+from .views import Pictured, Second
 
 FOCAL_LENGTH_PX = 994.978
 BASELINE = 0.193001  # m
@@ -62,15 +62,16 @@ def motorcycle(sampling: Sampling) -> Scene:
     other = crop(resample.linear(right), resample.resize, -start / zoom)
     second = Second(other, disparity, scale, offset - start)
 
-    field = light_field(image, disparity, sampling, second, margin)
+    seen = Pictured(image, disparity, sampling, second, margin)
     inner = (slice(margin, margin + sampling.rows), slice(margin, margin + sampling.cols))
     return Scene(
         "motorcycle",
         sampling.views,
-        field,
+        seen.light_field(),
         image[inner].astype(sampling.dtype),
         disparity[inner].copy(),
         1 / crop(inverse_depth, resample.pick)[inner],
+        render=seen,
     )
 
 
@@ -100,6 +101,6 @@ class _Crop:
 
 def _margin(shape: tuple[int, ...], disparity: npt.NDArray[np.float64], sampling: Sampling, zoom: float) -> int:
     """Pixels around the array that the outer views need, as far as the pair has them."""
-    needed = np.ceil(np.abs(disparity).max() * np.abs(sampling.steps).max()) + 2
+    needed = np.ceil(np.abs(disparity).max() * sampling.views / 2) + 2  # of the pupil's rim
     present = min((shape[0] * zoom - sampling.rows) / 2, (shape[1] * zoom - sampling.cols) / 2)
     return int(min(needed, present))

@@ -12,7 +12,7 @@ from .picture_file import read_luminance
 from .sampling import Sampling
 from .scene import Scene
 from .targets import IN_FOCUS
-from .views import light_field
+from .views import Pictured
 
 PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "page", "rocket", "text")
 
@@ -75,5 +75,6 @@ def _on_depth(
         depth = np.full(sampling.shape, camera.scaled(camera.PLANE, sampling.camera))
     disparity = camera.disparity(depth, sampling)
     flat = bool(np.abs(disparity).max() * sampling.views < IN_FOCUS)
-    field = image[None, None].astype(sampling.dtype) if flat else light_field(image, disparity, sampling)
-    return Scene(name, sampling.views, field, image.astype(sampling.dtype), disparity, depth)
+    seen = None if flat else Pictured(image, disparity, sampling)
+    field = image[None, None].astype(sampling.dtype) if seen is None else seen.light_field()
+    return Scene(name, sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=seen)

@@ -3,6 +3,7 @@
 Light fields are arrays l[v, u, y, x] everywhere in this project: view row, view column, pixel row, pixel column.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,10 @@ import numpy.typing as npt
 from models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int
 
 from .sampling import DTYPES
+
+Bools = npt.NDArray[np.bool_]
+# Radiance and disparity (rows, cols) of the view at an offset (dv, du) in view steps, at most views / 2 each way
+View = Callable[[float, float], tuple[npt.NDArray[np.floating], npt.NDArray[np.floating]]]
 
 RADIANCE_MAX = 16.0  # 1 = diffuse white; highlights and the saturated target go above it
 
@@ -37,6 +42,9 @@ class Scene:
         Distance from the camera, 0.001..1000 m.
     polarization : array (2, rows, cols) or None
         S1/S0 and S2/S0, of degree 0..1; None is unpolarized.
+    render : callable or None
+        From the wanted pixels, bool (rows, cols), to a `View` of these between those of the light field; None: there
+        are no others.
     static : bool
         Nothing moves or changes between the taps of a time-of-flight frame.
 
@@ -53,6 +61,7 @@ class Scene:
     disparity: npt.NDArray[np.floating] | None = None
     depth: npt.NDArray[np.floating] | None = None
     polarization: npt.NDArray[np.floating] | None = None
+    render: Callable[[Bools], View] | None = None
     static: bool = True
 
     def __post_init__(self) -> None:
@@ -90,6 +99,25 @@ class Scene:
     def angular(self) -> bool:
         """Whether the views may differ."""
         return self.light_field.shape[:2] != (1, 1)
+
+    def view(self, wanted: Bools) -> View:
+        """Any view of the scene at some pixels.
+
+        Parameters
+        ----------
+        wanted : bool (rows, cols)
+            Pixels to compute; the others are undefined.
+
+        Returns
+        -------
+        View
+            A view of the light field itself where the scene has no others.
+        """
+        if self.render is not None:
+            return self.render(wanted)
+        middle = (len(self.light_field) - 1) / 2
+        disparity = np.zeros(self.shape) if self.disparity is None else self.disparity
+        return lambda dv, du: (self.light_field[round(dv + middle), round(du + middle)], disparity)
 
     @property
     def full_light_field(self) -> npt.NDArray[np.floating]:

@@ -131,15 +131,17 @@ def tilted(sampling: Sampling) -> Scene:
         k = 2 * np.pi / WAVELENGTH
         return 0.5 + 0.15 * (np.sin(k * u) + np.sin(k * v) + np.sin(k * (u + v) * 0.7))
 
-    field = np.empty((sampling.views, sampling.views, *sampling.shape), sampling.dtype)
-    for i, dv in enumerate(sampling.steps):
-        for j, du in enumerate(sampling.steps):
-            # The disparity d = slope * place - shift at the position that this view shows: place = x + du * d, solved.
-            place = (x - du * shift) / (1 - du * slope)
-            field[i, j] = _texture(y + dv * (slope * place - shift), place)
+    def _view(dv: float, du: float) -> tuple[Floats, Floats]:
+        # The disparity d = slope * place - shift at the position that this view shows: place = x + du * d, solved.
+        place = (x - du * shift) / (1 - du * slope)
+        d = slope * place - shift
+        return _texture(y + dv * d, place), np.broadcast_to(d, sampling.shape)
+
+    field = np.array([[_view(dv, du)[0] for du in sampling.steps] for dv in sampling.steps], sampling.dtype)
     disparity = np.broadcast_to(slope * x - shift, sampling.shape)
     depth = camera.depth(disparity, sampling)
-    return Scene("tilted", sampling.views, field, _texture(y, x).astype(sampling.dtype), disparity, depth)
+    image = _texture(y, x).astype(sampling.dtype)
+    return Scene("tilted", sampling.views, field, image, disparity, depth, render=lambda wanted: _view)
 
 
 def polarized(sampling: Sampling, degree: float = 25.0) -> Scene:
@@ -186,8 +188,10 @@ def _on_plane(name: str, sampling: Sampling, radiance: Callable[[Floats, Floats]
     disparity, depth = _plane(sampling)
     d = disparity.flat[0]
     steps = sampling.steps if abs(d) * sampling.views > IN_FOCUS else np.zeros(1)
-    field = np.stack(
-        [np.stack([np.broadcast_to(radiance(y + dv * d, x + du * d), sampling.shape) for du in steps]) for dv in steps]
-    ).astype(sampling.dtype)
+
+    def _view(dv: float, du: float) -> tuple[Floats, Floats]:
+        return np.broadcast_to(radiance(y + dv * d, x + du * d), sampling.shape), disparity
+
+    field = np.array([[_view(dv, du)[0] for du in steps] for dv in steps], sampling.dtype)
     image = np.broadcast_to(radiance(y, x), sampling.shape).astype(sampling.dtype)
-    return Scene(name, sampling.views, field, image, disparity, depth)
+    return Scene(name, sampling.views, field, image, disparity, depth, render=lambda wanted: _view)

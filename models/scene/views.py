@@ -2,10 +2,11 @@
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import maximum_filter
 
 from . import warp
 from .sampling import Sampling
-from .scene import RADIANCE_MAX
+from .scene import RADIANCE_MAX, Bools, View
 
 Floats = npt.NDArray[np.float64]
 
@@ -32,7 +33,7 @@ class Second:
         warp.fill_rows(here, self.alone)
         self.disparity = here
 
-    def fill(self, out: Floats, surface: Floats, dv: float, du: float) -> None:
+    def fill(self, out: Floats, surface: Floats, wanted: Bools, dv: float, du: float) -> None:
         """Fill the holes of a view (surface == NO_SURFACE) in place where this picture shows their contents.
 
         Parameters
@@ -41,12 +42,14 @@ class Second:
             Radiance of the view.
         surface : float64 (rows, cols)
             Disparity map of the view.
+        wanted : bool (rows, cols)
+            Pixels to fill.
         dv, du : float
             Offset of the view in view steps.
         """
         own = np.full(surface.shape, warp.NO_SURFACE)
         warp.splat(own, self.disparity, self.alone, self.scale * self.disparity + self.offset, dv, du)
-        warp.fetch_second(out, surface, own, self.image, self.scale, self.offset, dv, du, RADIANCE_MAX)
+        warp.fetch_second(out, surface, own, self.image, wanted, self.scale, self.offset, dv, du, RADIANCE_MAX)
 
 
 def view(
@@ -55,7 +58,8 @@ def view(
     dv: float,
     du: float,
     second: Second | None = None,
-    use: npt.NDArray[np.bool_] | None = None,
+    use: Bools | None = None,
+    wanted: Bools | None = None,
 ) -> tuple[Floats, Floats]:
     """Compute one view from the centre picture.
 
@@ -71,6 +75,8 @@ def view(
         The other picture of a pair.
     use : bool (rows, cols), optional
         Pixels of the picture that show one surface alone; None is all.
+    wanted : bool (rows, cols), optional
+        Pixels of the view to compute; None is all.
 
     Returns
     -------
@@ -82,20 +88,22 @@ def view(
     if dv == 0 and du == 0:
         return image.copy(), disparity.copy()
     use = np.ones(disparity.shape, bool) if use is None else use
-    surface = np.full(disparity.shape, warp.NO_SURFACE)
-    warp.splat(surface, disparity, use, np.zeros(disparity.shape), dv, du)
+    wanted = np.ones(disparity.shape, bool) if wanted is None else wanted
+    if np.ptp(disparity):
+        surface = np.full(disparity.shape, warp.NO_SURFACE)
+        warp.splat(surface, disparity, use, np.zeros(disparity.shape), dv, du)
+    else:
+        surface = disparity.copy()  # a plane hides nothing; its border goes on outside
     out = np.zeros(image.shape)
-    warp.fetch(out, image, surface, dv, du, RADIANCE_MAX)
+    warp.fetch(out, image, surface, wanted, dv, du, RADIANCE_MAX)
     if second is not None:
-        second.fill(out, surface, dv, du)
-    warp.fill_from_background(out, surface, dv, du)
+        second.fill(out, surface, wanted, dv, du)
+    warp.fill_from_background(out, surface, wanted, dv, du)
     return out, surface
 
 
-def light_field(
-    image: Floats, disparity: Floats, sampling: Sampling, second: Second | None = None, margin: int = 0
-) -> npt.NDArray[np.floating]:
-    """Compute all views of a centre picture.
+class Pictured:
+    """All views of a picture with disparity, computed where they are wanted.
 
     Parameters
     ----------
@@ -107,17 +115,50 @@ def light_field(
         The other picture of a pair.
     margin : int
         Px around the array that only the outer views need.
-
-    Returns
-    -------
-    array (views, views, rows, cols)
-        l[v, u, y, x] of the sampling's type.
     """
-    size = sampling.views, sampling.views, *sampling.shape
-    out = np.empty(size, sampling.dtype)
-    inner = (slice(margin, margin + sampling.rows), slice(margin, margin + sampling.cols))
-    use = warp.unmixed(disparity)
-    for i, dv in enumerate(sampling.steps):
-        for j, du in enumerate(sampling.steps):
-            out[i, j] = view(image, disparity, dv, du, second, use)[0][inner]
-    return out
+
+    def __init__(
+        self, image: Floats, disparity: Floats, sampling: Sampling, second: Second | None = None, margin: int = 0
+    ) -> None:
+        self.image, self.disparity, self.sampling, self.second, self.margin = image, disparity, sampling, second, margin
+        self.use = warp.unmixed(disparity)
+        self.reach = int(np.ceil(np.abs(disparity).max() * sampling.views / 2)) + 2  # px: of the pupil's rim
+        self.inner = (slice(margin, margin + sampling.rows), slice(margin, margin + sampling.cols))
+
+    def __call__(self, wanted: Bools) -> View:
+        """Views at some pixels.
+
+        Parameters
+        ----------
+        wanted : bool (rows, cols)
+            Pixels to compute; the others are undefined.
+
+        Returns
+        -------
+        View
+            Of an offset of at most views / 2 steps.
+        """
+        whole = np.zeros(self.image.shape, bool)
+        whole[self.inner] = wanted
+        if wanted.all():
+            return lambda dv, du: self._view(dv, du, np.ones_like(whole), self.use)
+        # A hole is filled from beside it, and a pixel is warped from at most the reach away.
+        near = np.asarray(maximum_filter(whole, 2 * self.reach + 1), bool)
+        use = self.use & np.asarray(maximum_filter(near, 2 * self.reach + 1), bool)
+        return lambda dv, du: self._view(dv, du, near, use)
+
+    def _view(self, dv: float, du: float, wanted: Bools, use: Bools) -> tuple[Floats, Floats]:
+        image, surface = view(self.image, self.disparity, dv, du, self.second, use, wanted)
+        return image[self.inner], surface[self.inner]
+
+    def light_field(self) -> npt.NDArray[np.floating]:
+        """All views of the sampling.
+
+        Returns
+        -------
+        array (views, views, rows, cols)
+            l[v, u, y, x] of the sampling's type.
+        """
+        steps = self.sampling.steps
+        seen = self(np.ones(self.sampling.shape, bool))
+        return np.stack([np.stack([seen(dv, du)[0].astype(self.sampling.dtype) for du in steps]) for dv in steps])

@@ -16,7 +16,7 @@ NO_SURFACE = -1e30  # no surface
 JUMP = 0.25  # px per view step: a larger step between neighbours is a border of two surfaces
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def splat(target: Floats, disparity: Floats, use: Bools, shift: Floats, dv: float, du: float) -> None:
     """Warp a disparity map into a z-buffer; the largest disparity (the nearest surface) wins.
 
@@ -48,7 +48,7 @@ def splat(target: Floats, disparity: Floats, use: Bools, shift: Floats, dv: floa
                         target[r, c] = d
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def unmixed(disparity: Floats) -> Bools:
     """Pixels that show one surface alone.
 
@@ -76,7 +76,7 @@ def unmixed(disparity: Floats) -> Bools:
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def fill_rows(disparity: Floats, hole: Bools) -> None:
     """Fill holes in place with the farther of the nearest known neighbours in the row: the background side.
 
@@ -114,14 +114,14 @@ def fill_rows(disparity: Floats, hole: Bools) -> None:
             x = end
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _keys(t: float) -> tuple[float, float, float, float]:
     """Weights of cubic convolution [Keys1981] at -1, 0, 1, 2 for a position ``t`` in 0..1."""
     t2, t3 = t * t, t * t * t
     return (-0.5 * t + t2 - 0.5 * t3, 1 - 2.5 * t2 + 1.5 * t3, 0.5 * t + 2 * t2 - 1.5 * t3, -0.5 * t2 + 0.5 * t3)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def cubic(image: Floats, y: float, x: float) -> float:
     """Interpolate an image by cubic convolution, the border pixels repeated outwards.
 
@@ -157,8 +157,8 @@ def cubic(image: Floats, y: float, x: float) -> float:
     return total
 
 
-@njit(cache=True)
-def fetch(out: Floats, image: Floats, disparity: Floats, dv: float, du: float, high: float) -> None:
+@njit(cache=True, nogil=True)
+def fetch(out: Floats, image: Floats, disparity: Floats, wanted: Bools, dv: float, du: float, high: float) -> None:
     """Sample a picture for a view with a known disparity map.
 
     Parameters
@@ -169,6 +169,8 @@ def fetch(out: Floats, image: Floats, disparity: Floats, dv: float, du: float, h
         The picture.
     disparity : float64 (rows, cols)
         Disparity map of the view; NO_SURFACE is no surface.
+    wanted : bool (rows, cols)
+        Pixels to sample.
     dv, du : float
         Offset of the view in view steps.
     high : float
@@ -177,16 +179,17 @@ def fetch(out: Floats, image: Floats, disparity: Floats, dv: float, du: float, h
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
             d = disparity[y, x]
-            if d > NO_SURFACE:
+            if wanted[y, x] and d > NO_SURFACE:
                 out[y, x] = min(max(cubic(image, y + dv * d, x + du * d), 0.0), high)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def fetch_second(
     out: Floats,
     surface: Floats,
     own: Floats,
     image: Floats,
+    wanted: Bools,
     scale: float,
     offset: float,
     dv: float,
@@ -205,6 +208,8 @@ def fetch_second(
         Disparity map of the view from the second picture alone.
     image : float64 (rows, cols)
         The second picture.
+    wanted : bool (rows, cols)
+        Pixels to fill.
     scale, offset : float
         A pixel of disparity d is ``scale * d + offset`` px to the left in the second picture.
     dv, du : float
@@ -214,6 +219,8 @@ def fetch_second(
     """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
+            if not wanted[y, x]:
+                continue
             d = own[y, x]
             place = x + du * d - (scale * d + offset)
             if surface[y, x] == NO_SURFACE and d > NO_SURFACE and 0 <= place <= image.shape[1] - 1:
@@ -221,9 +228,9 @@ def fetch_second(
                 surface[y, x] = d
 
 
-@njit(cache=True)
-def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -> None:
-    """Fill every pixel without a surface in place from the nearest pixel on the background side.
+@njit(cache=True, nogil=True)
+def fill_from_background(out: Floats, disparity: Floats, wanted: Bools, dv: float, du: float) -> None:
+    """Fill every wanted pixel without a surface in place from the nearest pixel on the background side.
 
     The search runs both ways along the direction of the view's step; the farther of the two surfaces is taken.
 
@@ -233,6 +240,8 @@ def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -
         Radiance of the view.
     disparity : float64 (rows, cols)
         Disparity map of the view; NO_SURFACE is no surface.
+    wanted : bool (rows, cols)
+        Pixels to fill.
     dv, du : float
         Offset of the view in view steps; not both 0.
     """
@@ -242,7 +251,7 @@ def fill_from_background(out: Floats, disparity: Floats, dv: float, du: float) -
     known = disparity.copy()
     for y in range(rows):
         for x in range(cols):
-            if known[y, x] > NO_SURFACE:
+            if not wanted[y, x] or known[y, x] > NO_SURFACE:
                 continue
             best, by, bx = np.inf, y, x
             for sign in (-1, 1):

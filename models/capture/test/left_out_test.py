@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.afe import FrontEnd, trim_codes
 from models.capture import Exposure, capture
 from models.capture.operator import rounding
 from models.parameters import ArrayParameters, FrameParameters, SensorParameters, Window
-from models.pixel import demodulate, depth_of, optical_gains, phase_of
+from models.pixel import demodulate, depth_of, phase_of
 from models.plan import plan
 from models.scene import Sampling, Scene, load
 from models.scene.test.focused import focused
@@ -93,23 +92,3 @@ def test_taps_give_the_depth_back():
     taps = _samples(scene, plan(scene, SENSOR, frame), frame, noise=0).sum(-1)
     error = depth_of(demodulate(taps)[0], SENSOR.electrical.f_mod) - scene.depth
     assert np.median(np.abs(error)) < 0.01
-
-
-@pytest.mark.parametrize("name", ["motorcycle", "point", "edge:70", "flat:70", "saturated", "black", "flat:150"])
-@pytest.mark.parametrize("threshold,n_cm", [(6, 0), (12, 0), (12, 3)])
-def test_flat_tiles_really_convert_nothing(name, threshold, n_cm):
-    frame = FrameParameters(FULL, threshold=threshold)
-    frame = replace(frame, timing=replace(frame.timing, n_cm=n_cm, t_int=512 // (n_cm + 1)))
-    scene = _scene(name)
-    made = plan(scene, SENSOR, frame)
-    gains = optical_gains(SENSOR.tile, SENSOR.optics)
-    samples = capture(scene, SENSOR, made, Exposure(SENSOR.electrical, frame.timing, SENSOR.chip.f_clk, 0), gains)
-    end = FrontEnd(SENSOR.electrical.difference_gain, tuple(trim_codes(gains).tolist()))
-    codes = np.abs(end.values(samples, "edge")[0])
-    flat = np.repeat(np.repeat(made.flat, 4, 0), 6, 1)[:ROWS, :COLS]
-    if name in ("flat:70", "black"):
-        assert flat.all()
-    if name == "saturated":
-        assert not flat.any()  # full wells are out of balance
-    if flat.any():
-        assert codes[flat].max() < threshold - 0.5

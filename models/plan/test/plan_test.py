@@ -28,12 +28,7 @@ def test_decimation_reads_every_second_tile():
 
 def test_other_modes_capture_once():
     made = plan(_scene("motorcycle"), SENSOR, FrameParameters(FULL, mode="image"))
-    assert (made.taps, made.captures) == (1, 1) and "time-of-flight taps" in _what(made) and not made.flat.any()
-
-
-def test_flat_tiles_only_where_a_window_comparison_runs():
-    for frame in (FrameParameters(FULL, threshold=0), FrameParameters(FULL, mode="raw")):
-        assert not plan(_scene("flat"), SENSOR, frame).flat.any()
+    assert (made.taps, made.captures) == (1, 1) and "time-of-flight taps" in _what(made)
 
 
 def test_impossible_window():

@@ -4,7 +4,7 @@ import numpy as np
 from skimage.data import stereo_motorcycle
 
 from models.scene import Sampling, resample, warp
-from models.scene.views import Second, light_field, view
+from models.scene.views import Pictured, Second, view
 
 
 def _ramp(rows, cols):
@@ -84,7 +84,7 @@ def test_holes_without_any_surface_are_filled():
 
 def test_light_field_cuts_its_margin_off():
     image = _ramp(26, 36)
-    whole = light_field(image, np.full((26, 36), 1.0), Sampling(20, 30), margin=3)
+    whole = Pictured(image, np.full((26, 36), 1.0), Sampling(20, 30), margin=3).light_field()
     assert whole.shape == (5, 5, 20, 30)
     np.testing.assert_allclose(whole[2, 4], image[3:23, 5:35], atol=1e-12)
     np.testing.assert_allclose(whole[0, 2], image[1:21, 3:33], atol=1e-12)

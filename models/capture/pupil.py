@@ -1,0 +1,151 @@
+"""The integral over the pupil: views rendered one by one and added to the diodes, no more of them than are kept.
+
+[Jayasuriya2017], Eq. 3.3, with the light taken at the middle of every view's cell and its weight integrated over it.
+"""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from os import cpu_count
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numba import njit
+
+from models.parameters import SensorParameters
+from models.pixel.weights import FieldWeights, field_weights
+from models.scene import Scene
+
+Floats = npt.NDArray[np.floating]
+Ints = npt.NDArray[np.int64]
+Wave = Callable[[Floats], Floats]  # from the disparity of what a view shows to a factor of its light
+CHUNKS = 4  # sums of views, added in their order: the result does not depend on the number of threads
+
+
+class Region(NamedTuple):
+    """Pixels that see the pupil through a number of views.
+
+    Attributes
+    ----------
+    views : int
+        Along the pupil's diameter.
+    pixels : bool (rows, cols)
+        Where.
+    """
+
+    views: int
+    pixels: npt.NDArray[np.bool_]
+
+
+def cells(views: int) -> npt.NDArray[np.bool_]:
+    """Cells of a grid of views that the round pupil reaches.
+
+    Parameters
+    ----------
+    views : int
+        Along the diameter.
+
+    Returns
+    -------
+    bool (views, views)
+        True where the nearest point of the cell is inside.
+    """
+    edge = np.maximum(np.abs(2 * np.arange(views) - (views - 1)) - 1, 0) / views
+    return np.hypot(edge[:, None], edge) < 1
+
+
+def integrate(
+    scene: Scene,
+    sensor: SensorParameters,
+    region: Region,
+    waves: Sequence[Wave | None] = (None,),
+    dtype: str = "float64",
+) -> Floats:
+    """Photocurrents of a region.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    region : Region
+        Views and pixels.
+    waves : sequence of callable or None
+        Factors of the light, each an integral of its own; None is 1.
+    dtype : str
+        'float32' or 'float64'.
+
+    Returns
+    -------
+    array (waves, 2, rows, cols)
+        1 = a diode's average in a flat white scene; 0 outside the region.
+    """
+    field = field_weights(sensor, scene.views if region.views == 1 else region.views)
+    field = field.summed if region.views == 1 else field
+    see = scene.view(region.pixels)
+    step, middle = scene.views / region.views, (region.views - 1) / 2
+    places = np.argwhere(cells(region.views))
+    order = np.reshape(sensor.tile.order, (sensor.tile.rows, sensor.tile.cols))
+    rows = np.flatnonzero(region.pixels.any(1))
+
+    def _some(part: Ints) -> Floats:
+        out = np.zeros((len(waves), 2, *scene.shape), dtype)
+        for v, u in part:
+            light, surface = see((v - middle) * step, (u - middle) * step)
+            series = np.ascontiguousarray(field.series[:, :, v, u])
+            for total, wave in zip(out, waves, strict=True):
+                _add(total, light if wave is None else light * wave(surface), series, order, field.y, field.x, rows)
+        return out
+
+    with ThreadPoolExecutor(min(CHUNKS, cpu_count() or 1)) as pool:
+        parts = pool.map(_some, np.array_split(places, CHUNKS))
+        out = next(parts)
+        for part in parts:
+            out += part
+    return np.where(region.pixels, out, 0)
+
+
+def add_view(pair: Floats, light: Floats, field: FieldWeights, sensor: SensorParameters, v: int, u: int) -> None:
+    """Add one view to all pixels, in place.
+
+    Parameters
+    ----------
+    pair : array (2, rows, cols)
+        Photocurrents.
+    light : array (rows, cols)
+        Radiance of the view.
+    field : FieldWeights
+        Of the sensor.
+    sensor : SensorParameters
+        The sensor.
+    v, u : int
+        View row and column.
+    """
+    order = np.reshape(sensor.tile.order, (sensor.tile.rows, sensor.tile.cols))
+    _add(pair, light, np.ascontiguousarray(field.series[:, :, v, u]), order, field.y, field.x, np.arange(len(light)))
+
+
+@njit(cache=True, nogil=True)
+def _add(
+    out: Floats, light: Floats, series: Floats, order: npt.NDArray[np.int64], y: Floats, x: Floats, rows: Ints
+) -> None:
+    height, width, terms, cols = order.shape[0], order.shape[1], series.shape[2], out.shape[2]
+    spread = np.empty((height, 2, cols), out.dtype)  # weights along a row of pixels, for vector instructions
+    ready = np.zeros(height, np.bool_)
+    for r in rows:
+        line = r % height
+        if terms > 1 or not ready[line]:
+            ready[line] = True
+            for k in range(width):
+                for d in range(2):
+                    spread[line, d, k::width] = 0
+                    for j in range(terms):
+                        total = 0.0
+                        for i in range(terms):
+                            total += y[r, i] * series[order[line, k], d, i, j]
+                        for c in range(k, cols, width):
+                            spread[line, d, c] += total * x[c, j]
+        for c in range(cols):
+            out[0, r, c] += spread[line, 0, c] * light[r, c]
+            out[1, r, c] += spread[line, 1, c] * light[r, c]

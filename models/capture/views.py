@@ -1,0 +1,168 @@
+"""How many views a capture needs, measured on some of its rows before it is made."""
+
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from models.parameters import AmpTiming, SensorParameters, check_int, check_real
+from models.pixel.trim import optical_gains
+from models.plan import LeftOut, codes_per_unit
+from models.scene import Scene
+
+from .pupil import Region, cells, integrate
+
+Values = npt.NDArray[np.float64]
+
+REFERENCE = 31  # views along the pupil's diameter that the error is measured against
+LADDER = (7, 9, 11, 15, 21, 27)
+BOUND = 0.5  # codes
+SAFETY = 0.9  # of the bound, on the rows that are measured
+PROBE = 4  # tile rows of each of two bands
+
+
+class Views(NamedTuple):
+    """Views of a capture.
+
+    Attributes
+    ----------
+    regions : tuple of Region
+        Which pixels need how many.
+    most : int
+        Views along the pupil's diameter where most are needed.
+    error : float or None
+        RMS error of the differences against REFERENCE views in codes, measured on the probe; None where the scene has
+        no other views than its own.
+    left_out : tuple of LeftOut
+        Views that are not rendered.
+    tried : tuple of (int, float, float)
+        Views, their RMS error in codes and their time in s, all on the probe.
+    """
+
+    regions: tuple[Region, ...]
+    most: int
+    error: float | None
+    left_out: tuple[LeftOut, ...] = ()
+    tried: tuple[tuple[int, float, float], ...] = ()
+
+
+def choose_views(
+    scene: Scene, sensor: SensorParameters, timing: AmpTiming, views: int | None = None, bound: float = BOUND
+) -> Views:
+    """Choose the views of a capture.
+
+    On two bands of rows the differences are captured through REFERENCE views and through ever more of them, until the
+    error is below the bound. Tiles whose light varies least over the pupil keep the scene's own grid, as many as the
+    error allows: regions in focus, and plain ones.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    timing : AmpTiming
+        Integration time, which makes codes of photocurrents.
+    views : int, optional
+        Along the pupil's diameter everywhere, 1..31; None chooses.
+    bound : float
+        Largest RMS error in codes, 0.01..100.
+
+    Returns
+    -------
+    Views
+        Their number, where, and the error.
+
+    Raises
+    ------
+    ParameterError
+        For views or a bound out of range.
+    """
+    check_real("bound", bound, 0.01, 100)
+    everywhere = np.ones(scene.shape, bool)
+    if views is not None:
+        check_int("views", views, 1, REFERENCE)
+    if not scene.angular:
+        return Views((Region(1, everywhere),), 1, 0.0)
+    if scene.render is None:
+        return Views((Region(scene.views, everywhere),), scene.views, None)
+    probe = _Probe(scene, sensor, timing)
+    if views is not None:
+        error = _rms(probe.error(views))
+        return Views((Region(views, everywhere),), views, error, (), tuple(probe.tried))
+    grid, goal = probe.error(scene.views), (SAFETY * bound) ** 2
+    if _rms(grid) ** 2 <= goal:
+        saved = _saved(scene, everywhere, scene.views)
+        return Views((Region(scene.views, everywhere),), scene.views, _rms(grid), saved, tuple(probe.tried))
+    spans = _spans(scene, sensor)
+    order = np.argsort(spans[probe.pixels], kind="stable")
+    most, error = REFERENCE, np.zeros_like(grid)
+    for most in (*(n for n in LADDER if n > scene.views), REFERENCE):
+        error = probe.error(most)
+        if _rms(error) ** 2 <= goal:
+            break
+    # Mean square with the pixels of least span on the scene's grid, up to each; tiles of one span go together.
+    rising = spans[probe.pixels][order]
+    mean = (np.cumsum((grid**2)[order]) + np.sum(error**2) - np.cumsum((error**2)[order])) / grid.size
+    few = np.flatnonzero((mean <= goal) & (rising != np.append(rising[1:], np.inf)))
+    quiet = spans <= (rising[few[-1]] if few.size else -1.0)
+    found = _rms(np.where(quiet[probe.pixels], grid, error))
+    regions = tuple(r for r in (Region(scene.views, quiet), Region(most, ~quiet)) if r.pixels.any())
+    return Views(regions, most, found, _saved(scene, quiet, most), tuple(probe.tried))
+
+
+class _Probe:
+    """Differences on some rows against those through REFERENCE views."""
+
+    def __init__(self, scene: Scene, sensor: SensorParameters, timing: AmpTiming) -> None:
+        self.scene, self.sensor = scene, sensor
+        tall = PROBE * sensor.tile.rows
+        bands = np.zeros(scene.shape, bool)
+        for middle in (scene.shape[0] // 3, 2 * scene.shape[0] // 3):
+            start = max(middle - tall // 2, 0) // sensor.tile.rows * sensor.tile.rows
+            bands[start : start + tall] = True
+        self.pixels = bands
+        self.unit = codes_per_unit(sensor, timing)
+        gains = optical_gains(sensor.tile, sensor.optics)
+        self.gains = gains[sensor.tile.type_map(*scene.shape)][bands]
+        self.tried: list[tuple[int, float, float]] = []
+        self.reference = self._differences(REFERENCE)
+
+    def error(self, views: int) -> Values:
+        """Error of a number of views in codes, (pixels,)."""
+        start = perf_counter()
+        error = self._differences(views) - self.reference
+        self.tried.append((views, _rms(error), perf_counter() - start))
+        return error
+
+    def _differences(self, views: int) -> Values:
+        a, b = integrate(self.scene, self.sensor, Region(views, self.pixels))[0][:, self.pixels]
+        return self.unit * (a - self.gains * b)
+
+
+def _spans(scene: Scene, sensor: SensorParameters) -> Values:
+    """Largest minus smallest radiance over the light field's views, RMS over each tile, at every pixel."""
+    low, high = (function(scene.light_field, (0, 1)) for function in (np.min, np.max))
+    (rows, cols), tile = scene.shape, sensor.tile
+    padded = np.zeros((2, sensor.tile_rows * tile.rows, sensor.tile_cols * tile.cols))
+    padded[0, :rows, :cols], padded[1, :rows, :cols] = (high - low) ** 2, 1
+    total, count = padded.reshape(2, sensor.tile_rows, tile.rows, sensor.tile_cols, tile.cols).sum((2, 4))
+    return np.kron(np.sqrt(total / count), np.ones((tile.rows, tile.cols)))[:rows, :cols]
+
+
+def _rms(error: Values) -> float:
+    return float(np.sqrt(np.mean(error**2)))
+
+
+def _saved(scene: Scene, quiet: npt.NDArray[np.bool_], most: int) -> tuple[LeftOut, ...]:
+    """What the pixels that keep the scene's grid leave out."""
+    full, own = int(cells(most).sum()), int(cells(scene.views).sum())
+    if most == scene.views:
+        full, why = int(cells(REFERENCE).sum()), "the light varies little over the pupil everywhere: in focus, or plain"
+    else:
+        why = "where the light varies little over the pupil: in focus, or plain"
+    if not quiet.any():
+        return ()
+    share = 100 * quiet.mean()
+    return (LeftOut("views of quiet tiles", why, f"{full - own} of {full} views of {share:.0f} % of the pixels"),)
