@@ -99,14 +99,23 @@ def _camera(a: Namespace) -> "CameraParameters":
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
     from .figures import camera_line
+    from .report import against, decibels
 
-    psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.2f} dB"
     print(
         f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}: "
         f"{s['stream_mismatches']} stream bytes and {s['decoded_mismatches']} decoded samples differ from the model"
     )
     print(f"  {camera_line(s)}")
-    print(f"  {s['stream_bytes']:,} bytes for {s['samples']:,} samples ({s['compression_ratio']:.2f}:1) at {psnr}")
+    print(
+        f"  {s['stream_bytes']:,} bytes for {s['raw_bytes']:,} values ({s['compression_ratio']:.2f}:1); "
+        f"SNR {decibels(s['snr_db'])} (nothing sent: {decibels(s['snr_nothing_sent_db'])})"
+    )
+    print(f"  2-D image: {against(s)}")
+    if s["capture_error_codes"] is not None:
+        print(
+            f"  captured through {s['camera']['views']} views along the pupil, "
+            f"{s['capture_error_codes']:.2f} codes RMS from 31"
+        )
     print(
         f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
         f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {s['energy_uj']['total']:.2f} uJ"

@@ -12,7 +12,7 @@ from base.charts import curves
 from models.chip import golden_frame
 
 from . import hardware
-from .figures import decoding_error, psnr
+from .quality import decoding_error, snr
 from .result import FrameResult
 
 LADDER = (0, 1, 2, 4, 8, 16, 32, 64, 127)
@@ -25,23 +25,24 @@ def figures(result: FrameResult, summary: dict[str, Any]) -> list[Figure]:
 
 
 def _threshold(result: FrameResult, summary: dict[str, Any]) -> Figure:
-    """PSNR of the decoded differences against bytes and frame time, each threshold run through the Verilog."""
+    """SNR of the decoded differences against bytes and frame time, each threshold run through the Verilog."""
     sensor, samples = result.request.sensor, result.exposed.samples
     points, labelled = [], 0
     for threshold in LADDER:
         frame = replace(result.request.frame, threshold=threshold)
         golden = golden_frame(samples, sensor, frame, result.exposed.front_end)
         chip = hardware.simulate(result.program, sensor, frame, samples, result.exposed.front_end)
-        quality = psnr(decoding_error(golden.sent, result.exposed.ideal, golden.read, frame))
+        error = decoding_error(golden.sent, result.exposed.ideal, golden.read, frame)
+        quality = snr(error, result.exposed.ideal[golden.read])
         if quality is None:
             continue
         apart = abs(len(chip.stream) - labelled) > 0.1 * labelled  # else labels overlap
         label = f"T={threshold}: {1e3 * chip.status['cycles'] / sensor.chip.f_clk:.2f} ms" if apart else ""
         labelled = len(chip.stream) if apart else labelled
         points.append((len(chip.stream), quality, label))
-    here = summary["stream_bytes"], summary["psnr_db"]
+    here = summary["stream_bytes"], summary["snr_db"]
     mark, title = None if None in here else here, "Threshold: error against bytes, and the chip's frame time"
-    return curves({"differences": points}, "bytes a frame", "PSNR (dB)", title, log_x=True, mark=mark)
+    return curves({"differences": points}, "bytes a frame", "SNR (dB; nothing sent: 0)", title, log_x=True, mark=mark)
 
 
 def _capture(result: FrameResult) -> Figure:

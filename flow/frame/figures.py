@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from base.verilator import verilator_version
-from models.parameters import EnergyParameters, FrameParameters
+from models.parameters import EnergyParameters
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
+from .quality import decoding_error, ideal_samples, quality
 from .result import FrameResult
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
@@ -22,30 +23,6 @@ def mismatches(first: bytes, second: bytes) -> int:
     a, b = (np.frombuffer(x, np.uint8) for x in (first, second))
     common = min(a.size, b.size)
     return int((a[:common] != b[:common]).sum()) + abs(a.size - b.size)
-
-
-def ideal_samples(ideal: Values, frame: FrameParameters) -> Values:
-    """What a perfect chip would send, in codes, (rows, cols, subs).
-
-    The analog values, or, of the four taps, their phase (256 = a turn) and amplitude.
-    """
-    if not frame.phase:
-        return ideal
-    x, y = ideal[..., 0] - ideal[..., 2], ideal[..., 3] - ideal[..., 1]
-    phase = np.mod(np.arctan2(y, x) * (256 / (2 * np.pi)), 256)
-    return np.stack([phase, np.maximum(np.abs(x), np.abs(y))], -1)
-
-
-def decoding_error(samples: Codes, ideal: Values, read: npt.NDArray[np.bool_], frame: FrameParameters) -> Values:
-    """Decoded less ideal for every sample read, in codes, (n, subs).
-
-    The error of a phase is the short way round, and 0 where the chip marks it as not valid (amplitude 0).
-    """
-    error = samples[read] - ideal_samples(ideal, frame)[read]
-    if frame.phase:
-        error[:, 0] = np.mod(error[:, 0] + 128, 256) - 128
-        error[samples[read][:, 1] == 0] = 0
-    return error
 
 
 def psnr(error: Values) -> float | None:
@@ -99,7 +76,8 @@ def summarize(result: FrameResult) -> dict[str, Any]:
     stream_mismatches: bytes that differ between the chip's stream and the golden encoder's.
     decoded_mismatches: decoded samples that differ from the golden codes, bad rows' among them.
     capture_error_codes: RMS of the captured differences against 31 x 31 views, on a probe.
-    raw_bytes: one byte a sample. psnr_db: decoded samples against the noiseless analog values, peak 255 codes.
+    raw_bytes: one byte a sample sent. psnr_db: decoded samples against the noiseless analog values, peak 255 codes; of
+    phase and amplitude, the amplitude alone. Figures of quality: docs/figures.md.
     """
     asked, golden, chip, decoded = result.request, result.golden, result.chip, result.decoded
     sensor, frame, status = asked.sensor, asked.frame, chip.status
@@ -107,6 +85,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
     sent, size = golden.read.sum() * golden.sent.shape[2], len(chip.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
     tokens = size - HEADER_BYTES - TRAILER_BYTES - marks
+    error = decoding_error(decoded.samples, ideal, golden.read, frame)
     parts = {"header": HEADER_BYTES, "tokens": tokens, "row marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
     tools = {name: version(name) for name in ("pymtl3", "numpy", "numba")}
@@ -123,7 +102,8 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         | {"stream_bytes": size, "raw_bytes": int(sent), "bytes": parts, "compression_ratio": ratio}
         | {"stream_mismatches": mismatches(chip.stream, golden.stream)}
         | {"decoded_mismatches": int((decoded.samples != golden.sent).sum())}
-        | {"psnr_db": psnr(decoding_error(decoded.samples, ideal, golden.read, frame)), "peak": PEAK}
+        | {"psnr_db": psnr(error[:, 1:] if frame.phase else error), "peak": PEAK}
+        | quality(result)
         | {"signal_span": float(span), "energy_uj": energy_of(result)}
         | {"left_out": [entry._asdict() for entry in (*result.exposed.views.left_out, *result.exposed.plan.left_out)]}
         | {"rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles}

@@ -7,14 +7,13 @@ import numpy as np
 import numpy.typing as npt
 
 from base.charts import bars, svg
-from models.capture import CaptureOperator
 from models.parameters import FrameParameters
-from models.reconstruct import edge_images, light_field_estimate, sum_image
+from models.reconstruct import edge_images
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
 from .figures import Values
-from .report import Picture, render
+from .report import Picture, against, decibels, render
 from .result import FrameResult
 
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
@@ -30,7 +29,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     (folder / "stream.bin").write_bytes(result.chip.stream)
     result.decoded.save(folder / "decoded.npz")
-    shown, sheets = _pictures(result), _sheets(result)
+    shown, sheets = _pictures(result, summary), _sheets(result, summary)
     for picture in (*shown, *sheets):
         picture.image.save(folder / f"{picture.name}.png")
     pictures.overview([(picture.name, picture.image) for picture in shown]).save(folder / "overview.png")
@@ -40,7 +39,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     (folder / "report.html").write_text(render(summary, large, chip, sheets, _where(summary), errors))
 
 
-def _pictures(result: FrameResult) -> list[Picture]:
+def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
     """The single pictures of the mode."""
     frame, golden, decoded, scene = result.request.frame, result.golden, result.decoded, result.exposed.scene
     out = [Picture("scene", "", "the scene, centre view", pictures.gray(scene.image, high=_top(scene.image)))]
@@ -52,19 +51,25 @@ def _pictures(result: FrameResult) -> list[Picture]:
         image = pictures.gray(rebuilt.image, *np.quantile(rebuilt.image, (0.005, 0.995)))
         caption = "decoded differences, pixel by pixel (blue negative, red positive)"
         out.append(Picture("differences", "", caption, differences))
-        out.append(Picture("image", "", f"2-D image rebuilt from the edges alone ({rebuilt.method})", image))
+        out.append(Picture("image", "", f"2-D image rebuilt from edges ({rebuilt.method}): {against(summary)}", image))
         converted = "which samples were converted (yellow), zero by the window (dark), unread (light)"
     elif frame.mode == "tof":
         phase, strength = _phase(samples, frame)
         image = pictures.gray(strength, high=_top(strength))
         hue = pictures.phase_wheel(phase, strength / _top(strength))
         caption = "time-of-flight phase as hue (one turn), amplitude as brightness"
-        out.append(Picture("image", "", "2-D image: amplitude of the modulated light", image))
+        out.append(Picture("image", "", f"2-D image, amplitude of the modulated light: {against(summary)}", image))
         out.append(Picture("phase", "", caption, hue))
     else:
-        total = samples[..., 0] if frame.mode == "image" else samples.sum(2) / 2
-        image = sum_image(total, result.request.sensor, decoded.read)
-        out.append(Picture("image", "", "2-D image: the sum of each pair", pictures.gray(image, high=_top(image))))
+        image = result.image
+        out.append(
+            Picture(
+                "image",
+                "",
+                f"2-D image, the sum of each pair: {against(summary)}",
+                pictures.gray(image, high=_top(image)),
+            )
+        )
     decisions = pictures.decisions(golden.read, np.any(golden.converted, axis=2))
     return [*out, Picture("conversions", "", converted, decisions)]
 
@@ -81,7 +86,7 @@ def _phase(samples: Values, frame: FrameParameters) -> tuple[Values, Values]:
     return np.arctan2(y, x), np.hypot(x, y)
 
 
-def _sheets(result: FrameResult) -> list[Picture]:
+def _sheets(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
     """The contact sheets of the mode."""
     sensor, frame, decoded, scene = result.request.sensor, result.request.frame, result.decoded, result.exposed.scene
     out = []
@@ -97,10 +102,10 @@ def _sheets(result: FrameResult) -> list[Picture]:
         sheet = pictures.view_sheet(scene.full_light_field)
         out.append(Picture("views", "The scene's light field", "what the pixels saw, view by view", sheet))
     if frame.mode == "raw":
-        operator = CaptureOperator(sensor, read=decoded.read)
-        pair = np.moveaxis(decoded.samples.astype(float), 2, 0)
-        sheet = pictures.view_sheet(np.maximum(light_field_estimate(operator, pair), 0))
-        caption = "linear estimate from the decoded diodes, view by view"
+        sheet = pictures.view_sheet(np.maximum(result.light_field, 0))
+        found, copied = (summary[f"light_field_psnr{name}_db"] for name in ("", "_copied"))
+        caption = "linear estimate from the decoded diodes, view by view: PSNR "
+        caption += f"{decibels(found)}; the 2-D image in every view has {decibels(copied)}"
         out.append(Picture("views_decoded", "The light field read back", caption, sheet))
     return out
 

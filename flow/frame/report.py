@@ -38,15 +38,25 @@ class Tile(NamedTuple):
     kind: str = ""
 
 
+def decibels(value: float | None) -> str:
+    """A figure in dB."""
+    return "-" if value is None else f"{value:.1f} dB"
+
+
+def against(s: dict[str, Any]) -> str:
+    """PSNR of the 2-D image beside that of flat gray and of JPEG."""
+    own, gray, jpeg = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg"))
+    return f"PSNR {own}; flat gray {gray}; a JPEG of as many bytes {jpeg}"
+
+
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
     right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
     equal = ("byte for byte", "good") if right else (f"{s['stream_mismatches']} bytes differ", "bad")
-    psnr = "exact" if s["psnr_db"] is None else f"{s['psnr_db']:.1f} dB"
     return [
         Tile(equal[0], "chip against golden model", equal[1]),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
-        Tile(psnr, "decoded samples against the analog values"),
+        Tile(decibels(s["snr_db"]), f"SNR of the decoded samples (nothing sent: {decibels(s['snr_nothing_sent_db'])})"),
         Tile(f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out"),
         Tile(f"{1e3 * s['frame_s_at_clock']:.1f} ms", f"a frame, {s['cycles']:,} cycles"),
         Tile(f"{s['energy_uj']['total']:.1f} uJ", "a frame"),

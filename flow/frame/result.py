@@ -8,11 +8,12 @@ import numpy as np
 import numpy.typing as npt
 
 from models.afe import FrontEnd
-from models.capture import Views
+from models.capture import CaptureOperator, Views
 from models.chip import GoldenFrame
 from models.digital.stream.frame import DecodedFrame
+from models.pixel.time_of_flight import quadrature
 from models.plan import Plan
-from models.reconstruct import rebuild
+from models.reconstruct import light_field_estimate, rebuild, sum_image
 from models.reconstruct.rebuild import Rebuilt
 from models.scene import Scene
 
@@ -50,7 +51,27 @@ class FrameResult:
 
     @cached_property
     def rebuilt(self) -> Rebuilt:
-        """The 2-D image rebuilt from the decoded edges alone."""
+        """The 2-D image rebuilt from the decoded edges and the scene's disparity."""
         asked, exposed, edges = self.request, self.exposed, self.decoded.samples[..., 0]
         trim, timing = exposed.front_end.trim, asked.frame.timing
         return rebuild(edges, self.decoded.read, exposed.scene, asked.sensor, trim, timing)
+
+    @cached_property
+    def image(self) -> npt.NDArray[np.float64]:
+        """The 2-D image of the mode, relative radiance: rebuilt from edges, or from sums, or the taps' amplitude."""
+        frame, sensor, samples = self.request.frame, self.request.sensor, self.decoded.samples.astype(float)
+        if frame.mode == "edge":
+            return self.rebuilt.image
+        if frame.mode == "tof":
+            # Amplitude is half the difference of two taps that see a wave of half the light.
+            strength = samples[..., 1] if frame.phase else np.hypot(*quadrature(np.moveaxis(samples, 2, 0)))
+            return np.asarray(sum_image(strength, sensor, self.decoded.read, frame.timing), float)
+        total = samples[..., 0] if frame.mode == "image" else samples.sum(2) / 2
+        return np.asarray(sum_image(total, sensor, self.decoded.read, frame.timing), float)
+
+    @cached_property
+    def light_field(self) -> npt.NDArray[np.float64]:
+        """The linear estimate of the light field from the decoded diodes, in LSB; raw mode only."""
+        pair = np.moveaxis(self.decoded.samples.astype(float), 2, 0)
+        operator = CaptureOperator(self.request.sensor, read=self.decoded.read)
+        return np.asarray(light_field_estimate(operator, pair), float)

@@ -1,4 +1,4 @@
-"""Noise on the default scene, through the chip's Verilog: PSNR of the decoded differences against the analog values
+"""Noise on the default scene, through the chip's Verilog: SNR of the decoded differences against the analog values
 of a noiseless exposure, and what the noise costs in conversions, bytes and cycles."""
 
 from collections.abc import Sequence
@@ -27,10 +27,15 @@ def measure(point: tuple[float, int]) -> dict[str, Any]:
     asked = request(rows=size, cols=size, noise=level)
     result = job.simulate_frame(asked)
     summary = summarize(result)
-    return {"noise": level, "psnr_edges_db": summary["psnr_db"], **costs(result, summary)}
+    return {
+        "noise": level,
+        "snr_edges_db": summary["snr_db"],
+        "psnr_edges_db": summary["psnr_db"],
+        **costs(result, summary),
+    }
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
-    """PSNR against noise."""
-    series = {"decoded differences": [(r["noise"], r["psnr_edges_db"], f"{r['bytes']:,} B") for r in rows]}
-    return curves(series, "noise (times physical)", "PSNR (dB)", "Noise: error and what it costs")
+    """SNR against noise."""
+    series = {"decoded differences": [(r["noise"], r["snr_edges_db"], f"{r['bytes']:,} B") for r in rows]}
+    return curves(series, "noise (times physical)", "SNR (dB)", "Noise: error and what it costs")

@@ -1,5 +1,5 @@
-"""The threshold of edge-only conversion on the default scene, through the chip's Verilog: PSNR of the decoded
-differences and of the image rebuilt from them against conversions, bytes, cycles, energy and simulation time."""
+"""The threshold of edge-only conversion on the default scene, through the chip's Verilog: SNR of the decoded
+differences and PSNR of the image rebuilt from them against conversions, bytes, cycles, energy and simulation time."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -38,7 +38,11 @@ def measure(point: tuple[int, int]) -> dict[str, Any]:
     asked = replace(asked, frame=replace(asked.frame, threshold=threshold))
     result = job.read_out(asked, exposed, program)
     summary = summarize(result)
-    quality = {"psnr_edges_db": summary["psnr_db"], "psnr_image_db": result.rebuilt.psnr_db}
+    quality = {
+        "snr_edges_db": summary["snr_db"],
+        "psnr_edges_db": summary["psnr_db"],
+        "psnr_image_db": result.rebuilt.psnr_db,
+    }
     return {"threshold": threshold, **quality, **costs(result, summary)}
 
 
@@ -53,9 +57,9 @@ def costs(result: FrameResult, summary: dict[str, Any]) -> dict[str, Any]:
 
 
 def plot(rows: Sequence[dict[str, Any]]) -> Figure:
-    """PSNR against bytes."""
+    """SNR against bytes."""
     series = {
-        "decoded differences": [(r["bytes"], r["psnr_edges_db"], f"T={r['threshold']}") for r in rows],
+        "decoded differences": [(r["bytes"], r["snr_edges_db"], f"T={r['threshold']}") for r in rows],
         "image rebuilt from them": [(r["bytes"], r["psnr_image_db"], "") for r in rows],
     }
-    return curves(series, "bytes a frame", "PSNR (dB)", "Threshold: error against bytes", log_x=True)
+    return curves(series, "bytes a frame", "SNR, of the image PSNR (dB)", "Threshold: error against bytes", log_x=True)

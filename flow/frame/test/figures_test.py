@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from flow.frame.figures import decoding_error, ideal_samples, mismatches, psnr
+from flow.frame.figures import mismatches, psnr
+from flow.frame.quality import coded, decoding_error, ideal_samples, snr, ssim
 from models.parameters import FrameParameters, Window
 
 ONE = Window(0, 0, 0, 0)
@@ -32,3 +33,25 @@ def test_ideal_phase_has_both_signs():
     frame = FrameParameters(ONE, mode="tof", phase=True)
     taps = np.array([[[0.0, 50, 100, 50], [50, 100, 50, 0]]])  # half a turn; three quarters
     assert ideal_samples(taps, frame)[0, :, 0] == pytest.approx([128, 192])
+
+
+def test_snr_of_sending_nothing_is_zero():
+    signal = np.array([3.0, -4.0])
+    assert snr(-signal, signal) == pytest.approx(0)
+    assert snr(signal / 10, signal) == pytest.approx(20)
+    assert snr(0 * signal, signal) is None
+
+
+@pytest.mark.parametrize("codec", ["jpeg", "avif"])
+def test_codecs_keep_to_their_bytes_and_gain_with_them(codec):
+    y, x = np.mgrid[:96, :96] / 96
+    image = 0.5 + 0.4 * np.sin(12 * x * y) * np.cos(9 * y)
+    errors = [np.abs(coded(image, codec, size) - image).mean() for size in (800, 6000)]
+    assert errors[1] < errors[0] < 0.1
+    assert coded(image, codec, 20) is None
+
+
+def test_ssim_is_one_for_the_truth_whatever_its_mean():
+    image = np.random.default_rng(0).random((16, 16))
+    assert ssim(image - 3, image) == pytest.approx(1)
+    assert ssim(np.zeros((16, 16)), image) < 0.5 and ssim(image[:3], image[:3]) is None

@@ -1,0 +1,151 @@
+"""How good a frame is, each figure beside what costs nothing and beside what a user would otherwise choose.
+
+Defined in docs/figures.md. None where a figure has no meaning: no such samples, no error at all, too few pixels.
+"""
+
+import io
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+from skimage.metrics import structural_similarity
+
+from models.chip import golden_frame
+from models.parameters import FrameParameters
+from models.reconstruct import psnr_db, psnr_without_mean_db, sum_image, white_sum
+
+from .result import FrameResult
+
+Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
+TURN = 256  # codes of a phase
+CODECS = {"jpeg": ("JPEG", {}), "avif": ("AVIF", {"speed": 8})}
+GAMMA = 2.2  # of the pictures that the codecs get
+SSIM_WINDOW = 7  # px
+
+
+def ideal_samples(ideal: Values, frame: FrameParameters) -> Values:
+    """What a perfect chip would send, in codes, (rows, cols, subs).
+
+    The analog values, or, of the four taps, their phase (256 = a turn) and amplitude.
+    """
+    if not frame.phase:
+        return ideal
+    x, y = ideal[..., 0] - ideal[..., 2], ideal[..., 3] - ideal[..., 1]
+    phase = np.mod(np.arctan2(y, x) * (TURN / (2 * np.pi)), TURN)
+    return np.stack([phase, np.maximum(np.abs(x), np.abs(y))], -1)
+
+
+def decoding_error(samples: Codes, ideal: Values, read: npt.NDArray[np.bool_], frame: FrameParameters) -> Values:
+    """Decoded less ideal for every sample read, in codes, (n, subs).
+
+    The error of a phase is the short way round, and 0 where the chip marks it as not valid (amplitude 0).
+    """
+    error = samples[read] - ideal_samples(ideal, frame)[read]
+    if frame.phase:
+        error[:, 0] = np.mod(error[:, 0] + TURN / 2, TURN) - TURN / 2
+        error[samples[read][:, 1] == 0] = 0
+    return error
+
+
+def snr(error: Values, signal: Values) -> float | None:
+    """10 log10 of the signal's energy over the error's, in dB."""
+    noise, power = float(np.sum(np.square(error))), float(np.sum(np.square(signal)))
+    return 10 * float(np.log10(power / noise)) if noise and power else None
+
+
+def sent_quality(result: FrameResult) -> dict[str, float | None]:
+    """Of the decoded samples against the noiseless ones: snr_db, snr_nothing_sent_db, edges, phases."""
+    frame, read, samples = result.request.frame, result.golden.read, result.decoded.samples
+    ideal = ideal_samples(result.exposed.ideal, frame)[read]
+    error = decoding_error(samples, result.exposed.ideal, read, frame)
+    phases: dict[str, float | None] = {}
+    if frame.phase:
+        valid = samples[read][:, 1] > 0
+        turns = float(np.sqrt(np.mean(error[valid, 0] ** 2))) / TURN if valid.any() else None
+        phases = {"phase_rms_turns": turns, "phase_valid": float(valid.mean()) if valid.size else None}
+        ideal, error = ideal[:, 1:], error[:, 1:]
+    # Edges are about zero; of other samples a receiver could know the mean without any byte.
+    nothing = np.zeros(1) if frame.mode == "edge" else ideal.mean(0) if ideal.size else np.zeros(1)
+    signal = ideal - nothing
+    figures = {"snr_db": snr(error, signal), "snr_nothing_sent_db": snr(nothing - ideal, signal)}
+    return {**figures, **_edges(samples[read], result.exposed.ideal[read], frame), **phases}
+
+
+def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, float | None]:
+    names = ("edge_precision", "edge_recall", "edge_share", "edge_energy_kept")
+    if frame.mode != "edge":
+        return dict.fromkeys(names)
+    found, true = sent != 0, np.abs(np.rint(ideal)) >= max(frame.threshold, 1)
+    both, energy = int((found & true).sum()), float(np.sum(ideal**2))
+    parts = (
+        (both, int(found.sum())),
+        (both, int(true.sum())),
+        (int(true.sum()), true.size),
+        (float(np.sum(ideal[found] ** 2)), energy),
+    )
+    return {name: part / whole if whole else None for name, (part, whole) in zip(names, parts, strict=True)}
+
+
+def image_quality(result: FrameResult) -> dict[str, float | None]:
+    """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes."""
+    truth = np.asarray(result.exposed.scene.image, float)
+    seen, size = coded_sum(result), len(result.chip.stream)
+    images = {"": result.image, "_gray": np.zeros_like(truth), "_sum": seen}
+    images |= {f"_{name}": coded(seen, name, size) for name in CODECS}
+    out: dict[str, float | None] = {}
+    for name, image in images.items():
+        out[f"image_psnr{name}_db"] = None if image is None else psnr_without_mean_db(image, truth)
+        out[f"image_ssim{name}"] = None if image is None else ssim(image, truth)
+    return out
+
+
+def ssim(image: Values, truth: Values) -> float | None:
+    """Structural similarity after the image has the mean of the truth, peak 1."""
+    if min(truth.shape) < SSIM_WINDOW:
+        return None
+    level = image - image.mean() + truth.mean()
+    found: Any = structural_similarity(level, truth, data_range=1.0, win_size=SSIM_WINDOW)
+    return float(found)
+
+
+def coded_sum(result: FrameResult) -> Values:
+    """The sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
+    asked, samples = result.request, result.exposed.samples
+    frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.timing)
+    sums = golden_frame(samples.mean(0, keepdims=True), asked.sensor, frame, result.exposed.front_end)
+    # A tap of time of flight is half of the light on average.
+    half = 2.0 if asked.frame.mode == "tof" else 1.0
+    read = result.golden.read
+    return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.sensor, read, asked.frame.timing), float)
+
+
+def coded(image: Values, codec: str, size: int) -> Values | None:
+    """An image through a codec at its best quality of at most ``size`` bytes; None where even the worst is larger."""
+    top = max(float(image.max()), 1e-9)
+    picture = Image.fromarray(np.rint(255 * (image / top) ** (1 / GAMMA)).astype(np.uint8))
+    kind, options = CODECS[codec]
+    best, low, high = None, 1, 100
+    while low <= high:
+        quality, file = (low + high) // 2, io.BytesIO()
+        picture.save(file, kind, quality=quality, **options)
+        if file.tell() <= size:
+            best, low = file, quality + 1
+        else:
+            high = quality - 1
+    return None if best is None else top * (np.asarray(Image.open(best).convert("L")) / 255.0) ** GAMMA
+
+
+def field_quality(result: FrameResult) -> dict[str, float | None]:
+    """Of the light field read back in raw mode, against the scene's: PSNR, and that of the sum image in every view."""
+    if result.request.frame.mode != "raw":
+        return {"light_field_psnr_db": None, "light_field_psnr_copied_db": None}
+    truth = np.asarray(result.exposed.scene.full_light_field, float)
+    field = result.light_field / white_sum(result.request.sensor, result.request.frame.timing)
+    copied = np.broadcast_to(result.image, truth.shape)
+    return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
+
+
+def quality(result: FrameResult) -> dict[str, Any]:
+    """All figures of this file."""
+    return sent_quality(result) | image_quality(result) | field_quality(result)
