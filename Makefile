@@ -10,7 +10,7 @@ LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
 
 # Arguments of `make sim`, each also an option of `talbot sim`
-SIM_OPTIONS := SCENE DEPTH F_NUMBER FOCAL FOCUS SCALE PUPIL VIEWS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES NOISE SEED OUT WAVES
+SIM_OPTIONS := SCENE DEPTH F_NUMBER FOCAL FOCUS SCALE PUPIL VIEWS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES CONVERTER NOISE SEED OUT WAVES
 quoted = '$(subst ','\'',$(1))'
 sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z_ a-z-) $(call quoted,$($(o))))) $(if $(PHASE),--phase)
 

@@ -145,7 +145,7 @@ def _unseen_diode() -> Case:
 def _exposures() -> list[Case]:
     """Currents, noise and wells far beyond the working range."""
     pair = np.stack([np.full((8, 12), 0.5), np.full((8, 12), 0.4)])
-    full = ElectricalParameters(read_noise=0, offset_fpn=0)
+    full = ElectricalParameters(read_noise=0, offset_fpn=0, column_fpn=0, flicker_noise=0)
     cases = (
         ("saturated scene", pair * 40, full, AmpTiming(), 0.0, 127.5, 127.5),
         ("saturated scene, 255 common-mode resets", pair * 40, full, AmpTiming(n_cm=255), 0.0, 0, 127.5),

@@ -49,6 +49,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--decimation", default="0", help="log2 of the tile step, 0..3")
     add("--lanes", default="8", help="converters, one of " + ", ".join(map(str, LANES)))
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
+    add("--converter", default="typical", help="typical (INL, DNL, offset, noise as in the report) or ideal")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
     add("--out", help="folder for the results (default: build/sim/<scene>)")
@@ -79,7 +80,7 @@ def _request(a: Namespace) -> "FrameRequest":
     rows = numbers["rows"]
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
-    plain = {name: getattr(a, name) for name in ("scene", "depth", "mode", "phase", "out")}
+    plain = {name: getattr(a, name) for name in ("scene", "depth", "mode", "phase", "out", "converter")}
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
     window = partial(text.window, a.window)
     return request(
@@ -98,7 +99,7 @@ def _camera(a: Namespace) -> "CameraParameters":
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from .figures import camera_line
+    from .figures import camera_line, energy_line
     from .report import against, decibels
 
     print(
@@ -118,7 +119,7 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         )
     print(
         f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
-        f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {s['energy_uj']['total']:.2f} uJ"
+        f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {energy_line(s)}"
     )
     print(f"  simulated at {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s; wall clock {sum(s['wall_s'].values()):.1f} s")
     print(f"  look at {folder / 'report.html'}")

@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from base.verilator import verilator_version
-from models.parameters import EnergyParameters
+from models.parameters import EnergyParameters, LightParameters
+from models.parameters.energy import DECISIONS, WINDOW, Events
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
@@ -31,16 +32,64 @@ def psnr(error: Values) -> float | None:
     return 10 * float(np.log10(PEAK**2 / mean_square)) if mean_square else None
 
 
-def energy_of(result: FrameResult) -> dict[str, float]:
-    """Energy of the frame by part, in uJ, and ``total``."""
+def events_of(result: FrameResult) -> Events:
+    """What the frame did, for its energy."""
     frame, sensor, golden = result.request.frame, result.request.sensor, result.golden
     taps = 4 if frame.mode == "tof" else 1
     rows, columns = int(golden.read.any(1).sum()), int(golden.read.any(0).sum())
-    resets, amplified = rows * sensor.array.cols * taps, rows * columns * taps
     seconds = result.chip.status["cycles"] / sensor.chip.f_clk
-    parts = EnergyParameters().frame(resets, amplified, seconds=seconds, decisions=golden.decisions)
-    micro = {name: 1e6 * value for name, value in parts.items()}
-    return {**micro, "total": sum(micro.values())}
+    stream = np.frombuffer(result.chip.stream, np.uint8)
+    # Data pins that change from byte to byte, and the strobe up and down
+    toggles = int(np.unpackbits(stream[1:] ^ stream[:-1]).sum()) + 2 * stream.size
+    return Events(rows * sensor.array.cols * taps, rows * columns * taps, seconds, golden.decisions, toggles)
+
+
+def energy_of(result: FrameResult) -> dict[str, float]:
+    """Energy of the frame in uJ: parts and ``total`` in the lower reading of Table 6.1, ``adcs_high``, ``total_high``.
+
+    image_mode, image_mode_high: of an edge frame's samples converted in full and sent as a byte each. edge_pays_below:
+    the share of converted samples below which edge mode takes less than that (lower reading). light: of the source in
+    time of flight, on while a row integrates; in no total.
+    """
+    events, asked = events_of(result), result.request
+    parts = {name: (1e6 * low, 1e6 * high) for name, (low, high) in EnergyParameters().frame(events).items()}
+    out = {name: low for name, (low, _) in parts.items()} | {"adcs_high": parts["adcs"][1]}
+    for i, end in enumerate(("", "_high")):
+        out[f"total{end}"] = sum(value[i] for value in parts.values())
+    if asked.frame.mode == "tof":
+        sensor, lens, timing = asked.sensor, asked.sensor.optics.camera, asked.frame.timing
+        pixels = sensor.array.rows * sensor.array.cols
+        power = LightParameters().power(
+            sensor.electrical.white_current, sensor.array.pitch, pixels, lens.nu_max, lens.magnification
+        )
+        lit = events.resets / sensor.array.cols * timing.t_int * (timing.n_cm + 1) / sensor.chip.f_clk
+        out["light"] = 1e6 * power * lit
+    if asked.frame.mode != "edge":
+        return out
+    # Image mode: a full conversion and a byte for every sample; half of the data pins change.
+    count = result.golden.samples
+    plain = events._replace(decisions=DECISIONS * count, toggles=(4 + 2) * count)
+    one = EnergyParameters().frame(Events(0, 0, 0.0, 1, 1))
+    search, pin, each = one["adcs"][0], one["pads"][0], events.toggles / max(result.golden.made, 1)
+    saved = (DECISIONS - WINDOW) * search + 6 * pin  # of a sample that is left out
+    out["edge_pays_below"] = min(saved / (DECISIONS * search + each * pin), 1.0)
+    for i, end in enumerate(("", "_high")):
+        out[f"image_mode{end}"] = 1e6 * sum(value[i] for value in EnergyParameters().frame(plain).values())
+    return out
+
+
+def energy_line(summary: dict[str, Any]) -> str:
+    """Energy of a frame and power at 30 frames a second, both readings."""
+    e = summary["energy_uj"]
+    rate = EnergyParameters().frame_rate
+    text = f"{e['total']:.1f} to {e['total_high']:.1f} uJ"
+    if "image_mode" in e:
+        text += f" (image mode {e['image_mode']:.1f} to {e['image_mode_high']:.1f})"
+    if "light" in e:
+        text += f" and {e['light'] / 1e6:.3g} J of light"
+    if "edge_pays_below" in e:
+        text += f"; edges pay below {100 * e['edge_pays_below']:.0f} % converted"
+    return f"{text}; {e['total'] * rate / 1e3:.2f} mW at {rate:g} frames/s"
 
 
 def camera_of(result: FrameResult) -> dict[str, float | None]:

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base.charts import bars, svg
-from models.parameters import FrameParameters
+from models.parameters import EnergyParameters, FrameParameters, LightParameters, sources
 from models.reconstruct import edge_images
 
 from . import error_plots, pictures
@@ -36,7 +36,9 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     large = [picture._replace(image=pictures.enlarge(picture.image, 384)) for picture in shown]
     chip = chip_svg(result.request.sensor, result.request.frame)
     errors = [svg(figure) for figure in error_plots.figures(result, summary)]
-    (folder / "report.html").write_text(render(summary, large, chip, sheets, _where(summary), errors))
+    (folder / "report.html").write_text(
+        render(summary, large, chip, sheets, _where(summary), errors, assumptions(result))
+    )
 
 
 def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
@@ -115,9 +117,17 @@ def _where(s: dict[str, Any]) -> list[str]:
     pins = s["cycles_by_pin"]
     phases = ("pixel_reset", "integrate", "cm_reset", "read", "waiting")
     cycles = {name.replace("_", " "): pins[name] for name in phases}
-    energy = {name.replace("_", " "): value for name, value in s["energy_uj"].items() if name != "total"}
+    parts = ("pixel_array", "amplifiers", "timing", "adcs", "pads")
+    energy = {name.replace("_", " "): s["energy_uj"][name] for name in parts}
     return [
         svg(bars(cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)")),
         svg(bars(energy, "uJ", f"Energy ({s['energy_uj']['total']:.1f} uJ)")),
         svg(bars(s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})")),
     ]
+
+
+def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
+    """Every parameter of noise and energy, its value in SI units and where it comes from."""
+    sensor = result.request.sensor
+    converter = [(f"converter {name}", value, "assumed") for name, value in vars(sensor.converter).items()]
+    return [*sources(sensor.electrical), *converter, *sources(EnergyParameters()), *sources(LightParameters())]

@@ -11,7 +11,7 @@ from PIL.Image import Image
 
 from base import page
 
-from .figures import camera_line
+from .figures import camera_line, energy_line
 
 
 class Picture(NamedTuple):
@@ -59,7 +59,7 @@ def headline(s: dict[str, Any]) -> list[Tile]:
         Tile(decibels(s["snr_db"]), f"SNR of the decoded samples (nothing sent: {decibels(s['snr_nothing_sent_db'])})"),
         Tile(f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out"),
         Tile(f"{1e3 * s['frame_s_at_clock']:.1f} ms", f"a frame, {s['cycles']:,} cycles"),
-        Tile(f"{s['energy_uj']['total']:.1f} uJ", "a frame"),
+        Tile(f"{s['energy_uj']['total']:.1f} to {s['energy_uj']['total_high']:.1f} uJ", "a frame"),
     ]
 
 
@@ -70,16 +70,13 @@ def render(
     sheets: Sequence[Picture],
     where: Sequence[str],
     errors: Sequence[str],
+    assumed: Sequence[tuple[str, object, str]] = (),
 ) -> str:
-    """The page as HTML. chip, where, errors: SVG texts of the chip, of where cycles went, of error against time."""
+    """The page as HTML. chip, where, errors: SVG texts of the chip, of where cycles went, of error against time.
+
+    assumed: name, value and source of parameters.
+    """
     drawn = {"chip": Markup(chip), "where": [Markup(svg) for svg in where], "errors": [Markup(svg) for svg in errors]}
     template = Path(__file__).with_name("report.html")
-    return page.render(
-        template,
-        s=summary,
-        camera=camera_line(summary),
-        tiles=headline(summary),
-        pictures=pictures,
-        sheets=sheets,
-        **drawn,
-    )
+    texts = {"camera": camera_line(summary), "energy": energy_line(summary), "assumed": assumed}
+    return page.render(template, s=summary, tiles=headline(summary), pictures=pictures, sheets=sheets, **texts, **drawn)

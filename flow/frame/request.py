@@ -6,7 +6,15 @@ from pathlib import Path
 from typing import Any
 
 from models import parameters
-from models.parameters import ALL_TYPES, CameraParameters, FrameParameters, ParameterError, SensorParameters, Window
+from models.parameters import (
+    ALL_TYPES,
+    TYPICAL_CONVERTER,
+    CameraParameters,
+    FrameParameters,
+    ParameterError,
+    SensorParameters,
+    Window,
+)
 
 Cut = Callable[[Window], Window]  # of the full window
 
@@ -57,17 +65,21 @@ def request(
     cols: int = 384,
     lanes: int = 8,
     camera: CameraParameters = CameraParameters(),
+    converter: str = "typical",
     window: Cut | None = None,
     mask: int = ALL_TYPES,
     **rest: Any,
 ) -> FrameRequest:
     """A FrameRequest for an array of ``rows`` x ``cols`` pixels behind ``camera``.
 
-    window: the window to read, from the full one (all of it). rest: fields of FrameRequest and FrameParameters. Raises
-    ParameterError.
+    converter: typical or ideal.
+    window: the window to read, from the full one (all of it).
+    rest: fields of FrameRequest and FrameParameters. Raises ParameterError.
     """
     array, chip = parameters.ArrayParameters(rows=rows, cols=cols), parameters.ChipParameters(lanes=lanes)
-    sensor = SensorParameters(array=array, chip=chip, optics=parameters.OpticsParameters(camera=camera))
+    ends = TYPICAL_CONVERTER if converter == "typical" else parameters.ConverterParameters()
+    parameters.check_choice("converter", converter, ("typical", "ideal"))
+    sensor = SensorParameters(array=array, chip=chip, converter=ends, optics=parameters.OpticsParameters(camera=camera))
     full = sensor.full_window
     own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)

@@ -71,8 +71,8 @@ def expose(
 
     Each of n_cm + 1 intervals adds photocurrent and dark current with shot noise, up to the full well. Each reset
     between them removes the charge that both diodes have in common, so that the difference a - g b of a whole
-    exposure survives where the wells would overflow. Read noise and the offset of the fixed pattern are added once, at
-    the end.
+    exposure survives where the wells would overflow, and leaves kT/C noise. Read noise, the offsets of pixels and
+    columns and the columns' 1/f noise are added once, at the end.
 
     Parameters
     ----------
@@ -112,6 +112,7 @@ def expose(
     dark = e.dark_current * exposure.interval / ELEMENTARY_CHARGE
     mean = np.minimum(pair * dtype.type(per_white) * gain + dtype.type(dark), dtype.type(PHOTONS_MAX))
 
+    resets = exposure.generator(301 + tap)
     g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
     wells = np.zeros_like(pair)
     for interval in range(exposure.timing.n_cm + 1):
@@ -119,10 +120,24 @@ def expose(
             common = np.minimum(wells[0] / g, wells[1])
             wells[0] -= g * common
             wells[1] -= common
+            wells += _normal(resets, e.ktc_noise)
         collected = mean
         if n:
             shot = photon_count(mean, moving.standard_normal(pair.shape, dtype)) - mean
             collected = np.maximum(mean + dtype.type(n) * shot, 0)
         np.clip(wells + collected, 0, dtype.type(e.full_well), out=wells)
     wells += offset + _normal(exposure.generator(201 + tap), e.read_noise)
+    if n:
+        wells += _columns(exposure, tap, pair.shape).astype(dtype)
     return np.ascontiguousarray(np.moveaxis(wells / dtype.type(e.lsb_electrons), 0, -1))
+
+
+def _columns(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
+    """Offset and 1/f noise of the columns' amplifiers in electrons, (2, rows, cols)."""
+    e, (_, rows, cols) = exposure.electrical, shape
+    offset = exposure.generator(401).standard_normal((2, 1, cols)) * e.column_fpn
+    white = np.fft.rfft(exposure.generator(501 + tap).standard_normal((2, 2 * rows, cols)), axis=1)
+    shape_ = 1 / np.sqrt(np.maximum(np.arange(rows + 1), 1))  # power falls with 1/f; a frame sees half of the record
+    gain = np.sqrt(2 * rows / (2 * np.sum(shape_[1:-1] ** 2) + shape_[0] ** 2 + shape_[-1] ** 2))
+    pink = np.fft.irfft(white * (shape_ * gain)[:, None], 2 * rows, axis=1)[:, :rows]
+    return exposure.noise * (offset + pink * e.flicker_noise)

@@ -5,11 +5,12 @@ from .camera import FOCUS_MAX, CameraParameters
 from .checks import ParameterError, check_choice, check_int, check_real
 from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .divider import DIVIDERS
-from .electrical import ELEMENTARY_CHARGE, ConverterParameters, ElectricalParameters
-from .energy import EnergyParameters
+from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
+from .energy import EnergyParameters, LightParameters
 from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
 from .optics import OpticsParameters
 from .sensor import SensorParameters
+from .sources import sources
 from .tile import PixelType, TileParameters
 
 __all__ = [
@@ -20,11 +21,13 @@ __all__ = [
     "ELEMENTARY_CHARGE",
     "FOCUS_MAX",
     "LANES",
+    "LightParameters",
     "MODES",
     "ROWS_MAX",
     "SAMPLES_PER_PIXEL",
     "SPI_INPUTS",
     "SHORT_TIMING",
+    "TYPICAL_CONVERTER",
     "AmpTiming",
     "ArrayParameters",
     "CameraParameters",
@@ -42,4 +45,5 @@ __all__ = [
     "check_choice",
     "check_int",
     "check_real",
+    "sources",
 ]

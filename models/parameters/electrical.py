@@ -1,10 +1,14 @@
 """From photocurrent to 8-bit code, in SI units, and where the noise enters."""
 
 from dataclasses import dataclass
+from math import sqrt
 
 from .checks import check_int, check_real
+from .sources import sourced
 
 ELEMENTARY_CHARGE = 1.602176634e-19  # C
+BOLTZMANN = 1.380649e-23  # J/K
+TEMPERATURE = 300.0  # K, assumed
 
 
 @dataclass(frozen=True)
@@ -29,16 +33,25 @@ class ElectricalParameters:
         RMS of the offset fixed-pattern noise, 0..1e5 electrons.
     f_mod : float
         Time-of-flight modulation frequency, 1e5..1e9 Hz.
+    swing : float
+        Voltage of a full well on the integration capacitor, 0.01..10 V: makes the kT/C noise of a common-mode reset.
+    column_fpn : float
+        RMS offset of a column's amplifier, 0..1e5 electrons per diode.
+    flicker_noise : float
+        RMS 1/f noise of a column's amplifier over the rows of a frame, 0..1e5 electrons per diode.
     """
 
-    white_current: float = 0.25e-9
-    full_well: float = 1e5
-    difference_gain: float = 4.0
-    read_noise: float = 30.0
-    dark_current: float = 1e-15
-    gain_fpn: float = 0.002
-    offset_fpn: float = 20.0
-    f_mod: float = 20e6
+    white_current: float = sourced(0.25e-9, "assumed: 80 % of a full well in 51.2 us")
+    full_well: float = sourced(1e5, "assumed")
+    difference_gain: float = sourced(4.0, "our choice: edges reach the converter's range")
+    read_noise: float = sourced(30.0, "assumed")
+    dark_current: float = sourced(1e-15, "assumed")
+    gain_fpn: float = sourced(0.002, "assumed")
+    offset_fpn: float = sourced(20.0, "assumed")
+    f_mod: float = sourced(20e6, "our choice")
+    swing: float = sourced(1.0, "assumed")
+    column_fpn: float = sourced(10.0, "assumed")
+    flicker_noise: float = sourced(10.0, "assumed")
 
     def __post_init__(self) -> None:
         check_real("white_current", self.white_current, 1e-15, 1e-3)
@@ -49,11 +62,19 @@ class ElectricalParameters:
         check_real("gain_fpn", self.gain_fpn, 0, 0.5)
         check_real("offset_fpn", self.offset_fpn, 0, 1e5)
         check_real("f_mod", self.f_mod, 1e5, 1e9)
+        check_real("swing", self.swing, 0.01, 10)
+        check_real("column_fpn", self.column_fpn, 0, 1e5)
+        check_real("flicker_noise", self.flicker_noise, 0, 1e5)
 
     @property
     def lsb_electrons(self) -> float:
         """Electrons per code of the sum of a pair (both wells full = code 255)."""
         return 2 * self.full_well / 255
+
+    @property
+    def ktc_noise(self) -> float:
+        """RMS electrons that a reset leaves on a diode's capacitor: sqrt(kT C) / q with C = full_well q / swing."""
+        return sqrt(BOLTZMANN * TEMPERATURE * self.full_well / (ELEMENTARY_CHARGE * self.swing))
 
 
 @dataclass(frozen=True)
@@ -90,3 +111,7 @@ class ConverterParameters:
         check_real("noise", self.noise, 0, 16)
         check_real("ktc", self.ktc, 0, 16)
         check_int("seed", self.seed, 0, 2**32 - 1)
+
+
+# Of `make sim`; the default above is an ideal converter.
+TYPICAL_CONVERTER = ConverterParameters(inl=0.5, dnl=0.1, offset=0.5, noise=0.25, ktc=0.15)

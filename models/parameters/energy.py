@@ -1,15 +1,46 @@
 """Energy of an event on the chip, from the measured power of the thesis's sensor [Jayasuriya2017, Table 6.1]."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import NamedTuple
 
-from .checks import check_int, check_real
+from .checks import check_real
+from .sources import sourced
+
+TABLE = "[Jayasuriya2017], Table 6.1"
+DECISIONS = 8  # comparator decisions of one full conversion
+WINDOW = 2  # of the window comparison
+
+
+class Events(NamedTuple):
+    """What a frame did.
+
+    Attributes
+    ----------
+    resets : int
+        Pixels reset and integrated: whole rows, once per tap.
+    amplified : int
+        Pixels whose column amplifier ran.
+    seconds : float
+        Duration of the frame.
+    decisions : int
+        Comparator decisions, window and search together.
+    toggles : int
+        Changes of the stream's output pins.
+    """
+
+    resets: int
+    amplified: int
+    seconds: float
+    decisions: int
+    toggles: int
 
 
 @dataclass(frozen=True)
 class EnergyParameters:
-    """Measured power of a sensor, by part, and the frame rate at which it is measured.
+    """Measured power of a sensor by part, and what it takes to make energies of it.
 
-    Table 6.1 gives no frame rate: `frame_rate` is our assumption.
+    The converters' power may be that of converting every sample, or already that of converting edges alone: Table 6.1
+    does not say. `frame` gives both readings.
 
     Attributes
     ----------
@@ -17,54 +48,107 @@ class EnergyParameters:
         Power of each part, 0..1 W.
     frame_rate : float
         0.1..1e5 frames per second.
-    pixels : int
+    pixels : float
         Pixels of the measured sensor, 1..2**31.
-    decisions : int
-        Comparator decisions of one full conversion, 1..64.
+    edge_share : float
+        Fraction of samples converted where the converters' power is that of edges alone, 0..1.
+    pad_load : float
+        Capacitance at an output pin, 0..1e-9 F.
+    pad_voltage : float
+        0.1..10 V.
 
     References
     ----------
     [Jayasuriya2017], Table 6.1.
     """
 
-    pixel_array: float = 300e-6
-    amplifiers: float = 900e-6
-    timing: float = 500e-6
-    adcs: float = 100e-6
-    frame_rate: float = 30.0
-    pixels: int = 384 * 384
-    decisions: int = 8
+    pixel_array: float = sourced(300e-6, TABLE)
+    amplifiers: float = sourced(900e-6, TABLE)
+    timing: float = sourced(500e-6, TABLE)
+    adcs: float = sourced(100e-6, TABLE)
+    frame_rate: float = sourced(30.0, "assumed: the table has none")
+    pixels: float = sourced(384 * 384, TABLE)
+    edge_share: float = sourced(0.1, "[Jayasuriya2017], Sec. 6.3: 120 of 1200 kbit")
+    pad_load: float = sourced(10e-12, "assumed")
+    pad_voltage: float = sourced(1.8, "assumed")
 
     def __post_init__(self) -> None:
-        for name in ("pixel_array", "amplifiers", "timing", "adcs"):
-            check_real(name, getattr(self, name), 0, 1)
-        check_real("frame_rate", self.frame_rate, 0.1, 1e5)
-        check_int("pixels", self.pixels, 1, 2**31)
-        check_int("decisions", self.decisions, 1, 64)
+        ends = {"frame_rate": (0.1, 1e5), "pixels": (1, 2**31), "pad_load": (0, 1e-9), "pad_voltage": (0.1, 10)}
+        for item in fields(self):
+            check_real(item.name, getattr(self, item.name), *ends.get(item.name, (0, 1)))
 
-    def frame(self, resets: int, amplified: int, seconds: float, decisions: int) -> dict[str, float]:
-        """Energy of one frame by part.
+    def frame(self, events: Events) -> dict[str, tuple[float, float]]:
+        """Energy of one frame by part, in both readings of the converters' power.
 
         Parameters
         ----------
-        resets : int
-            Pixels reset and integrated: whole rows, once per tap.
-        amplified : int
-            Pixels whose column amplifier ran.
-        seconds : float
-            Duration of the frame.
-        decisions : int
-            Comparator decisions, window and search together.
+        events : Events
+            What the frame did.
 
         Returns
         -------
-        dict of str to float
-            Part to energy in J.
+        dict of str to (float, float)
+            Part to energy in J: lower reading (every sample was converted), higher (edges alone were).
         """
         each = 1 / (self.frame_rate * self.pixels)
-        return {
-            "pixel_array": self.pixel_array * each * resets,
-            "amplifiers": self.amplifiers * each * amplified,
-            "timing": self.timing * seconds,
-            "adcs": self.adcs * each / self.decisions * decisions,
+        every = self.adcs * each / DECISIONS * events.decisions
+        edges = self.adcs * each / (WINDOW + self.edge_share * DECISIONS) * events.decisions
+        known = {
+            "pixel_array": self.pixel_array * each * events.resets,
+            "amplifiers": self.amplifiers * each * events.amplified,
+            "timing": self.timing * events.seconds,
+            "pads": self.pad_load * self.pad_voltage**2 / 2 * events.toggles,
         }
+        return {name: (value, value) for name, value in known.items()} | {"adcs": (every, edges)}
+
+
+@dataclass(frozen=True)
+class LightParameters:
+    """The modulated light of time of flight, from the photocurrent of white back to the source.
+
+    Attributes
+    ----------
+    responsivity : float
+        Of a diode under its gratings, 1e-4..1 A/W.
+    fill : float
+        Area of one diode over the pixel's, 0.01..0.5.
+    transmission : float
+        Of the lens, 0.01..1.
+    efficiency : float
+        Optical over electrical power of the source, 0.001..1.
+    """
+
+    responsivity: float = sourced(0.05, "assumed: quantum efficiency 0.7 at 850 nm, a tenth of it under the gratings")
+    fill: float = sourced(0.4, "assumed")
+    transmission: float = sourced(0.9, "assumed")
+    efficiency: float = sourced(0.3, "assumed")
+
+    def __post_init__(self) -> None:
+        low = {"responsivity": 1e-4, "fill": 0.01, "transmission": 0.01, "efficiency": 0.001}
+        for name, least in low.items():
+            check_real(name, getattr(self, name), least, 0.5 if name == "fill" else 1)
+
+    def power(self, white_current: float, pitch: float, pixels: int, nu_max: float, magnification: float) -> float:
+        """Electrical power of a source that lights a white field in the focal plane, and nothing beside it.
+
+        Parameters
+        ----------
+        white_current : float
+            Photocurrent of one diode in A.
+        pitch : float
+            Of the pixels in m.
+        pixels : int
+            Of the array.
+        nu_max : float
+            Tangent of the lens's rim at the sensor: irradiance is nu_max**2 times the transmission and the field's own.
+        magnification : float
+            Of the lens.
+
+        Returns
+        -------
+        float
+            In W.
+        """
+        sensor = white_current / (self.responsivity * self.fill * pitch**2)  # W/m^2
+        field = sensor / (self.transmission * nu_max**2)
+        return field * pixels * (pitch / magnification) ** 2 / self.efficiency

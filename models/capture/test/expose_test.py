@@ -1,5 +1,7 @@
 """Exposure: SI units by hand, noise by its statistics, wells, seeds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,7 +12,8 @@ from models.capture import Exposure, expose
 from models.capture.shot import photon_count
 from models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, ParameterError
 
-QUIET = ElectricalParameters(dark_current=0, read_noise=0, gain_fpn=0, offset_fpn=0)
+NO_COLUMNS = {"column_fpn": 0, "flicker_noise": 0}
+QUIET = ElectricalParameters(dark_current=0, read_noise=0, gain_fpn=0, offset_fpn=0, **NO_COLUMNS)
 WHITE_ELECTRONS = 0.25e-9 * 512 / 10e6 / ELEMENTARY_CHARGE
 
 
@@ -73,7 +76,7 @@ def test_photon_counts_are_poisson(mean, dtype):
 
 @pytest.mark.parametrize("noise", [1.0, 3.0])
 def test_read_noise_and_offset_scale(noise):
-    electrical = ElectricalParameters(dark_current=0, read_noise=40, gain_fpn=0, offset_fpn=30)
+    electrical = ElectricalParameters(dark_current=0, read_noise=40, gain_fpn=0, offset_fpn=30, **NO_COLUMNS)
     out = expose(_pair(0.0, 0.0, (200, 200)), Exposure(electrical, AmpTiming(), noise=noise)) * electrical.lsb_electrons
     np.testing.assert_allclose(out.std(), 50 * noise, rtol=0.02)
 
@@ -136,3 +139,27 @@ def test_bad_pairs(pair):
 def test_bad_exposures(change):
     with pytest.raises(ParameterError, match=next(iter(change))):
         Exposure(QUIET, AmpTiming(), **change)
+
+
+@pytest.mark.parametrize("n_cm", [1, 16])
+def test_every_common_mode_reset_leaves_ktc_noise(n_cm):
+    """51 electrons at 1 V a reset, on top of the shot noise of the light."""
+    timing = AmpTiming(n_cm=n_cm, t_int=16)
+    pair = _pair(0.5, 0.5, (200, 200))
+    found = []
+    for swing in (1.0, 10.0):
+        a, b = np.moveaxis(expose(pair, Exposure(replace(QUIET, swing=swing), timing)), -1, 0)
+        found.append(np.var((a - b) * QUIET.lsb_electrons))
+    ktc = 1.380649e-23 * 300 * 1e5 / 1.602176634e-19
+    np.testing.assert_allclose(QUIET.ktc_noise, np.sqrt(ktc))
+    assert 50 < QUIET.ktc_noise < 52
+    np.testing.assert_allclose(found[0] - found[1], 2 * n_cm * (ktc - ktc / 10), rtol=0.05)
+
+
+def test_columns_have_offsets_and_pink_noise():
+    electrical = replace(QUIET, column_fpn=50, flicker_noise=20)
+    out = expose(_pair(0.0, 0.0, (256, 300)), Exposure(electrical, AmpTiming()))[..., 0] * electrical.lsb_electrons
+    np.testing.assert_allclose(out.mean(0).std(), 50, rtol=0.15)
+    pink = out - out.mean(0)
+    power = (np.abs(np.fft.rfft(pink, axis=0)) ** 2).mean(1)
+    assert 10 < pink.std() <= 21 and power[2:6].mean() > 8 * power[60:].mean()

@@ -1,0 +1,46 @@
+"""Energy: both readings of the table, events, light; and that every default says where it comes from."""
+
+import numpy as np
+import pytest
+
+from models.parameters import ConverterParameters, ElectricalParameters, EnergyParameters, LightParameters, sources
+from models.parameters.energy import Events
+
+FULL = Events(147456, 147456, 1 / 30, 8 * 147456, 0)
+
+
+def test_a_frame_that_converts_everything_takes_the_table_s_power():
+    parts = EnergyParameters().frame(FULL)
+    assert sum(low for low, _ in parts.values()) * 30 == pytest.approx(1.8e-3)
+    # If the table's converters were gated, a full conversion takes 8 / 2.8 of that.
+    assert parts["adcs"][1] / parts["adcs"][0] == pytest.approx(8 / 2.8)
+
+
+def test_a_gated_frame_takes_the_table_s_power_in_the_other_reading():
+    events = FULL._replace(decisions=round((2 + 0.1 * 8) * 147456))
+    assert EnergyParameters().frame(events)["adcs"][1] * 30 == pytest.approx(100e-6, rel=1e-5)
+
+
+def test_pads_pay_for_every_change():
+    assert EnergyParameters().frame(FULL._replace(toggles=1000))["pads"][0] == pytest.approx(500 * 10e-12 * 1.8**2)
+
+
+def test_light_goes_with_the_f_number_squared():
+    power = [LightParameters().power(0.25e-9, 10e-6, 147456, 1 / (2 * n), 0.0385) for n in (1.2, 2.4)]
+    assert power[1] == pytest.approx(4 * power[0])
+    # By hand: 125 W/m^2 at the sensor, 800 W/m^2 on a field of 0.0998 m.
+    assert power[0] == pytest.approx(125 / 0.9 * 5.76 * 147456 * (10e-6 / 0.0385) ** 2 / 0.3, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", [ElectricalParameters, EnergyParameters, LightParameters])
+def test_every_default_names_its_source(kind):
+    rows = sources(kind())
+    assert len(rows) > 3 and all(source and source != "set" for _, _, source in rows)
+    name, value, _ = rows[0]
+    changed = {n: s for n, _, s in sources(kind(**{name: value / 2}))}
+    assert changed[name] == "set" and list(changed.values()).count("set") == 1
+
+
+def test_an_ideal_converter_is_all_zero():
+    ideal = vars(ConverterParameters())
+    assert not np.any([value for name, value in ideal.items() if name != "seed"])
