@@ -99,7 +99,7 @@ def _camera(a: Namespace) -> "CameraParameters":
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from .figures import camera_line, energy_line
+    from .figures import camera_line, energy_line, trims_line
     from .report import against, decibels
 
     print(
@@ -117,6 +117,8 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
             f"  captured through {s['camera']['views']} views along the pupil, "
             f"{s['capture_error_codes']:.2f} codes RMS from 31"
         )
+    if trims_line(s):
+        print(f"  {trims_line(s)}")
     print(
         f"  {s['conversions_made']:,} conversions made, {s['conversions_left_out']:,} left out; "
         f"{s['cycles']:,} cycles = {1e3 * s['frame_s_at_clock']:.2f} ms; {energy_line(s)}"

@@ -1,6 +1,7 @@
 """The figures of one run: what summary.json holds, each measured or counted in this run."""
 
 import sys
+from collections.abc import Iterable
 from importlib.metadata import version
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base.verilator import verilator_version
+from models.afe.trim import TRIM_MAX, TRIM_MIN
 from models.parameters import EnergyParameters, LightParameters
 from models.parameters.energy import DECISIONS, WINDOW, Events
 from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
@@ -119,6 +121,22 @@ def _far(metres: float) -> str:
     return f"{100 * metres:.3g} cm" if metres < 1 else f"{metres:.3g} m"
 
 
+def trims_at_end(trims: Iterable[int]) -> list[int]:
+    """Pixel types whose trim register is at an end of its range: flat areas may leave a difference."""
+    return [kind for kind, trim in enumerate(trims) if not TRIM_MIN < trim < TRIM_MAX]
+
+
+def trims_line(summary: dict[str, Any]) -> str:
+    """What `trims_at_end` found, '' if nothing."""
+    kinds = summary["trims_at_end"]
+    if not kinds:
+        return ""
+    return (
+        f"trim registers of pixel types {', '.join(map(str, kinds))} are at the end of their range: "
+        "flat areas may leave a difference"
+    )
+
+
 def summarize(result: FrameResult) -> dict[str, Any]:
     """Figures for summary.json, without `wall_s`.
 
@@ -144,6 +162,7 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
         | {"camera": camera_of(result)}
         | {"capture_error_codes": result.exposed.views.error}
+        | {"trims_at_end": trims_at_end(result.exposed.front_end.trim)}
         | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}
         | {name: status[name] for name in ("conversions_made", "conversions_left_out")}
         | {"comparator_decisions": golden.decisions, "cycles": status["cycles"]}

@@ -11,7 +11,7 @@ from PIL.Image import Image
 
 from base import page
 
-from .figures import camera_line, energy_line
+from .figures import camera_line, energy_line, trims_line
 
 
 class Picture(NamedTuple):
@@ -78,5 +78,10 @@ def render(
     """
     drawn = {"chip": Markup(chip), "where": [Markup(svg) for svg in where], "errors": [Markup(svg) for svg in errors]}
     template = Path(__file__).with_name("report.html")
-    texts = {"camera": camera_line(summary), "energy": energy_line(summary), "assumed": assumed}
+    texts = {
+        "camera": camera_line(summary),
+        "energy": energy_line(summary),
+        "trims": trims_line(summary),
+        "assumed": assumed,
+    }
     return page.render(template, s=summary, tiles=headline(summary), pictures=pictures, sheets=sheets, **texts, **drawn)

@@ -80,7 +80,7 @@ def measured_gains(samples: npt.NDArray[np.floating], tile: TileParameters) -> n
     Returns
     -------
     float64 (types,)
-        g.
+        g; 1 for a type that an array smaller than a tile has no pixel of.
 
     Raises
     ------
@@ -90,7 +90,8 @@ def measured_gains(samples: npt.NDArray[np.floating], tile: TileParameters) -> n
     rows, cols = samples.shape[:2]
     kinds = tile.type_map(rows, cols)
     sums = np.stack([np.bincount(kinds.ravel(), samples[..., d].ravel(), tile.n_types) for d in (0, 1)])
-    if not (sums.sum(0) > 0).all():
-        dark = np.flatnonzero(~(sums.sum(0) > 0)).tolist()
+    sums[:, np.bincount(kinds.ravel(), minlength=tile.n_types) == 0] = 1
+    dark = np.flatnonzero(~(sums.sum(0) > 0)).tolist()
+    if dark:
         raise ParameterError(f"flat-field frame of types {dark} = 0: must have light in every pixel type")
     return gains((sums[0] - sums[1]) / (sums[0] + sums[1]))

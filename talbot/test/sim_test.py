@@ -40,6 +40,7 @@ KEYS = {
     "decoded_mismatches",
     "psnr_db",
     "capture_error_codes",
+    "trims_at_end",
     "snr_db",
     "snr_nothing_sent_db",
     "edge_precision",

@@ -1,8 +1,10 @@
 import numpy as np
 import pytest
 
-from flow.frame.figures import mismatches, psnr
+from flow.frame.figures import mismatches, psnr, trims_at_end, trims_line
+from flow.frame.job import expose, see
 from flow.frame.quality import coded, decoding_error, ideal_samples, snr, ssim
+from flow.frame.request import request
 from models.parameters import FrameParameters, Window
 
 ONE = Window(0, 0, 0, 0)
@@ -12,6 +14,17 @@ def test_mismatches_counts_bytes_that_differ_or_are_missing():
     assert mismatches(b"abc", b"abc") == 0
     assert mismatches(b"abc", b"axc") == 1
     assert mismatches(b"abc", b"axcde") == 3
+
+
+def test_an_array_smaller_than_a_tile_is_trimmed():
+    asked = request(1, 1, scene="flat:50")
+    assert trims_at_end(expose(asked, *see(asked)).front_end.trim) == []
+
+
+def test_trims_at_an_end_are_said():
+    assert trims_at_end([0, 511, 510, -512, -511]) == [1, 3]
+    assert "types 1, 3 are at the end" in trims_line({"trims_at_end": [1, 3]})
+    assert trims_line({"trims_at_end": []}) == ""
 
 
 def test_psnr():

@@ -124,3 +124,11 @@ def test_measured_gains_equal_the_optical_ones():
     np.testing.assert_allclose(measured_gains(frame, tile), optical_gains(tile, optics))
     with pytest.raises(ParameterError, match="flat-field frame of types .* = 0"):
         measured_gains(np.zeros((8, 12, 2)), tile)
+
+
+def test_types_that_an_array_lacks_keep_a_gain_of_1():
+    tile, frame = TileParameters(), np.array([[[3.0, 2.0], [1.0, 2.0]]])
+    gains = measured_gains(frame, tile)
+    present = tile.type_map(1, 2)[0]
+    assert gains[present] == pytest.approx([1.5, 0.5])
+    assert (np.delete(gains, present) == 1).all()
