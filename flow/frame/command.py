@@ -6,13 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from base.progress import Steps
-from models.parameters import LANES, MODES
+from models.parameters import LANES, MODES, CameraParameters
 
 from . import arguments as text
 
 if TYPE_CHECKING:
-    from models.parameters import CameraParameters
-
     from .request import FrameRequest
 
 
@@ -20,10 +18,10 @@ INTEGERS = {"rows": (1, 1024), "cols": (1, 1536), "lanes": (min(LANES), max(LANE
 INTEGERS |= {"decimation": (0, 3), "seed": (0, 2**32 - 1)}
 
 CAMERA = {
-    "f-number": "focal length over the lens's diameter, 0.5..32 (default: 1.2)",
-    "focal": "focal length in m, 0.0001..1 (default: 0.00796)",
-    "focus": "distance of the focal plane in m (default: 0.207)",
-    "scale": "the scene is a model, 1:scale of its own metres (default: 14.5)",
+    "f-number": "focal length over the lens's diameter, 0.5..32 (default: {default.f_number:g})",
+    "focal": "focal length in m, 0.0001..1 (default: {default.focal_length:g})",
+    "focus": "distance of the focal plane in m (default: {default.focus:g})",
+    "scale": "the scene is a model, 1:scale of its own metres (default: {default.scale:g})",
     "pupil": "distance of the exit pupil from the sensor in m (default: infinity, telecentric)",
 }
 
@@ -34,7 +32,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--scene", default="motorcycle", help="name of a scene (--scene list shows them) or an image file")
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
     for name, words in CAMERA.items():
-        add(f"--{name}", help=words)
+        add(f"--{name}", help=words.format(default=CameraParameters()))
     add(
         "--views",
         default="auto",
@@ -88,10 +86,8 @@ def _request(a: Namespace) -> "FrameRequest":
     )
 
 
-def _camera(a: Namespace) -> "CameraParameters":
+def _camera(a: Namespace) -> CameraParameters:
     """The camera of the options ``a``."""
-    from models.parameters import CameraParameters
-
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     given = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
     chosen = {field.get(n, n): text.real(n, v, 0, float("inf")) for n, v in given.items() if v is not None}
@@ -99,7 +95,7 @@ def _camera(a: Namespace) -> "CameraParameters":
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from .figures import camera_line, energy_line, trims_line
+    from .figures import camera_line, depth_line, energy_line, trims_line
     from .report import against, decibels
 
     print(
@@ -112,6 +108,8 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         f"SNR {decibels(s['snr_db'])} (nothing sent: {decibels(s['snr_nothing_sent_db'])})"
     )
     print(f"  2-D image: {against(s)}")
+    if depth_line(s):
+        print(f"  {depth_line(s)}")
     if s["capture_error_codes"] is not None:
         print(
             f"  captured through {s['camera']['views']} views along the pupil, "

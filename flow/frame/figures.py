@@ -81,9 +81,9 @@ def energy_of(result: FrameResult) -> dict[str, float]:
 
 
 def energy_line(summary: dict[str, Any]) -> str:
-    """Energy of a frame and power at 30 frames a second, both readings."""
+    """Energy of a frame, both readings, and power (lower) at 30 frames a second or as many as there is time for."""
     e = summary["energy_uj"]
-    rate = EnergyParameters().frame_rate
+    rate = min(EnergyParameters().frame_rate, 1 / summary["frame_s_at_clock"])
     text = f"{e['total']:.1f} to {e['total_high']:.1f} uJ"
     if "image_mode" in e:
         text += f" (image mode {e['image_mode']:.1f} to {e['image_mode_high']:.1f})"
@@ -91,7 +91,7 @@ def energy_line(summary: dict[str, Any]) -> str:
         text += f" and {e['light'] / 1e6:.3g} J of light"
     if "edge_pays_below" in e:
         text += f"; edges pay below {100 * e['edge_pays_below']:.0f} % converted"
-    return f"{text}; {e['total'] * rate / 1e3:.2f} mW at {rate:g} frames/s"
+    return f"{text}; {e['total'] * rate / 1e3:.2f} mW at {rate:.3g} frames/s"
 
 
 def camera_of(result: FrameResult) -> dict[str, float | None]:
@@ -119,6 +119,15 @@ def camera_line(summary: dict[str, Any]) -> str:
 
 def _far(metres: float) -> str:
     return f"{100 * metres:.3g} cm" if metres < 1 else f"{metres:.3g} m"
+
+
+def depth_line(summary: dict[str, Any]) -> str:
+    """Error of the depth beside that of one depth for all, '' without depth."""
+    error, constant = summary["depth_rms_m"], summary["depth_rms_constant_m"]
+    if error is None:
+        return ""
+    note = ", no better than one depth for all" if error >= constant else "; one depth for all"
+    return f"depth {100 * error:.3g} cm RMS{note}: {100 * constant:.3g} cm"
 
 
 def trims_at_end(trims: Iterable[int]) -> list[int]:

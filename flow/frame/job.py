@@ -28,6 +28,7 @@ from .request import FrameRequest
 from .result import Exposed, FrameResult
 
 Values = npt.NDArray[np.float64]
+BENCH = 4  # the noise of a frame beside those of the four taps
 STEPS = ("setup", "capture", "build", "rtl", "decode", "report")
 
 
@@ -60,7 +61,7 @@ def expose(request: FrameRequest, scene: Scene, todo: Plan) -> Exposed:
     sensor, frame = request.sensor, request.frame
     trims = trim_codes(measured_gains(flat_field(request), sensor.tile))
     front_end = front_end_of(sensor, trims)
-    views = choose_views(scene, sensor, frame.timing, request.views)
+    views = choose_views(scene, sensor, frame.timing, request.views, read=todo.read)
     pairs = currents(scene, sensor, todo, regions=views.regions)
 
     def samples(noise: float) -> Values:
@@ -75,12 +76,12 @@ def expose(request: FrameRequest, scene: Scene, todo: Plan) -> Exposed:
 def flat_field(request: FrameRequest) -> Values:
     """The sensor's diodes, (rows, cols, 2) in LSB, before a flat field at half of white, dark current taken off.
 
-    One frame of its own seed, from which the trims are measured as on a bench: each type's are many pixels.
+    One frame of the same chip with noise of its own, from which the trims are measured as on a bench.
     """
     sensor, frame = request.sensor, request.frame
     pair = integrate(load("flat:50", Sampling.of(sensor)), sensor, Region(1, np.ones(sensor.shape, bool)))[0]
-    exposure = replace(_exposure(request, request.noise), timing=replace(frame.timing, n_cm=0), seed=request.seed ^ 1)
-    return expose_pair(pair, exposure) - expose_pair(0 * pair, replace(exposure, noise=0.0))
+    exposure = replace(_exposure(request, request.noise), timing=replace(frame.timing, n_cm=0))
+    return expose_pair(pair, exposure, tap=BENCH) - expose_pair(0 * pair, replace(exposure, noise=0.0))
 
 
 def _exposure(request: FrameRequest, noise: float) -> Exposure:

@@ -7,12 +7,12 @@ import numpy as np
 import numpy.typing as npt
 
 from base.charts import bars, svg
-from models.parameters import EnergyParameters, FrameParameters, LightParameters, sources
+from models.parameters import EnergyParameters, LightParameters, sources
 from models.reconstruct import edge_images
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
-from .figures import Values
+from .figures import depth_line
 from .report import Picture, against, decibels, render
 from .result import FrameResult
 
@@ -22,7 +22,6 @@ NAMES = (
     *("stream.bin", "decoded.npz", "report.html", "summary.json", "waves.vcd"),
     *(f"{name}.png" for name in PICTURES),
 )
-PHASE_TURN = 2 * np.pi / 256  # rad a code
 
 
 def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
@@ -56,10 +55,10 @@ def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
         out.append(Picture("image", "", f"2-D image rebuilt from edges ({rebuilt.method}): {against(summary)}", image))
         converted = "which samples were converted (yellow), zero by the window (dark), unread (light)"
     elif frame.mode == "tof":
-        phase, strength = _phase(samples, frame)
+        phase, strength = result.echo
         image = pictures.gray(strength, high=_top(strength))
         hue = pictures.phase_wheel(phase, strength / _top(strength))
-        caption = "time-of-flight phase as hue (one turn), amplitude as brightness"
+        caption = f"time-of-flight phase as hue (one turn), amplitude as brightness; {depth_line(summary)}"
         out.append(Picture("image", "", f"2-D image, amplitude of the modulated light: {against(summary)}", image))
         out.append(Picture("phase", "", caption, hue))
     else:
@@ -78,14 +77,6 @@ def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
 
 def _top(values: npt.NDArray[np.floating]) -> float:
     return max(float(np.quantile(values, 0.999)), 1e-6)
-
-
-def _phase(samples: Values, frame: FrameParameters) -> tuple[Values, Values]:
-    """Phase (rad) and amplitude of a time-of-flight frame, both (rows, cols)."""
-    if frame.phase:
-        return samples[..., 0] * PHASE_TURN, samples[..., 1]
-    x, y = samples[..., 0] - samples[..., 2], samples[..., 3] - samples[..., 1]
-    return np.arctan2(y, x), np.hypot(x, y)
 
 
 def _sheets(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
@@ -127,7 +118,9 @@ def _where(s: dict[str, Any]) -> list[str]:
 
 
 def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
-    """Every parameter of noise and energy, its value in SI units and where it comes from."""
+    """Every parameter of the camera, of noise and energy, its value in SI units and where it comes from."""
     sensor = result.request.sensor
     converter = [(f"converter {name}", value, "assumed") for name, value in vars(sensor.converter).items()]
-    return [*sources(sensor.electrical), *converter, *sources(EnergyParameters()), *sources(LightParameters())]
+    optics, array = sensor.optics, sensor.array
+    known = (optics.camera, optics, array, sensor.electrical, EnergyParameters(), LightParameters())
+    return [*(row for parameters in known for row in sources(parameters)), *converter]

@@ -13,6 +13,7 @@ from skimage.metrics import structural_similarity
 
 from models.chip import golden_frame
 from models.parameters import FrameParameters
+from models.pixel import depth_of
 from models.reconstruct import psnr_db, psnr_without_mean_db, sum_image, white_sum
 
 from .result import FrameResult
@@ -89,15 +90,22 @@ def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, floa
 
 def image_quality(result: FrameResult) -> dict[str, float | None]:
     """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes."""
-    truth = np.asarray(result.exposed.scene.image, float)
-    seen, size = coded_sum(result), len(result.chip.stream)
-    images = {"": result.image, "_gray": np.zeros_like(truth), "_sum": seen}
+    part = _part_read(result)
+    truth = np.asarray(result.exposed.scene.image, float)[part]
+    seen, size = coded_sum(result)[part], len(result.chip.stream)
+    images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
     images |= {f"_{name}": coded(seen, name, size) for name in CODECS}
     out: dict[str, float | None] = {}
     for name, image in images.items():
         out[f"image_psnr{name}_db"] = None if image is None else psnr_without_mean_db(image, truth)
         out[f"image_ssim{name}"] = None if image is None else ssim(image, truth)
     return out
+
+
+def _part_read(result: FrameResult) -> tuple[slice, slice]:
+    """The smallest rectangle of all pixels that are read: of what lies outside nothing is said."""
+    rows, cols = (np.flatnonzero(result.golden.read.any(axis)) for axis in (1, 0))
+    return slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
 
 
 def ssim(image: Values, truth: Values) -> float | None:
@@ -140,12 +148,28 @@ def field_quality(result: FrameResult) -> dict[str, float | None]:
     """Of the light field read back in raw mode, against the scene's: PSNR, and that of the sum image in every view."""
     if result.request.frame.mode != "raw":
         return {"light_field_psnr_db": None, "light_field_psnr_copied_db": None}
-    truth = np.asarray(result.exposed.scene.full_light_field, float)
-    field = result.light_field / white_sum(result.request.sensor, result.request.frame.timing)
-    copied = np.broadcast_to(result.image, truth.shape)
+    part = (..., *_part_read(result))
+    truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
+    field = result.light_field[part] / white_sum(result.request.sensor, result.request.frame.timing)
+    copied = np.broadcast_to(result.image[part], truth.shape)
     return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
+
+
+def depth_quality(result: FrameResult) -> dict[str, float | None]:
+    """Of the depth in time of flight, against the scene's where the amplitude is not 0, in m; of one depth for all."""
+    truth = result.exposed.scene.depth
+    if result.request.frame.mode != "tof" or truth is None:
+        return {"depth_rms_m": None, "depth_rms_constant_m": None}
+    phase, strength = result.echo
+    seen = result.golden.read & (strength > 0)
+    if not seen.any():
+        return {"depth_rms_m": None, "depth_rms_constant_m": None}
+    f_mod = result.request.sensor.electrical.f_mod
+    far = float(depth_of(np.pi, f_mod))  # half of the range in which depth is unambiguous
+    error = np.mod(depth_of(phase, f_mod)[seen] - truth[seen] + far, 2 * far) - far
+    return {"depth_rms_m": float(np.sqrt(np.mean(error**2))), "depth_rms_constant_m": float(truth[seen].std())}
 
 
 def quality(result: FrameResult) -> dict[str, Any]:
     """All figures of this file."""
-    return sent_quality(result) | image_quality(result) | field_quality(result)
+    return sent_quality(result) | image_quality(result) | field_quality(result) | depth_quality(result)

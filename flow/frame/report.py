@@ -46,7 +46,9 @@ def decibels(value: float | None) -> str:
 def against(s: dict[str, Any]) -> str:
     """PSNR of the 2-D image beside that of flat gray and of JPEG."""
     own, gray, jpeg = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg"))
-    return f"PSNR {own}; flat gray {gray}; a JPEG of as many bytes {jpeg}"
+    found, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
+    note = ", no better than gray" if found is not None and (nothing is None or found <= nothing) else ""
+    return f"PSNR {own}{note}; flat gray {gray}; a JPEG of as many bytes {jpeg}"
 
 
 def headline(s: dict[str, Any]) -> list[Tile]:

@@ -20,6 +20,8 @@ from models.scene import Scene
 from .hardware import HardwareFrame
 from .request import FrameRequest
 
+PHASE_TURN = 2 * np.pi / 256  # rad a code
+
 
 @dataclass(frozen=True, eq=False)
 class Exposed:
@@ -64,10 +66,18 @@ class FrameResult:
             return self.rebuilt.image
         if frame.mode == "tof":
             # Amplitude is half the difference of two taps that see a wave of half the light.
-            strength = samples[..., 1] if frame.phase else np.hypot(*quadrature(np.moveaxis(samples, 2, 0)))
-            return np.asarray(sum_image(strength, sensor, self.decoded.read, frame.timing), float)
+            return np.asarray(sum_image(self.echo[1], sensor, self.decoded.read, frame.timing), float)
         total = samples[..., 0] if frame.mode == "image" else samples.sum(2) / 2
         return np.asarray(sum_image(total, sensor, self.decoded.read, frame.timing), float)
+
+    @cached_property
+    def echo(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Phase (rad) and amplitude (codes) of the decoded samples, (rows, cols); time of flight only."""
+        samples = self.decoded.samples.astype(float)
+        if self.request.frame.phase:
+            return samples[..., 0] * PHASE_TURN, samples[..., 1]
+        x, y = quadrature(np.moveaxis(samples, 2, 0))
+        return np.arctan2(y, x), np.hypot(x, y)
 
     @cached_property
     def light_field(self) -> npt.NDArray[np.float64]:

@@ -83,7 +83,7 @@ def expose(
     balance : array (rows, cols), optional
         Capacitor ratio g of every pixel in the common-mode reset; None is 1 everywhere.
     tap : int
-        Sub-frame of a time-of-flight frame, 0..3; each has its own noise.
+        Sub-frame of a time-of-flight frame, 0..3, or another frame of the same chip, 4..99; each has its own noise.
 
     Returns
     -------

@@ -124,11 +124,12 @@ def currents(
         regions = [Region(scene.views if plan.angular else 1, np.ones(scene.shape, bool))]
     out = np.zeros((plan.taps, 2, *scene.shape), dtype)
     for region in regions:
-        out += _taps(scene, sensor, plan, region, dtype)
+        read = region.pixels & plan.read
+        if read.any():
+            out += _taps(scene, sensor, plan, Region(region.views, read), dtype)
     if plan.polarized and scene.polarization is not None:
         gamma = np.array([t.gamma for t in sensor.tile.types])[sensor.tile.type_map(*scene.shape)]
         out *= transmission(scene.polarization, gamma, sensor.optics.diattenuation).astype(dtype)
-    out *= plan.read
     return out
 
 

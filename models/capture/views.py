@@ -1,4 +1,4 @@
-"""How many views a capture needs, measured on some of its rows before it is made."""
+"""How many views a capture needs, measured before it is made: on every pixel, or in a large array on bands of it."""
 
 from time import perf_counter
 from typing import NamedTuple
@@ -18,8 +18,9 @@ Values = npt.NDArray[np.float64]
 REFERENCE = 31  # views along the pupil's diameter that the error is measured against
 LADDER = (7, 9, 11, 15, 21, 27)
 BOUND = 0.5  # codes
-SAFETY = 0.9  # of the bound, on the rows that are measured
-PROBE = 4  # tile rows of each of two bands
+SAFETY = 0.9  # of the bound, for the bands that are not measured
+BAND = 4  # tile rows
+PROBE = 384 * 384  # pixels that are measured at most, but for one band
 
 
 class Views(NamedTuple):
@@ -32,12 +33,12 @@ class Views(NamedTuple):
     most : int
         Views along the pupil's diameter where most are needed.
     error : float or None
-        RMS error of the differences against REFERENCE views in codes, measured on the probe; None where the scene has
-        no other views than its own.
+        RMS error of the differences against REFERENCE views in codes, where they are measured; None where the scene
+        has no other views than its own.
     left_out : tuple of LeftOut
         Views that are not rendered.
     tried : tuple of (int, float, float)
-        Views, their RMS error in codes and their time in s, all on the probe.
+        Views, their RMS error in codes and their time in s, where they are measured.
     """
 
     regions: tuple[Region, ...]
@@ -48,13 +49,18 @@ class Views(NamedTuple):
 
 
 def choose_views(
-    scene: Scene, sensor: SensorParameters, timing: AmpTiming, views: int | None = None, bound: float = BOUND
+    scene: Scene,
+    sensor: SensorParameters,
+    timing: AmpTiming,
+    views: int | None = None,
+    bound: float = BOUND,
+    read: npt.NDArray[np.bool_] | None = None,
 ) -> Views:
     """Choose the views of a capture.
 
-    On two bands of rows the differences are captured through REFERENCE views and through ever more of them, until the
-    error is below the bound. Tiles whose light varies least over the pupil keep the scene's own grid, as many as the
-    error allows: regions in focus, and plain ones.
+    The differences are captured through REFERENCE views and through ever more of them, until the error is below the
+    bound: on every pixel that is read, or on PROBE of them in bands spread evenly. Tiles whose light varies least over
+    the pupil keep the scene's own grid, as many as the error allows: regions in focus, and plain ones.
 
     Parameters
     ----------
@@ -68,6 +74,8 @@ def choose_views(
         Along the pupil's diameter everywhere, 1..31; None chooses.
     bound : float
         Largest RMS error in codes, 0.01..100.
+    read : bool (rows, cols), optional
+        Pixels that the frame reads, at least one; None is all.
 
     Returns
     -------
@@ -81,13 +89,14 @@ def choose_views(
     """
     check_real("bound", bound, 0.01, 100)
     everywhere = np.ones(scene.shape, bool)
+    read = everywhere if read is None else read
     if views is not None:
         check_int("views", views, 1, REFERENCE)
     if not scene.angular:
         return Views((Region(1, everywhere),), 1, 0.0)
     if scene.render is None:
         return Views((Region(scene.views, everywhere),), scene.views, None)
-    probe = _Probe(scene, sensor, timing)
+    probe = _Probe(scene, sensor, timing, read)
     if views is not None:
         error = _rms(probe.error(views))
         return Views((Region(views, everywhere),), views, error, (), tuple(probe.tried))
@@ -113,19 +122,18 @@ def choose_views(
 
 
 class _Probe:
-    """Differences on some rows against those through REFERENCE views."""
+    """Differences against those through REFERENCE views, where they are measured."""
 
-    def __init__(self, scene: Scene, sensor: SensorParameters, timing: AmpTiming) -> None:
+    def __init__(self, scene: Scene, sensor: SensorParameters, timing: AmpTiming, read: npt.NDArray[np.bool_]) -> None:
         self.scene, self.sensor = scene, sensor
-        tall = PROBE * sensor.tile.rows
-        bands = np.zeros(scene.shape, bool)
-        for middle in (scene.shape[0] // 3, 2 * scene.shape[0] // 3):
-            start = max(middle - tall // 2, 0) // sensor.tile.rows * sensor.tile.rows
-            bands[start : start + tall] = True
-        self.pixels = bands
+        band = np.arange(scene.shape[0]) // (BAND * sensor.tile.rows)  # of each row
+        full = np.unique(band[read.any(1)])
+        count = min(max(PROBE // (BAND * sensor.tile.rows * scene.shape[1]), 1), full.size)
+        measured = full[((np.arange(count) + 0.5) * full.size / count).astype(int)]
+        self.pixels = read & np.isin(band, measured)[:, None]
         self.unit = codes_per_unit(sensor, timing)
         gains = optical_gains(sensor.tile, sensor.optics)
-        self.gains = gains[sensor.tile.type_map(*scene.shape)][bands]
+        self.gains = gains[sensor.tile.type_map(*scene.shape)][self.pixels]
         self.tried: list[tuple[int, float, float]] = []
         self.reference = self._differences(REFERENCE)
 

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from .checks import check_int, check_real
+from .sources import sourced
 
 ROWS_MAX, COLS_MAX = 1024, 1536  # 256 tiles each way: tile addresses are 8 bits
 
@@ -21,7 +22,7 @@ class ArrayParameters:
 
     rows: int = 384
     cols: int = 384
-    pitch: float = 10e-6
+    pitch: float = sourced(10e-6, "[Jayasuriya2017], Sec. 3.5.1")
 
     def __post_init__(self) -> None:
         check_int("rows", self.rows, 1, ROWS_MAX)

@@ -41,7 +41,7 @@ class ElectricalParameters:
         RMS 1/f noise of a column's amplifier over the rows of a frame, 0..1e5 electrons per diode.
     """
 
-    white_current: float = sourced(0.25e-9, "assumed: 80 % of a full well in 51.2 us")
+    white_current: float = sourced(0.25e-9, "assumed: 80 % of a full well in 51.2 us, at any f-number")
     full_well: float = sourced(1e5, "assumed")
     difference_gain: float = sourced(4.0, "our choice: edges reach the converter's range")
     read_noise: float = sourced(30.0, "assumed")
@@ -97,12 +97,12 @@ class ConverterParameters:
         Seed of every draw above, 0..2**32-1.
     """
 
-    inl: float = 0.0
-    dnl: float = 0.0
-    offset: float = 0.0
-    noise: float = 0.0
-    ktc: float = 0.0
-    seed: int = 1
+    inl: float = sourced(0.0, "ideal")
+    dnl: float = sourced(0.0, "ideal")
+    offset: float = sourced(0.0, "ideal")
+    noise: float = sourced(0.0, "ideal")
+    ktc: float = sourced(0.0, "ideal")
+    seed: int = sourced(1, "any")
 
     def __post_init__(self) -> None:
         check_real("inl", self.inl, 0, 4)

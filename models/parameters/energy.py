@@ -140,7 +140,8 @@ class LightParameters:
         pixels : int
             Of the array.
         nu_max : float
-            Tangent of the lens's rim at the sensor: irradiance is nu_max**2 times the transmission and the field's own.
+            Tangent of the lens's rim at the sensor, the angle theta: irradiance there is sin(theta)**2 times the
+            transmission times the field's own, which is white.
         magnification : float
             Of the lens.
 
@@ -150,5 +151,5 @@ class LightParameters:
             In W.
         """
         sensor = white_current / (self.responsivity * self.fill * pitch**2)  # W/m^2
-        field = sensor / (self.transmission * nu_max**2)
+        field = sensor * (1 + nu_max**2) / (self.transmission * nu_max**2)
         return field * pixels * (pitch / magnification) ** 2 / self.efficiency

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from .camera import CameraParameters
 from .checks import check_int, check_real
+from .sources import sourced
 
 
 @dataclass(frozen=True)
@@ -33,12 +34,12 @@ class OpticsParameters:
     """
 
     camera: CameraParameters = CameraParameters()
-    m: float = 0.7
-    aperture_sigma: float = 0.2
-    vignetting_power: float = 4.0
-    diattenuation: float = 1 / 3
-    views: int = 5
-    subsamples: int = 8
+    m: float = sourced(0.7, "assumed")
+    aperture_sigma: float = sourced(0.2, "assumed")
+    vignetting_power: float = sourced(4.0, "the natural cos^4 law")
+    diattenuation: float = sourced(1 / 3, "[Jayasuriya2017], Ch. 4: extinction ratio 2")
+    views: int = sourced(5, "[Jayasuriya2017], Sec. 3.5.1")
+    subsamples: int = sourced(8, "our choice")
 
     def __post_init__(self) -> None:
         check_real("m", self.m, 0, 1)

@@ -23,12 +23,12 @@ def sourced(default: Any, source: str) -> Any:
 
 
 def sources(parameters: Any) -> list[tuple[str, Any, str]]:
-    """Values of a parameter object and the sources of their defaults.
+    """Values of a parameter object and the sources of their defaults, of the fields that have one.
 
     Parameters
     ----------
     parameters : dataclass
-        Instance of a class whose fields are `sourced`.
+        Instance of a class of which some fields are `sourced`.
 
     Returns
     -------
@@ -36,7 +36,7 @@ def sources(parameters: Any) -> list[tuple[str, Any, str]]:
         Name, value, and source; 'set' where the value is not the default.
     """
     rows = []
-    for item in fields(parameters):
+    for item in (item for item in fields(parameters) if "source" in item.metadata):
         value = getattr(parameters, item.name)
         rows.append((item.name, value, item.metadata["source"] if value == item.default else "set"))
     return rows

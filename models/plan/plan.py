@@ -98,7 +98,7 @@ def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan
     unread = rows * cols - int(read.sum())
     if unread:
         why = "pixel types masked" if frame.mask != ALL_TYPES else "outside the window or between the tiles read"
-        saved = f"{unread:,} of {rows * cols:,} pixels neither captured nor sequenced"
+        saved = f"{unread:,} of {rows * cols:,} pixels not sequenced, nor captured where none is read near"
         notes.append(LeftOut("unread pixels", why, saved))
     return Plan(angular, polarized, taps, captures, read, tuple(notes))
 

@@ -3,8 +3,16 @@
 import numpy as np
 import pytest
 
-from models.parameters import ConverterParameters, ElectricalParameters, EnergyParameters, LightParameters, sources
+from models.parameters import (
+    CameraParameters,
+    ConverterParameters,
+    ElectricalParameters,
+    EnergyParameters,
+    LightParameters,
+    sources,
+)
 from models.parameters.energy import Events
+from models.pixel.response import vignetting
 
 FULL = Events(147456, 147456, 1 / 30, 8 * 147456, 0)
 
@@ -25,14 +33,17 @@ def test_pads_pay_for_every_change():
     assert EnergyParameters().frame(FULL._replace(toggles=1000))["pads"][0] == pytest.approx(500 * 10e-12 * 1.8**2)
 
 
-def test_light_goes_with_the_f_number_squared():
-    power = [LightParameters().power(0.25e-9, 10e-6, 147456, 1 / (2 * n), 0.0385) for n in (1.2, 2.4)]
-    assert power[1] == pytest.approx(4 * power[0])
-    # By hand: 125 W/m^2 at the sensor, 800 W/m^2 on a field of 0.0998 m.
-    assert power[0] == pytest.approx(125 / 0.9 * 5.76 * 147456 * (10e-6 / 0.0385) ** 2 / 0.3, rel=1e-9)
+@pytest.mark.parametrize("f_number", [1.2, 2.4])
+def test_light_reaches_the_sensor_through_the_same_pupil(f_number):
+    """Of the radiance E / pi of a white field, the integral over the pupil of the capture's own vignetting arrives."""
+    nu = np.linspace(0, 1 / (2 * f_number), 20001)
+    share = np.trapezoid(vignetting(nu, 0 * nu, 4.0) * 2 * np.pi * nu, nu) / np.pi
+    by_hand = 125 / 0.9 / share * 147456 * (10e-6 / 0.0385) ** 2 / 0.3  # 125 W/m^2 at the sensor
+    found = LightParameters().power(0.25e-9, 10e-6, 147456, 1 / (2 * f_number), 0.0385)
+    assert found == pytest.approx(by_hand, rel=1e-6)
 
 
-@pytest.mark.parametrize("kind", [ElectricalParameters, EnergyParameters, LightParameters])
+@pytest.mark.parametrize("kind", [CameraParameters, ElectricalParameters, EnergyParameters, LightParameters])
 def test_every_default_names_its_source(kind):
     rows = sources(kind())
     assert len(rows) > 3 and all(source and source != "set" for _, _, source in rows)

@@ -1,11 +1,14 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from flow.frame.figures import mismatches, psnr, trims_at_end, trims_line
-from flow.frame.job import expose, see
-from flow.frame.quality import coded, decoding_error, ideal_samples, snr, ssim
+from flow.frame.figures import depth_line, energy_line, mismatches, psnr, trims_at_end, trims_line
+from flow.frame.job import expose, flat_field, see, simulate_frame
+from flow.frame.quality import coded, decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
+from flow.frame.report import against
 from flow.frame.request import request
-from models.parameters import FrameParameters, Window
+from models.parameters import CameraParameters, ElectricalParameters, FrameParameters, Window
 
 ONE = Window(0, 0, 0, 0)
 
@@ -19,6 +22,58 @@ def test_mismatches_counts_bytes_that_differ_or_are_missing():
 def test_an_array_smaller_than_a_tile_is_trimmed():
     asked = request(1, 1, scene="flat:50")
     assert trims_at_end(expose(asked, *see(asked)).front_end.trim) == []
+
+
+def test_the_bench_measures_the_chip_that_takes_the_frame():
+    """The same fixed pattern, other noise: pixels of one type have the trims of their own gains."""
+    quiet = {"read_noise": 0.0, "offset_fpn": 0.0, "column_fpn": 0.0, "flicker_noise": 0.0, "gain_fpn": 0.1}
+    asked = request(4, 6, scene="flat:50")
+    asked = replace(asked, sensor=replace(asked.sensor, electrical=ElectricalParameters(**quiet)))
+    scene, todo = see(asked)
+    flat, seen = flat_field(asked), expose(asked, scene, todo)
+    assert not np.array_equal(flat, seen.samples[0])
+    assert np.corrcoef(flat.ravel(), seen.samples.ravel())[0, 1] > 0.99
+    assert seen.front_end.values(seen.samples, "edge").std() < 3  # codes; the spread of the gains alone makes 28
+
+
+def test_an_image_is_judged_where_it_is_read():
+    """What lies outside of a window changes no figure of quality"""
+    asked = request(24, 36, mode="image", window=lambda full: Window(1, 3, 1, 4), noise=0.0)
+    result = simulate_frame(asked)
+    figures = image_quality(result)
+    scene = result.exposed.scene
+    beside = np.where(result.golden.read, scene.image, 7.0)
+    altered = replace(result, exposed=replace(result.exposed, scene=replace(scene, image=beside)))
+    assert image_quality(altered) == figures and figures["image_psnr_db"] > figures["image_psnr_gray_db"]
+
+
+@pytest.mark.parametrize("phase", [False, True])
+def test_depth_of_a_scene_before_the_lens(phase):
+    """A tilted plane metres away, and its model before the lens: the same light has the same phase noise."""
+    errors = {}
+    for scale, focus in ((1.0, 3.0), (14.5, 0.207)):
+        asked = request(
+            48, 48, scene="tilted", mode="tof", phase=phase, camera=CameraParameters(scale=scale, focus=focus)
+        )
+        errors[scale] = depth_quality(simulate_frame(asked))
+    near, far = errors[14.5], errors[1.0]
+    assert far["depth_rms_m"] < 0.05 * far["depth_rms_constant_m"]
+    assert 0.5 < near["depth_rms_m"] / far["depth_rms_m"] < 2
+    assert near["depth_rms_constant_m"] == pytest.approx(far["depth_rms_constant_m"] / 14.5, rel=1e-2)
+    assert "no better" not in depth_line(near)
+    assert "no better than one depth" in depth_line({"depth_rms_m": 0.2, "depth_rms_constant_m": 0.1})
+
+
+def test_an_image_no_better_than_gray_is_said():
+    row = {"image_psnr_db": 12.0, "image_psnr_gray_db": 14.0, "image_psnr_jpeg_db": None}
+    assert "no better than gray" in against(row) and "no better" not in against(row | {"image_psnr_db": 15.0})
+    assert "no better" not in against(row | {"image_psnr_db": None})
+
+
+@pytest.mark.parametrize("seconds,rate", [(0.0225, "30 frames/s"), (0.135, "7.41 frames/s")])
+def test_power_is_that_of_frames_there_is_time_for(seconds, rate):
+    line = energy_line({"energy_uj": {"total": 100.0, "total_high": 110.0}, "frame_s_at_clock": seconds})
+    assert rate in line and f"{100e-3 * min(30, 1 / seconds):.2f} mW" in line
 
 
 def test_trims_at_an_end_are_said():

@@ -19,7 +19,7 @@ from models.parameters import (
 )
 from models.pixel import measured_gains, optical_gains
 from models.pixel.weights import raw_weights
-from models.plan import plan
+from models.plan import codes_per_unit, plan
 from models.scene import Sampling, load
 
 ROWS, COLS = 24, 36
@@ -146,6 +146,37 @@ def test_fewer_views_err_more():
     assert errors[0] > 2 * errors[1] > 2 * errors[2] > 0
     chosen = choose_views(scene, sensor, timing, bound=0.2)
     assert chosen.error <= 0.2 and chosen.most > choose_views(scene, sensor, timing, bound=2.0).most
+
+
+@pytest.mark.parametrize("window", [slice(0, 96), slice(80, 96)])
+def test_the_error_is_that_of_all_pixels_read(tmp_path, window):
+    """A picture with texture in its last rows alone."""
+    codes = np.full((96, 96), 128, np.uint8)
+    codes[84:] = np.random.default_rng(0).integers(0, 256, (12, 96), np.uint8)
+    Image.fromarray(codes).save(tmp_path / "p.png")
+    sensor = sensor_behind(96, 96)
+    scene, timing = load(str(tmp_path / "p.png"), Sampling.of(sensor)), FrameParameters(sensor.full_window).timing
+    read = np.zeros((96, 96), bool)
+    read[window] = True
+    views = choose_views(scene, sensor, timing, read=read)
+    gains = optical_gains(sensor.tile, sensor.optics)[sensor.tile.type_map(96, 96)]
+
+    def differences(regions):
+        a, b = sum(integrate(scene, sensor, region)[0] for region in regions)
+        return codes_per_unit(sensor, timing) * (a - gains * b)
+
+    apart = differences(views.regions) - differences([Region(31, np.ones((96, 96), bool))])
+    assert np.sqrt(np.mean(apart[read] ** 2)) == pytest.approx(views.error, rel=1e-6)
+    assert 0.05 < views.error < 0.5
+
+
+def test_large_arrays_are_measured_in_bands_all_over(monkeypatch):
+    sensor, timing = sensor_behind(96, 96), FrameParameters(sensor_behind(96, 96).full_window).timing
+    scene = load("coins", Sampling.of(sensor))
+    whole = choose_views(scene, sensor, timing, 5).error
+    monkeypatch.setattr("models.capture.views.PROBE", 32 * 96)
+    few = choose_views(scene, sensor, timing, 5).error
+    assert few != whole and few == pytest.approx(whole, rel=0.2)
 
 
 def test_in_focus_little_is_rendered(tmp_path):
