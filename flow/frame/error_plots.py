@@ -46,7 +46,7 @@ def _threshold(result: FrameResult, summary: dict[str, Any]) -> Figure:
 
 
 def _capture(result: FrameResult) -> Figure:
-    """Error of the capture against time, over the numbers of views that were tried on some rows of this scene."""
+    """Error of the capture against time, over the numbers of views that were tried on this scene."""
     tried = [(1e3 * seconds, error, str(views)) for views, error, seconds in result.exposed.views.tried if error]
-    labels = "time on those rows (ms); number: views along the pupil", "RMS error (codes)"
+    labels = "time (ms); number: views along the pupil", "RMS error (codes)"
     return curves({"differences": tried}, *labels, "Capture: error against 31 x 31 views", log_y=True)

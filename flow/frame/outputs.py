@@ -13,6 +13,7 @@ from models.reconstruct import edge_images
 from . import error_plots, pictures
 from .chip_picture import chip_svg
 from .figures import depth_line
+from .quality import Values, part_read
 from .report import Picture, against, decibels, render
 from .result import FrameResult
 
@@ -49,14 +50,14 @@ def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
     if frame.mode == "edge":
         scale, rebuilt = max(float(np.abs(samples).max()), 1.0), result.rebuilt
         differences = pictures.signed(samples[..., 0], scale)
-        image = pictures.gray(rebuilt.image, *np.quantile(rebuilt.image, (0.005, 0.995)))
+        image = pictures.gray(*_within(result, rebuilt.image, *np.quantile(rebuilt.image, (0.005, 0.995))))
         caption = "decoded differences, pixel by pixel (blue negative, red positive)"
         out.append(Picture("differences", "", caption, differences))
         out.append(Picture("image", "", f"2-D image rebuilt from edges ({rebuilt.method}): {against(summary)}", image))
         converted = "which samples were converted (yellow), zero by the window (dark), unread (light)"
     elif frame.mode == "tof":
         phase, strength = result.echo
-        image = pictures.gray(strength, high=_top(strength))
+        image = pictures.gray(*_within(result, strength, 0.0, _top(strength)))
         hue = pictures.phase_wheel(phase, strength / _top(strength))
         caption = f"time-of-flight phase as hue (one turn), amplitude as brightness; {depth_line(summary)}"
         out.append(Picture("image", "", f"2-D image, amplitude of the modulated light: {against(summary)}", image))
@@ -68,11 +69,18 @@ def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
                 "image",
                 "",
                 f"2-D image, the sum of each pair: {against(summary)}",
-                pictures.gray(image, high=_top(image)),
+                pictures.gray(*_within(result, image, 0.0, _top(image))),
             )
         )
     decisions = pictures.decisions(golden.read, np.any(golden.converted, axis=2))
     return [*out, Picture("conversions", "", converted, decisions)]
+
+
+def _within(result: FrameResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
+    """The image, white outside the rectangle of what is read: no sample of the frame is there."""
+    out, part = np.full_like(image, high), part_read(result.golden.read)
+    out[part] = image[part]
+    return out, low, high
 
 
 def _top(values: npt.NDArray[np.floating]) -> float:

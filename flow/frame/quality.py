@@ -90,7 +90,7 @@ def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, floa
 
 def image_quality(result: FrameResult) -> dict[str, float | None]:
     """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes."""
-    part = _part_read(result)
+    part = part_read(result.golden.read)
     truth = np.asarray(result.exposed.scene.image, float)[part]
     seen, size = coded_sum(result)[part], len(result.chip.stream)
     images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
@@ -102,9 +102,9 @@ def image_quality(result: FrameResult) -> dict[str, float | None]:
     return out
 
 
-def _part_read(result: FrameResult) -> tuple[slice, slice]:
+def part_read(read: npt.NDArray[np.bool_]) -> tuple[slice, slice]:
     """The smallest rectangle of all pixels that are read: of what lies outside nothing is said."""
-    rows, cols = (np.flatnonzero(result.golden.read.any(axis)) for axis in (1, 0))
+    rows, cols = (np.flatnonzero(read.any(axis)) for axis in (1, 0))
     return slice(rows[0], rows[-1] + 1), slice(cols[0], cols[-1] + 1)
 
 
@@ -148,7 +148,7 @@ def field_quality(result: FrameResult) -> dict[str, float | None]:
     """Of the light field read back in raw mode, against the scene's: PSNR, and that of the sum image in every view."""
     if result.request.frame.mode != "raw":
         return {"light_field_psnr_db": None, "light_field_psnr_copied_db": None}
-    part = (..., *_part_read(result))
+    part = (..., *part_read(result.golden.read))
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
     field = result.light_field[part] / white_sum(result.request.sensor, result.request.frame.timing)
     copied = np.broadcast_to(result.image[part], truth.shape)
@@ -167,7 +167,10 @@ def depth_quality(result: FrameResult) -> dict[str, float | None]:
     f_mod = result.request.sensor.electrical.f_mod
     far = float(depth_of(np.pi, f_mod))  # half of the range in which depth is unambiguous
     error = np.mod(depth_of(phase, f_mod)[seen] - truth[seen] + far, 2 * far) - far
-    return {"depth_rms_m": float(np.sqrt(np.mean(error**2))), "depth_rms_constant_m": float(truth[seen].std())}
+    return {
+        "depth_rms_m": float(np.sqrt(np.mean(error**2))),
+        "depth_rms_constant_m": float((truth[seen] - truth[seen][0]).std()),
+    }
 
 
 def quality(result: FrameResult) -> dict[str, Any]:
