@@ -12,8 +12,7 @@ from ..netlist.netlist import SUPPLIES
 def relabel(layout: "db.Layout", ports: Collection[str], tech: CoriolisPlatform) -> None:
     """Put the labels of ``ports`` on the layers that decks read; drop all others, and Coriolis's blockages.
 
-    Of a port's labels that at the west or the east edge stays, and all of the supplies:
-    where a net was rerouted, the others are where its segments were, and fill may come there. Raises StepError when a
+    Of a port's labels that nearest to the west or the east edge stays, and all of the supplies. Raises StepError when a
     port has no label.
     """
     top = layout.top_cell()
@@ -49,7 +48,7 @@ def relabel(layout: "db.Layout", ports: Collection[str], tech: CoriolisPlatform)
 def _clear_pins(shapes: "db.Shapes", places: Iterable["db.Vector"]) -> None:
     """Leave of the boxes ``shapes`` of a pins' layer, for each of ``places``, the smallest one around it.
 
-    Coriolis marks all segments of a port's net as pins, also those that `reroute` moved; decks take a pin for metal.
+    Coriolis marks all segments of a port's net as pins; decks take a pin for metal.
     """
     boxes = [shape.bbox() for shape in shapes.each(db.Shapes.SAll - db.Shapes.STexts)]
     for shape in list(shapes.each(db.Shapes.SAll - db.Shapes.STexts)):

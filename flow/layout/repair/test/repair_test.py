@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from base.liberty.read import read
+from flow.layout.geometry.rows import Rows, free_rows
 from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.repair.drive import Drives
 from flow.layout.repair.repair import OWN, Plan, clock_nets, connected, length, repaired
-from flow.layout.repair.rows import Rows, free_rows
 from flow.layout.timing.constraints import sdc
 from flow.layout.timing.estimate import setup_slack, setup_slacks
 
@@ -170,14 +171,14 @@ def test_clock_nets_reach_from_the_port_to_the_registers():
 
 
 def test_limits_are_read_off_the_tables(tmp_path):
-    found = Drives.of(liberty(tmp_path / "l.lib"), 1.1)
+    found = Drives.of(read(liberty(tmp_path / "l.lib")), 1.1)
     assert found.inputs["inv_x1", "i"] == 0.001
     assert found.limits["inv_x1", "nq"] == pytest.approx((1.1 - 0.2) / 10)
     assert found.limits["inv_x4", "nq"] == 0.3  # its max_capacitance
     assert found.stronger("inv_x1", "nq", 0.05) == "inv_x1"
     assert found.stronger("inv_x1", "nq", 0.2) == "inv_x4"
     assert found.stronger("inv_x1", "nq", 0.5) is None
-    assert Drives.of(tmp_path / "l.lib", 0.05).limits["inv_x1", "nq"] == 0
+    assert Drives.of(read(tmp_path / "l.lib"), 0.05).limits["inv_x1", "nq"] == 0
 
 
 def test_length_of_a_net():
