@@ -13,6 +13,7 @@ SUPPLIES = ("vdd", "vss")
 # Of the cells of PDKMaster, and of SkyWater
 OUTPUT_PINS = "q", "nq", "zero", "one", "sum", "carry", "X", "Y", "Q", "Q_N", "HI", "LO", "SUM", "COUT"
 MacroNames = Mapping[str, tuple[str, Mapping[str, str]]]  # by instance the cell and its pins by names for Coriolis
+DIODE = "diode_w1"  # of PDKMaster's cells
 REGISTER = "_reg"  # after a register's name: its flip-flop
 
 
@@ -195,6 +196,11 @@ def _buses(pins: Mapping[str, str]) -> dict[str, str]:
         else:
             made[pin] = net
     return made | {bus: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}" for bus, bits in buses.items()}
+
+
+def diode(net: str, number: int) -> Instance:
+    """Return a diode against antennas on ``net``."""
+    return Instance(f"antenna_{number}", DIODE, {"i": net})
 
 
 def is_register(cell: str) -> bool:

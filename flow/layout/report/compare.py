@@ -34,7 +34,7 @@ ROWS = (
     ("ir_drop_percent", "IR drop, %"),
     ("open_nets", "open nets"),
     ("evictions", "nets evicted for others"),
-    ("antenna_jumpers", "nets with antenna jumpers"),
+    ("diodes", "diodes against antennas"),
     ("drc_violations", "DRC violations"),
     ("antenna_violations", "antennas"),
     ("lvs_match", "LVS match"),

@@ -48,7 +48,7 @@ class Board:
         self.numbers = {net: number for number, net in enumerate(self.nets)}
         self.levels = {layer.name: level for level, layer in enumerate(rules.layers)}
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*rules.layers, *rules.vias)}
-        self.pins = {net: self._pins(made) for net, made in shapes.items()}
+        self.pins = {net: self._pins(made["pins"]) for net, made in shapes.items()}
         self._lift(shapes)
         area = corners(self.top.bbox().enlarged(*rules.step))
         self.fixed, self.routed = Index(area, len(rules.layers)), Index(area, len(rules.layers))
@@ -56,13 +56,20 @@ class Board:
         self.rows: dict[str, tuple[Rows, Links]] = {}
         self.present = PRESENT
         self.accesses: dict[str, dict[int, Any]] = {}  # by net and pin, see access
+        self.diodes: dict[str, dict[int, int]] = {}  # by net and number of a diode's pin that of the gate's
         self._fix()
         for net in self.nets:
             self._enter(net)
 
-    def _pins(self, made: NetShapes) -> list[list[tuple[int, ...]]]:
+    def _pins(self, made: list[list[list[Any]]]) -> list[list[tuple[int, ...]]]:
         """Of every pin of a net the boxes (level, left, bottom, right, top), nm."""
-        return [[(self.levels[name], *nanometres(um)) for name, *um in pin] for pin in made["pins"]]
+        return [[(self.levels[name], *nanometres(um)) for name, *um in pin] for pin in made]
+
+    def add_diode(self, net: str, boxes: list[list[Any]], gate: Point) -> None:
+        """Give ``net`` a diode, a pin of ``boxes`` as in NetShapes, to be joined with the pin nearest to a ``gate``."""
+        pins, own = self.pins[net], self.diodes.setdefault(net, {})
+        own[len(pins)] = min((k for k in range(len(pins)) if k not in own), key=lambda k: _distance(pins[k], gate))
+        pins += self._pins([boxes])
 
     def _lift(self, shapes: Mapping[str, NetShapes]) -> None:
         exact, middles, ports = _claims(shapes)
@@ -201,6 +208,12 @@ def _claims(shapes: Mapping[str, NetShapes]) -> tuple[Owners[Box], Owners[Point]
                 middles.setdefault((part, nanometres((x, y))), net)
         ports |= {(name, nanometres(box)) for pin in made["pins"] for name, *box in pin}
     return exact, middles, ports
+
+
+def _distance(pin: Sequence[Sequence[int]], point: Point) -> int:
+    """From the nearest box of a pin to a point."""
+    x, y = point
+    return min(max(left - x, x - right, 0) + max(bottom - y, y - top, 0) for _, left, bottom, right, top in pin)
 
 
 def middle(box: Sequence[int]) -> Point:

@@ -1,7 +1,7 @@
 """The routed layout as GDS with the design's own names, and the final netlist as Verilog and SPICE."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from base.gds import read_gds, write_gds
@@ -10,7 +10,7 @@ from platforms.coriolis import coriolis_platform
 
 from ..geometry import area, notch, trim
 from ..geometry.labels import relabel
-from ..netlist.netlist import SUPPLIES, Netlist
+from ..netlist.netlist import SUPPLIES, Netlist, diode
 
 COUNTS = ("instances", "trimmed", "grown", "notches")
 
@@ -29,13 +29,14 @@ class StreamOutParameters:
 class StreamOut(Step[StreamOutParameters]):
     """Ports labelled, narrow notches filled, segment ends trimmed, small pads grown.
 
-    The Verilog has no hierarchy; in the SPICE a macro is a subcircuit.
+    The Verilog has no hierarchy; in the SPICE a macro is a subcircuit, and there are the diodes, which do nothing.
     """
 
     name = "stream_out"
     inputs = {
         "gds": "route.gds",
         "netlist": "repair.netlist",
+        "diodes": "route.diodes",
         "cells": "library.spice",
         "rules": "library.rules",
         "geometry": "library.geometry",
@@ -66,7 +67,9 @@ class StreamOut(Step[StreamOutParameters]):
         write_gds(layout, outputs["gds"])
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
         outputs["verilog"].write_text(flat.verilog())
-        outputs["spice"].write_text(netlist.spice(inputs["cells"].read_text()))
+        diodes = (diode(net, k) for k, net in enumerate(json.loads(inputs["diodes"].read_text())))
+        drawn = replace(netlist, instances=(*netlist.instances, *diodes))
+        outputs["spice"].write_text(drawn.spice(inputs["cells"].read_text()))
         width, height = top.dbbox().width(), top.dbbox().height()
         size = {"width_um": round(width, 3), "height_um": round(height, 3), "area_um2": round(width * height, 2)}
         return size | {"instances": len(flat.instances)} | changed

@@ -1,0 +1,55 @@
+"""Diodes against antennas, in empty places of rows: a diffusion beside a gate takes the charge that metal gathers."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from base.gds import db
+from platforms.coriolis import CoriolisPlatform
+
+from ..geometry.boxes import Box
+from ..geometry.instances import insert
+from ..geometry.rows import Place, Rows, free_rows
+from ..netlist.netlist import DIODE, Netlist, diode
+from ..netlist.placed import Masters, pin_boxes
+from .board import Board, middle
+
+
+class Diodes:
+    """The diodes of a layout, and the room for more.
+
+    placed: instances of the placement. library: KLayout layout of the cells. areas: um2 by cell. nets: of the diodes.
+    """
+
+    def __init__(
+        self, placed: Sequence[Sequence[Any]], masters: Masters, library: "db.Layout", areas: Mapping[str, float],
+        tech: CoriolisPlatform,
+    ) -> None:  # fmt: skip
+        self.masters, self.library, self.tech = masters, library, tech
+        self.widths = {cell: round(area / tech.row_um, 4) for cell, area in areas.items()}
+        self.rows = free_rows(placed, self.widths, tech.fill_cells, tech.site_um)
+        self.nets: list[str] = []
+
+    def put(self, board: Board, net: str, gate: Box) -> bool:
+        """Give ``net`` a diode beside a ``gate`` (nm), in place of fill; False where there is no room."""
+        width, (x, y) = self.widths[DIODE], middle(gate)
+        place = self.rows.take(width, x / 1000 - width / 2, y / 1000)
+        if place is None:
+            return False
+        self._draw(board.layout, place)
+        one = Netlist("", (), (diode(net, len(self.nets)),))
+        board.add_diode(net, pin_boxes(one, [[None, DIODE, *place]], self.masters)[net][0], (x, y))
+        self.nets.append(net)
+        return True
+
+    def _draw(self, layout: "db.Layout", place: Place) -> None:
+        """Let there be a diode at ``place``, and fill beside it where there was some in its way."""
+        (x, y, orientation), fill, width = place, self.tech.fill_cells, self.widths[DIODE]
+        rest, row = Rows(self.tech.site_um), db.DBox(x, y, x + width, y).to_itype(layout.dbu)
+        for instance in list(layout.top_cell().each_touching_inst(row)):
+            name, at = instance.cell.name, instance.dtrans.disp
+            if name in fill and round(at.y - y, 4) == 0 and -self.widths[name] < round(at.x - x, 4) < width:
+                rest.give(self.widths[name], (at.x, y, orientation))
+                instance.delete()
+        rest.take(width, x, y)
+        for cell, at in [(DIODE, place), *rest.filled({cell: self.widths[cell] for cell in fill})]:
+            insert(layout, self.library, cell, *at)
