@@ -31,7 +31,7 @@ connect(poly, poly_pin)
 def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
     deep, flat = with_flat_spaces(DRC).split("\nflat\n")
     assert "nwm.space" not in deep and "both.space(0.2)" in deep and "nwm.width" in deep
-    assert flat == 'nwm = input(64, 20)\nnwm.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
+    assert flat == 'nwm = input(64, 20)\nnwm.edges.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
 
 
 def test_a_deck_without_spaces_is_refused():
