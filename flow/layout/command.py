@@ -21,7 +21,7 @@ from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout`."""
     add = parser.add_argument
-    add("design", help=f"one of {', '.join((*DESIGNS, SENSOR))}")
+    add("design", nargs="?", default=CHIP, help=f"one of {', '.join((*DESIGNS, SENSOR))}")
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     add("--backend", default="coriolis", help="what places and routes: coriolis (openroad: see talbot openroad)")
     add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")

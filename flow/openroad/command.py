@@ -28,7 +28,7 @@ CHECKED = {"gds": "fill.gds", "sdc": "sdc", "drc.lyrdb": "drc.report", "lvsdb": 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad`."""
-    parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
+    parser.add_argument("design", nargs="?", default="asp_chip", help=f"one of {', '.join(DESIGNS)}")
     parser.add_argument("--pdk", default="sky130", help="process")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
     parser.add_argument("--write-only", action="store_true", help="write the scripts, run nothing")

@@ -15,7 +15,7 @@ from PIL import Image
 from base.files import PART
 from base.paths import ROOT
 from flow.frame.outputs import NAMES
-from talbot.__main__ import main
+from talbot.commands import main
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
 KEYS = {

@@ -6,7 +6,7 @@ from base.paths import ROOT
 from flow.host.document.command import HEADER
 from flow.host.document.tables import TABLES
 from models.parameters.registers import register_map
-from talbot.__main__ import main
+from talbot.commands import main
 
 WRITTEN = "registers.md", "registers.html", "host.md"
 
