@@ -1,4 +1,4 @@
-"""The command line as a user meets it: what it writes, what it refuses, and what an interruption leaves behind."""
+"""The command line as a user meets it: what it writes and what it refuses."""
 
 import json
 import os
@@ -6,13 +6,11 @@ import resource
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from base.files import PART
 from base.paths import ROOT
 from flow.frame.outputs import NAMES
 from talbot.commands import main
@@ -54,13 +52,6 @@ KEYS = {
     "rtl_cycles_per_s",
     "tools",
 }
-
-
-@pytest.fixture(autouse=True)
-def handlers():
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
 
 
 @pytest.fixture
@@ -175,54 +166,6 @@ def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
     out, err = capsys.readouterr()
     assert status == 2 and said in err and err.count("\n") == 1 and err.startswith("talbot: error: ")
     assert not out and not list(tmp_path.iterdir())
-
-
-def started(tmp_path, rows):
-    """`python -m talbot sim` of a sensor that no other test compiles, on its way, to be interrupted."""
-    words = [
-        sys.executable,
-        "-m",
-        "talbot",
-        "sim",
-        "--scene",
-        "coins",
-        "--rows",
-        str(rows),
-        "--cols",
-        "26",
-        "--lanes",
-        "2",
-        "--out",
-        str(tmp_path / "out"),
-        "--waves",
-        "0:1",
-    ]
-    # A job in the background (of a CI, say) ignores Ctrl-C, and so would its children
-    return subprocess.Popen(
-        words,
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
-
-
-@pytest.mark.parametrize("sent, status, rows", [(signal.SIGINT, 2, 14), (signal.SIGTERM, 143, 15)])
-def test_interrupted_in_the_compiler(tmp_path, sent, status, rows):
-    cache = ROOT / "build" / "simulator"
-    child = started(tmp_path, rows)
-    part = f"{PART}{child.pid}-"  # other tests compile beside this one
-    assert any("translating" in line for line in child.stderr)
-    child.send_signal(sent)
-    _, err = child.communicate(timeout=30)
-    assert child.returncode == status and "Traceback" not in err
-    assert not (tmp_path / "out").exists()
-    assert not list(cache.glob(part + "*"))
-    time.sleep(0.2)
-    running = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True).stdout
-    assert str(cache / part) not in running, "a compiler outlived the run"
 
 
 def test_no_room_for_the_results(photograph, tmp_path):
