@@ -137,15 +137,15 @@ def _kill_all(patience: float) -> None:
 
 def _below(top: int) -> list[int]:
     """Every process below ``top``, from /proc."""
-    parents = {}
+    children: dict[int, list[int]] = {}
     for path in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError):  # it has ended
-            parents[int(path.parent.name)] = int(path.read_text().rpartition(")")[2].split()[1])
-    found, level = [], [top]
-    while level:
-        level = [process for process, parent in parents.items() if parent in level]
-        found += level
-    return found
+            parent = int(path.read_text().rpartition(")")[2].split()[1])
+            children.setdefault(parent, []).append(int(path.parent.name))
+    found = [top]
+    for process in found:
+        found += children.get(process, [])
+    return found[1:]
 
 
 def _remove_written(run: Path) -> None:

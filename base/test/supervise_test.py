@@ -19,28 +19,30 @@ from base.files import atomic, staged
 from base.supervise import supervised
 out = Path(sys.argv[1])
 def tools():
-    while True:
-        subprocess.Popen(["sleep", "60"], start_new_session=True)
+    for _ in range(200):
+        subprocess.Popen(["sleep", "20"], start_new_session=True)
+        print("begun", flush=True)
+    time.sleep(20)
 def orphans():
-    subprocess.run(["sh", "-c", "setsid sh -c 'sleep 60 & sleep 60' & sleep 60 &"])
+    subprocess.run(["sh", "-c", "setsid sh -c 'sleep 20 & sleep 20' & sleep 20 &"])
     print("begun", flush=True)
-    time.sleep(60)
+    time.sleep(20)
 def writes():
     with staged(out / "new" / "out") as part, atomic(out / "other" / "file"):
         (part / "half").write_text("")
         print("begun", flush=True)
-        time.sleep(60)
+        time.sleep(20)
 def publishes():
     with staged(out / "out") as part:
         for i in range(20000):
             (part / str(i)).touch()
         print("begun", flush=True)
-    time.sleep(60)
+    time.sleep(20)
 def crashes():
     with atomic(out / "file"):
         os.kill(os.getpid(), signal.SIGSEGV)
 def leaves():
-    subprocess.Popen(["sleep", "60"], start_new_session=True)
+    subprocess.Popen(["sleep", "20"], start_new_session=True)
     return 7
 sys.exit(supervised(globals()[sys.argv[2]]))
 """
@@ -80,7 +82,7 @@ def running(mark):
 @pytest.mark.parametrize("name", ["tools", "orphans", "writes"])
 def test_nothing_is_left(tmp_path, name, sent, whole_group):
     process, mark = started(tmp_path, name)
-    time.sleep(1) if name == "tools" else process.stdout.readline()
+    process.stdout.readline()
     assert len(running(mark)) > 1
     (os.killpg if whole_group else os.kill)(process.pid, sent)
     _, err = process.communicate(timeout=20)

@@ -150,6 +150,11 @@ def test_a_decoded_file(photograph, tmp_path, capsys):
         (f"sim --out {__file__}", "must be a folder"),
         ("sim --nothing", "unrecognized arguments: --nothing"),
         ("sim --sce coins", "unrecognized arguments: --sce coins"),
+        ("sim --scene /tmp", "scene = '/tmp': must be an image file, not a folder"),
+        (f"sim --scene {__file__}", "Pillow reads, PNG, JPEG, TIFF, "),
+        ("sim --window -1:3,0:2", "window rows = '-1': must be an integer in 0..95"),
+        ("sim --focus -1e9", "focus = '-1e9': must be a number in [-100, 100]"),
+        (f"sim --scene {'x' * 5000}", " ... "),
         ("draw", "invalid choice: 'draw'"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),
         (f"decode {__file__}", "a frame starts with b'TLBT'"),
@@ -165,6 +170,7 @@ def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
         status = stop.code
     out, err = capsys.readouterr()
     assert status == 2 and said in err and err.count("\n") == 1 and err.startswith("talbot: error: ")
+    assert len(err) < 700
     assert not out and not list(tmp_path.iterdir())
 
 
