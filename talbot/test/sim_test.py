@@ -12,6 +12,7 @@ import pytest
 from PIL import Image
 
 from base.paths import ROOT
+from flow.frame.command import NAME_MAX, _name
 from flow.frame.outputs import NAMES
 from talbot.commands import main
 
@@ -94,6 +95,32 @@ def test_another_mode_takes_its_old_pictures_away(photograph, tmp_path):
         assert main(["sim", "--scene", photograph, "--mode", mode, "--out", str(tmp_path / "out"), *SMALL]) == 0
         assert (tmp_path / "out" / its).exists()
     assert not (tmp_path / "out" / "views_decoded.png").exists()
+
+
+def test_the_folder_tells_the_settings(photograph, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    small = "cols=50-lanes=4-rows=13"
+    for more, name in ((), "a_photo_s_name"), (("--mode", "tof", "--phase"), "a_photo_s_name-tof"):
+        assert main(["sim", "--scene", photograph, *SMALL, *more]) == 0
+        (folder,) = (tmp_path / "build" / "sim").iterdir()
+        parts = folder.name.split("-")
+        assert "-".join(parts[:1] + parts[1:2] * ("tof" in parts)) == name and ("phase" in parts) == bool(more)
+        assert sorted(part for part in parts if "=" in part) == small.split("-")
+        folder.rename(tmp_path / name)
+    assert "replaced there" not in capsys.readouterr().out
+
+
+def test_a_run_says_what_it_replaced(photograph, tmp_path, capsys):
+    for seed, said in (("1", ""), ("1", ""), ("2", "a_photo_s_name-rows=13-cols=50-lanes=4\n")):
+        assert main(["sim", "--scene", photograph, *SMALL, "--seed", seed, "--out", str(tmp_path / "out")]) == 0
+        assert capsys.readouterr().out.partition("  replaced there: ")[2] == said
+    (tmp_path / "out" / "summary.json").write_text("[]")
+    assert main(["sim", "--scene", photograph, *SMALL, "--out", str(tmp_path / "out")]) == 0
+
+
+def test_a_name_that_is_too_long_stays_one(tmp_path):
+    names = {_name({"scene": "s", "types": ",".join(map(str, range(24))) + "," + last * 200}) for last in "01"}
+    assert len(names) == 2 and {len(name) for name in names} == {NAME_MAX}
 
 
 def test_waves_of_a_window_of_rows(photograph, tmp_path):
