@@ -118,7 +118,7 @@ formats: $(READY)  ## stream formats and scan orders compared: build/formats/
 	@$(talbot) formats --document docs/stream.md
 
 .PHONY: document
-document: $(READY)  ## the documents for a host: docs/registers.*, the tables of docs/host.md, the C header
+document: $(TESTS_READY)  ## the documents for a host: docs/registers.*, docs/host.md's tables, C header; HTML, IP-XACT: build/registers/
 	@$(talbot) document
 
 .PHONY: sizes

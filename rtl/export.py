@@ -6,7 +6,7 @@ from pathlib import Path
 
 from base.command import main
 from base.files import write
-from base.paths import ROOT
+from base.paths import RESULTS
 from models.parameters import DIVIDERS, ArrayParameters, ChipParameters, SensorParameters, TileParameters
 from rtl.harness.translate import translate_component
 from rtl.lint import lint
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="TOP",
         help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or one of {', '.join((*PARTS, *PACKERS))}",
     )
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "verilog", help="folder of the files")
+    parser.add_argument("--out", type=Path, default=RESULTS / "verilog", help="folder of the files")
     parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")
     parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down")
     parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across")
