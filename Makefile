@@ -102,8 +102,8 @@ verify: $(TESTS_READY) $(LAYOUT_READY)  ## all of the verification: build/verify
 	@$(talbot) verify
 
 .PHONY: verilog
-verilog: $(READY)  ## build/verilog/<top>.v, linted
-	@$(talbot) verilog --out build/verilog --check
+verilog: $(READY)  ## build/verilog/<top>.sv, linted, and <top>.core for FuseSoC
+	@$(talbot) verilog --out build/verilog --core --check
 
 .PHONY: tradeoff
 tradeoff: $(READY)  ## error against run time: tables and plots in build/tradeoff/

@@ -17,7 +17,8 @@ from models.parameters import ParameterError
 
 from .tools import ToolError
 
-LONGEST = 600  # characters of an error's line
+# A value too long to be read in an error's line, quoted or a word: its beginning, the rest
+LONG = re.compile(r"""('[^']{80})[^']{80,}(?=')|("[^"]{80})[^"]{80,}(?=")|(\S{160})\S{160,}?(?=:?(?:\s|$))""")
 
 
 class HelpFormatter(argparse.RawDescriptionHelpFormatter, argparse.ArgumentDefaultsHelpFormatter):
@@ -97,8 +98,6 @@ def failures(lines: Iterable[str]) -> int:
 
 
 def _report(program: str, message: str) -> None:
-    """One line: of a long message its ends, the field and what it must be."""
-    text = " ".join(message.split())
-    if len(text) > LONGEST:
-        text = f"{text[: LONGEST // 2]} ... {text[-LONGEST // 2 :]}"
+    """One line; of a long value in it, the beginning."""
+    text = LONG.sub(lambda found: f"{found[found.lastindex or 0]}...", " ".join(message.split()))
     print(f"{program}: error: {text}", file=sys.stderr)

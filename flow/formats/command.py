@@ -56,4 +56,4 @@ def gates_of_packers() -> dict[str, float] | None:
     packers = {name: packer for name, (_, packer) in FORMATS.items()}
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         export_verilog(Path(folder), list(packers.values()))
-        return {name: size_of(Path(folder) / f"{packer}.v", packer).gates for name, packer in packers.items()}
+        return {name: size_of(Path(folder) / f"{packer}.sv", packer).gates for name, packer in packers.items()}
