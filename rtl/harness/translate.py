@@ -57,21 +57,30 @@ def _with_kept_register(module: str) -> str:
     return module
 
 
-def _scalars(part: str, text: str, before: str) -> str:
-    """The module or types ``part`` without [0:0], but where a bit of a name, ``before`` it, is selected in ``text``."""
+VECTOR_OF_ONE = re.compile(r"(?m)^(\s*(?:input +|output |localparam )?)logic \[0:0\] (\w+)((?: +\[\d+:\d+\])?)")
+
+
+def _scalars(part: str, before: str, text: str) -> str:
+    """``part`` without [0:0], but where a bit of the name, with ``before`` in front, is selected in ``text``."""
 
     def scalar(declaration: re.Match[str]) -> str:
         start, name, dimension = declaration.groups()
         selected = before + name + (r"\[[^\]]*\]\[" if dimension else r"\[")
         return declaration[0] if re.search(selected, text) else f"{start}logic {name}{dimension}"
 
-    return re.sub(r"(?m)^(\s*(?:input +|output |localparam )?)logic \[0:0\] (\w+)((?: +\[\d+:\d+\])?)", scalar, part)
+    return VECTOR_OF_ONE.sub(scalar, part)
 
 
 def _without_vectors_of_one(text: str) -> str:
-    """The text with one-bit signals, fields and constants as scalars."""
+    """The text with one-bit signals, fields and constants as scalars; the bit 0 of a signal is the signal."""
     types, *modules = re.split(r"(?m)^(?=module )", text)
-    return "".join([_scalars(types, text, r"\."), *(_scalars(module, module, r"\b") for module in modules)])
+    made = [_scalars(types, r"\.", text)]
+    for module in modules:
+        for _, name, dimension in VECTOR_OF_ONE.findall(module):
+            if not dimension:
+                module = re.sub(rf"(?<![.\w]){name}\[0(:0)?\]", name, module)
+        made.append(_scalars(module, r"(?<![.\w])", module))
+    return "".join(made)
 
 
 def _declared(thing: object, prefix: str = "") -> Iterator[str]:

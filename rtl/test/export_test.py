@@ -73,9 +73,10 @@ def test_the_chips_pins_are_in_the_order_of_their_declaration():
 
 def test_a_bit_that_is_selected_stays_a_vector():
     text = "module A\n(\n  input  logic [0:0] a,\n  output logic [0:0] b\n);\n"
-    text += "  logic [0:0] c [0:3];\n  logic [0:0] d [0:3];\n"
-    text += "  assign b = a[0:0] & c[1] & d[2][0];\nendmodule\n"
-    assert tidy(text) == text.replace("output logic [0:0] b", "output logic b").replace("[0:0] c", "c")
+    text += "  logic [0:0] e;\n  logic [0:0] c [0:3];\n  logic [0:0] d [0:3];\n"
+    text += "  assign b = a[i] & e[0] & e[0:0] & f.e[0] & c[1] & d[2][0];\nendmodule\n"
+    scalars = text.replace("output logic [0:0] b", "output logic b").replace("[0:0] c", "c").replace("[0:0] e;", "e;")
+    assert tidy(text) == scalars.replace("e[0] & e[0:0] & f", "e & e & f")
 
 
 def test_fusesoc_reads_and_lints_the_core(tmp_path):
