@@ -2,11 +2,12 @@
 
 import argparse
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 from base.command import main
 from base.files import write
-from base.paths import ROOT
+from base.paths import RESULTS
 from models.parameters import DIVIDERS, ArrayParameters, ChipParameters, SensorParameters, TileParameters
 from rtl.harness.translate import translate_component
 from rtl.lint import lint
@@ -16,6 +17,30 @@ from rtl.tops import PACKERS, PARTS, TOPS, build_top
 def translate(name: str, sensor: SensorParameters) -> str:
     """The Verilog of top, part or packer ``name`` for ``sensor``, as text. Raises ParameterError."""
     return translate_component(build_top(name, sensor), name)
+
+
+def core(name: str) -> str:
+    """The FuseSoC core (CAPI 2) of the file of top ``name``, which holds all modules: to use it, and to lint it."""
+    return f"""CAPI=2:
+name: talbot:asp:{name}:{version("talbot")}
+description: "Talbot's {name}, an angle-sensitive-pixel image sensor's digital side: generated from PyMTL3"
+
+filesets:
+  rtl:
+    files: [{name}.sv]
+    file_type: systemVerilogSource
+
+targets:
+  default: &default
+    filesets: [rtl]
+    toplevel: {name}
+  lint:
+    <<: *default
+    description: "Verilator's lint"
+    flow: lint
+    flow_options:
+      tool: verilator
+"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="TOP",
         help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or one of {', '.join((*PARTS, *PACKERS))}",
     )
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "verilog", help="folder of the files")
+    parser.add_argument("--out", type=Path, default=RESULTS / "verilog", help="folder of the files")
+    parser.add_argument("--core", action="store_true", help="also <top>.core, for FuseSoC")
     parser.add_argument("--check", action="store_true", help="lint with Verilator, and Icarus and Yosys if installed")
     parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down")
     parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across")
@@ -51,8 +77,10 @@ def run(options: argparse.Namespace) -> int:
     """Write the tops' Verilog and print the files."""
     sensor = sensor_of(options)
     for name in options.top or TOPS:
-        path = options.out / f"{name}.v"
+        path = options.out / f"{name}.sv"
         write(path, translate(name, sensor))
+        if options.core:
+            write(path.with_suffix(".core"), core(name))
         print(f"{path}{': ' + ', '.join(lint(path, name)) if options.check else ''}")
     return 0
 

@@ -1,10 +1,13 @@
 """A scene through the golden models and the Verilog of the whole chip."""
 
+import json
+import re
 from argparse import ArgumentParser, Namespace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from base.cache import digest
 from base.progress import Steps
 from models.parameters import LANES, MODES, CameraParameters
 
@@ -14,6 +17,7 @@ if TYPE_CHECKING:
     from .request import FrameRequest
 
 
+NAME_MAX = 120  # characters of a folder's name
 INTEGERS = {"rows": (1, 1024), "cols": (1, 1536), "lanes": (min(LANES), max(LANES)), "threshold": (0, 127)}
 INTEGERS |= {"decimation": (0, 3), "seed": (0, 2**32 - 1)}
 
@@ -50,7 +54,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--converter", default="typical", help="typical (INL, DNL, offset, noise as in the report) or ideal")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
-    add("--out", help="folder for the results (default: build/sim/<scene>)")
+    add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
     add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
 
 
@@ -63,11 +67,43 @@ def run(options: Namespace) -> int:
     if options.scene == "list":
         print("\n".join(sorted(scenes)))
         return 0
+    typed = _typed(options)
+    options.out = options.out or Path("build/sim") / _name(typed)
     asked = _request(options)
+    before = _arguments_of(asked.folder)
     with Steps(STEPS) as steps:
-        summary = run(asked, note=steps.note)
+        summary = run(asked, steps.note, typed)
     _print_figures(summary, asked.folder)
+    if before not in (None, typed):
+        print(f"  replaced there: {_name(before)}")
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
+
+
+def _typed(options: Namespace) -> dict[str, Any]:
+    """The scene, then every argument that is not its default; not the folder."""
+    parser = ArgumentParser()
+    add_arguments(parser)
+    standard, own = vars(parser.parse_args([])), vars(options)
+    return {name: own[name] for name in standard if name == "scene" or name != "out" and own[name] != standard[name]}
+
+
+def _name(typed: dict[str, Any]) -> str:
+    """A folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
+    parts = [Path(typed["scene"]).stem]
+    for name, value in list(typed.items())[1:]:
+        value = Path(value).stem if name == "depth" else value
+        parts.append(value if name == "mode" else name if value is True else f"{name}={value}")
+    text = re.sub(r"[^\w.,=+-]", "_", "-".join(parts))
+    return text if len(text) <= NAME_MAX else f"{text[: NAME_MAX - 17]}-{digest(text)}"
+
+
+def _arguments_of(folder: Path) -> dict[str, Any] | None:
+    """The arguments of the run whose results are in ``folder``, None where there is none."""
+    try:
+        found = json.loads((folder / "summary.json").read_text())["arguments"]
+        return found if found["scene"] else None
+    except (OSError, ValueError, LookupError, TypeError):
+        return None
 
 
 def _request(a: Namespace) -> "FrameRequest":

@@ -1,7 +1,7 @@
 """The main job: scene -> samples -> chip's Verilog -> stream -> decoded -> compared -> pictures and report."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -109,11 +109,15 @@ def simulate_frame(request: FrameRequest) -> FrameResult:
     return read_out(request, expose(request, scene, todo), hardware.program(request.sensor, todo.taps))
 
 
-def run(request: FrameRequest, note: Callable[[str], None] = lambda text: None) -> dict[str, Any]:
+def run(
+    request: FrameRequest,
+    note: Callable[[str], None] = lambda text: None,
+    arguments: Mapping[str, object] | None = None,
+) -> dict[str, Any]:
     """Run the main job and write its files into ``request.folder``; returns summary.json.
 
     note: called with the name of each of `STEPS` as it starts, and with a line before each long part of one.
-    Raises ParameterError, ToolError, OSError.
+    arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
     """
     from . import outputs  # Matplotlib: not before it is needed
 
@@ -130,7 +134,7 @@ def run(request: FrameRequest, note: Callable[[str], None] = lambda text: None) 
         result = read_out(request, exposed, program, clock, waves)
         with clock.step("report"):
             summary = summarize(result)
-            summary["wall_s"] = clock.seconds
+            summary |= {"wall_s": clock.seconds, "arguments": dict(arguments or {})}
             outputs.write(folder, result, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     return summary

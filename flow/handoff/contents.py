@@ -59,7 +59,7 @@ def contents(
     sources = {
         "reports/summary.json": folder / "summary.json",
         "reports/report.html": folder / "report.html",
-        f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
+        f"rtl/{design.top}.sv": folder / "rtl" / f"{design.top}.sv",
         **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}" for suffix, place in REQUIRED.items()},
     }
     if (page := sources["reports/report.html"]).is_file():

@@ -61,7 +61,7 @@ def input_files(design: Design, options: Options, folder: Path) -> dict[str, Pat
     constraints = folder / "rtl" / f"{design.top}.sdc"
     constraints.write_text(sdc(design))
     return {
-        "rtl": folder / "rtl" / f"{design.top}.v",
+        "rtl": folder / "rtl" / f"{design.top}.sv",
         "sdc": constraints,
         **{f"timing.{path.stem}": path for path in options.liberty},
         **{f"foundry.{name}": path for name, path in options.decks},

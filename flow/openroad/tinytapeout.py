@@ -68,7 +68,7 @@ PROJECTS = {
 
 def sources(project: Project, design: Design) -> list[str]:
     """Names of the Verilog files of ``project``: its only list, from which all others are generated."""
-    return [f"{project.top}.v", BUS, f"{design.top}.v"]
+    return [f"{project.top}.v", BUS, f"{design.top}.sv"]
 
 
 def project_files(project: Project, design: Design, verilog: str) -> dict[str, str]:

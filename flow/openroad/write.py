@@ -39,4 +39,4 @@ def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
     for name, text in files.items():
         with staged((folder / name).parent) as part:
             (part / Path(name).name).write_text(text)
-    return [f"{design.top}.v", *sorted(files)]
+    return [f"{design.top}.sv", *sorted(files)]

@@ -40,7 +40,7 @@ class Build:
         return [f"{option}{name.upper()}={getattr(self, name)}" for name in names]
 
     def chip_verilog(self, folder: Path) -> Path:
-        """Export the chip into ``folder``; returns AspChip.v. Raises ToolError."""
+        """Export the chip into ``folder``; returns AspChip.sv. Raises ToolError."""
         names = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
         options: Sequence[str] = [f"--{name.replace('_', '-')}={getattr(self, name)}" for name in names]
         (path,) = export_verilog(folder, ["AspChip"], options)

@@ -13,6 +13,7 @@ from models.parameters import ParameterError
 from .resample import linear
 
 PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
+FORMATS = "PNG", "JPEG", "TIFF", "WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PPM"  # named to users, where built in
 KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
@@ -78,17 +79,21 @@ def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDAr
 
 def _opened(path: str | Path, field: str) -> Image.Image:
     path = Path(path)
+    if path.is_dir():
+        raise ParameterError(f"{field} = {str(path)!r}: must be an image file, not a folder")
     if not path.is_file():
         raise ParameterError(f"{field} = {str(path)!r}: no such file; must be a readable file")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # up to PIXELS_MAX is allowed
+            warnings.simplefilter("ignore")  # up to PIXELS_MAX is allowed; of odd metadata no picture may come
             picture = Image.open(path)
     except Image.DecompressionBombError:
         raise ParameterError(f"{field} = {str(path)!r}: must be an image of 1..{PIXELS_MAX} pixels") from None
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
+        Image.init()
+        formats = ", ".join(name for name in FORMATS if name in Image.OPEN)
         raise ParameterError(
-            f"{field} = {str(path)!r}: must be an image file that Pillow reads ({type(error).__name__})"
+            f"{field} = {str(path)!r}: must be an image file that Pillow reads, {formats} ({type(error).__name__})"
         ) from None
     return picture
 

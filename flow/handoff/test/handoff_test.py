@@ -64,7 +64,7 @@ def layouts(tmp_path):
     """A folder of layouts with one that is complete but for the optional files."""
     folder = tmp_path / "layout" / NAME
     (folder / "rtl").mkdir(parents=True)
-    (folder / "rtl" / f"{TOP}.v").write_text("// rtl\n")
+    (folder / "rtl" / f"{TOP}.sv").write_text("// rtl\n")
     (folder / "report.html").write_text('<html><img src="picture.png"><img src="data:x"></html>\n')
     (folder / "picture.png").write_text("picture\n")
     (folder / "summary.json").write_text(json.dumps(passing()))
@@ -100,7 +100,7 @@ def test_the_manifest_has_every_file_with_its_hash(layouts, tmp_path):
     assert {
         "layout/quad_divider.gds",
         "layout/quad_divider.lef",
-        "rtl/QuadDividerRadix4.v",
+        "rtl/QuadDividerRadix4.sv",
         "netlist/quad_divider.v",
         "netlist/quad_divider.power.v",
         "pinout.md",
@@ -138,10 +138,10 @@ def test_one_changed_byte_is_another_archive(layouts, tmp_path):
 
 def test_what_is_missing_is_named_and_nothing_written(layouts, tmp_path, capsys):
     (layouts / NAME / f"{NAME}.sdc").unlink()
-    (layouts / NAME / "rtl" / f"{TOP}.v").unlink()
+    (layouts / NAME / "rtl" / f"{TOP}.sv").unlink()
     assert run(layouts, tmp_path / "out") == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and f"without {NAME}.sdc, rtl/{TOP}.v: must be a finished layout" in error
+    assert error.count("\n") == 1 and f"without {NAME}.sdc, rtl/{TOP}.sv: must be a finished layout" in error
     assert not (tmp_path / "out").exists()
 
 

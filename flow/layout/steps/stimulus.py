@@ -84,7 +84,7 @@ class Stimulus(Step[StimulusParameters]):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
             export_verilog(folder, [CHIP], self.parameters.options)
-            chip, own = (folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text()
+            chip, own = (folder / f"{CHIP}.sv").read_text(), inputs["rtl"].read_text()
             if set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])
             else:
@@ -118,7 +118,7 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     exposed = expose(asked, *see(asked))
-    program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
+    program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
     more = (f"+tap={folder / 'tap.trace'}",)
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:

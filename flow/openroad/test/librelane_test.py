@@ -81,7 +81,7 @@ def test_a_design_loads_without_a_warning(name, written, pdk):
     [
         ("FP_CORE_UTIL:", "FP_CORE_UTILL:", "Unknown key 'FP_CORE_UTILL'"),
         ("FP_ASPECT_RATIO: 1", "FP_ASPECT_RATIO: wide", "is invalid: 'wide'"),
-        ("dir::AmpCtrl.v", "dir::nowhere.v", "does not exist"),
+        ("dir::AmpCtrl.sv", "dir::nowhere.v", "does not exist"),
         ("PL_TARGET_DENSITY_PCT:", "PL_TARGET_DENSITY:", "is deprecated"),
     ],
 )
@@ -95,7 +95,7 @@ def test_a_wrong_variable_would_be_found(right, wrong, said, written, pdk):
 def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk):
     """Its template's names for four variables are old ones in LibreLane 3, which says so and takes them."""
     source, project = written(name) / "tinytapeout" / "src", PROJECTS[name]
-    files = sorted(path.name for path in source.glob("*.v"))
+    files = sorted(path.name for path in source.glob("*.*v"))
     config = source / "config_merged.json"
     config.write_text(
         json.dumps(

@@ -61,7 +61,7 @@ def verilog(tmp_path_factory):
             done[name] = tmp_path_factory.mktemp(name)
             rtl(design(name), done[name])
         project = PROJECTS[name]
-        return [TOPS / f"{project.top}.v", TOPS / BUS, done[name] / f"{design(name).top}.v"]
+        return [TOPS / f"{project.top}.v", TOPS / BUS, done[name] / f"{design(name).top}.sv"]
 
     return export
 
@@ -203,7 +203,7 @@ def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, tmp_p
     modules = [
         module
         for path, text in files.items()
-        if path.endswith(".v")
+        if path.endswith((".v", ".sv"))
         for module in re.findall(r"(?:^|\s)module\s+(\w+)", text)
     ]
     assert modules.count(top) == 1
