@@ -52,7 +52,8 @@ def with_flat_spaces(deck: str) -> str:
     for rule in rules:
         deck = deck.replace(rule[0], "", 1)
     layers = dict.fromkeys(rule[1] for rule in rules)
-    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *(rule[0].replace(".space(", ".edges.space(", 1) for rule in rules)])
+    spaces = (rule[0].replace(".space(", ".edges.space(", 1) for rule in rules)
+    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *spaces])
 
 
 def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
