@@ -98,6 +98,20 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.skip(reason=MISSING))
 
 
+@pytest.fixture
+def given_verilog(request):
+    """given_verilog(name): files of the netlist in place of what a test builds as ``name``; [] where none are given."""
+    netlists = request.config.stash.get(NETLISTS, None)
+
+    def files(name):
+        found = netlists.files(name) if netlists else []
+        if netlists and not found:
+            pytest.skip(f"--netlist has none of {name}")
+        return found
+
+    return files
+
+
 def pytest_sessionfinish(session):
     """Fail for a netlist that no test used (in one process: workers share the tests), and with --complete for a gap."""
     options = session.config.option

@@ -11,11 +11,18 @@ from base.paths import RESULTS
 from models.parameters import DIVIDERS, ArrayParameters, ChipParameters, SensorParameters, TileParameters
 from rtl.harness.translate import translate_component
 from rtl.lint import lint
-from rtl.tops import PACKERS, PARTS, TOPS, build_top
+from rtl.tops import PACKERS, PARTS, TOPS, WRAPPERS, build_top
+
+WRAPPER = Path(__file__).parent / "tinytapeout"
+BUS = "tt_bytes.v"
+BY_NAME = *PARTS, *PACKERS, *WRAPPERS
 
 
 def translate(name: str, sensor: SensorParameters) -> str:
-    """The Verilog of top, part or packer ``name`` for ``sensor``, as text. Raises ParameterError."""
+    """The Verilog of top, part, packer or wrapper ``name`` for ``sensor``, as text. Raises ParameterError."""
+    if name in WRAPPERS:
+        own = ((WRAPPER / file).read_text() for file in (f"{name}.v", BUS))
+        return "\n".join((*own, translate(WRAPPERS[name], sensor)))
     return translate_component(build_top(name, sensor), name)
 
 
@@ -49,9 +56,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--top",
         action="append",
-        choices=(*TOPS, *PARTS, *PACKERS),
+        choices=(*TOPS, *BY_NAME),
         metavar="TOP",
-        help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or one of {', '.join((*PARTS, *PACKERS))}",
+        help=f"may be repeated: {', '.join(TOPS)} (default: all of these), or one of {', '.join(BY_NAME)}",
     )
     parser.add_argument("--out", type=Path, default=RESULTS / "verilog", help="folder of the files")
     parser.add_argument("--core", action="store_true", help="also <top>.core, for FuseSoC")

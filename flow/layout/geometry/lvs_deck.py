@@ -1,6 +1,7 @@
 """PDKMaster's LVS deck for KLayout, adapted."""
 
 import re
+from collections.abc import Sequence
 
 from base.steps import StepError
 from platforms.layers import GdsLayer
@@ -26,10 +27,10 @@ def hierarchical(deck: str, active: GdsLayer) -> str:
     return deck
 
 
-def with_ports(deck: str, netlist: Netlist) -> str:
+def with_ports(deck: str, netlist: Netlist, supplies: Sequence[str] = SUPPLIES) -> str:
     """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match."""
     if "\nalign\n" not in deck:
         raise StepError("lvs: the deck has no 'align'")
-    names = [net for port in netlist.ports for net in port.bits()] + list(SUPPLIES)
+    names = [net for port in netlist.ports for net in port.bits()] + list(supplies)
     lines = "".join(f'same_nets!("{netlist.name}", "{net}", "{net}")\n' for net in names)
     return deck.replace("\nalign\n", f"\nalign\n{lines}")

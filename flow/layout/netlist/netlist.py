@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -163,13 +163,13 @@ class Netlist:
             lines.append(f"  {i.cell} {_escaped(i.name)} ({joined});")
         return "\n".join([*lines, "endmodule", ""])
 
-    def spice(self, cells: str) -> str:
-        """The subcircuit, its supplies ports too, followed by ``cells``, the text of the cells' subcircuits."""
+    def spice(self, cells: str, supplies: Sequence[str] = SUPPLIES) -> str:
+        """The subcircuit, its ``supplies`` ports too, followed by ``cells``, the text of the cells' subcircuits."""
         orders = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", cells)}
-        ports = [net for port in self.ports for net in port.bits()] + list(SUPPLIES)
+        ports = [net for port in self.ports for net in port.bits()] + list(supplies)
         lines = [f".subckt {self.name} " + " ".join(ports)]
         for number, i in enumerate(self.instances):
-            pins = i.pins | {name: name for name in SUPPLIES}
+            pins = i.pins | dict(zip(SUPPLIES, supplies, strict=True))
             lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
         return "\n".join([*lines, ".ends", cells])
 

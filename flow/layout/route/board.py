@@ -38,10 +38,13 @@ class Board:
     What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
     [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above
     their pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all
-    nets, and where nets CONTENDED. grid: both as places. present: see PRESENT.
+    nets, and where nets CONTENDED. grid: both as places, of middles of segments within ``area`` (nm; default: wherever
+    there is something). present: see PRESENT.
     """
 
-    def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:
+    def __init__(
+        self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes], area: Box | None = None
+    ) -> None:
         self.layout, self.rules, self.top = layout, rules, layout.top_cell()
         self.nets = list(shapes)
         self.boxes: dict[str, list[tuple[str, Box]]] = {net: [] for net in shapes}
@@ -50,8 +53,9 @@ class Board:
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*rules.layers, *rules.vias)}
         self.pins = {net: self._pins(made["pins"]) for net, made in shapes.items()}
         self._lift(shapes)
-        area = corners(self.top.bbox().enlarged(*rules.step))
-        self.fixed, self.routed = Index(area, len(rules.layers)), Index(area, len(rules.layers))
+        area = area or corners(self.top.bbox().enlarged(*rules.step))
+        whole = corners(self.top.bbox().enlarged(*rules.step) + db.Box(*area))
+        self.fixed, self.routed = Index(whole, len(rules.layers)), Index(whole, len(rules.layers))
         self.grid = Grid(area, rules)
         self.rows: dict[str, tuple[Rows, Links]] = {}
         self.present = PRESENT

@@ -15,6 +15,8 @@ from ..route.diodes import Diodes
 from ..route.negotiate import route
 from ..route.rules import RoutingRules
 
+EDGE_NM = 400  # from a frame to the middle of a segment, so that it is half a space inside
+
 
 @dataclass(frozen=True)
 class RouteParameters:
@@ -41,6 +43,7 @@ class Route(Step[RouteParameters]):
         "geometry": "library.geometry",
         "cells": "library.gds",
         "areas": "library.areas",
+        "plan": "floorplan.floorplan",
     }
     outputs = {"gds": "routed.gds", "placement": "placement.json", "diodes": "diodes.json"}
     metrics = {"open_nets": "", "evictions": "", "respaced_nets": "", "diodes": "", "wire_um": "um", "vias": ""}
@@ -56,7 +59,11 @@ class Route(Step[RouteParameters]):
             made = shapes.setdefault(net, {"segments": [], "vias": [], "ports": []})
             made["pins"] = [*pins.get(net, []), *([box] for box in made.pop("ports"))]
         rules = RoutingRules.of(tech, json.loads(inputs["rules"].read_text()))
-        board = Board(read_gds(inputs["gds"]), rules, dict(sorted(shapes.items())))
+        area, plan = None, json.loads(inputs["plan"].read_text())
+        if "frame" in plan:
+            left, bottom, right, top = (round(1000 * value) for value in plan["frame"])
+            area = left + EDGE_NM, bottom + EDGE_NM, right - EDGE_NM, top - EDGE_NM
+        board = Board(read_gds(inputs["gds"]), rules, dict(sorted(shapes.items())), area)
         diodes = Diodes(placement["instances"], masters, read_gds(inputs["cells"]), areas, tech)
         found = route(board, [net for net, pins in board.pins.items() if len(pins) > 1], tech, diodes)
         segments = {net: found.routes[net].listed(rules) if net in found.routes else [] for net in board.nets}

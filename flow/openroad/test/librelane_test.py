@@ -14,7 +14,7 @@ from flow.openroad import command
 from flow.openroad.test import librelane_pdk
 from flow.openroad.tinytapeout import PROJECTS
 from platforms.sky130 import cells as sky130_hd
-from platforms.sky130.tinytapeout import SIZES_UM
+from platforms.sky130.tinytapeout import FRAME, SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
 RUN = Path(__file__).parent / "librelane_run.py"
@@ -94,7 +94,7 @@ def test_a_wrong_variable_would_be_found(right, wrong, said, written, pdk):
 @pytest.mark.parametrize("name", PROJECTS)
 def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk):
     """Its template's names for four variables are old ones in LibreLane 3, which says so and takes them."""
-    source, project = written(name) / "tinytapeout" / "src", PROJECTS[name]
+    source, project = written(name.removeprefix(FRAME)) / "tinytapeout" / "src", design(name)
     files = sorted(path.name for path in source.glob("*.*v"))
     config = source / "config_merged.json"
     config.write_text(
@@ -104,7 +104,7 @@ def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk
                 **json.loads((source / "config.json").read_text()),
                 "DESIGN_NAME": project.top,
                 "VERILOG_FILES": [f"dir::{file}" for file in files],
-                "DIE_AREA": [0, 0, *SIZES_UM[project.tiles]],
+                "DIE_AREA": [0, 0, *SIZES_UM[project.frame.removeprefix(FRAME)]],
             }
         )
     )
