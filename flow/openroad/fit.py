@@ -61,7 +61,7 @@ def fit(name: str, folder: Path) -> tuple[Fit, Path]:
     (folder / "cells.lib").write_text(functions.small_liberty())
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
     names = {"top": chosen.top, "liberty": folder / "cells.lib", "stat": stat, "netlist": netlist}
-    names["sources"] = folder / f"{chosen.top}.v"
+    names["sources"] = folder / f"{chosen.top}.sv"
     script.write_text(SCRIPT.format(constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}", **names))
     tools.run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())

@@ -72,7 +72,7 @@ def info(project: Project, design: Design) -> str:
   tiles: {json.dumps(design.frame.removeprefix(FRAME))}
   top_module: {json.dumps(design.top)}
   source_files:
-    - {json.dumps(f"{design.top}.v")}
+    - {json.dumps(f"{design.top}.sv")}
 
 pinout:
 """
