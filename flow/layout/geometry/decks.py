@@ -63,3 +63,12 @@ def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
             yield f"{metal.name} = input({metal.layer}, {metal.datatype})"
             report = f'"{metal.name} hole", "{metal.name} minimum area of a hole"'
             yield f"{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output({report})"
+
+
+def via_rules(tech: CoriolisPlatform) -> Iterator[str]:
+    """Lines for a deck: every via is inside the metals that it joins; PDKMaster's enclosures do not see one outside."""
+    for level, via in enumerate(tech.vias):
+        yield f"{via.name} = input({via.layer}, {via.datatype})"
+        for metal in tech.metals[level : level + 2]:
+            report = f'"{via.name} outside {metal.name}", "{via.name} that is not inside {metal.name}"'
+            yield f"{via.name}.not_inside(input({metal.layer}, {metal.datatype})).output({report})"
