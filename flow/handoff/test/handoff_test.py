@@ -121,7 +121,7 @@ def test_a_shuttles_project_is_beside_its_layout(layouts, tmp_path):
     assert data[f"tinytapeout/{top}.gds"] == data[f"layout/{TILE}.gds"]
     assert data[f"tinytapeout/{top}.lef"] == data[f"layout/{TILE}.lef"]
     assert b".vdd(VPWR), .vss(VGND)" in data[f"tinytapeout/{top}.v"]
-    assert data[f"tinytapeout/src/{top}.v"] == data[f"rtl/{top}.v"]
+    assert data[f"tinytapeout/src/{top}.sv"] == data[f"rtl/{top}.sv"]
     assert b'tiles: "1x1"' in data["tinytapeout/info.yaml"]
 
 

@@ -98,7 +98,7 @@ def test_the_files_pass_the_checks_of_tiny_tapeouts_tools(name, files):
 def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, files, tmp_path):
     """As tt-support-tools' check_ports and find_top_verilog do it."""
     top = design(name).top
-    verilog = files(name)[f"tinytapeout/src/{top}.v"]
+    verilog = files(name)[f"tinytapeout/src/{top}.sv"]
     (tmp_path / "top.v").write_text(verilog)
     run(
         [
