@@ -1,7 +1,7 @@
 """The sides of a block's pins, the places of its macros, and the room for its clock tree."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import combinations, pairwise, product
 from typing import Any
 
@@ -9,7 +9,7 @@ from models.parameters import ParameterError
 from platforms.coriolis import CoriolisPlatform
 from platforms.frame import Frame
 
-from ..netlist.netlist import SUPPLIES, Netlist
+from ..netlist.netlist import Netlist
 from .macro import Macro
 
 BESIDE_UM = 15.0  # least width of rows beside a macro: a strap of either supply must find a place there
@@ -83,12 +83,6 @@ def framed(frame: Frame, origin: tuple[float, float], netlist: Netlist, tech: Co
         "supplies": frame.supplies,
         "pins": {"north": [name for name, _ in sorted(frame.ports, key=lambda port: port[1])]},
     }
-
-
-def supplies(plan: Mapping[str, Any]) -> tuple[str, str]:
-    """Names of supply and ground in a design's layout, by its floorplan."""
-    high, low = plan.get("supplies", SUPPLIES)
-    return high, low
 
 
 def largest_free(width: float, height: float, outers: Sequence[Sequence[float]]) -> list[float]:

@@ -17,6 +17,12 @@ DIODE = "diode_w1"  # of PDKMaster's cells
 REGISTER = "_reg"  # after a register's name: its flip-flop
 
 
+def supplies(plan: Mapping[str, Any]) -> tuple[str, str]:
+    """Names of supply and ground in a design's layout, by its floorplan."""
+    high, low = plan.get("supplies", SUPPLIES)
+    return high, low
+
+
 def register_names(path: Path, top: str) -> set[str]:
     """Return every name of every register of the module ``top`` of Yosys's JSON, one of simple flip-flops."""
     module = json.loads(path.read_text())["modules"][top]

@@ -14,8 +14,7 @@ from base.liberty.write import text
 from base.steps import Files, StepError
 from base.tools import run
 
-from ..geometry.floorplan import supplies
-from ..netlist.netlist import SUPPLIES, Netlist
+from ..netlist.netlist import SUPPLIES, Netlist, supplies
 from ..power.energy import Cells
 from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Boundary, Sources, measure
 from .corner import CornerStep

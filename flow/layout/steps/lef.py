@@ -7,7 +7,7 @@ from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
 from ..geometry.abstract import abstract, ports, read_back
-from ..geometry.floorplan import supplies
+from ..netlist.netlist import supplies
 from .parameters import PdkParameters
 
 

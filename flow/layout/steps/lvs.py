@@ -7,9 +7,8 @@ from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
 from ..geometry.decks import run_exported
-from ..geometry.floorplan import supplies
 from ..geometry.lvs_deck import hierarchical, with_ports
-from ..netlist.netlist import Netlist
+from ..netlist.netlist import Netlist, supplies
 from .parameters import PdkParameters
 
 

@@ -9,10 +9,9 @@ from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 
 from ..geometry import area, notch, trim
-from ..geometry.floorplan import supplies
 from ..geometry.frame import into_frame, mark_straps
 from ..geometry.labels import relabel
-from ..netlist.netlist import SUPPLIES, Netlist, diode
+from ..netlist.netlist import SUPPLIES, Netlist, diode, supplies
 
 COUNTS = ("instances", "trimmed", "grown", "notches")
 

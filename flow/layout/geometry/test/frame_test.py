@@ -5,9 +5,9 @@ import pytest
 from base.lef.read import read_macro
 from base.steps import StepError
 from flow.layout.geometry.abstract import abstract, read_back
-from flow.layout.geometry.floorplan import framed, supplies
+from flow.layout.geometry.floorplan import framed
 from flow.layout.geometry.frame import into_frame, mark_straps
-from flow.layout.netlist.netlist import Netlist, Port
+from flow.layout.netlist.netlist import Netlist, Port, supplies
 from models.parameters import ParameterError
 from platforms.coriolis import coriolis_platform
 from platforms.frame import Frame
