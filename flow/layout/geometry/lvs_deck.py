@@ -28,9 +28,12 @@ def hierarchical(deck: str, active: GdsLayer) -> str:
 
 
 def with_ports(deck: str, netlist: Netlist, supplies: Sequence[str] = SUPPLIES) -> str:
-    """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match."""
+    """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match.
+
+    Ports that no cell is on are not compared: see `Netlist.spice`.
+    """
     if "\nalign\n" not in deck:
         raise StepError("lvs: the deck has no 'align'")
-    names = [net for port in netlist.ports for net in port.bits()] + list(supplies)
+    names = [*netlist.connected_ports(), *supplies]
     lines = "".join(f'same_nets!("{netlist.name}", "{net}", "{net}")\n' for net in names)
     return deck.replace("\nalign\n", f"\nalign\n{lines}")

@@ -169,10 +169,18 @@ class Netlist:
             lines.append(f"  {i.cell} {_escaped(i.name)} ({joined});")
         return "\n".join([*lines, "endmodule", ""])
 
+    def connected_ports(self) -> list[str]:
+        """Nets of the ports that some cell is on."""
+        used = {net for instance in self.instances for net in instance.pins.values()}
+        return [net for port in self.ports for net in port.bits() if net in used]
+
     def spice(self, cells: str, supplies: Sequence[str] = SUPPLIES) -> str:
-        """The subcircuit, its ``supplies`` ports too, followed by ``cells``, the text of the cells' subcircuits."""
+        """The subcircuit, its ``supplies`` ports too, followed by ``cells``, the text of the cells' subcircuits.
+
+        Ports that no cell is on are left out, as KLayout leaves out nets without a device.
+        """
         orders = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", cells)}
-        ports = [net for port in self.ports for net in port.bits()] + list(supplies)
+        ports = [*self.connected_ports(), *supplies]
         lines = [f".subckt {self.name} " + " ".join(ports)]
         for number, i in enumerate(self.instances):
             pins = i.pins | dict(zip(SUPPLIES, supplies, strict=True))
@@ -207,6 +215,18 @@ def _buses(pins: Mapping[str, str]) -> dict[str, str]:
 def diode(net: str, number: int) -> Instance:
     """Return a diode against antennas on ``net``."""
     return Instance(f"antenna_{number}", DIODE, {"i": net})
+
+
+def with_diodes(netlist: Netlist, nets: Sequence[str], fill: Mapping[str, int]) -> Netlist:
+    """Add diodes on ``nets``, and so many more (or fewer) cells of each kind of ``fill``."""
+    kept, fewer = [], {cell: -count for cell, count in fill.items() if count < 0}
+    for instance in netlist.instances:
+        if not instance.pins and fewer.get(instance.cell, 0):
+            fewer[instance.cell] -= 1
+        else:
+            kept.append(instance)
+    more = [Instance(f"fill_{cell}_{k}", cell, {}) for cell, count in fill.items() for k in range(count)]
+    return replace(netlist, instances=(*kept, *more, *(diode(net, k) for k, net in enumerate(nets))))
 
 
 def is_register(cell: str) -> bool:

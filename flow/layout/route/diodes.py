@@ -1,5 +1,6 @@
 """Diodes against antennas, in empty places of rows: a diffusion beside a gate takes the charge that metal gathers."""
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -18,6 +19,7 @@ class Diodes:
     """The diodes of a layout, and the room for more.
 
     placed: instances of the placement. library: KLayout layout of the cells. areas: um2 by cell. nets: of the diodes.
+    fill: how many more of each fill cell there are than placed.
     """
 
     def __init__(
@@ -28,6 +30,7 @@ class Diodes:
         self.widths = {cell: round(area / tech.row_um, 4) for cell, area in areas.items()}
         self.rows = free_rows(placed, self.widths, tech.fill_cells, tech.site_um)
         self.nets: list[str] = []
+        self.fill = Counter[str]()
 
     def put(self, board: Board, net: str, gate: Box) -> bool:
         """Give ``net`` a diode beside a ``gate`` (nm), in place of fill; False where there is no room."""
@@ -50,6 +53,9 @@ class Diodes:
             if name in fill and round(at.y - y, 4) == 0 and -self.widths[name] < round(at.x - x, 4) < width:
                 rest.give(self.widths[name], (at.x, y, orientation))
                 instance.delete()
+                self.fill[name] -= 1
         rest.take(width, x, y)
-        for cell, at in [(DIODE, place), *rest.filled({cell: self.widths[cell] for cell in fill})]:
+        filled = rest.filled({cell: self.widths[cell] for cell in fill})
+        self.fill.update(cell for cell, _ in filled)
+        for cell, at in [(DIODE, place), *filled]:
             insert(layout, self.library, cell, *at)

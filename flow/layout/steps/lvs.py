@@ -15,6 +15,8 @@ from .parameters import PdkParameters
 class Lvs(Step[PdkParameters]):
     """The reference is the final netlist with the cells' transistor netlists; every port must match by name.
 
+    A port that no cell is on is no net to KLayout; that it has its metal, and is no short, `extraction` checks.
+
     A cell is compared once, transistor by transistor, and its instances by their pins: a fifth of the flat comparison's
     time for 1,300 cells, and less for more.
     """

@@ -70,7 +70,7 @@ class Route(Step[RouteParameters]):
         placement["segments"] = segments
         write_gds(board.drawn(), outputs["gds"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
-        outputs["diodes"].write_text(json.dumps(diodes.nets) + "\n")
+        outputs["diodes"].write_text(json.dumps({"nets": diodes.nets, "fill": diodes.fill}) + "\n")
         lengths = [length for made in segments.values() for _, length, _ in made]
         return {
             "open_nets": len(found.open),

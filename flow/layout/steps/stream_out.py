@@ -1,7 +1,7 @@
 """The routed layout as GDS with the design's own names, and the final netlist as Verilog and SPICE."""
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from base.gds import read_gds, write_gds
@@ -11,7 +11,7 @@ from platforms.coriolis import coriolis_platform
 from ..geometry import area, notch, trim
 from ..geometry.frame import into_frame, mark_straps
 from ..geometry.labels import relabel
-from ..netlist.netlist import SUPPLIES, Netlist, diode, supplies
+from ..netlist.netlist import SUPPLIES, Netlist, supplies, with_diodes
 
 COUNTS = ("instances", "trimmed", "grown", "notches")
 
@@ -73,8 +73,7 @@ class StreamOut(Step[StreamOutParameters]):
         write_gds(layout, outputs["gds"])
         flat = Netlist.read(inputs["flat"]) if "flat" in inputs else netlist
         outputs["verilog"].write_text(flat.verilog())
-        diodes = (diode(net, k) for k, net in enumerate(json.loads(inputs["diodes"].read_text())))
-        drawn = replace(netlist, instances=(*netlist.instances, *diodes))
+        drawn = with_diodes(netlist, **json.loads(inputs["diodes"].read_text()))
         outputs["spice"].write_text(drawn.spice(inputs["cells"].read_text(), supplies(plan)))
         width, height = top.dbbox().width(), top.dbbox().height()
         size = {"width_um": round(width, 3), "height_um": round(height, 3), "area_um2": round(width * height, 2)}

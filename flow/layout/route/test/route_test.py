@@ -9,6 +9,7 @@ import pytest
 
 from flow.layout.geometry.instances import insert
 from flow.layout.geometry.test.gate import gate
+from flow.layout.netlist.netlist import Instance, Netlist, with_diodes
 from flow.layout.route.board import Board
 from flow.layout.route.diodes import Diodes
 from flow.layout.route.negotiate import negotiate, route
@@ -289,6 +290,11 @@ def test_an_antenna_gets_a_diode_where_there_is_fill(room):
     widths = {name: area / TECH.row_um for name, area in areas.items()}
     taken = sum(count * widths[name] for name, count in names.items() if name != "gate")
     assert taken == pytest.approx(6 * widths["tie_w8"]) and names["diode_w1"] == room
+    reference = with_diodes(
+        Netlist("", (), tuple(Instance("", place[1], {}) for place in placed)), ["w1"] * room, diodes.fill
+    )
+    del names["gate"]
+    assert Counter(instance.cell for instance in reference.instances) == +names
     if room:
         end = next(i.dtrans.disp for i in drawn.top_cell().each_inst() if i.cell.name == "diode_w1")
         assert abs(end.x - 9.36) < 0.1  # beside the gate, not at the far end
