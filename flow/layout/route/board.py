@@ -1,5 +1,6 @@
 """A layout whose nets can be routed, ripped up and rerouted, net by net."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypedDict, TypeVar
 
@@ -39,7 +40,8 @@ class Board:
     [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above
     their pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all
     nets, and where nets CONTENDED. grid: both as places, of middles of segments within ``area`` (nm; default: wherever
-    there is something). present: see PRESENT.
+    there is something). present: see PRESENT. diodes: by net and number of a diode's pin that of the gate's. jumpers:
+    by net the numbers of pins that are met from the highest layer alone.
     """
 
     def __init__(
@@ -60,7 +62,8 @@ class Board:
         self.rows: dict[str, tuple[Rows, Links]] = {}
         self.present = PRESENT
         self.accesses: dict[str, dict[int, Any]] = {}  # by net and pin, see access
-        self.diodes: dict[str, dict[int, int]] = {}  # by net and number of a diode's pin that of the gate's
+        self.diodes: defaultdict[str, dict[int, int]] = defaultdict(dict)
+        self.jumpers: defaultdict[str, set[int]] = defaultdict(set)
         self._fix()
         for net in self.nets:
             self._enter(net)
@@ -69,11 +72,16 @@ class Board:
         """Of every pin of a net the boxes (level, left, bottom, right, top), nm."""
         return [[(self.levels[name], *nanometres(um)) for name, *um in pin] for pin in made]
 
-    def add_diode(self, net: str, boxes: list[list[Any]], gate: Point) -> None:
-        """Give ``net`` a diode, a pin of ``boxes`` as in NetShapes, to be joined with the pin nearest to a ``gate``."""
-        pins, own = self.pins[net], self.diodes.setdefault(net, {})
-        own[len(pins)] = min((k for k in range(len(pins)) if k not in own), key=lambda k: _distance(pins[k], gate))
-        pins += self._pins([boxes])
+    def pin_of(self, net: str, gate: Point) -> int:
+        """Number of the pin of ``net`` nearest to a ``gate``, not of a diode."""
+        pins = self.pins[net]
+        own = (number for number in range(len(pins)) if number not in self.diodes[net])
+        return min(own, key=lambda number: _distance(pins[number], gate))
+
+    def add_diode(self, net: str, boxes: list[list[Any]], pin: int) -> None:
+        """Give ``net`` a diode, a pin of ``boxes`` as in NetShapes, to be joined with its pin of that number."""
+        self.diodes[net][len(self.pins[net])] = pin
+        self.pins[net] += self._pins([boxes])
 
     def _lift(self, shapes: Mapping[str, NetShapes]) -> None:
         exact, middles, ports = _claims(shapes)

@@ -32,15 +32,25 @@ class Diodes:
         self.nets: list[str] = []
         self.fill = Counter[str]()
 
-    def put(self, board: Board, net: str, gate: Box) -> bool:
-        """Give ``net`` a diode beside a ``gate`` (nm), in place of fill; False where there is no room."""
+    def relieve(self, board: Board, net: str, gate: Box) -> bool:
+        """Against what charges a ``gate`` (nm): a diode beside it; if it has one, a jumper. False where it has both."""
+        number = board.pin_of(net, middle(gate))
+        if number not in board.diodes[net].values() and self._put(board, net, number, gate):
+            return True
+        if number in board.jumpers[net]:
+            return False
+        board.jumpers[net].add(number)
+        return True
+
+    def _put(self, board: Board, net: str, number: int, gate: Box) -> bool:
+        """Put a diode in place of fill; False where there is no room."""
         width, (x, y) = self.widths[DIODE], middle(gate)
         place = self.rows.take(width, x / 1000 - width / 2, y / 1000)
         if place is None:
             return False
         self._draw(board.layout, place)
         one = Netlist("", (), (diode(net, len(self.nets)),))
-        board.add_diode(net, pin_boxes(one, [[None, DIODE, *place]], self.masters)[net][0], (x, y))
+        board.add_diode(net, pin_boxes(one, [[None, DIODE, *place]], self.masters)[net][0], number)
         self.nets.append(net)
         return True
 
@@ -49,10 +59,13 @@ class Diodes:
         (x, y, orientation), fill, width = place, self.tech.fill_cells, self.widths[DIODE]
         rest, row = Rows(self.tech.site_um), db.DBox(x, y, x + width, y).to_itype(layout.dbu)
         for instance in list(layout.top_cell().each_touching_inst(row)):
-            name, at = instance.cell.name, instance.dtrans.disp
+            cell, at = instance.cell, instance.dtrans.disp
+            name = cell.name
             if name in fill and round(at.y - y, 4) == 0 and -self.widths[name] < round(at.x - x, 4) < width:
                 rest.give(self.widths[name], (at.x, y, orientation))
                 instance.delete()
+                if cell.is_top():  # that was the last one
+                    cell.delete()
                 self.fill[name] -= 1
         rest.take(width, x, y)
         filled = rest.filled({cell: self.widths[cell] for cell in fill})

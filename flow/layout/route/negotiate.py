@@ -28,7 +28,6 @@ HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
 JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
-DIODES = 8  # of a net, at most
 TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
 MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 
@@ -104,7 +103,7 @@ def _hpwl(board: Board, net: str) -> float:
 
 
 def route(board: Board, nets: Collection[str], tech: CoriolisPlatform, diodes: Diodes) -> Routed:
-    """Route ``nets``, then again those with a violation, where it is an antenna with a diode more; check again."""
+    """Route ``nets``, check, and route those with a violation again, with a diode or a jumper against an antenna."""
     state, changed = negotiate(board, nets), None
     for _ in range(ROUNDS):
         if state.open:
@@ -114,12 +113,12 @@ def route(board: Board, nets: Collection[str], tech: CoriolisPlatform, diodes: D
         state.respaced |= {*near}
         if len({*near, *(net for net, _ in charged)}) > MOST_BROKEN * len(board.nets):
             break
-        relieved = {net for net, gate in charged if diodes.nets.count(net) < DIODES and diodes.put(board, net, gate)}
+        relieved = {net for net, gate in charged if diodes.relieve(board, net, gate)}
         wanted = {*near, *relieved}
         if not wanted:
             break
         before = dict(state.routes)
-        for net in near:
+        for net in {*near, *(net for net in relieved if board.jumpers[net])}:
             state.legs.pop(net, None)
         board.add_history((level, box) for level, *edges in found.spacing for box in edges)  # else the same again
         negotiate(board, wanted, state)

@@ -14,6 +14,7 @@ from .view import NetView
 
 MARGINS_NM = (10_000, 40_000)  # of the window around two places to be joined: of a try, of the next
 DETOUR_NM = 240_000  # the same where there was no path at all: round a block
+REACH, JUMPER = 12, 20  # of a jumper's begin from its pin, of its end from there, in steps
 SAMPLE = 8  # every such place of a path is looked at for the nearest one
 
 
@@ -66,6 +67,7 @@ def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | 
     for leg in kept:
         view.hold(leg.places)
     kept = [*kept, *_diodes(view, net, kept)]
+    kept = [*kept, *_jumpers(view, net, kept)]
     ends, found = _ends(view, net, kept), []
     for margin in (*MARGINS_NM, DETOUR_NM) if all(end.ways for end in ends) else ():
         if found and margin == DETOUR_NM:
@@ -96,11 +98,7 @@ def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
     for diode, gate in view.board.diodes.get(net, {}).items():
         if diode in joined:
             continue
-        here, there = (accesses(view, net, number) for number in (gate, diode))
-        taken = {
-            tuple(place) for leg in (*kept, *made) if gate in leg.pins for place in leg.places.tolist()
-        } & here.keys()
-        here = dict.fromkeys(taken, Route()) or here  # no second via into the same pin
+        here, there = _ways(view, net, gate, [*kept, *made]), accesses(view, net, diode)
         if not here or not there:
             continue
         box = _box(*_nearest(view, *(np.array(list(ways)) for ways in (here, there)))[1:], MARGINS_NM[0])
@@ -112,16 +110,60 @@ def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
     return made
 
 
+def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
+    """Legs from gates to the highest layer and along it: until that is made, little metal is joined to them."""
+    top, made = len(view.rules.layers) - 1, list[Leg]()
+    for number in view.board.jumpers[net]:
+        ways = _ways(view, net, number, kept)
+        if not ways or any(number in leg.pins and len(_open(view, net, leg)) for leg in kept):
+            continue
+        grid, (_, i, j), reach = view.board.grid, next(iter(ways)), range(-REACH, REACH + 1, 2)
+        x, y = grid.at(i, j)
+        path = grid.search(
+            view.net,
+            _box((x, y), (x, y), MARGINS_NM[0]),
+            list(ways),
+            [(top, i + a, j + b) for a in reach for b in reach],
+            view.costs,
+        )
+        if path is None:
+            continue
+        _, i, j = path[-1]
+        a, b = (JUMPER, 0) if view.rules.layers[top].horizontal else (0, JUMPER)
+        column = _box(grid.at(i - a, j - b), grid.at(i + a, j + b), 0)
+        run = grid.search(view.net, column, path[-1:], [(top, i - a, j - b), (top, i + a, j + b)])
+        if run and all(level == top for level, *_ in run):
+            route = Route.of((ways[path[0]],))
+            route.draw(view.rules, [*path, *run[1:]])
+            made.append(Leg(np.array([*path, *run[1:]]), route, frozenset((number,))))
+            view.hold(made[-1].places)
+    return made
+
+
+def _ways(view: NetView, net: str, number: int, legs: Sequence[Leg]) -> Mapping[Place, Route]:
+    """Ways into a pin: where one of ``legs`` has one that, for vias into one pin would be too near."""
+    ways = accesses(view, net, number)
+    taken = {tuple(place) for leg in legs if number in leg.pins for place in leg.places.tolist()}
+    return dict.fromkeys(taken & ways.keys(), Route()) or ways
+
+
+def _open(view: NetView, net: str, leg: Leg) -> Boxes:
+    """Places of a leg that others may join: of one into a pin with a jumper the far end of this alone."""
+    if not leg.pins & view.board.jumpers[net]:
+        return leg.places
+    return leg.places[-1:][leg.places[-1:, 0] == len(view.rules.layers) - 1]
+
+
 def _ends(view: NetView, net: str, kept: Sequence[Leg]) -> list[End]:
     """What the legs ``kept`` come to, then the pins that none of them joins."""
-    groups: list[tuple[set[Place], set[int]]] = []
+    groups: list[tuple[set[Place], set[Place], set[int]]] = []  # places open to others, all, pins
     for leg in kept:
-        places, pins = set(map(tuple, leg.places.tolist())), set(leg.pins)
-        met = [group for group in groups if group[0] & places or group[1] & pins]
-        groups = [group for group in groups if group not in met]
-        groups.append((places.union(*(group[0] for group in met)), pins.union(*(group[1] for group in met))))
-    joined = set[int]().union(*(pins for _, pins in groups))
-    ends = [End(dict.fromkeys(places, Route()), frozenset()) for places, _ in groups]
+        group = *(set(map(tuple, places.tolist())) for places in (_open(view, net, leg), leg.places)), set(leg.pins)
+        met = [other for other in groups if other[1] & group[1] or other[2] & group[2]]
+        groups = [other for other in groups if other not in met]
+        groups.append(tuple(one.union(*others) for one, *others in zip(group, *met, strict=True)))
+    joined = set[int]().union(*(pins for *_, pins in groups))
+    ends = [End(dict.fromkeys(places or every, Route()), frozenset()) for places, every, _ in groups]
     left = [number for number in range(len(view.board.pins[net])) if number not in joined]
     return ends + [End(accesses(view, net, number), frozenset([number])) for number in left]
 

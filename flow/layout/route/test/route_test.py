@@ -337,6 +337,26 @@ def test_legs_are_clear_of_another_route():
     assert clear_of(legs, far, board) == []  # in the way is what no leg is
 
 
+def test_what_is_too_long_for_a_diode_gets_a_jumper():
+    """345 um of one layer beside a gate of 0.075 um2."""
+    layout, top = empty()
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
+    top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(5_000, 5_000))))
+    cells, areas, masters = library()
+    placed = [[None, "tie_w8", 9.36, 3.12, "0"]]
+    insert(layout, cells, *placed[0][1:])
+    others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
+    pins = [[["m1", 5.3, 4.2, 5.7, 4.5]], um(pin(layout, top, 350_030, 5_000))]
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": pins}} | others)
+    diodes = Diodes(placed, masters, cells, areas, TECH)
+    found = route(board, ["w1"], TECH, diodes)
+    drawn = board.drawn()
+    assert found.open == [] and diodes.nets == ["w1"] and board.jumpers["w1"] == {0}
+    assert find(drawn, RULES, TECH) == Violations()
+    assert broken(drawn, drawn.top_cell()) == {}
+    assert len(set(nets(drawn, drawn.top_cell(), [(1, 5_500, 4_350), (0, 350_030, 5_000), (0, 9_620, 4_000)]))) == 1
+
+
 def test_vias_of_a_net_keep_apart():
     """A way up beside a via of the same net goes elsewhere, or where that is."""
     layout, _ = empty()
