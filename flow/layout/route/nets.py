@@ -75,6 +75,8 @@ def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | 
         view.release()
         for leg in kept:
             view.hold(leg.places)
+            if leg.pins & view.board.jumpers[net]:
+                view.avoid(leg.route)
         legs = _connected(view, ends, margin)
         if legs is None:
             continue

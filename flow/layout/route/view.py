@@ -3,22 +3,26 @@
 import numpy as np
 
 from ..geometry.boxes import Box, Boxes
-from .board import CONTENDED, Board
+from .board import CONTENDED, Board, as_rows
+from .index import Rows
 from .route import Place, Route
 
 OWN = 40  # cost of a via too near to another one of its net, in conflicts
+AVOIDED = 2000  # cost of a place too near to what its net is to avoid, in conflicts
 
 
 class NetView:
     """The board as the net with the number ``net`` sees it.
 
-    costs: of places from which its pins are met, in conflicts. vias: of its own, from which others keep away.
+    costs: of places from which its pins are met, in conflicts. vias, avoided: of its own, from
+    which others keep away.
     """
 
     def __init__(self, board: Board, net: int) -> None:
         self.board, self.rules, self.net = board, board.rules, net
         self.costs: dict[Place, int] = {}
         self.vias: list[Boxes] = []
+        self.avoided: list[Rows] = []
 
     def hold(self, places: Boxes) -> None:
         """Let other vias of this net keep away from those of a path, rows (level, i, j), until `release`."""
@@ -26,11 +30,20 @@ class NetView:
         self.vias.append(low[places[:-1, 0] != places[1:, 0]])
         self.board.grid.keep_apart(self.vias[-1], OWN)
 
+    def avoid(self, route: Route) -> None:
+        """Let what is below the highest layer of a part of this net be in the way of its other parts, until `release`."""
+        top = len(self.rules.layers) - 1
+        boxes = [(level, *box) for level, made in route.segments.items() if level != top for box in made]
+        self.avoided.append(as_rows(boxes, self.net))
+        self.board.grid.use(self.avoided[-1], AVOIDED)
+
     def release(self) -> None:
-        """Let vias be anywhere again."""
+        """Let vias and segments be anywhere again."""
         for vias in self.vias:
             self.board.grid.keep_apart(vias, -OWN)
-        self.vias = []
+        for rows in self.avoided:
+            self.board.grid.use(rows, -AVOIDED)
+        self.vias, self.avoided = [], []
 
     def clear(self, level: int, box: Box, others: bool = False) -> bool:
         """Whether nothing fixed, nor any net with ``others``, is nearer to ``box`` (nm) than the least space."""
