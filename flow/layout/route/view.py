@@ -31,7 +31,7 @@ class NetView:
         self.board.grid.keep_apart(self.vias[-1], OWN)
 
     def avoid(self, route: Route) -> None:
-        """Let what is below the highest layer of a part of this net be in the way of its other parts, until `release`."""
+        """Let a part of this net below the highest layer be in the way of its other parts, until `release`."""
         top = len(self.rules.layers) - 1
         boxes = [(level, *box) for level, made in route.segments.items() if level != top for box in made]
         self.avoided.append(as_rows(boxes, self.net))
