@@ -8,7 +8,7 @@ from base.gds import db
 from platforms.coriolis import CoriolisPlatform
 
 from ..geometry.boxes import Box
-from ..geometry.instances import insert
+from ..geometry.instances import insert, transformation
 from ..geometry.rows import Place, Rows, free_rows
 from ..netlist.netlist import DIODE, Netlist, diode
 from ..netlist.placed import Masters, pin_boxes
@@ -58,10 +58,16 @@ class Diodes:
         """Let there be a diode at ``place``, and fill beside it where there was some in its way."""
         (x, y, orientation), fill, width = place, self.tech.fill_cells, self.widths[DIODE]
         rest, row = Rows(self.tech.site_um), db.DBox(x, y, x + width, y).to_itype(layout.dbu)
+        turn = transformation(layout, *place).rot
         for instance in list(layout.top_cell().each_touching_inst(row)):
             cell, at = instance.cell, instance.dtrans.disp
             name = cell.name
-            if name in fill and round(at.y - y, 4) == 0 and -self.widths[name] < round(at.x - x, 4) < width:
+            if (
+                name in fill
+                and instance.trans.rot == turn
+                and round(at.y - y, 4) == 0
+                and -self.widths[name] < round(at.x - x, 4) < width
+            ):
                 rest.give(self.widths[name], (at.x, y, orientation))
                 instance.delete()
                 if cell.is_top():  # that was the last one

@@ -273,7 +273,8 @@ def test_an_antenna_gets_a_diode_where_there_is_fill(room):
     top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
     top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(5_000, 5_000))))
     cells, areas, masters = library()
-    placed = [[None, "tie_w8", 9.36 + 4.16 * k, y, turn] for k in range(3) for y, turn in ((3.12, "0"), (9.36, "6"))]
+    rows = (3.12, "6"), (3.12, "0"), (9.36, "6")  # two begin at the same height
+    placed = [[None, "tie_w8", 9.36 + 4.16 * k, *row] for k in range(3) for row in rows]
     for _, cell, *place in placed:
         insert(layout, cells, cell, *place)
     far = pin(layout, top, 350_030, 36_000)
@@ -288,17 +289,21 @@ def test_an_antenna_gets_a_diode_where_there_is_fill(room):
     assert broken(drawn, drawn.top_cell()) == {}
     names = Counter(instance.cell.name for instance in drawn.top_cell().each_inst())
     widths = {name: area / TECH.row_um for name, area in areas.items()}
-    taken = sum(count * widths[name] for name, count in names.items() if name != "gate")
-    assert taken == pytest.approx(6 * widths["tie_w8"]) and names["diode_w1"] == room
+    taken = Counter()
+    for instance in (one for one in drawn.top_cell().each_inst() if one.cell.name != "gate"):
+        taken[instance.dtrans.disp.y, instance.dtrans.is_mirror()] += widths[instance.cell.name]
+    assert taken == pytest.approx({(y, turn == "6"): 3 * widths["tie_w8"] for y, turn in rows})
+    assert names["diode_w1"] == room
     reference = with_diodes(
         Netlist("", (), tuple(Instance("", place[1], {}) for place in placed)), ["w1"] * room, diodes.fill
     )
     del names["gate"]
     assert Counter(instance.cell for instance in reference.instances) == +names
     if room:
-        end = next(i.dtrans.disp for i in drawn.top_cell().each_inst() if i.cell.name == "diode_w1")
+        trans = next(i.dtrans for i in drawn.top_cell().each_inst() if i.cell.name == "diode_w1")
+        end, inside = trans.disp, trans * db.DPoint(0.26, 1.0)
         assert abs(end.x - 9.36) < 0.1  # beside the gate, not at the far end
-        ends = [(1, 5_500, 4_350), (0, round(1000 * end.x) + 260, round(1000 * end.y) + 1_000)]
+        ends = [(1, 5_500, 4_350), (0, round(1000 * inside.x), round(1000 * inside.y))]
         assert len(set(nets(drawn, drawn.top_cell(), [*ends, (0, 350_030, 36_000)]))) == 1
 
 
