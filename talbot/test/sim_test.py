@@ -180,7 +180,7 @@ def test_a_decoded_file(photograph, tmp_path, capsys):
         ("sim --scene /tmp", "scene = '/tmp': must be an image file, not a folder"),
         (f"sim --scene {__file__}", "Pillow reads, PNG, JPEG, TIFF, "),
         ("sim --window -1:3,0:2", "window rows = '-1': must be an integer in 0..95"),
-        ("sim --focus -1e9", "focus = '-1e9': must be a number in [-100, 100]"),
+        ("sim --focus -1e9", "focus = '-1e9': must be a number in [0, inf]"),
         (f"sim --scene {'x' * 5000}", "x...: File name too long"),
         (f"sim --rows={'7,' * 2500}", "...': must be an integer in 1..1024"),
         (f"sim --{'x' * 5000}", "..."),
