@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from base.charts import bars, svg
-from models.parameters import EnergyParameters, LightParameters, sources
+from models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 from models.reconstruct import edge_images
 
 from . import error_plots, pictures
@@ -20,7 +20,7 @@ from .result import FrameResult
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
 PICTURES = ("overview", "scene", "differences", "image", "conversions", "phase", "edges", "views", "views_decoded")
 NAMES = (
-    *("stream.bin", "decoded.npz", "report.html", "summary.json", "waves.vcd"),
+    *("stream.bin", "decoded.npz", "sensor.toml", "report.html", "summary.json", "waves.vcd"),
     *(f"{name}.png" for name in PICTURES),
 )
 
@@ -29,6 +29,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     (folder / "stream.bin").write_bytes(result.chip.stream)
     result.decoded.save(folder / "decoded.npz")
+    (folder / "sensor.toml").write_text(sensor_text(result.request.sensor))
     shown, sheets = _pictures(result, summary), _sheets(result, summary)
     for picture in (*shown, *sheets):
         picture.image.save(folder / f"{picture.name}.png")
