@@ -62,7 +62,8 @@ def sensor_of(table: Mapping[str, Any], base: SensorParameters = STANDARD) -> Se
     Parameters
     ----------
     table : mapping of str to any
-        As in the file: {'array': {'rows': 64}, 'optics': {'m': 0.5, 'camera': {'focus': 0.3}}}.
+        As in the file: {'array': {'rows': 64}, 'optics': {'m': 0.5, 'camera': {'focus': 0.3}}}. A part may also be the
+        object itself: {'tile': TileParameters.small(2, 2)}.
     base : SensorParameters
         Has the values that are left out.
 
@@ -164,6 +165,8 @@ def _parts(kind: type[Any]) -> dict[str, type[Any]]:
 def _part(base: Any, table: Any, where: str) -> Any:
     """``base`` with the values of ``table``; where: its full name with a dot behind it, '' for the whole."""
     kind, parts = type(base), _parts(type(base))
+    if isinstance(table, kind):
+        return table
     _check_keys(table, _meanings(kind), where, keys())
     if isinstance(base, TileParameters):
         return _checked(lambda: _tile(table), TileParameters, where)

@@ -145,7 +145,7 @@ class TileParameters:
         widths = {len(row) for row in table}
         if len(widths) != 1:
             raise ParameterError(f"tile rows = {[len(row) for row in table]} types: must be 1..4 rows of one length")
-        return cls(len(table), *widths, sum(table, ()), tuple(range(len(table) * max(widths))))
+        return cls(len(table), max(widths), sum(table, ()), tuple(range(len(table) * max(widths))))
 
     @property
     def n_types(self) -> int:

@@ -23,7 +23,7 @@ from PIL import Image
 from models.parameters import ParameterError, check_int
 
 from .light_field import LightField
-from .picture_file import encode16, read_picture
+from .picture_file import FLOAT_MAX, encode16, read_picture
 
 SUFFIXES = ".npy", ".npz"
 PICTURES = "png|jpe?g|tiff?|webp|bmp|ppm|pgm"
@@ -84,6 +84,7 @@ def read_light_field(path: str | Path, views: Any = None) -> LightField:
         return _numpy(path)
     picture = read_picture(path)
     check_int("views", views, 1, 31)
+    views = int(views or 1)
     height, width = picture.shape[:2]
     if height % views or width % views:
         raise ParameterError(f"views = {views}: must divide the image's height and width, {height} x {width}")
@@ -113,8 +114,10 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
     if path.suffix.lower() == ".npy":
         np.save(path, values)
     elif path.suffix.lower() == ".npz":
-        more = {} if light_field.disparity is None else {"disparity": light_field.disparity}
-        np.savez_compressed(path, light_field=values, **more)
+        if light_field.disparity is None:
+            np.savez_compressed(path, light_field=values)
+        else:
+            np.savez_compressed(path, light_field=values, disparity=light_field.disparity)
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
         tiles = _codes(values).swapaxes(1, 2)
         side = light_field.views
@@ -173,7 +176,7 @@ def _folder(path: Path) -> LightField:
                 f"{first.dtype} {first.shape}"
             )
         values[place] = view
-    disparity = read_picture(path / DISPARITY, None) if (path / DISPARITY).is_file() else None
+    disparity = read_picture(path / DISPARITY, -FLOAT_MAX, FLOAT_MAX) if (path / DISPARITY).is_file() else None
     return LightField(values, disparity, path.resolve().name)
 
 

@@ -14,6 +14,7 @@ from .resample import linear
 
 PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
 FORMATS = "PNG", "JPEG", "TIFF", "WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PPM"  # named to users, where built in
+FLOAT_MAX = float(np.finfo(np.float32).max)
 KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
@@ -77,15 +78,15 @@ def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDAr
         return np.asarray(picture.convert("L"))
 
 
-def read_picture(path: str | Path, high: float | None = 1.0) -> npt.NDArray[Any]:
+def read_picture(path: str | Path, low: float = 0.0, high: float = 1.0) -> npt.NDArray[Any]:
     """Read a picture as stored: gray or RGB codes, or linear values.
 
     Parameters
     ----------
     path : path
         The image.
-    high : float or None
-        Largest floating-point value, the smallest is 0; None is any finite one.
+    low, high : float
+        Range of floating-point values.
 
     Returns
     -------
@@ -100,7 +101,7 @@ def read_picture(path: str | Path, high: float | None = 1.0) -> npt.NDArray[Any]
     with _opened(path, "scene") as picture:
         picture = ImageOps.exif_transpose(_loaded(picture, path, "scene"))
         if picture.mode == "F":
-            return _checked_values(np.asarray(picture), path, 0.0 if high is not None else None, high)
+            return _checked_values(np.asarray(picture), path, low, high)
         if picture.mode.startswith("I"):
             return _checked_codes(np.asarray(picture), path).astype(np.uint16)
         return np.asarray(picture.convert("L") if picture.mode in ("1", "L") else _opaque(picture))
@@ -165,10 +166,9 @@ def _checked_codes(codes: npt.NDArray[Any], path: str | Path) -> npt.NDArray[Any
 
 
 def _checked_values(
-    values: npt.NDArray[Any], path: str | Path, low: float | None = 0.0, high: float | None = 1.0
+    values: npt.NDArray[Any], path: str | Path, low: float = 0.0, high: float = 1.0
 ) -> npt.NDArray[Any]:
     smallest, largest = float(values.min()), float(values.max())
-    low, high = (np.finfo(np.float32).min if low is None else low), (np.finfo(np.float32).max if high is None else high)
     if not (smallest >= low and largest <= high):
         worst = largest if smallest >= low else smallest
         raise ParameterError(

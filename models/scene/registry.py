@@ -51,8 +51,9 @@ def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None =
     ParameterError
         For an unknown name, a number out of range, or a file that cannot be read.
     """
-    if isinstance(scene, LightField) or (read := named(scene)):
-        light_field = scene if isinstance(scene, LightField) else read()
+    read = (lambda: scene) if isinstance(scene, LightField) else named(scene)
+    if read:
+        light_field = read()
         if depth is not None:
             raise ParameterError(f"depth = {str(depth)!r}: must be left out, a light field has no depth file")
         return light_field.scene(sampling)

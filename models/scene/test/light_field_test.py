@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.capture import choose_views
-from models.parameters import AmpTiming, ArrayParameters, ParameterError, SensorParameters
+from models.parameters import ParameterError
 from models.scene import LightField, Sampling, load, read_light_field, write_light_field
 from models.scene.resample import linear
 
@@ -74,14 +73,6 @@ def test_size_and_disparity_fit_the_array():
 def test_views_that_are_equal_are_one():
     scene = LightField(np.broadcast_to(FLOAT[1, 1], (5, 5, 16, 24))).scene(SMALL)
     assert not scene.angular and scene.views == 5
-
-
-def test_a_light_field_has_its_own_views():
-    sensor = SensorParameters(array=ArrayParameters(16, 24))
-    scene = LightField(FLOAT).scene(Sampling.of(sensor))
-    assert choose_views(scene, sensor, AmpTiming()).most == choose_views(scene, sensor, AmpTiming(), 3).most == 3
-    with pytest.raises(ParameterError, match="views = 7: must be left out, the light field has its own 3"):
-        choose_views(scene, sensor, AmpTiming(), 7)
 
 
 @pytest.mark.parametrize(
