@@ -51,12 +51,12 @@ def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None =
     ParameterError
         For an unknown name, a number out of range, or a file that cannot be read.
     """
-    read = (lambda: scene) if isinstance(scene, LightField) else named(scene)
-    if read:
-        light_field = read()
+    if isinstance(scene, str) and scene not in scenes and (read := named(scene)):
+        scene = read()
+    if isinstance(scene, LightField):
         if depth is not None:
             raise ParameterError(f"depth = {str(depth)!r}: must be left out, a light field has no depth file")
-        return light_field.scene(sampling)
+        return scene.scene(sampling)
     name, colon, number = scene.partition(":")
     if scene not in scenes and not (colon and name in NUMBERS):
         if _looks_like_file(scene):

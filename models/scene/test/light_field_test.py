@@ -48,6 +48,12 @@ def test_a_name_on_the_command_line_is_the_light_field(tmp_path, name):
     np.testing.assert_array_equal(scene.image, scene.light_field[1, 1])
 
 
+def test_a_folder_with_the_name_of_a_scene_is_the_scene(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_light_field(LightField(GRAY), "coins")
+    assert load("coins", SMALL).views == 5 and load("./coins", SMALL).views == 3
+
+
 def test_values_are_radiance():
     """uint8 and uint16 are the same codes; colours are luminance; floats are what they are."""
     gray = LightField(GRAY).view(0, 1)
