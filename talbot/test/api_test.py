@@ -106,7 +106,7 @@ def test_sensors():
 @pytest.mark.parametrize(
     "wrong, said",
     [
-        (lambda: talbot.Sensor(rowz=3), r"rowz = 3: must be a parameter of a sensor; did you mean array.rows\?"),
+        (lambda: talbot.Sensor(rowz=3), r"rowz = 3: must be a parameter of a sensor; did you mean rows\?"),
         (lambda: talbot.Sensor(m=2), r"optics.m = 2: must be a number in \[0, 1\] \(Modulation depth"),
         (lambda: talbot.Sensor(converter="good"), "converter = 'good': must be one of typical, ideal"),
         (lambda: talbot.Sensor(tile=[[]]), "tile cols = 0: must be an integer in 1..6"),
