@@ -52,7 +52,7 @@ def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None =
         For an unknown name, a number out of range, or a file that cannot be read.
     """
     if isinstance(scene, str) and scene not in scenes and (read := named(scene)):
-        scene = read()
+        return load(read(), sampling, depth)
     if isinstance(scene, LightField):
         if depth is not None:
             raise ParameterError(f"depth = {str(depth)!r}: must be left out, a light field has no depth file")
