@@ -60,6 +60,10 @@ sim: $(READY)  ## a scene through the golden models and the chip's Verilog: buil
 sim-help: $(READY)  ## the arguments of make sim, explained
 	@$(PY) -m talbot sim --help
 
+.PHONY: sensor
+sensor: $(READY)  ## the standard sensor as a file to start from: make sensor OUT=sensor.toml, then make sim SENSOR=sensor.toml
+	@$(talbot) sensor
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)

@@ -7,12 +7,13 @@ from pathlib import Path
 from base.files import atomic, check_folder
 from models.digital.stream import decode_file
 from models.digital.stream.frame import DecodedFrame
-from models.parameters import ParameterError, TileParameters
+from models.parameters import ParameterError, TileParameters, read_sensor
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot decode`."""
     parser.add_argument("file", type=Path, help="stream.bin of a run, or captured from a chip")
+    parser.add_argument("--sensor", type=Path, help="sensor file of the chip, for its tile (default: the thesis's)")
     parser.add_argument("--out", type=Path, help="the .npz; further frames: X-1.npz ... (default: beside FILE)")
 
 
@@ -24,7 +25,8 @@ def run(options: Namespace) -> int:
     if out.exists() and options.file.exists() and out.samefile(options.file):
         raise ParameterError(f"out = {str(out)!r}: must not be the stream itself")
     check_folder("out", out.parent)
-    frames = decode_to(options.file, out)
+    tile = read_sensor(options.sensor).tile if options.sensor else TileParameters()
+    frames = decode_to(options.file, out, tile)
     for frame in frames:
         print(describe(frame))
     print(f"written: {out}")

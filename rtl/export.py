@@ -2,13 +2,21 @@
 
 import argparse
 import sys
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
 from base.command import main
 from base.files import write
 from base.paths import RESULTS
-from models.parameters import DIVIDERS, ArrayParameters, ChipParameters, SensorParameters, TileParameters
+from models.parameters import (
+    DIVIDERS,
+    ArrayParameters,
+    ChipParameters,
+    ParameterError,
+    SensorParameters,
+    TileParameters,
+)
 from rtl.harness.translate import translate_component
 from rtl.lint import lint
 from rtl.tops import PACKERS, PARTS, TOPS, WRAPPERS, build_top
@@ -66,6 +74,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rows", type=int, default=sensor.array.rows, help="pixels down")
     parser.add_argument("--cols", type=int, default=sensor.array.cols, help="pixels across")
     parser.add_argument("--lanes", type=int, default=sensor.chip.lanes, help="converters")
+    parser.add_argument("--tile-rows", type=int, default=sensor.tile.rows, help="pixels down a tile, 1..4")
+    parser.add_argument("--tile-cols", type=int, default=sensor.tile.cols, help="pixels across a tile, 1..6")
+    parser.add_argument(
+        "--order", help="pixel type of each position in a tile, row by row: 3,0,2,1 (default: the thesis's)"
+    )
     parser.add_argument("--divider", default=sensor.chip.divider, help=f"one of {', '.join(DIVIDERS)}")
     parser.add_argument("--n-frac", type=int, default=sensor.chip.n_frac, help="fraction bits")
     parser.add_argument("--iterations", type=int, default=sensor.chip.cordic_iterations, help="of CORDIC")
@@ -74,10 +87,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def sensor_of(options: argparse.Namespace) -> SensorParameters:
     """The sensor of the command line's options. Raises ParameterError."""
     return SensorParameters(
-        tile=TileParameters(),
+        tile=_tile(options),
         array=ArrayParameters(options.rows, options.cols),
         chip=ChipParameters(options.lanes, options.divider, options.n_frac, options.iterations),
     )
+
+
+def _tile(options: argparse.Namespace) -> TileParameters:
+    tile = TileParameters.small(options.tile_rows, options.tile_cols)
+    if options.order is None:
+        return tile
+    if not all(word.strip().isdecimal() for word in options.order.split(",")):
+        raise ParameterError(f"order = {options.order!r}: must be a permutation of 0..{tile.n_types - 1}, as 3,0,2,1")
+    return replace(tile, order=tuple(int(word) for word in options.order.split(",")))
 
 
 def run(options: argparse.Namespace) -> int:
