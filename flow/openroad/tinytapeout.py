@@ -82,8 +82,8 @@ pinout:
 
 
 def page(project: Project, verilog: str) -> str:
-    """The page docs/info.md of the shuttle's datasheet; the protocol is in the comments of several lines."""
-    heads = re.findall(r"(?m)(?:^//.*\n){2,}", verilog)
+    """The page docs/info.md of the shuttle's datasheet; the protocol is the comment at the head of our files."""
+    heads = re.findall(r"(?m)((?:^//.*\n)+)\n`default_nettype none", verilog)
     works = "\n".join(re.sub(r"(?m)^// ?", "", head) for head in heads)
     sections = ("How it works", works), ("How to test", project.test), ("External hardware", "None.")
     return "\n".join(f"## {title}\n\n{text}\n" for title, text in sections)

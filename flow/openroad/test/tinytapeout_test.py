@@ -90,6 +90,7 @@ def test_the_files_pass_the_checks_of_tiny_tapeouts_tools(name, files):
     assert {f"tinytapeout/src/{file}" for file in project["source_files"]} <= set(made)
     assert json.loads(made["tinytapeout/src/config.json"])["CLOCK_PERIOD"] == design(name).clock.period_ns
     page = made["tinytapeout/docs/info.md"]
+    assert "PyMTL" not in page
     for file in (f"{project['top_module']}.v", "tt_bytes.v"):  # the comment at the head of each
         assert (TOPS / file).read_text().splitlines()[0].removeprefix("// ") in page
 
