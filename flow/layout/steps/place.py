@@ -163,11 +163,16 @@ class Place(Step[PlaceParameters]):
         }
 
     def leaf_um(self, plan: dict[str, Any], netlist: Netlist) -> float:
-        """Side of a leaf of the clock tree, um, with LEAF_SINKS cells. Coriolis makes it up to twice as long."""
+        """Least side of a leaf of the clock tree, um, so that one with LEAF_SINKS cells can be.
+
+        Coriolis quarters what is at least twice as long on both sides, so the shorter side of the tree's box counts.
+        """
         sinks = sum(self.parameters.clock in instance.pins.values() for instance in netlist.instances)
         per_um2 = sinks / (plan["width_um"] * plan["height_um"])
         least = LEAF_ROWS * coriolis_platform(self.parameters.pdk).row_um
-        return max(least, round((LEAF_SINKS / per_um2) ** 0.5, 3)) if sinks else least
+        left, bottom, right, top = plan["tree"]
+        shorter, longer = sorted((right - left, top - bottom))
+        return max(least, round((LEAF_SINKS / per_um2 * shorter / longer) ** 0.5, 3)) if sinks else least
 
     def macro(
         self, macro: Macro, placed: dict[str, Any], netlist: Netlist, name: str, pins: Mapping[str, str]
