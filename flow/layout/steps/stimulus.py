@@ -108,7 +108,7 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     from models.chip import golden_frame
 
     design = folder / "hierarchy.json"
-    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
+    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.sv; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
     path = instance_of(tree, CHIP, parameters.top) or ()
     ports = ports_of(tree, parameters.top)
