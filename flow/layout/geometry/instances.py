@@ -10,9 +10,10 @@ def transformation(layout: "db.Layout", x: float, y: float, orientation: str) ->
     return db.Trans(getattr(db.Trans, TURNS[orientation]), round(x / layout.dbu), round(y / layout.dbu))
 
 
-def insert(layout: "db.Layout", library: "db.Layout", cell: str, x: float, y: float, orientation: str) -> None:
-    """Place a ``cell`` in the top cell, drawn as in ``library``, where the layout has no cell of that name."""
-    top, drawn = layout.top_cell(), layout.cell(cell)
+def insert(top: "db.Cell", library: "db.Layout", cell: str, x: float, y: float, orientation: str) -> None:
+    """Place a ``cell`` in ``top``, drawn as in ``library``, where the layout has no cell of that name."""
+    layout = top.layout()
+    drawn = layout.cell(cell)
     if drawn is None:
         drawn = layout.create_cell(cell)
         drawn.copy_shapes(library.cell(cell))

@@ -48,18 +48,18 @@ class Diodes:
         place = self.rows.take(width, x / 1000 - width / 2, y / 1000)
         if place is None:
             return False
-        self._draw(board.layout, place)
+        self._draw(board.top, place)
         one = Netlist("", (), (diode(net, len(self.nets)),))
         board.add_diode(net, pin_boxes(one, [[None, DIODE, *place]], self.masters)[net][0], number)
         self.nets.append(net)
         return True
 
-    def _draw(self, layout: "db.Layout", place: Place) -> None:
+    def _draw(self, top: "db.Cell", place: Place) -> None:
         """Let there be a diode at ``place``, and fill beside it where there was some in its way."""
         (x, y, orientation), fill, width = place, self.tech.fill_cells, self.widths[DIODE]
-        rest, row = Rows(self.tech.site_um), db.DBox(x, y, x + width, y).to_itype(layout.dbu)
-        turn = transformation(layout, *place).rot
-        for instance in list(layout.top_cell().each_touching_inst(row)):
+        rest, row = Rows(self.tech.site_um), db.DBox(x, y, x + width, y).to_itype(top.layout().dbu)
+        turn = transformation(top.layout(), *place).rot
+        for instance in list(top.each_touching_inst(row)):
             cell, at = instance.cell, instance.dtrans.disp
             name = cell.name
             if (
@@ -77,4 +77,4 @@ class Diodes:
         filled = rest.filled({cell: self.widths[cell] for cell in fill})
         self.fill.update(cell for cell, _ in filled)
         for cell, at in [(DIODE, place), *filled]:
-            insert(layout, self.library, cell, *at)
+            insert(top, self.library, cell, *at)

@@ -12,7 +12,7 @@ from models.parameters import check_real
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 from platforms.wires import wire_corner
 
-from ..geometry.instances import transformation
+from ..geometry.instances import insert
 from ..geometry.rows import free_rows
 from ..netlist.netlist import Netlist
 from ..repair.drive import Drives
@@ -130,15 +130,13 @@ def draw(layout: "db.Layout", library: "db.Layout", cells: dict[str, float], pla
     for instance in list(top.each_inst()):
         if instance.cell.name in cells:
             instance.delete()
-    indices = {}
     for cell in library.each_cell():
         drawn = layout.cell(cell.name) or layout.create_cell(cell.name)
         drawn.clear()
         drawn.copy_shapes(cell)
-        indices[cell.name] = drawn.cell_index()
-    for _, cell, x, y, orientation in placed:
-        if cell in indices:
-            top.insert(db.CellInstArray(indices[cell], transformation(layout, x, y, orientation)))
+    for _, cell, *place in placed:
+        if cell in cells:
+            insert(top, library, cell, *place)
     for cell in layout.top_cells():
         if cell.cell_index() != top.cell_index():
             cell.prune_cell()

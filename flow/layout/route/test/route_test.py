@@ -276,7 +276,7 @@ def test_an_antenna_gets_a_diode_where_there_is_fill(room):
     rows = (3.12, "6"), (3.12, "0"), (9.36, "6")  # two begin at the same height
     placed = [[None, "tie_w8", 9.36 + 4.16 * k, *row] for k in range(3) for row in rows]
     for _, cell, *place in placed:
-        insert(layout, cells, cell, *place)
+        insert(top, cells, cell, *place)
     far = pin(layout, top, 350_030, 36_000)
     pins = [[["m1", 5.3, 4.2, 5.7, 4.5]], um(far)]
     others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
@@ -349,7 +349,7 @@ def test_what_is_too_long_for_a_diode_gets_a_jumper():
     top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(5_000, 5_000))))
     cells, areas, masters = library()
     placed = [[None, "tie_w8", 9.36, 3.12, "0"]]
-    insert(layout, cells, *placed[0][1:])
+    insert(top, cells, *placed[0][1:])
     others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
     pins = [[["m1", 5.3, 4.2, 5.7, 4.5]], um(pin(layout, top, 350_030, 5_000))]
     board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": pins}} | others)
