@@ -8,7 +8,6 @@ import numpy.typing as npt
 
 from base.charts import bars, svg
 from models.parameters import EnergyParameters, LightParameters, sensor_text, sources
-from models.reconstruct import edge_images
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
@@ -90,12 +89,10 @@ def _top(values: npt.NDArray[np.floating]) -> float:
 
 def _sheets(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
     """The contact sheets of the mode."""
-    sensor, frame, decoded, scene = result.request.sensor, result.request.frame, result.decoded, result.exposed.scene
+    sensor, frame, scene = result.request.sensor, result.request.frame, result.exposed.scene
     out = []
     if frame.mode in ("edge", "raw"):
-        samples = decoded.samples.astype(float)
-        difference = samples[..., 0] if frame.mode == "edge" else samples[..., 0] - samples[..., 1]
-        edges = edge_images(difference, sensor.tile)
+        edges = result.edges
         caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "
         caption += "cosine or sine analyzer; blue negative, red positive"
         sheet = pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))
