@@ -128,5 +128,13 @@ def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
     sensor = result.request.sensor
     converter = [(f"converter {name}", value, "assumed") for name, value in vars(sensor.converter).items()]
     optics, array = sensor.optics, sensor.array
-    known = (optics.camera, optics, array, sensor.electrical, EnergyParameters(), LightParameters())
+    known = (
+        optics.camera,
+        optics,
+        array,
+        sensor.electrical,
+        result.request.room,
+        EnergyParameters(),
+        LightParameters(),
+    )
     return [*(row for parameters in known for row in sources(parameters)), *converter]

@@ -121,12 +121,12 @@ def ssim(image: Values, truth: Values) -> float | None:
 def coded_sum(result: GoldenResult) -> Values:
     """The sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
     asked, samples = result.request, result.exposed.samples
-    frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.timing)
+    frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.exposing)
     sums = golden_frame(samples.mean(0, keepdims=True), asked.sensor, frame, result.exposed.front_end)
     # A tap of time of flight is half of the light on average.
     half = 2.0 if asked.frame.mode == "tof" else 1.0
     read = result.golden.read
-    return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.sensor, read, asked.frame.timing), float)
+    return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.lit, read, asked.frame.exposing), float)
 
 
 def coded(image: Values, codec: str, size: int) -> Values | None:
@@ -152,7 +152,7 @@ def field_quality(result: GoldenResult) -> dict[str, float | None]:
     # Corners that the round pupil does not reach have no light
     part = (cells(result.exposed.scene.views), *part_read(result.golden.read))
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
-    field = result.light_field[part] / white_sum(result.request.sensor, result.request.frame.timing)
+    field = result.light_field[part] / white_sum(result.request.lit, result.request.frame.exposing)
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
     return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
 

@@ -11,7 +11,7 @@ from PIL.Image import Image
 
 from base import page
 
-from .figures import camera_line, energy_line, trims_line
+from .figures import camera_line, energy_line, exposure_line, trims_line
 
 
 class Picture(NamedTuple):
@@ -82,6 +82,7 @@ def render(
     template = Path(__file__).with_name("report.html")
     texts = {
         "camera": camera_line(summary),
+        "exposure": exposure_line(summary),
         "energy": energy_line(summary),
         "trims": trims_line(summary),
         "assumed": assumed,
