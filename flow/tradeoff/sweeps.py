@@ -14,7 +14,7 @@ from base.page import render
 from base.table import write_csv
 from models.parameters import check_choice
 
-from . import divider, noise, precision, pupil, threshold, views
+from . import divider, exposure, noise, precision, pupil, threshold, views
 
 
 class Sweep(Protocol):
@@ -38,6 +38,7 @@ class Sweep(Protocol):
 SWEEPS: dict[str, Sweep] = {
     "divider": divider,
     "threshold": threshold,
+    "exposure": exposure,
     "views": views,
     "pupil": pupil,
     "precision": precision,
