@@ -64,6 +64,8 @@ def route_net(board: Board, net: str, hasty: bool = False, kept: Sequence[Leg] =
 
 
 def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | None:
+    if not view.board.jumpers[net] <= _jumped(view, net, kept):
+        kept = ()  # they might be in a jumper's way
     for leg in kept:
         view.hold(leg.places)
     kept = [*kept, *_diodes(view, net, kept)]
@@ -115,9 +117,9 @@ def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
 def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
     """Legs from gates to the highest layer and along it: until that is made, little metal is joined to them."""
     top, made = len(view.rules.layers) - 1, list[Leg]()
-    for number in view.board.jumpers[net]:
+    for number in view.board.jumpers[net] - _jumped(view, net, kept):
         ways = _ways(view, net, number, kept)
-        if not ways or any(number in leg.pins and len(_open(view, net, leg)) for leg in kept):
+        if not ways:
             continue
         grid, (_, i, j), reach = view.board.grid, next(iter(ways)), range(-REACH, REACH + 1, 2)
         x, y = grid.at(i, j)
@@ -140,6 +142,11 @@ def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
             made.append(Leg(np.array([*path, *run[1:]]), route, frozenset((number,))))
             view.hold(made[-1].places)
     return made
+
+
+def _jumped(view: NetView, net: str, kept: Sequence[Leg]) -> set[int]:
+    """Pins that have a jumper."""
+    return {pin for leg in kept for pin in leg.pins & view.board.jumpers[net] if len(_open(view, net, leg))}
 
 
 def _ways(view: NetView, net: str, number: int, legs: Sequence[Leg]) -> Mapping[Place, Route]:

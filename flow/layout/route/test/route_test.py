@@ -362,6 +362,25 @@ def test_what_is_too_long_for_a_diode_gets_a_jumper():
     assert len(set(nets(drawn, drawn.top_cell(), [(1, 5_500, 4_350), (0, 350_030, 5_000), (0, 9_620, 4_000)]))) == 1
 
 
+def test_a_jumper_is_not_made_past_legs_that_stay():
+    """A trunk beside a gate: a jumper would have to go round it, and may not be able to."""
+    layout, top = empty()
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
+    top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(170_000, 5_000))))
+    ends = [um(pin(layout, top, x, 4_300)) for x in (5_015, 350_030)]
+    others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
+    own = {"segments": [], "vias": [], "pins": [*ends, [["m1", 170.3, 4.2, 170.7, 4.5]]]}
+    trunk = route_net(Board(layout.dup(), RULES, {"w1": own | {"pins": ends}}), "w1").legs
+    board = Board(layout, RULES, {"w1": own} | others)
+    board.jumpers["w1"].add(2)
+    found = route_net(board, "w1", kept=trunk)
+    assert found.legs[0].pins == {2}  # the jumper is the first
+    board.put("w1", found.route)
+    drawn = board.drawn()
+    assert find(drawn, RULES, TECH) == Violations()
+    assert len(set(nets(drawn, drawn.top_cell(), [(1, 170_500, 4_350), (0, 5_015, 4_300), (0, 350_030, 4_300)]))) == 1
+
+
 def test_vias_of_a_net_keep_apart():
     """A way up beside a via of the same net goes elsewhere, or where that is."""
     layout, _ = empty()
