@@ -254,6 +254,20 @@ def test_nets_that_are_too_near_or_have_an_antenna():
     assert sum(parts, Violations()).nets(board) == (["w1"], [("w0", own)])
 
 
+@pytest.mark.parametrize("off", [(0, 30), (170, 5), (145, 145), (200, 100)])
+def test_vias_that_overlap_or_are_too_near(off):
+    """Of one net, whose metal covers both; a via twice at one place is one."""
+    layout, top = empty()
+    (dx, dy), via = off, RULES.vias[2]
+    draw(layout, top, 2, 4_000, 4_000, 6_000, 6_000)
+    draw(layout, top, 3, 4_000, 4_000, 6_000, 6_000)
+    for x, y in ((4_500, 4_500), (4_500, 4_500), (4_500 + dx, 4_500 + dy)):
+        top.shapes(layout.layer(via.layer, via.datatype)).insert(db.Box(x, y, x + via.size, y + via.size))
+    box = ["m2", 4.0, 4.0, 6.0, 6.0], ["m3", 4.0, 4.0, 6.0, 6.0]
+    board = Board(layout, RULES, {"w1": {"segments": list(box), "vias": [], "pins": []}})
+    assert find(board.drawn(), RULES, TECH).nets(board) == (["w1"], [])
+
+
 def library():
     """A layout of the cells that fill rows and of the diode, two sites and one wide; their areas, the diode's pin."""
     made = db.Layout()
