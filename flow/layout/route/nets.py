@@ -70,7 +70,7 @@ def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | 
         view.hold(leg.places)
     kept = [*kept, *_diodes(view, net, kept)]
     kept = [*kept, *_jumpers(view, net, kept)]
-    ends, found = _ends(view, net, kept), []
+    ends, found, lacking = _ends(view, net, kept), [], []
     for margin in (*MARGINS_NM, DETOUR_NM) if all(end.ways for end in ends) else ():
         if found and margin == DETOUR_NM:
             break
@@ -78,16 +78,25 @@ def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | 
         for leg in kept:
             view.hold(leg.places)
             if leg.pins & view.board.jumpers[net]:
-                view.avoid(leg.route)
+                view.avoid(_below(leg.route, len(view.rules.layers) - 1))
+        view.avoid(lacking)
         legs = _connected(view, ends, margin)
         if legs is None:
             continue
         route = Route.of(leg.route for leg in (*kept, *legs))
-        if meet_area(view, route):
+        if lack := meet_area(view, route):
+            view.board.add_history(lack)
+            lacking += lack
+        else:
             found.append(Found(route, (*kept, *legs), *view.conflicts(route)))
             if hasty or not found[-1].evicted:
                 break
     return min(found, key=lambda one: len(one.evicted), default=None)
+
+
+def _below(route: Route, top: int) -> list[tuple[int, Box]]:
+    """(level, box) of the segments below level ``top``."""
+    return [(level, box) for level, made in route.segments.items() if level < top for box in made]
 
 
 def clear_of(legs: Sequence[Leg], route: Route, board: Board) -> list[Leg]:

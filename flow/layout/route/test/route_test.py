@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from flow.layout.geometry.boxes import corners
 from flow.layout.geometry.instances import insert
 from flow.layout.geometry.test.gate import gate
 from flow.layout.netlist.netlist import Instance, Netlist, with_diodes
@@ -148,6 +149,24 @@ def test_a_pin_behind_a_wall_is_given_up():
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
     walls(layout, top, 20_000)
     assert alone(pins, layout) == (None, None)
+
+
+def test_without_room_for_the_least_area_the_way_is_another():
+    """In a pen with two ways up through m3, the nearer too narrow for a piece of that layer."""
+    layout, top = empty()
+    dx, dy = RULES.step
+    at = db.Point(70 * dx, 60 * dy), db.Point(30_000, 30_000)
+    pins = [pin(layout, top, point.x, point.y) for point in at]
+    inside, outside = db.Box(5_000, 5_000, 15_000, 15_000), db.Box(4_600, 4_600, 15_400, 15_400)
+    narrow, wide = db.Box(1_000, 1_000).moved(at[0].x, at[0].y), db.Box(4_000, 4_000).moved(8_000, 8_000)
+    holes = {1: [inside], 2: [inside], 3: [narrow, wide]}
+    for level, boxes in holes.items():
+        for part in (db.Region(outside) - db.Region(boxes)).decompose_trapezoids():
+            draw(layout, top, level, *corners(part.bbox()))
+    layout, _ = alone(pins, layout)
+    assert layout is not None
+    assert len(set(nets(layout, layout.top_cell(), [(0, point.x, point.y) for point in at]))) == 1
+    assert broken(layout, layout.top_cell()) == {}
 
 
 def test_a_net_without_a_path_is_ripped_up():
