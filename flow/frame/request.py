@@ -6,8 +6,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from models import parameters
-from models.parameters import (
+from talbot.models import parameters
+from talbot.models.parameters import (
     ALL_TYPES,
     STANDARD,
     TYPICAL_CONVERTER,
@@ -19,8 +19,8 @@ from models.parameters import (
     SensorParameters,
     Window,
 )
-from models.plan.exposure import exposed_for, fitting
-from models.scene import LightField
+from talbot.models.plan.exposure import exposed_for, fitting
+from talbot.models.scene import LightField
 
 CONVERTERS = {"typical": TYPICAL_CONVERTER, "ideal": parameters.ConverterParameters()}
 Cut = Callable[[Window], Window]  # of the full window

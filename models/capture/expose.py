@@ -6,8 +6,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.exposure import integration_cycles
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, ParameterError, check_int, check_real
+from talbot.models.digital.exposure import integration_cycles
+from talbot.models.parameters import (
+    ELEMENTARY_CHARGE,
+    AmpTiming,
+    ElectricalParameters,
+    ParameterError,
+    check_int,
+    check_real,
+)
 
 from .shot import photon_count
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.exposure import windows
-from models.parameters import AmpTiming, ParameterError, SensorParameters
-from models.plan import Plan
-from models.scene import Scene
+from talbot.models.digital.exposure import windows
+from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters
+from talbot.models.plan import Plan
+from talbot.models.scene import Scene
 
 from .frame import currents
 from .pupil import Region

@@ -5,7 +5,7 @@ cycle of the slot's first integration to the end of that in the slot of its read
 its read: the column's amplifier serves the row that is read, no other.
 """
 
-from models.parameters import AmpTiming
+from talbot.models.parameters import AmpTiming
 
 from .amp_ctrl import row_cycles
 

@@ -1,7 +1,7 @@
 """From photocurrents to codes."""
 
-from models.digital.exposure import integration_cycles
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
+from talbot.models.digital.exposure import integration_cycles
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
 
 
 def codes_per_unit(sensor: SensorParameters, timing: AmpTiming) -> float:

@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from models.digital.exposure import slot_cycles
-from models.digital.scan import Scan
-from models.parameters import ELEMENTARY_CHARGE, EXPOSURE_MAX, AmpTiming, FrameParameters, SensorParameters
+from talbot.models.digital.exposure import slot_cycles
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import ELEMENTARY_CHARGE, EXPOSURE_MAX, AmpTiming, FrameParameters, SensorParameters
 
 CYCLES_A_STEP = 11  # a converter's go, its longest search, and a cycle between two
 CYCLES_A_ROW = 16  # marks, and what the bank and the encoder still hold

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flow.frame import hardware
-from flow.frame.request import request
-from models.chip import front_end_of, golden_frame
-from models.digital.exposure import integration_cycles
-from models.parameters import (
+from talbot.flow.frame import hardware
+from talbot.flow.frame.request import request
+from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.exposure import integration_cycles
+from talbot.models.parameters import (
     STANDARD,
     AmpTiming,
     ArrayParameters,
@@ -19,7 +19,7 @@ from models.parameters import (
     SensorParameters,
     Window,
 )
-from models.plan.exposure import fitting
+from talbot.models.plan.exposure import fitting
 
 SENSOR = SensorParameters(array=ArrayParameters(9, 13), chip=ChipParameters(lanes=2))
 SHORT = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=2)

@@ -6,9 +6,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from models.capture import currents, moving_currents
-from models.digital.exposure import integration_cycles, slot_cycles, windows
-from models.parameters import (
+from talbot.models.capture import currents, moving_currents
+from talbot.models.digital.exposure import integration_cycles, slot_cycles, windows
+from talbot.models.parameters import (
     AmpTiming,
     ArrayParameters,
     CameraParameters,
@@ -17,8 +17,8 @@ from models.parameters import (
     ParameterError,
     SensorParameters,
 )
-from models.plan import plan
-from models.scene import Sampling, load
+from talbot.models.plan import plan
+from talbot.models.scene import Sampling, load
 
 # A small pupil: the edge is as sharp as it is drawn
 SENSOR = SensorParameters(array=ArrayParameters(40, 120), optics=OpticsParameters(camera=CameraParameters(f_number=32)))

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.amp_ctrl import Slot, row_waveform
-from models.digital.exposure import integration_cycles, slot_cycles, windows
-from models.parameters import AmpTiming, FrameParameters, Window
+from talbot.models.digital.amp_ctrl import Slot, row_waveform
+from talbot.models.digital.exposure import integration_cycles, slot_cycles, windows
+from talbot.models.parameters import AmpTiming, FrameParameters, Window
 
 timings = st.builds(AmpTiming, *[st.integers(1, 9)] * 6, n_cm=st.integers(0, 3), exposure=st.integers(0, 7))
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from models.digital.exposure import integration_cycles, slot_cycles
-from models.parameters import (
+from talbot.models.digital.exposure import integration_cycles, slot_cycles
+from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
     AmpTiming,
     ArrayParameters,
@@ -15,7 +15,7 @@ from models.parameters import (
     RoomParameters,
     SensorParameters,
 )
-from models.plan.exposure import exposed_for, fitting
+from talbot.models.plan.exposure import exposed_for, fitting
 
 
 def lit(lux):
