@@ -105,6 +105,10 @@ verify: $(TESTS_READY) $(LAYOUT_READY)  ## all of the verification: build/verify
 	@bash requirements/tools.sh --missing iverilog yosys z3
 	@$(talbot) verify
 
+.PHONY: index
+index: $(READY)  ## build/index.html: all results that are there (every target brings it up to date, too)
+	@$(talbot) index
+
 .PHONY: verilog
 verilog: $(READY)  ## build/verilog/<top>.sv, linted, and <top>.core for FuseSoC
 	@$(talbot) verilog --out build/verilog --core --check

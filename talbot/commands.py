@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from types import ModuleType
 
 from base.command import Parser, add_command, execute
+from base.page import index
+from base.paths import RESULTS
 
 from .make import arguments
 
@@ -47,6 +49,7 @@ COMMANDS = {
     "stuck-at": ("verif.stuck_at.command", "stuck-at faults of the chip's gates that a test at its pins detects"),
     "suite": ("verif.suite.command", "every test, counted by block and level"),
     "verify": ("verif.report.command", "all of these six, and their report"),
+    "index": ("base.page.command", "the page over all results; every command brings it up to date, too"),
     "handoff": ("flow.handoff.command", "one archive of a finished layout"),
 }
 
@@ -75,4 +78,7 @@ def main(argv: Sequence[str]) -> int:
         alone = Parser(prog=f"talbot {name}")
         add_command(alone, command(name))
         words = [name, *arguments(alone, given, fixed)]
-    return execute(parser(words[0] if words else ""), words)
+    status = execute(parser(words[0] if words else ""), words)
+    if status in (0, 1):
+        index.refresh(RESULTS)
+    return status
