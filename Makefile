@@ -129,6 +129,10 @@ formats: $(READY)  ## stream formats and scan orders compared: build/formats/
 document: $(TESTS_READY)  ## the documents for a host: docs/registers.*, docs/host.md's tables, C header; HTML, IP-XACT: build/registers/
 	@$(talbot) document
 
+.PHONY: site
+site: $(TESTS_READY)  ## the documents site from READMEs, docs/, docstrings, RTL and test plans: build/site/index.html
+	@$(talbot) site
+
 .PHONY: sizes
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
 	@$(talbot) sizes --document README.md

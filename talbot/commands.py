@@ -34,6 +34,7 @@ COMMANDS = {
     "verilog": ("rtl.export", "the chip and its blocks as Verilog, linted"),
     "replay": ("rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),
     "document": ("flow.host.document.command", "the documents for a host: register map, pins, tile, C header"),
+    "site": ("talbot.site.command", "the documents site: READMEs, docs, API, architecture, gallery"),
     "footprints": ("pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
     "cells": ("cells.command", "a cell library characterized at one corner"),
     "cells-report": ("cells.report.command", "the characterizer against a foundry's tables"),

@@ -28,19 +28,21 @@ class Card(NamedTuple):
     picture: str
 
 
+def cards(folder: Path) -> list[Card]:
+    """Those of the pages below ``folder``, the newest first."""
+    pages = {path: path.stat().st_mtime for pattern in PATTERNS for path in folder.glob(pattern)}
+    return [found for path in sorted(pages, key=lambda path: -pages[path]) if (found := read(path, folder))]
+
+
 def refresh(folder: Path) -> Path:
     """Write the index of ``folder`` where it would change, none where there is no page; returns its path."""
-    pages = {path: path.stat().st_mtime for pattern in PATTERNS for path in folder.glob(pattern)}
-    cards = {path: found for path in sorted(pages, key=lambda path: -pages[path]) if (found := read(path, folder))}
     groups: dict[str, list[Card]] = {}
-    for path, found in cards.items():
-        groups.setdefault(path.relative_to(folder).parts[0], []).append(found)
-    text = render(FOLDER / "index.html", "Talbot: results", listed=False, groups=groups)
-    if (folder / NAME).is_file() and (folder / NAME).read_text() == text:
-        return folder / NAME
-    if cards or (folder / NAME).is_file():
-        write(folder / NAME, text)
-    return folder / NAME
+    for card in cards(folder):
+        groups.setdefault(card.href.partition("/")[0], []).append(card)
+    path, text = folder / NAME, render(FOLDER / "index.html", "Talbot: results", listed=False, groups=groups)
+    if groups and not path.is_file() or path.is_file() and path.read_text() != text:
+        write(path, text)
+    return path
 
 
 def read(path: Path, folder: Path) -> Card | None:
