@@ -5,13 +5,13 @@ argument of the command. Values come from MAKEFLAGS as they were typed: no shell
 """
 
 import argparse
-import difflib
 import os
 import re
 import sys
 from collections.abc import Mapping, Sequence
 
 from base.command import Parser
+from models.parameters.sensor_file import nearest
 
 YES, NO = ("1", "yes", "true", "on"), ("0", "no", "false", "off")
 
@@ -38,8 +38,7 @@ def arguments(
     known = {action.dest.upper(): action for action in parser.actions if action.option_strings or not fixed}
     typed = {name: v for name, v in variables(environment.get("MAKEFLAGS", "")).items() if name not in own}
     for name in sorted(typed.keys() - known.keys()) if environment.get("MAKELEVEL") == "1" else ():
-        near = difflib.get_close_matches(name.upper(), [*known, *own], 1)
-        must = f"; did you mean {near[0]}?" if near else f": {', '.join([*known, *own])}"
+        must = nearest(name.upper(), [*known, *own], 0.6)
         parser.error(f"{name} = {typed[name]!r}: must be a variable of make {target}{must}")
     for name in known.keys() & environment.keys() - typed.keys():
         print(f"talbot: {name} of the environment is not used: make {target} {name}=...", file=sys.stderr)

@@ -48,21 +48,24 @@ sys.exit(supervised(globals()[sys.argv[2]]))
 """
 
 
-def started(out, name, prepare=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)):
-    """The program on its way, and the text by which its processes are known."""
-    mark = f"TEST_MARK={out}"
+def started(folder, words, prepare=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)):
+    """A Python with ``words`` in a session of its own, known by TEST_MARK=``folder``, in which Ctrl-C counts."""
     environment = {key: value for key, value in os.environ.items() if key != "TALBOT_RUN"}
-    process = subprocess.Popen(
-        [sys.executable, "-c", PROGRAM, str(out), name],
+    return subprocess.Popen(
+        [sys.executable, *words],
         cwd=ROOT,
-        env=environment | {"TEST_MARK": str(out), "TMPDIR": str(out)},
+        env=environment | {"TEST_MARK": str(folder), "TMPDIR": str(folder)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
         preexec_fn=prepare,
     )
-    return process, mark
+
+
+def program(out, name, **more):
+    """The program on its way, and the text by which its processes are known."""
+    return started(out, ["-c", PROGRAM, str(out), name], **more), f"TEST_MARK={out}"
 
 
 def running(mark):
@@ -81,7 +84,7 @@ def running(mark):
 @pytest.mark.parametrize("whole_group", [False, True])
 @pytest.mark.parametrize("name", ["tools", "orphans", "writes"])
 def test_nothing_is_left(tmp_path, name, sent, whole_group):
-    process, mark = started(tmp_path, name)
+    process, mark = program(tmp_path, name)
     process.stdout.readline()
     assert len(running(mark)) > 1
     (os.killpg if whole_group else os.kill)(process.pid, sent)
@@ -91,7 +94,7 @@ def test_nothing_is_left(tmp_path, name, sent, whole_group):
 
 
 def test_files_that_appear_together_do(tmp_path):
-    process, mark = started(tmp_path, "publishes")
+    process, mark = program(tmp_path, "publishes")
     process.stdout.readline()
     while not (tmp_path / "out" / "0").exists():
         pass
@@ -104,21 +107,21 @@ def test_files_that_appear_together_do(tmp_path):
 
 
 def test_a_program_that_crashes_is_cleared_away_too(tmp_path):
-    process, mark = started(tmp_path, "crashes")
+    process, mark = program(tmp_path, "crashes")
     _, err = process.communicate(timeout=20)
     assert process.returncode == 139 and "SIGSEGV" in err
     assert not running(mark) and not list(tmp_path.iterdir())
 
 
 def test_a_tool_that_a_program_forgets_ends_with_it(tmp_path):
-    process, mark = started(tmp_path, "leaves")
+    process, mark = program(tmp_path, "leaves")
     process.communicate(timeout=20)
     assert process.returncode == 7 and not running(mark)
 
 
 def test_an_ignored_signal_stays_ignored(tmp_path):
     """As nohup does it."""
-    process, mark = started(tmp_path, "leaves", lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    process, mark = program(tmp_path, "leaves", prepare=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
     for _ in range(20):
         process.send_signal(signal.SIGHUP)
         time.sleep(0.01)

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from base.charts import bars, svg
 from base.page import Picture, Scale
 from models.parameters import EnergyParameters, LightParameters, sensor_text, sources
-from models.reconstruct import edge_images, white_sum
+from models.reconstruct import white_sum
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
@@ -135,12 +135,10 @@ def _top(values: npt.NDArray[np.floating]) -> float:
 
 def _sheets(result: FrameResult) -> list[Picture]:
     """The contact sheets of the mode."""
-    sensor, frame, decoded = result.request.sensor, result.request.frame, result.decoded
+    sensor, frame = result.request.sensor, result.request.frame
     if frame.mode not in ("edge", "raw"):
         return []
-    samples = decoded.samples.astype(float)
-    difference = samples[..., 0] if frame.mode == "edge" else samples[..., 0] - samples[..., 1]
-    edges = edge_images(difference, sensor.tile)
+    edges = result.edges
     caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "
     caption += "cosine or sine analyzer; blue negative, red positive"
     sheet = pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))

@@ -14,7 +14,7 @@ from models.digital.stream.frame import DecodedFrame
 from models.parameters import SensorParameters
 from models.pixel.time_of_flight import quadrature
 from models.plan import Plan
-from models.reconstruct import light_field_estimate, rebuild, sum_image
+from models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image
 from models.reconstruct.rebuild import Rebuilt
 from models.scene import Scene
 
@@ -67,6 +67,13 @@ class GoldenResult:
         exposed, edges = self.exposed, self.decoded.samples[..., 0]
         trim, timing = exposed.front_end.trim, self.request.frame.timing
         return rebuild(edges, self.decoded.read, exposed.scene, self.sensor, trim, timing)
+
+    @property
+    def edges(self) -> npt.NDArray[np.float64]:
+        """One image of decoded differences a pixel type, in codes, (types, tile rows, tile cols); edge and raw mode."""
+        samples = self.decoded.samples.astype(float)
+        difference = samples[..., 0] if self.request.frame.mode == "edge" else samples[..., 0] - samples[..., 1]
+        return edge_images(difference, self.request.sensor.tile)
 
     @cached_property
     def image(self) -> npt.NDArray[np.float64]:

@@ -8,7 +8,7 @@ import difflib
 import math
 import re
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, fields, is_dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -126,23 +126,26 @@ def keys(kind: type[Any] = SensorParameters, prefix: str = "") -> dict[str, str]
     return found
 
 
-def nearest(key: str, known: Mapping[str, str]) -> str:
+def nearest(key: str, known: Iterable[str], cutoff: float = 0.7) -> str:
     """What an error says to do in place of an unknown key.
 
     Parameters
     ----------
     key : str
         The key.
-    known : mapping of str to str
+    known : iterable of str
         Names that there are, full ones perhaps.
+    cutoff : float
+        How like the key the nearest must be, 0..1.
 
     Returns
     -------
     str
         'did you mean ...?', or all names.
     """
+    known = [*known]
     ends = {name.rpartition(".")[2]: name for name in known}
-    near = difflib.get_close_matches(key, [*known, *ends], 1, 0.7)
+    near = difflib.get_close_matches(key, [*known, *ends], 1, cutoff)
     return f"; did you mean {ends.get(near[0], near[0])}?" if near else f": {', '.join(known)}"
 
 

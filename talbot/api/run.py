@@ -12,7 +12,7 @@ from flow.frame.figures import summarize, summarize_golden
 from flow.frame.result import FrameResult, GoldenResult
 from models.parameters import ParameterError
 from models.pixel import depth_of
-from models.reconstruct import edge_images, white_sum
+from models.reconstruct import white_sum
 from models.scene import RADIANCE_MAX
 
 from .image import Image, embedded, png, table
@@ -81,9 +81,7 @@ class Run:
             values = np.clip(result.light_field / white, 0, RADIANCE_MAX)
             return LightField(values, result.exposed.scene.disparity, f"{result.request.name}_estimate")
         if what == "edges":
-            samples = self.samples.astype(float)
-            difference = samples[..., 0] if mode == "edge" else samples[..., 0] - samples[..., 1]
-            return Image.of(edge_images(difference, result.request.sensor.tile))
+            return Image.of(result.edges)
         if what == "depth":
             phase, strength = result.echo
             far = depth_of(phase, result.request.sensor.electrical.f_mod)

@@ -158,7 +158,7 @@ class Sensor:
             return Run(job.golden_result(self._request(scene, mode, settings), steps.note))
 
     def _request(self, scene: Seen, mode: str, settings: Settings) -> FrameRequest:
-        known = dict.fromkeys(Settings.__annotations__, "")
+        known = Settings.__annotations__
         for name in settings.keys() - known.keys():
             raise ParameterError(f"{name} = {settings[name]!r}: must be a setting of a frame{nearest(name, known)}")
         given: dict[str, Any] = dict(settings)
@@ -198,11 +198,10 @@ def _mask(types: Iterable[int]) -> int:
     return mask
 
 
-def _check_names(field: str, given: Mapping[str, Any], known: Iterable[str]) -> None:
-    names = dict.fromkeys(known, "")
+def _check_names(field: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
     for name in given:
-        if name not in names:
-            raise ParameterError(f"{field} = {dict(given)!r}: {name} must be one of its keys{nearest(name, names)}")
+        if name not in known:
+            raise ParameterError(f"{field} = {dict(given)!r}: {name} must be one of its keys{nearest(name, known)}")
 
 
 def _values(parameters: SensorParameters) -> dict[str, Any]:
@@ -226,8 +225,8 @@ def _changed(
     tables: dict[str, Any] = {}
     for name, value in named.items():
         if name not in NAMES:
-            known = dict.fromkeys([*OBJECTS, *NAMES], "")
-            raise ParameterError(f"{name} = {value!r}: must be a parameter of a sensor{nearest(name, known)}")
+            near = nearest(name, [*OBJECTS, *NAMES])
+            raise ParameterError(f"{name} = {value!r}: must be a parameter of a sensor{near}")
         *path, last = NAMES[name].split(".")
         inner = tables
         for step in path:

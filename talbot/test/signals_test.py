@@ -3,34 +3,22 @@
 import os
 import random
 import signal
-import subprocess
-import sys
 import time
 
 import pytest
 
 from base.files import PART
 from base.paths import ROOT
-from base.test.supervise_test import running
+from base.test.supervise_test import running, started
 from talbot.commands import main
 
 SIZE = ("--rows", "17", "--cols", "26", "--lanes", "2")
 
 
-def started(tmp_path, *more):
-    """`python -m talbot sim` in a session of its own, in which Ctrl-C counts."""
-    environment = {key: value for key, value in os.environ.items() if key != "TALBOT_RUN"}
-    words = [sys.executable, "-m", "talbot", "sim", "--scene", "coins", *SIZE, "--out", str(tmp_path / "out"), *more]
-    return subprocess.Popen(
-        words,
-        cwd=ROOT,
-        env=environment | {"TEST_MARK": str(tmp_path), "TMPDIR": str(tmp_path)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
+def sim(folder, *more):
+    """`python -m talbot sim` on its way."""
+    words = ["-m", "talbot", "sim", "--scene", "coins", *SIZE, "--out", str(folder / "out"), *more]
+    return started(folder, words)
 
 
 def end(child, sent, whole_group):
@@ -48,7 +36,7 @@ def whole(tmp_path_factory):
     out = tmp_path_factory.mktemp("whole") / "out"
     main(["sim", "--scene", "coins", *SIZE, "--out", str(out)])
     begin = time.monotonic()
-    child = started(out.parent)
+    child = sim(out.parent)
     child.communicate()
     return {path.name for path in out.iterdir()}, time.monotonic() - begin
 
@@ -57,7 +45,7 @@ def whole(tmp_path_factory):
 def test_at_a_random_moment(tmp_path, whole, part):
     """In each twelfth of the run once; which signal, and whether the whole group gets it, is drawn."""
     names, seconds = whole
-    child = started(tmp_path)
+    child = sim(tmp_path)
     time.sleep(max(0.1, (part + random.random()) / 12 * seconds))
     sent = random.choice((signal.SIGINT, signal.SIGTERM))
     status, err = end(child, sent, random.random() < 0.5)
@@ -72,7 +60,7 @@ def test_at_a_random_moment(tmp_path, whole, part):
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_in_the_compiler(tmp_path, sent):
-    child = started(tmp_path, "--waves", "0:1", "--rows", "18" if sent == signal.SIGINT else "19")
+    child = sim(tmp_path, "--waves", "0:1", "--rows", "18" if sent == signal.SIGINT else "19")
     assert any("compiling" in line for line in child.stderr)
     status, _ = end(child, sent, False)
     assert status == 128 + sent and not list(tmp_path.iterdir()) and not running(f"TEST_MARK={tmp_path}")
@@ -82,6 +70,6 @@ def test_in_the_compiler(tmp_path, sent):
 
 def test_a_folder_with_a_results_name(tmp_path):
     (tmp_path / "out" / "report.html").mkdir(parents=True)
-    status, err = end(started(tmp_path), signal.SIGCONT, False)
+    status, err = end(sim(tmp_path), signal.SIGCONT, False)
     assert status == 2 and "must not have a folder report.html" in err[-1] and len(err) == 1
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["report.html"]
