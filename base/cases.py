@@ -4,7 +4,7 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from models.stability import Case
+from talbot.models.stability import Case
 
 from .files import write
 from .page import TABLES, Section, Tile, render

@@ -9,49 +9,52 @@ import importlib
 from collections.abc import Sequence
 from types import ModuleType
 
-from base.command import Parser, add_command, execute
-from base.page import index
-from base.paths import RESULTS
+from talbot.base.command import Parser, add_command, execute
+from talbot.base.page import index
+from talbot.base.paths import RESULTS
 
 from .make import arguments
 
 # name -> (module, help). A module is imported when its command is chosen.
 COMMANDS = {
-    "sim": ("flow.frame.command", "a scene through the golden models and the chip's Verilog"),
-    "sensor": ("flow.sensor", "the standard sensor as a file to start from, or a file checked and completed"),
-    "decode": ("flow.decode", "a byte stream of the chip back to samples (.npz)"),
-    "tradeoff": ("flow.tradeoff.command", "error against run time: tables and plots"),
-    "stability": ("flow.stability", "stiff and extreme cases: bound against measured"),
-    "formats": ("flow.formats.command", "stream formats and scan orders compared"),
-    "sizes": ("flow.sizes.command", "cells and gate equivalents of every block"),
-    "divider": ("flow.simulate.divider.exhaustive", "every input of a divider through its Verilog"),
-    "layout": ("flow.layout.command", "a design's Verilog to a layout with all its checks"),
-    "layout-sweep": ("flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
-    "layout-compare": ("flow.layout.report.compare", "finished layouts side by side"),
-    "openroad": ("flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
-    "openroad-compare": ("flow.openroad.compare", "both back ends, design by design"),
-    "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
-    "verilog": ("rtl.export", "the chip and its blocks as Verilog, linted"),
-    "replay": ("rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),
-    "document": ("flow.host.document.command", "the documents for a host: register map, pins, tile, C header"),
+    "sim": ("talbot.flow.frame.command", "a scene through the golden models and the chip's Verilog"),
+    "sensor": ("talbot.flow.sensor", "the standard sensor as a file to start from, or a file checked and completed"),
+    "decode": ("talbot.flow.decode", "a byte stream of the chip back to samples (.npz)"),
+    "tradeoff": ("talbot.flow.tradeoff.command", "error against run time: tables and plots"),
+    "stability": ("talbot.flow.stability", "stiff and extreme cases: bound against measured"),
+    "formats": ("talbot.flow.formats.command", "stream formats and scan orders compared"),
+    "sizes": ("talbot.flow.sizes.command", "cells and gate equivalents of every block"),
+    "divider": ("talbot.flow.simulate.divider.exhaustive", "every input of a divider through its Verilog"),
+    "layout": ("talbot.flow.layout.command", "a design's Verilog to a layout with all its checks"),
+    "layout-sweep": ("talbot.flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
+    "layout-compare": ("talbot.flow.layout.report.compare", "finished layouts side by side"),
+    "openroad": ("talbot.flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
+    "openroad-compare": ("talbot.flow.openroad.compare", "both back ends, design by design"),
+    "openroad-fit": ("talbot.flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
+    "verilog": ("talbot.rtl.export", "the chip and its blocks as Verilog, linted"),
+    "replay": ("talbot.rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),
+    "document": ("talbot.flow.host.document.command", "the documents for a host: register map, pins, tile, C header"),
     "site": ("talbot.site.command", "the documents site: READMEs, docs, API, architecture, gallery"),
-    "footprints": ("pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
-    "cells": ("cells.command", "a cell library characterized at one corner"),
-    "cells-report": ("cells.report.command", "the characterizer against a foundry's tables"),
-    "cells-stability": ("cells.stability", "stiff and extreme cases of the characterizer"),
-    "cells-compact": ("cells.compact.command", "the library Compact drawn and checked"),
-    "cells-compact-area": ("cells.compact.area", "our blocks on Compact and on sky130_fd_sc_hd"),
-    "cells-compact-search": ("cells.compact.search", "narrower cells of Compact by a longer search"),
-    "formal": ("verif.formal.command", "every property proven, and that each catches its broken twin"),
-    "coverage": ("verif.coverage.command", "line, toggle, branch, state machines and test plans"),
-    "mutate": ("verif.mutation.command", "bugs planted in the RTL, each of which a test must find"),
-    "fuzz": ("verif.fuzz.command", "a million inputs for the decoder and the host"),
-    "bench": ("verif.bench.command", "cocotb benches in Icarus and in Verilator"),
-    "stuck-at": ("verif.stuck_at.command", "stuck-at faults of the chip's gates that a test at its pins detects"),
-    "suite": ("verif.suite.command", "every test, counted by block and level"),
-    "verify": ("verif.report.command", "all of these six, and their report"),
-    "index": ("base.page.command", "the page over all results; every command brings it up to date, too"),
-    "handoff": ("flow.handoff.command", "one archive of a finished layout"),
+    "footprints": ("talbot.pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
+    "cells": ("talbot.cells.command", "a cell library characterized at one corner"),
+    "cells-report": ("talbot.cells.report.command", "the characterizer against a foundry's tables"),
+    "cells-stability": ("talbot.cells.stability", "stiff and extreme cases of the characterizer"),
+    "cells-compact": ("talbot.cells.compact.command", "the library Compact drawn and checked"),
+    "cells-compact-area": ("talbot.cells.compact.area", "our blocks on Compact and on sky130_fd_sc_hd"),
+    "cells-compact-search": ("talbot.cells.compact.search", "narrower cells of Compact by a longer search"),
+    "formal": ("talbot.verif.formal.command", "every property proven, and that each catches its broken twin"),
+    "coverage": ("talbot.verif.coverage.command", "line, toggle, branch, state machines and test plans"),
+    "mutate": ("talbot.verif.mutation.command", "bugs planted in the RTL, each of which a test must find"),
+    "fuzz": ("talbot.verif.fuzz.command", "a million inputs for the decoder and the host"),
+    "bench": ("talbot.verif.bench.command", "cocotb benches in Icarus and in Verilator"),
+    "stuck-at": (
+        "talbot.verif.stuck_at.command",
+        "stuck-at faults of the chip's gates that a test at its pins detects",
+    ),
+    "suite": ("talbot.verif.suite.command", "every test, counted by block and level"),
+    "verify": ("talbot.verif.report.command", "all of these six, and their report"),
+    "index": ("talbot.base.page.command", "the page over all results; every command brings it up to date, too"),
+    "handoff": ("talbot.flow.handoff.command", "one archive of a finished layout"),
 }
 
 

@@ -3,8 +3,8 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.paths import RESULTS
-from models.parameters import ParameterError
+from talbot.base.paths import RESULTS
+from talbot.models.parameters import ParameterError
 
 from . import index
 

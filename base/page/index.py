@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from base.files import write
+from talbot.base.files import write
 
 from . import FOLDER, Tile, render
 

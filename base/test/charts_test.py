@@ -5,7 +5,7 @@ from itertools import combinations
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from base.charts import bars, curves, svg
+from talbot.base.charts import bars, curves, svg
 
 CROWDED = [(1 + 0.02 * i, 5 + 0.05 * i, f"T={i}") for i in range(60)]
 

@@ -9,10 +9,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from base.charts import place_labels, svg
-from base.page import Picture
-from cells.liberty.compare import Difference
-from cells.report.curve import Setting
+from talbot.base.charts import place_labels, svg
+from talbot.base.page import Picture
+from talbot.cells.liberty.compare import Difference
+from talbot.cells.report.curve import Setting
 
 SCALE = 15  # per cent at the ends of the colours
 

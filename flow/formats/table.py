@@ -5,8 +5,8 @@ from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
-from base.charts import curves, svg
-from base.page import TABLES, Section, render
+from talbot.base.charts import curves, svg
+from talbot.base.page import TABLES, Section, render
 
 from .orders import CHIP, ORDERS
 from .tokens import CHOSEN, FORMATS

@@ -7,10 +7,10 @@ import numpy as np
 import numpy.typing as npt
 from markupsafe import Markup
 
-from base.charts import bars, svg
-from base.page import Picture, Scale
-from models.parameters import EnergyParameters, LightParameters, sensor_text, sources
-from models.reconstruct import white_sum
+from talbot.base.charts import bars, svg
+from talbot.base.page import Picture, Scale
+from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
+from talbot.models.reconstruct import white_sum
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg

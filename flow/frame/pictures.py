@@ -8,8 +8,8 @@ from PIL import Image as pillow
 from PIL import ImageDraw, ImageFont
 from PIL.Image import Image, Resampling
 
-from base.page import Scale
-from models.parameters import TileParameters
+from talbot.base.page import Scale
+from talbot.models.parameters import TileParameters
 
 Values = npt.NDArray[np.floating]
 

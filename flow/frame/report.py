@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 from PIL.Image import Image
 
-from base import page
-from base.page import Picture, Scale, Tile
+from talbot.base import page
+from talbot.base.page import Picture, Scale, Tile
 
 from .figures import camera_line, energy_line, trims_line
 

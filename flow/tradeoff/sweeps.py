@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 from tqdm import tqdm
 
-from base.charts import save, svg
-from base.files import staged
-from base.page import TABLES, Section, render
-from base.table import read_csv, write_csv
-from models.parameters import check_choice
+from talbot.base.charts import save, svg
+from talbot.base.files import staged
+from talbot.base.page import TABLES, Section, render
+from talbot.base.table import read_csv, write_csv
+from talbot.models.parameters import check_choice
 
 from . import divider, noise, precision, pupil, threshold, views
 

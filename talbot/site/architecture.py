@@ -10,10 +10,10 @@ from typing import Any
 
 from pymtl3.dsl.Connectable import Const
 
-from base.paths import ROOT
-from models.parameters import SensorParameters
-from rtl.tops import build_top
-from verif.coverage.testplan import TestPlan, load_plan
+from talbot.base.paths import ROOT
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.tops import build_top
+from talbot.verif.coverage.testplan import TestPlan, load_plan
 
 from . import diagrams
 

@@ -10,11 +10,11 @@ import tempfile
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.command import failures
-from base.files import check_folder, staged
-from base.paths import RESULTS, ROOT
-from base.progress import Steps
-from models.parameters import ParameterError
+from talbot.base.command import failures
+from talbot.base.files import check_folder, staged
+from talbot.base.paths import RESULTS, ROOT
+from talbot.base.progress import Steps
+from talbot.models.parameters import ParameterError
 
 from . import api, architecture, gallery
 from .collect import collect, contents

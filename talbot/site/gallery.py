@@ -3,8 +3,8 @@
 import base64
 from pathlib import Path
 
-from base.page import index
 from talbot import Run, Sensor
+from talbot.base.page import index
 
 SIDE = 192
 MODES = {"edge": "Edge mode", "image": "Image mode", "raw": "Raw mode", "tof": "Time of flight"}

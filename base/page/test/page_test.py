@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from base.command import main
-from base.page import TABLES, Picture, Scale, Section, Tile, command, index, render, units
+from talbot.base.command import main
+from talbot.base.page import TABLES, Picture, Scale, Section, Tile, command, index, render, units
 
 BAR = Scale(np.stack([np.arange(256, dtype=np.uint8)] * 3, -1), -1.0, 2.5, "m")
 PICTURE = Picture("depth", "", "how far", Image.new("RGB", (7, 5), (200, 200, 200)), BAR)

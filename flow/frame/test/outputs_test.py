@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from flow.frame import job, outputs, report
-from flow.frame.figures import summarize_golden
-from flow.frame.quality import depth_error, depth_map
-from flow.frame.request import request
-from models.parameters import CameraParameters, OpticsParameters, SensorParameters
+from talbot.flow.frame import job, outputs, report
+from talbot.flow.frame.figures import summarize_golden
+from talbot.flow.frame.quality import depth_error, depth_map
+from talbot.flow.frame.request import request
+from talbot.models.parameters import CameraParameters, OpticsParameters, SensorParameters
 
 SMALL = {"rows": 16, "cols": 24}
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from PIL import Image
 
-from base.page import Picture, Tile, render
+from talbot.base.page import Picture, Tile, render
 
 from .history import history, table
 from .picture import LayoutPicture

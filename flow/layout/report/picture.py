@@ -9,11 +9,11 @@ import numpy as np
 from PIL import Image as pillow
 from PIL.Image import Image
 
-from base.gds import db, read_gds
-from base.page import data_url
-from flow.layout.netlist.netlist import Netlist
-from flow.layout.netlist.placed import MIRRORED
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db, read_gds
+from talbot.base.page import data_url
+from talbot.flow.layout.netlist.netlist import Netlist
+from talbot.flow.layout.netlist.placed import MIRRORED
+from talbot.platforms.coriolis import CoriolisPlatform
 
 PALETTE = (0x43A047, 0xE53935, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
 OTHERS = {"fill": 0x707A86, "diffusion": 0x6D4C41, "poly": 0xA1887F}

@@ -6,13 +6,13 @@ import xml.etree.ElementTree as xml
 
 import pytest
 
-from base.command import Parser, add_command
-from base.command import main as run_command
-from base.paths import ROOT
-from models.parameters import SensorParameters
-from rtl.tops import build_top
+from talbot.base.command import Parser, add_command
+from talbot.base.command import main as run_command
+from talbot.base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.tops import build_top
 from talbot.site import api, architecture, collect, diagrams
 from talbot.site import command as site
 

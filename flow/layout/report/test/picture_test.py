@@ -5,9 +5,9 @@ import pytest
 
 pytest.importorskip("klayout.lay", reason="klayout = not installed: make layout")
 
-from base.gds import db, write_gds
-from flow.layout.report.picture import BACKGROUND, render
-from platforms.coriolis import coriolis_platform
+from talbot.base.gds import db, write_gds
+from talbot.flow.layout.report.picture import BACKGROUND, render
+from talbot.platforms.coriolis import coriolis_platform
 
 TECH = coriolis_platform("sky130")
 SIDE = 100
