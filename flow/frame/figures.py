@@ -225,9 +225,9 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     ideal, marks = result.exposed.ideal, 2 * int(golden.read.any(1).sum())
     sent, size = golden.read.sum() * golden.sent.shape[2], len(result.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
-    tokens = size - HEADER_BYTES - TRAILER_BYTES - marks
     error = decoding_error(decoded.samples, ideal, golden.read, frame)
-    parts = {"header": HEADER_BYTES, "tokens": tokens, "row marks": marks, "trailer": TRAILER_BYTES}
+    rest = size - HEADER_BYTES - TRAILER_BYTES - marks
+    parts = {"header": HEADER_BYTES, "samples": rest, "row marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
     return (
         {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}

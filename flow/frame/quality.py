@@ -159,20 +159,38 @@ def field_quality(result: GoldenResult) -> dict[str, float | None]:
 
 def depth_quality(result: GoldenResult) -> dict[str, float | None]:
     """Of the depth in time of flight, against the scene's where the amplitude is not 0, in m; of one depth for all."""
-    truth = result.exposed.scene.depth
-    if result.request.frame.mode != "tof" or truth is None:
+    truth, error = result.exposed.scene.depth, depth_error(result)
+    if truth is None or error is None or np.isnan(error).all():
         return {"depth_rms_m": None, "depth_rms_constant_m": None}
-    phase, strength = result.echo
-    seen = result.golden.read & (strength > 0)
-    if not seen.any():
-        return {"depth_rms_m": None, "depth_rms_constant_m": None}
-    f_mod = result.request.sensor.electrical.f_mod
-    far = float(depth_of(np.pi, f_mod))  # half of the range in which depth is unambiguous
-    error = np.mod(depth_of(phase, f_mod)[seen] - truth[seen] + far, 2 * far) - far
+    seen = ~np.isnan(error)
     return {
-        "depth_rms_m": float(np.sqrt(np.mean(error**2))),
+        "depth_rms_m": float(np.sqrt(np.mean(error[seen] ** 2))),
         "depth_rms_constant_m": float((truth[seen] - truth[seen][0]).std()),
     }
+
+
+def depth_map(result: GoldenResult) -> Values:
+    """The depth in time of flight, (rows, cols) in m, NaN where there is no amplitude."""
+    phase, strength = result.echo
+    found = depth_of(phase, result.request.sensor.electrical.f_mod)
+    return np.where(result.golden.read & (strength > 0), found, np.nan)
+
+
+def depth_error(result: GoldenResult) -> Values | None:
+    """`depth_map` less the scene's depth, the short way round; None in other modes and without a scene's depth."""
+    truth = result.exposed.scene.depth
+    if result.request.frame.mode != "tof" or truth is None:
+        return None
+    far = float(depth_of(np.pi, result.request.sensor.electrical.f_mod))  # half of the unambiguous range
+    return np.mod(depth_map(result) - truth + far, 2 * far) - far
+
+
+def image_error(result: GoldenResult) -> Values:
+    """The 2-D image, brought to the mean of the scene's centre view, less this view; NaN where nothing is read."""
+    part = part_read(result.golden.read)
+    truth, error = np.asarray(result.exposed.scene.image, float)[part], np.full(result.image.shape, np.nan)
+    error[part] = result.image[part] - result.image[part].mean() + truth.mean() - truth
+    return error
 
 
 def quality(result: GoldenResult) -> dict[str, Any]:
