@@ -12,6 +12,7 @@ from talbot.base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments
 from talbot.models.parameters import SensorParameters
+from talbot.rtl.amp_ctrl.ports import SLOT
 from talbot.rtl.tops import build_top
 from talbot.site import api, architecture, collect, diagrams
 from talbot.site import command as site
@@ -78,7 +79,7 @@ def test_connections_are_those_of_the_rtl():
     top.elaborate()
     blocks, bits = architecture.connections(top)
     assert blocks["amp"] == "AmpCtrl" and blocks["encoder"] == "RunLength" and len(blocks) == 14
-    assert bits["seq", "amp"] == 3  # start, four_tap, hold_free
+    assert bits["seq", "amp"] == 3 + len(SLOT)  # start, four_tap, hold_free and a slot's
     assert bits["phase", "encoder"] == 1 + top.phase.send.msg._dsl.Type.nbits  # a stream: val and msg forth
     assert bits["encoder", "phase"] == 1  # rdy back
     assert ("amp", "encoder") not in bits
@@ -92,7 +93,7 @@ def test_diagrams_show_everything():
     text = diagrams.matrix({"a": "A", "b": "B"}, {("a", "b"): 12})
     assert "a to b: 12 bits" in text and xml.fromstring(text).tag.endswith("svg")
     floors = diagrams.floors(next(iter(architecture.layers().values())))
-    assert {"talbot", "cells", "pixels", "models"} <= {"".join(e.itertext()) for e in xml.fromstring(floors).iter()}
+    assert {"verif", "cells", "pixels", "models"} <= {"".join(e.itertext()) for e in xml.fromstring(floors).iter()}
 
 
 def test_the_page_of_the_api_has_every_name(tmp_path):
