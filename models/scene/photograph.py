@@ -12,7 +12,7 @@ from .picture_file import read_luminance
 from .sampling import Sampling
 from .scene import Scene
 from .targets import IN_FOCUS, plane
-from .views import Pictured
+from .views import Pictured, Shifted
 
 PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "page", "rocket", "text")
 
@@ -71,10 +71,9 @@ def _on_depth(
     height, width = luminance.shape
     image = resample.resize(luminance, rows, cols, resample.centre_box(height, width, rows, cols))
     image = np.clip(image, 0, 1)  # rounding of the resampling
-    if depth is None:
-        _, depth = plane(sampling)
-    disparity = camera.disparity(depth, sampling)
-    flat = bool(np.abs(disparity).max() * sampling.views < IN_FOCUS)
-    seen = None if flat else Pictured(image, disparity, sampling)
-    field = image[None, None].astype(sampling.dtype) if seen is None else seen.light_field()
-    return Scene(name, sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=seen)
+    disparity, depth = plane(sampling) if depth is None else (camera.disparity(depth, sampling), depth)
+    shown = image.astype(sampling.dtype)
+    if np.abs(disparity).max() * sampling.views < IN_FOCUS:
+        return Scene(name, sampling.views, shown[None, None], shown, disparity, depth)
+    seen = Pictured(image, disparity, sampling) if np.ptp(disparity) else Shifted(image, float(disparity.flat[0]))
+    return Scene(name, sampling.views, None, shown, disparity, depth, render=seen)
