@@ -67,17 +67,17 @@ class Chip:
 
     def frame(
         self, frame: FrameParameters, samples: npt.NDArray[np.float64], trims: Sequence[int]
-    ) -> HardwareFrame:
-        """The next frame; of its configuration what the chip does not have yet is written.
+    ) -> Callable[[], HardwareFrame]:
+        """Send the next frame; of its configuration what the chip does not have yet is written.
 
-        samples: (taps, rows, cols, 2), of as many taps as the simulator has. Raises ToolError.
+        samples: (taps, rows, cols, 2), of as many taps as the simulator has. Returns what waits for the frame's end,
+        which raises ToolError where the simulator ends before.
         """
         wanted = dict(frame_writes(frame, trims))
         new = {address: byte for address, byte in wanted.items() if self._written.get(address) != byte}
-        after = status_transfers()
-        before = [*write_transfers(new.items()), command("start")]
-        self._written = wanted
-        return _with_status(self._bench.frame(sample_words(samples), before, after), after)
+        self._written, after = wanted, status_transfers()
+        run = self._bench.frame(sample_words(samples), [*write_transfers(new.items()), command("start")], after)
+        return lambda: _with_status(run.result(), after)
 
 
 @contextmanager

@@ -33,6 +33,13 @@ def signed(values: Values, scale: float) -> Image:
     return pillow.fromarray(np.round(rgb).astype(np.uint8), "RGB")
 
 
+def signed_codes(codes: npt.NDArray[np.integer], scale: float) -> Image:
+    """`signed` of codes -256..255, by a table."""
+    steps = np.arange(-256, 256)
+    table = np.asarray(signed(steps[None], scale))[0]
+    return pillow.fromarray(table[codes.astype(np.intp) + 256], "RGB")
+
+
 def phase_wheel(phase: Values, strength: Values) -> Image:
     """Phase (rad) as hue, ``strength`` 0..1 as brightness."""
     hue = np.round(np.mod(phase, 2 * np.pi) / (2 * np.pi) * 255).astype(np.uint8)

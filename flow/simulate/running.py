@@ -1,64 +1,72 @@
 """A bench that runs on from frame to frame: registers and state stay, exposures and SPI transfers come through pipes."""
 
+import contextlib
+import fcntl
 import json
 import os
 import selectors
 import tempfile
 from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from time import perf_counter
-from typing import IO, Any
 
 from base.tools import ToolError, started
 
 from .frame import NO_FRAME_END, STOP, WAIT, FrameRun, simulator, transfers
 
 NEXT_EXPOSURE, REPORT = b"\x03", b"\x04"  # of the script (bench.sv)
-CHUNK = 1 << 20
+CHUNK = 1 << 20  # bytes
 INPUTS, OUTPUTS = ("script", "samples"), ("stream", "miso", "activity")
 
 
 class Running:
-    """A bench that was started by `running`."""
+    """A bench that was started by `running`.
 
-    def __init__(self, inputs: dict[str, IO[bytes]], outputs: dict[str, int]) -> None:
+    The next frame can be sent while one runs: the simulator waits for nothing.
+    """
+
+    def __init__(self, inputs: dict[str, int], outputs: dict[str, int]) -> None:
         self._inputs, self._outputs, self._frames = inputs, outputs, 0
+        self._senders, self._receivers = ThreadPoolExecutor(1), ThreadPoolExecutor(1)
 
-    def frame(self, samples: bytes | memoryview, before: Sequence[bytes], after: Sequence[bytes]) -> FrameRun:
+    def frame(
+        self, samples: bytes | memoryview, before: Sequence[bytes], after: Sequence[bytes]
+    ) -> "Future[FrameRun]":
         """One frame: SPI transfers ``before`` it, the last of which starts it, and ``after`` it.
 
         samples: of every tap that the program has, as `models.afe.sample_words` makes them. `seconds` of the result is
-        the wall clock of all of it. Raises ToolError when the bench ends.
+        the wall clock since the frame was sent, or the one before was done. Raises ToolError when the bench ends.
         """
-        start = perf_counter()
         script = transfers(before) + WAIT + transfers(after) + REPORT
-        try:
-            self._send("script", NEXT_EXPOSURE + script if self._frames else script)
-            self._send("samples", samples)
-        except BrokenPipeError:
-            raise _Ended from None
+        self._senders.submit(self._send, NEXT_EXPOSURE + script if self._frames else script, samples)
         self._frames += 1
-        got = self._receive(sum(map(len, (*before, *after))))
-        activity = json.loads(got["activity"])
-        cycles = activity.pop("cycles")
-        return FrameRun(got["stream"], got["miso"], activity, cycles, perf_counter() - start)
+        return self._receivers.submit(self._received, sum(map(len, (*before, *after))))
 
     def stop(self) -> None:
-        """Let the bench end by itself."""
-        self._send("script", STOP)
+        """Let the bench end by itself after its last frame."""
+        self._senders.submit(self._send, STOP, b"")
 
-    def _send(self, name: str, data: bytes | memoryview) -> None:
-        self._inputs[name].write(data)
-        self._inputs[name].flush()
+    def close(self) -> None:
+        """End the threads: the bench is gone, or will end by itself."""
+        self._senders.shutdown()
+        self._receivers.shutdown()
 
-    def _receive(self, replies: int) -> dict[str, bytes]:
+    def _send(self, script: bytes, samples: bytes | memoryview) -> None:
+        with contextlib.suppress(BrokenPipeError):  # who receives sees that the bench ended
+            for name, data in (("script", script), ("samples", samples)):
+                left = memoryview(data)
+                while left:
+                    left = left[os.write(self._inputs[name], left) :]
+
+    def _received(self, replies: int) -> FrameRun:
         """What the bench writes of one frame, up to its line of activity."""
+        start, size = perf_counter(), None
         got = {name: bytearray() for name in OUTPUTS}
         with selectors.DefaultSelector() as selector:
             for name, file in self._outputs.items():
                 selector.register(file, selectors.EVENT_READ, name)
-            size = None
             while size is None or len(got["stream"]) < size or len(got["miso"]) < replies:
                 for key, _ in selector.select():
                     data = os.read(key.fd, CHUNK)
@@ -67,7 +75,9 @@ class Running:
                     got[key.data] += data
                 if size is None and got["activity"].endswith(b"\n"):
                     size = json.loads(got["activity"])["bytes"]
-        return {name: bytes(data) for name, data in got.items()}
+        activity = json.loads(got["activity"])
+        cycles = activity.pop("cycles")
+        return FrameRun(bytes(got["stream"]), bytes(got["miso"]), activity, cycles, perf_counter() - start)
 
 
 class _Ended(Exception):
@@ -84,8 +94,14 @@ def running(program: Path, converter: Path, stall: int = 0, max_cycles: int = 1_
     with ExitStack() as stack:
         ends = {name: os.pipe() for name in (*INPUTS, *OUTPUTS)}
         theirs = {name: ends[name][name in OUTPUTS] for name in ends}
-        inputs: dict[str, Any] = {name: stack.enter_context(os.fdopen(ends[name][1], "wb")) for name in INPUTS}
-        outputs = {name: stack.enter_context(os.fdopen(ends[name][0], "rb", 0)).fileno() for name in OUTPUTS}
+        ours = {name: ends[name][name in INPUTS] for name in ends}
+        for file in ours.values():
+            stack.callback(os.close, file)
+        with contextlib.suppress(OSError):  # more than a user may have: then it waits for the simulator more often
+            fcntl.fcntl(ours["samples"], fcntl.F_SETPIPE_SZ, CHUNK)
+        inputs, outputs = ({name: ours[name] for name in names} for names in (INPUTS, OUTPUTS))
+        bench = Running(inputs, outputs)
+        stack.callback(bench.close)
         log = stack.enter_context(tempfile.TemporaryFile())
         words = [f"+{name}=/dev/fd/{file}" for name, file in theirs.items()]
         words += [f"+converter={converter}", f"+stall={stall}", f"+max_cycles={max_cycles}"]
@@ -95,7 +111,6 @@ def running(program: Path, converter: Path, stall: int = 0, max_cycles: int = 1_
             for file in theirs.values():
                 os.close(file)
         try:
-            bench = Running(inputs, outputs)
             yield bench
             bench.stop()
             child.wait()

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from base.paths import ROOT
-from flow.frame.command import NAME_MAX, _name
+from flow.frame.command import NAME_MAX, name_of
 from flow.frame.outputs import NAMES
 from talbot.commands import main
 
@@ -119,7 +119,7 @@ def test_a_run_says_what_it_replaced(photograph, tmp_path, capsys):
 
 
 def test_a_name_that_is_too_long_stays_one(tmp_path):
-    names = {_name({"scene": "s", "types": ",".join(map(str, range(24))) + "," + last * 200}) for last in "01"}
+    names = {name_of({"scene": "s", "types": ",".join(map(str, range(24))) + "," + last * 200}) for last in "01"}
     assert len(names) == 2 and {len(name) for name in names} == {NAME_MAX}
 
 
