@@ -134,7 +134,10 @@ def expose(
     pattern = _fixed_pattern(e, n, exposure.seed, pair.shape, dtype)
     per_white = e.white_current * exposure.interval / ELEMENTARY_CHARGE
     dark = e.dark_current * exposure.interval / ELEMENTARY_CHARGE
-    mean = np.minimum(pair * dtype.type(per_white) * pattern.gain + dtype.type(dark), dtype.type(PHOTONS_MAX))
+    mean = pair * dtype.type(per_white)
+    mean *= pattern.gain
+    mean += dtype.type(dark)
+    np.minimum(mean, dtype.type(PHOTONS_MAX), out=mean)
 
     resets = exposure.generator(301 + tap)
     g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
@@ -147,13 +150,22 @@ def expose(
             wells += _draw(resets, pair.shape, dtype, e.ktc_noise * n)
         collected = mean
         if n:
-            shot = photon_count(mean, moving.standard_normal(pair.shape, dtype)) - mean
-            collected = np.maximum(mean + dtype.type(n) * shot, 0)
-        np.clip(wells + collected, 0, dtype.type(e.full_well), out=wells)
+            collected = moving.standard_normal(pair.shape, dtype)
+            photon_count(mean, collected, out=collected)
+            collected -= mean
+            collected *= dtype.type(n)
+            collected += mean
+            np.maximum(collected, 0, out=collected)
+        wells += collected
+        np.clip(wells, 0, dtype.type(e.full_well), out=wells)
     wells += pattern.offset + _draw(exposure.generator(201 + tap), pair.shape, dtype, e.read_noise * n)
     if n:
-        wells += (n * (pattern.columns + _flicker(exposure, tap, pair.shape))).astype(dtype)
-    return np.ascontiguousarray(np.moveaxis(wells / dtype.type(e.lsb_electrons), 0, -1))
+        columns = _flicker(exposure, tap, pair.shape)
+        columns += pattern.columns
+        columns *= n
+        wells += columns.astype(dtype, copy=False)
+    wells /= dtype.type(e.lsb_electrons)
+    return np.ascontiguousarray(np.moveaxis(wells, 0, -1))
 
 
 def _flicker(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
@@ -162,5 +174,7 @@ def _flicker(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArra
     white = np.fft.rfft(exposure.generator(501 + tap).standard_normal((2, 2 * rows, cols)), axis=1)
     shape_ = 1 / np.sqrt(np.maximum(np.arange(rows + 1), 1))  # power falls with 1/f; a frame sees half of the record
     gain = np.sqrt(2 * rows / (2 * np.sum(shape_[1:-1] ** 2) + shape_[0] ** 2 + shape_[-1] ** 2))
-    pink = np.fft.irfft(white * (shape_ * gain)[:, None], 2 * rows, axis=1)[:, :rows]
-    return pink * exposure.electrical.flicker_noise
+    white *= (shape_ * gain)[:, None]
+    pink = np.fft.irfft(white, 2 * rows, axis=1)[:, :rows]
+    pink *= exposure.electrical.flicker_noise
+    return pink
