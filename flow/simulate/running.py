@@ -28,7 +28,11 @@ class Running:
     """
 
     def __init__(self, inputs: dict[str, int], outputs: dict[str, int]) -> None:
-        self._inputs, self._outputs, self._frames = inputs, outputs, 0
+        self._inputs, self._frames = inputs, 0
+        self._got = {name: bytearray() for name in outputs}
+        self._selector = selectors.DefaultSelector()
+        for name, file in outputs.items():
+            self._selector.register(file, selectors.EVENT_READ, name)
         self._senders, self._receivers = ThreadPoolExecutor(1), ThreadPoolExecutor(1)
 
     def frame(
@@ -52,6 +56,7 @@ class Running:
         """End the threads: the bench is gone, or will end by itself."""
         self._senders.shutdown()
         self._receivers.shutdown()
+        self._selector.close()
 
     def _send(self, script: bytes, samples: bytes | memoryview) -> None:
         with contextlib.suppress(BrokenPipeError):  # who receives sees that the bench ended
@@ -61,23 +66,30 @@ class Running:
                     left = left[os.write(self._inputs[name], left) :]
 
     def _received(self, replies: int) -> FrameRun:
-        """What the bench writes of one frame, up to its line of activity."""
-        start, size = perf_counter(), None
-        got = {name: bytearray() for name in OUTPUTS}
-        with selectors.DefaultSelector() as selector:
-            for name, file in self._outputs.items():
-                selector.register(file, selectors.EVENT_READ, name)
-            while size is None or len(got["stream"]) < size or len(got["miso"]) < replies:
-                for key, _ in selector.select():
-                    data = os.read(key.fd, CHUNK)
-                    if not data:
-                        raise _Ended
-                    got[key.data] += data
-                if size is None and got["activity"].endswith(b"\n"):
-                    size = json.loads(got["activity"])["bytes"]
-        activity = json.loads(got["activity"])
+        """What the bench writes of one frame; what it has written of the next already is kept."""
+        start = perf_counter()
+        while b"\n" not in self._got["activity"]:
+            self._read()
+        line, _, self._got["activity"] = self._got["activity"].partition(b"\n")
+        activity = json.loads(line)
         cycles = activity.pop("cycles")
-        return FrameRun(bytes(got["stream"]), bytes(got["miso"]), activity, cycles, perf_counter() - start)
+        stream, miso = self._taken("stream", activity["bytes"]), self._taken("miso", replies)
+        return FrameRun(stream, miso, activity, cycles, perf_counter() - start)
+
+    def _taken(self, name: str, size: int) -> bytes:
+        while len(self._got[name]) < size:
+            self._read()
+        data = bytes(self._got[name][:size])
+        del self._got[name][:size]
+        return data
+
+    def _read(self) -> None:
+        """Read what there is, of any output: the bench waits for none that is full."""
+        for key, _ in self._selector.select():
+            data = os.read(key.fd, CHUNK)
+            if not data:
+                raise _Ended
+            self._got[key.data] += data
 
 
 class _Ended(Exception):

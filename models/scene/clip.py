@@ -9,12 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 
 from models.parameters import ParameterError
 
 from .light_field import LightField
-from .picture_file import loaded, luminance_of, opened
+from .picture_file import frames_of, loaded, luminance_of, opened
 from .sampling import Sampling
 
 VIDEOS = ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi"
@@ -120,9 +119,9 @@ def _folder(path: Path, sampling: Sampling) -> Clip:
     for entry in files:  # before anything is simulated: of pictures the header alone is read
         with opened(entry, "scene") as picture:
             size = size or picture.size
-            if picture.size != size or getattr(picture, "n_frames", 1) > 1:
-                has = f"{picture.height} x {picture.width} px, {getattr(picture, 'n_frames', 1)} frames"
-                raise ParameterError(f"scene = {str(entry)!r}: {has}: must be as the first, {size[1]} x {size[0]} px")
+            if picture.size != size or frames_of(picture, entry) > 1:
+                has = f"{picture.height} x {picture.width} px, frames {frames_of(picture, entry)}"
+                raise ParameterError(f"scene = {str(entry)!r}: {has}: must be one of {size[1]} x {size[0]} px")
 
     def _read() -> Iterator[Frame]:
         for entry in files:
@@ -138,14 +137,8 @@ def _numbers(path: Path) -> list[tuple[int, str]]:
 
 
 def _animated(path: Path, sampling: Sampling) -> Clip:
-    def _frames(picture: Image.Image) -> int:
-        try:
-            return int(getattr(picture, "n_frames", 1))
-        except Exception as error:  # a damaged file may raise nearly anything in a decoder
-            raise ParameterError(f"scene = {str(path)!r}: the image is damaged ({error})") from None
-
     with opened(path, "scene") as picture:
-        count = _frames(picture)
+        count = frames_of(picture, path)
     if count < 2:
         raise ParameterError(f"scene = {str(path)!r}: has one frame: must have more; make sim takes one picture")
 

@@ -15,6 +15,7 @@ from .resample import linear
 PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
 FORMATS = "PNG", "JPEG", "TIFF", "WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PPM"  # named to users, where built in
 FLOAT_MAX = float(np.finfo(np.float32).max)
+ANIMATED = "GIF", "WEBP", "PNG", "AVIF"  # formats whose further pictures are frames, not pages or previews
 KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
@@ -41,6 +42,11 @@ def read_luminance(path: str | Path, rows: int, cols: int) -> npt.NDArray[np.flo
         If the file is missing, no image, damaged, too large, or holds NaN or infinity.
     """
     with opened(path, "scene") as picture:
+        if frames_of(picture, path) > 1:
+            raise ParameterError(
+                f"scene = {str(path)!r}: has {frames_of(picture, path)} frames: must be one picture; "
+                "talbot sequence takes all"
+            )
         picture.draft("RGB", (KEEP * cols, KEEP * rows))  # JPEG: decode at a fraction of the size
         return luminance_of(loaded(picture, path, "scene"), path, rows, cols)
 
@@ -170,6 +176,32 @@ def opened(path: str | Path, field: str) -> Image.Image:
             f"{field} = {str(path)!r}: must be an image file that Pillow reads, {formats} ({type(error).__name__})"
         ) from None
     return picture
+
+
+def frames_of(picture: Image.Image, path: str | Path) -> int:
+    """Number of frames of an image.
+
+    Parameters
+    ----------
+    picture : Image
+        Result of `opened`.
+    path : path
+        Its file.
+
+    Returns
+    -------
+    int
+        1 where the format is none of ANIMATED.
+
+    Raises
+    ------
+    ParameterError
+        If it is damaged.
+    """
+    try:
+        return int(getattr(picture, "n_frames", 1)) if picture.format in ANIMATED else 1
+    except Exception as error:  # a damaged file may raise nearly anything in a decoder
+        raise ParameterError(f"scene = {str(path)!r}: the image is damaged ({error})") from None
 
 
 def loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
