@@ -24,7 +24,9 @@ class Animation:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
         end = self._file.tell()
         self._file.seek(4)
         self._file.write(struct.pack("<I", max(end - 8, 0)))
@@ -35,7 +37,9 @@ class Animation:
         if self._size == (0, 0):
             self._size = picture.size
             self._file.write(b"RIFF\0\0\0\0WEBP")
-            self._file.write(_chunk(b"VP8X", b"\x02\0\0\0" + _sides(picture)) + _chunk(b"ANIM", b"\xff\xff\xff\xff\0\0"))
+            self._file.write(
+                _chunk(b"VP8X", b"\x02\0\0\0" + _sides(picture)) + _chunk(b"ANIM", b"\xff\xff\xff\xff\0\0")
+            )
         if picture.size != self._size:
             raise ValueError(f"picture = {picture.size}: must be of the animation's size, {self._size}")
         still = io.BytesIO()

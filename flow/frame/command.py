@@ -130,7 +130,7 @@ def _arguments_of(folder: Path) -> dict[str, Any] | None:
 
 
 def request_of(a: Namespace) -> "FrameRequest":
-    """The FrameRequest of the options ``a``: of `add_frame_arguments`, scene, depth, waves, out. Raises ParameterError."""
+    """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError."""
     from .request import request
 
     sensor = read_sensor(a.sensor) if a.sensor else STANDARD

@@ -35,7 +35,7 @@ def signed(values: Values, scale: float) -> Image:
 
 def signed_codes(codes: npt.NDArray[np.integer], scale: float) -> Image:
     """`signed` of codes -256..255, by a table."""
-    steps = np.arange(-256, 256)
+    steps = np.arange(-256.0, 256.0)
     table = np.asarray(signed(steps[None], scale))[0]
     return pillow.fromarray(table[codes.astype(np.intp) + 256], "RGB")
 

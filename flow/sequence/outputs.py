@@ -1,4 +1,4 @@
-"""The files of a sequence: its streams, the animation, figures of each frame, a page. They appear together at the end."""
+"""The files of a sequence, which appear together at its end: streams, animation, figures of each frame, a page."""
 
 import json
 from collections.abc import Mapping
@@ -108,11 +108,13 @@ def rate_line(s: Mapping[str, Any]) -> str:
     )
 
 
-STEPS = {"read": "reading", "capture": "capture", "send": "sending", "golden": "golden model", "rtl": "waiting for the simulator"} | {
-    "decode": "decoding",
-    "figures": "figures",
-    "pictures": "pictures",
-}
+STEPS = {
+    "read": "reading",
+    "capture": "capture",
+    "send": "sending",
+    "golden": "golden model",
+    "rtl": "waiting for the simulator",
+} | {"decode": "decoding", "figures": "figures", "pictures": "pictures"}
 
 
 def _first(folder: Path, result: FrameResult) -> None:

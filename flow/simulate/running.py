@@ -1,4 +1,4 @@
-"""A bench that runs on from frame to frame: registers and state stay, exposures and SPI transfers come through pipes."""
+"""A bench that runs on from frame to frame: registers and state stay, exposures and transfers come through pipes."""
 
 import contextlib
 import fcntl
@@ -35,9 +35,7 @@ class Running:
             self._selector.register(file, selectors.EVENT_READ, name)
         self._senders, self._receivers = ThreadPoolExecutor(1), ThreadPoolExecutor(1)
 
-    def frame(
-        self, samples: bytes | memoryview, before: Sequence[bytes], after: Sequence[bytes]
-    ) -> "Future[FrameRun]":
+    def frame(self, samples: bytes | memoryview, before: Sequence[bytes], after: Sequence[bytes]) -> "Future[FrameRun]":
         """One frame: SPI transfers ``before`` it, the last of which starts it, and ``after`` it.
 
         samples: of every tap that the program has, as `models.afe.sample_words` makes them. `seconds` of the result is

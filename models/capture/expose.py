@@ -150,8 +150,7 @@ def expose(
             wells += _draw(resets, pair.shape, dtype, e.ktc_noise * n)
         collected = mean
         if n:
-            collected = moving.standard_normal(pair.shape, dtype)
-            photon_count(mean, collected, out=collected)
+            collected = photon_count(mean, moving.standard_normal(pair.shape, dtype))
             collected -= mean
             collected *= dtype.type(n)
             collected += mean

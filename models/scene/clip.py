@@ -1,4 +1,4 @@
-"""Sequences of pictures: a folder of frames, an animated GIF, WebP, PNG or AVIF, a video, or arrays; read one by one."""
+"""Sequences of pictures, read one by one: a folder of frames, an animated GIF, WebP, PNG or AVIF, a video, arrays."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Sized
@@ -159,6 +159,7 @@ def _animated(path: Path, sampling: Sampling) -> Clip:
 def _video(path: Path, sampling: Sampling) -> Clip:
     try:
         import av
+        from av.error import FFmpegError
     except ModuleNotFoundError:
         raise ParameterError(
             f"scene = {str(path)!r}: a video needs the package av: pip install 'talbot[video]'"
@@ -171,7 +172,7 @@ def _video(path: Path, sampling: Sampling) -> Clip:
                 if not container.streams.video:
                     raise ParameterError(f"scene = {str(path)!r}: must have a video stream")
                 yield container.streams.video[0]
-        except av.error.FFmpegError as error:
+        except FFmpegError as error:
             raise ParameterError(f"scene = {str(path)!r}: the video is damaged ({error.strerror})") from None
 
     with _stream() as stream:

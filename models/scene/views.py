@@ -200,13 +200,13 @@ class Shifted:
         if dv == 0 and du == 0:
             return self.image.copy()
         out = np.zeros(self.image.shape)
-        places = np.arange(len(out)) + dv * self.disparity
+        places = np.arange(len(out), dtype=np.float64) + dv * self.disparity
         warp.shift_rows(out, self._across(du), places, rows, RADIANCE_MAX)
         return out
 
 
 def _across(image: Floats, disparity: float, du: float) -> Floats:
     """A picture shifted along its rows."""
-    out = np.empty(image.shape)
-    warp.shift_columns(out, image, np.arange(out.shape[1]) + du * disparity)
+    out = np.empty_like(image)
+    warp.shift_columns(out, image, np.arange(len(image[0]), dtype=np.float64) + du * disparity)
     return out

@@ -181,7 +181,7 @@ def shift_columns(out: Floats, image: Floats, places: Floats) -> None:
     last = image.shape[1] - 1
     at, weight = np.empty((4, places.size), np.int64), np.empty((4, places.size))
     for x in range(places.size):
-        first, weights = _taps(places[x], image.shape[1])
+        first, weights = _taps(float(places[x]), image.shape[1])
         for j in range(4):
             at[j, x], weight[j, x] = min(max(first + j - 1, 0), last), weights[j]
     for y in range(out.shape[0]):
@@ -213,7 +213,7 @@ def shift_rows(out: Floats, image: Floats, places: Floats, rows: Places, high: f
     """
     last = image.shape[0] - 1
     for y in rows:
-        first, (a, b, c, d) = _taps(places[y], image.shape[0])
+        first, (a, b, c, d) = _taps(float(places[y]), image.shape[0])
         above, at = min(max(first - 1, 0), last), min(max(first, 0), last)
         below, second = min(first + 1, last), min(first + 2, last)
         for x in range(out.shape[1]):

@@ -161,7 +161,7 @@ class Sensor:
     def sequence(
         self, frames: str | Path | Iterable[npt.ArrayLike], mode: str = "edge", **settings: Unpack[Settings]
     ) -> Iterator[Run]:
-        """Frames one after another through one running simulation: registers and state of the chip are kept between them.
+        """Frames one after another through one running simulation: the chip keeps registers and state between them.
 
             for run in sensor.sequence("clip.gif", threshold=8):
                 show(run.samples)
@@ -174,8 +174,8 @@ class Sensor:
 
         Raises ParameterError, ToolError.
         """
-        if settings.get("depth") is not None:
-            raise ParameterError(f"depth = {str(settings['depth'])!r}: must be left out, a sequence has no depth file")
+        if (depth := settings.get("depth")) is not None:
+            raise ParameterError(f"depth = {str(depth)!r}: must be left out, a sequence has no depth file")
         asked = self._request("sequence", mode, settings)
         clip = open_clip(frames, Sampling.of(self.parameters))
         asked = replace(asked, scene=clip.name)

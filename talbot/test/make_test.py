@@ -11,7 +11,11 @@ from base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments, variables
 
-READY = [word for name in ("ready", "video-ready", "tests-ready", "layout-ready", "lint-ready") for word in ("-o", f".venv/.{name}")]
+READY = [
+    word
+    for name in ("ready", "video-ready", "tests-ready", "layout-ready", "lint-ready")
+    for word in ("-o", f".venv/.{name}")
+]
 
 
 def make(*words, **environment):
