@@ -29,14 +29,13 @@ Slacks = Mapping[End, float]  # ns
 class Plan:
     """A placed netlist while it is repaired.
 
-    instances, places: of all cells but fill, by name. widths: of the library's cells, um. row_um: their height. rows:
-    what is free. ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port.
+    instances, places: of all cells but fill, by name. widths: of the library's cells, um. rows: what is free.
+    ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port.
     """
 
     instances: dict[str, Instance]
     places: dict[str, Place]
     widths: Mapping[str, float]
-    row_um: float
     rows: Rows
     ports: Mapping[str, Point]
     femtofarad_um: float
@@ -48,7 +47,7 @@ class Plan:
         x, y, orientation = self.places[name]
         across, up = MIRRORED[orientation]
         width = self.widths.get(self.instances[name].cell)
-        return (x, y) if width is None else (x + across * width / 2, y + up * self.row_um / 2)
+        return (x, y) if width is None else (x + across * width / 2, y + up * self.rows.height / 2)
 
     def put(self, instance: Instance, at: Point) -> bool:
         """Place a new ``instance`` near ``at``; False where there is no room."""

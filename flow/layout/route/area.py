@@ -4,15 +4,18 @@ from typing import Any
 
 from base.gds import db
 
-from ..geometry.boxes import Box, on_grid
+from ..geometry.boxes import Box, corners, on_grid
 from .route import Route
 from .view import NetView
 
 ROUNDS = 4  # in which narrow places and gaps of a net are filled
 
 
-def meet_area(view: NetView, route: Route) -> bool:
-    """Whether every piece of metal has the least area, or was given it; gaps within the net are closed."""
+def meet_area(view: NetView, route: Route) -> list[tuple[int, Box]]:
+    """Give every piece of metal the least area and close gaps within the net.
+
+    Return (level, box) of what there is no room for; none if all is done.
+    """
     pins = [box for pin in view.board.pins[view.board.nets[view.net]] for box in pin]
     for level, boxes in route.segments.items():
         layer = view.rules.layers[level]
@@ -22,7 +25,7 @@ def meet_area(view: NetView, route: Route) -> bool:
             if lack > 0:
                 made = _longer(view, level, polygon.bbox(), lack)
                 if made is None:
-                    return False
+                    return [(level, corners(polygon.bbox()))]
                 boxes.append(made)
         region = _merged(boxes)
         gap = layer.space // 2
@@ -33,12 +36,11 @@ def meet_area(view: NetView, route: Route) -> bool:
             pairs = (*merged.space_check(layer.space).each(), *merged.width_check(layer.width).each())
             more = [_at_least(pair.bbox(), layer.width) for pair in pairs]
             if blocked := [(level, box) for box in more if not view.clear(level, box)]:
-                view.board.add_history(blocked)  # the next try goes elsewhere
-                return False
+                return blocked
             boxes += more
             if not more:
                 break
-    return True
+    return []
 
 
 def _merged(boxes: list[Box]) -> "db.Region":

@@ -28,7 +28,7 @@ class Diodes:
     ) -> None:  # fmt: skip
         self.masters, self.library, self.tech = masters, library, tech
         self.widths = {cell: round(area / tech.row_um, 4) for cell, area in areas.items()}
-        self.rows = free_rows(placed, self.widths, tech.fill_cells, tech.site_um)
+        self.rows = free_rows(placed, self.widths, tech.fill_cells, tech.site_um, tech.row_um)
         self.nets: list[str] = []
         self.fill = Counter[str]()
 
@@ -57,7 +57,7 @@ class Diodes:
     def _draw(self, top: "db.Cell", place: Place) -> None:
         """Let there be a diode at ``place``, and fill beside it where there was some in its way."""
         (x, y, orientation), fill, width = place, self.tech.fill_cells, self.widths[DIODE]
-        rest, row = Rows(self.tech.site_um), db.DBox(x, y, x + width, y).to_itype(top.layout().dbu)
+        rest, row = Rows(self.tech.site_um, self.tech.row_um), db.DBox(x, y, x + width, y).to_itype(top.layout().dbu)
         turn = transformation(top.layout(), *place).rot
         for instance in list(top.each_touching_inst(row)):
             cell, at = instance.cell, instance.dtrans.disp

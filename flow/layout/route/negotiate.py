@@ -118,7 +118,7 @@ def route(board: Board, nets: Collection[str], tech: CoriolisPlatform, diodes: D
         if not wanted:
             break
         before = dict(state.routes)
-        for net in {*near, *(net for net in relieved if board.jumpers[net])}:
+        for net in near:
             state.legs.pop(net, None)
         board.add_history((level, box) for level, *edges in found.spacing for box in edges)  # else the same again
         negotiate(board, wanted, state)

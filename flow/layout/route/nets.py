@@ -64,11 +64,13 @@ def route_net(board: Board, net: str, hasty: bool = False, kept: Sequence[Leg] =
 
 
 def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | None:
+    if not view.board.jumpers[net] <= _jumped(view, net, kept):
+        kept = ()  # they might be in a jumper's way
     for leg in kept:
         view.hold(leg.places)
     kept = [*kept, *_diodes(view, net, kept)]
     kept = [*kept, *_jumpers(view, net, kept)]
-    ends, found = _ends(view, net, kept), []
+    ends, found, lacking = _ends(view, net, kept), [], []
     for margin in (*MARGINS_NM, DETOUR_NM) if all(end.ways for end in ends) else ():
         if found and margin == DETOUR_NM:
             break
@@ -76,16 +78,25 @@ def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | 
         for leg in kept:
             view.hold(leg.places)
             if leg.pins & view.board.jumpers[net]:
-                view.avoid(leg.route)
+                view.avoid(_below(leg.route, len(view.rules.layers) - 1))
+        view.avoid(lacking)
         legs = _connected(view, ends, margin)
         if legs is None:
             continue
         route = Route.of(leg.route for leg in (*kept, *legs))
-        if meet_area(view, route):
+        if lack := meet_area(view, route):
+            view.board.add_history(lack)
+            lacking += lack
+        else:
             found.append(Found(route, (*kept, *legs), *view.conflicts(route)))
             if hasty or not found[-1].evicted:
                 break
     return min(found, key=lambda one: len(one.evicted), default=None)
+
+
+def _below(route: Route, top: int) -> list[tuple[int, Box]]:
+    """(level, box) of the segments below level ``top``."""
+    return [(level, box) for level, made in route.segments.items() if level < top for box in made]
 
 
 def clear_of(legs: Sequence[Leg], route: Route, board: Board) -> list[Leg]:
@@ -115,9 +126,9 @@ def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
 def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
     """Legs from gates to the highest layer and along it: until that is made, little metal is joined to them."""
     top, made = len(view.rules.layers) - 1, list[Leg]()
-    for number in view.board.jumpers[net]:
+    for number in view.board.jumpers[net] - _jumped(view, net, kept):
         ways = _ways(view, net, number, kept)
-        if not ways or any(number in leg.pins and len(_open(view, net, leg)) for leg in kept):
+        if not ways:
             continue
         grid, (_, i, j), reach = view.board.grid, next(iter(ways)), range(-REACH, REACH + 1, 2)
         x, y = grid.at(i, j)
@@ -140,6 +151,11 @@ def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
             made.append(Leg(np.array([*path, *run[1:]]), route, frozenset((number,))))
             view.hold(made[-1].places)
     return made
+
+
+def _jumped(view: NetView, net: str, kept: Sequence[Leg]) -> set[int]:
+    """Pins that have a jumper."""
+    return {pin for leg in kept for pin in leg.pins & view.board.jumpers[net] if len(_open(view, net, leg))}
 
 
 def _ways(view: NetView, net: str, number: int, legs: Sequence[Leg]) -> Mapping[Place, Route]:

@@ -1,5 +1,7 @@
 """The board as one net sees it: what is clear to it, and whom it is too near to."""
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ..geometry.boxes import Box, Boxes
@@ -30,11 +32,9 @@ class NetView:
         self.vias.append(low[places[:-1, 0] != places[1:, 0]])
         self.board.grid.keep_apart(self.vias[-1], OWN)
 
-    def avoid(self, route: Route) -> None:
-        """Let a part of this net below the highest layer be in the way of its other parts, until `release`."""
-        top = len(self.rules.layers) - 1
-        boxes = [(level, *box) for level, made in route.segments.items() if level != top for box in made]
-        self.avoided.append(as_rows(boxes, self.net))
+    def avoid(self, places: Iterable[tuple[int, Box]]) -> None:
+        """Let this net keep away from ``places`` (level, box), until `release`."""
+        self.avoided.append(as_rows([(level, *box) for level, box in places], self.net))
         self.board.grid.use(self.avoided[-1], AVOIDED)
 
     def release(self) -> None:

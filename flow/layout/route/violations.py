@@ -17,7 +17,8 @@ from .rules import RoutingRules
 class Violations:
     """Violations of a layout.
 
-    spacing: (level, box, box) of two edges (nm) that are too near, of metal or of the vias below it.
+    spacing: (level, box, box) of two edges (nm) that are too near, of metal or of the vias below it, or of vias that
+    overlap.
     antennas: (level, polygon as KLayout writes it, gates on it in nm).
     Levels are those of RoutingRules.layers.
     """
@@ -57,6 +58,8 @@ def find(
         found = metal.space_check(layer.space), metal.width_check(layer.width), cuts.space_check(via.space)
         for pair in (pair for pairs in found for pair in pairs.each()):
             spacing.append((level, corners(pair.first.bbox()), corners(pair.second.bbox())))
+        for joined in cuts.merged().with_area(via.size**2, True).each():
+            spacing.append((level, *[corners(joined.bbox())] * 2))
     return Violations(tuple(spacing), tuple(charged(layout, top, tech, levels)))
 
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+from flow.layout.geometry.boxes import corners
 from flow.layout.geometry.instances import insert
 from flow.layout.geometry.test.gate import gate
 from flow.layout.netlist.netlist import Instance, Netlist, with_diodes
@@ -150,6 +151,24 @@ def test_a_pin_behind_a_wall_is_given_up():
     assert alone(pins, layout) == (None, None)
 
 
+def test_without_room_for_the_least_area_the_way_is_another():
+    """In a pen with two ways up through m3, the nearer too narrow for a piece of that layer."""
+    layout, top = empty()
+    dx, dy = RULES.step
+    at = db.Point(70 * dx, 60 * dy), db.Point(30_000, 30_000)
+    pins = [pin(layout, top, point.x, point.y) for point in at]
+    inside, outside = db.Box(5_000, 5_000, 15_000, 15_000), db.Box(4_600, 4_600, 15_400, 15_400)
+    narrow, wide = db.Box(1_000, 1_000).moved(at[0].x, at[0].y), db.Box(4_000, 4_000).moved(8_000, 8_000)
+    holes = {1: [inside], 2: [inside], 3: [narrow, wide]}
+    for level, boxes in holes.items():
+        for part in (db.Region(outside) - db.Region(boxes)).decompose_trapezoids():
+            draw(layout, top, level, *corners(part.bbox()))
+    layout, _ = alone(pins, layout)
+    assert layout is not None
+    assert len(set(nets(layout, layout.top_cell(), [(0, point.x, point.y) for point in at]))) == 1
+    assert broken(layout, layout.top_cell()) == {}
+
+
 def test_a_net_without_a_path_is_ripped_up():
     layout, top = empty()
     boxes = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
@@ -252,6 +271,20 @@ def test_nets_that_are_too_near_or_have_an_antenna():
         assert find(board.part([net]), RULES, TECH).nets(board, [net]) == whole.nets(board, [net])
     parts = [find(board.drawn(), RULES, TECH, levels) for levels in split_levels(RULES, 2)]
     assert sum(parts, Violations()).nets(board) == (["w1"], [("w0", own)])
+
+
+@pytest.mark.parametrize("off", [(0, 30), (170, 5), (145, 145), (200, 100)])
+def test_vias_that_overlap_or_are_too_near(off):
+    """Of one net, whose metal covers both; a via twice at one place is one."""
+    layout, top = empty()
+    (dx, dy), via = off, RULES.vias[2]
+    draw(layout, top, 2, 4_000, 4_000, 6_000, 6_000)
+    draw(layout, top, 3, 4_000, 4_000, 6_000, 6_000)
+    for x, y in ((4_500, 4_500), (4_500, 4_500), (4_500 + dx, 4_500 + dy)):
+        top.shapes(layout.layer(via.layer, via.datatype)).insert(db.Box(x, y, x + via.size, y + via.size))
+    box = ["m2", 4.0, 4.0, 6.0, 6.0], ["m3", 4.0, 4.0, 6.0, 6.0]
+    board = Board(layout, RULES, {"w1": {"segments": list(box), "vias": [], "pins": []}})
+    assert find(board.drawn(), RULES, TECH).nets(board) == (["w1"], [])
 
 
 def library():
@@ -360,6 +393,25 @@ def test_what_is_too_long_for_a_diode_gets_a_jumper():
     assert find(drawn, RULES, TECH) == Violations()
     assert broken(drawn, drawn.top_cell()) == {}
     assert len(set(nets(drawn, drawn.top_cell(), [(1, 5_500, 4_350), (0, 350_030, 5_000), (0, 9_620, 4_000)]))) == 1
+
+
+def test_a_jumper_is_not_made_past_legs_that_stay():
+    """A trunk beside a gate: a jumper would have to go round it, and may not be able to."""
+    layout, top = empty()
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
+    top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(170_000, 5_000))))
+    ends = [um(pin(layout, top, x, 4_300)) for x in (5_015, 350_030)]
+    others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
+    own = {"segments": [], "vias": [], "pins": [*ends, [["m1", 170.3, 4.2, 170.7, 4.5]]]}
+    trunk = route_net(Board(layout.dup(), RULES, {"w1": own | {"pins": ends}}), "w1").legs
+    board = Board(layout, RULES, {"w1": own} | others)
+    board.jumpers["w1"].add(2)
+    found = route_net(board, "w1", kept=trunk)
+    assert found.legs[0].pins == {2}  # the jumper is the first
+    board.put("w1", found.route)
+    drawn = board.drawn()
+    assert find(drawn, RULES, TECH) == Violations()
+    assert len(set(nets(drawn, drawn.top_cell(), [(1, 170_500, 4_350), (0, 5_015, 4_300), (0, 350_030, 4_300)]))) == 1
 
 
 def test_vias_of_a_net_keep_apart():
