@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from base.animation import Animation
+from talbot.base.animation import Animation
 
 
 def test_what_is_written_is_read_back(tmp_path):

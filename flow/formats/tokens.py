@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from models.digital.stream.payload import encode_row
+from talbot.models.digital.stream.payload import encode_row
 
 from .codes import Codes
 

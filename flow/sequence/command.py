@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
+from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -20,8 +20,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Simulate the sequence and print its figures; 1 where the chip and the golden model differ."""
-    from base.progress import Frames
-    from models.scene import Sampling, open_clip
+    from talbot.base.progress import Frames
+    from talbot.models.scene import Sampling, open_clip
 
     from .outputs import run
 

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from flow.frame.figures import energy_of, mismatches
-from flow.frame.quality import decoding_error, ideal_samples, snr
-from flow.frame.result import FrameResult
+from talbot.flow.frame.figures import energy_of, mismatches
+from talbot.flow.frame.quality import decoding_error, ideal_samples, snr
+from talbot.flow.frame.result import FrameResult
 
 
 def of_frame(result: FrameResult) -> dict[str, Any]:

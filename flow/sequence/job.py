@@ -12,17 +12,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flow.frame import hardware
-from flow.frame.job import Clock, expose, trimmed
-from flow.frame.request import FrameRequest
-from flow.frame.result import Exposed, FrameResult
-from models.capture import Region, Views, choose_views
-from models.capture.views import SAFETY
-from models.chip import GoldenFrame, golden_frame
-from models.digital.stream import decode_stream
-from models.parameters import ParameterError
-from models.plan import Plan, plan
-from models.scene import Clip, Sampling, Scene, scene_of
+from talbot.flow.frame import hardware
+from talbot.flow.frame.job import Clock, expose, trimmed
+from talbot.flow.frame.request import FrameRequest
+from talbot.flow.frame.result import Exposed, FrameResult
+from talbot.models.capture import Region, Views, choose_views
+from talbot.models.capture.views import SAFETY
+from talbot.models.chip import GoldenFrame, golden_frame
+from talbot.models.digital.stream import decode_stream
+from talbot.models.parameters import ParameterError
+from talbot.models.plan import Plan, plan
+from talbot.models.scene import Clip, Sampling, Scene, scene_of
 
 NUMBERS = 1 << 16  # of the register frame_number
 

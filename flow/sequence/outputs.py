@@ -9,19 +9,19 @@ from typing import Any
 from markupsafe import Markup
 from PIL import Image, ImageDraw, ImageFont
 
-from base import page
-from base.animation import Animation
-from base.charts import curves, svg
-from base.files import check_folder, staged
-from base.progress import Frames
-from flow.frame import pictures
-from flow.frame.figures import camera_line, camera_of
-from flow.frame.job import Clock
-from flow.frame.report import Tile, decibels
-from flow.frame.request import FrameRequest
-from flow.frame.result import FrameResult
-from models.parameters import sensor_text
-from models.scene import Clip
+from talbot.base import page
+from talbot.base.animation import Animation
+from talbot.base.charts import curves, svg
+from talbot.base.files import check_folder, staged
+from talbot.base.progress import Frames
+from talbot.flow.frame import pictures
+from talbot.flow.frame.figures import camera_line, camera_of
+from talbot.flow.frame.job import Clock
+from talbot.flow.frame.report import Tile, decibels
+from talbot.flow.frame.request import FrameRequest
+from talbot.flow.frame.result import FrameResult
+from talbot.models.parameters import sensor_text
+from talbot.models.scene import Clip
 
 from .figures import of_all, of_frame
 from .job import results

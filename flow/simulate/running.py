@@ -12,7 +12,7 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from time import perf_counter
 
-from base.tools import ToolError, started
+from talbot.base.tools import ToolError, started
 
 from .frame import NO_FRAME_END, STOP, WAIT, FrameRun, simulator, transfers
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .light_field import LightField
 from .picture_file import frames_of, loaded, luminance_of, opened

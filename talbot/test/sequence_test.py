@@ -10,10 +10,10 @@ import pytest
 from PIL import Image
 
 import talbot
-from base.test.supervise_test import running, started
-from flow.sequence.outputs import NAMES
-from models.digital.stream import decode_file
+from talbot.base.test.supervise_test import running, started
 from talbot.commands import main
+from talbot.flow.sequence.outputs import NAMES
+from talbot.models.digital.stream import decode_file
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
 

@@ -4,10 +4,10 @@ import numpy as np
 from PIL import Image
 from skimage import data
 
-from base.progress import Frames
-from flow.frame.request import request
-from flow.sequence.outputs import rate_line, run
-from models.scene import Sampling, open_clip
+from talbot.base.progress import Frames
+from talbot.flow.frame.request import request
+from talbot.flow.sequence.outputs import rate_line, run
+from talbot.models.scene import Sampling, open_clip
 
 
 def pan(count, size=384):

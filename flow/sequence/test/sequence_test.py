@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from base.tools import ToolError
-from flow.frame import hardware
-from flow.frame.job import Clock, simulate_frame
-from flow.frame.request import request
-from flow.frame.test.frame_test import MODE_CASES, asked_of, exposure
-from flow.sequence.job import results
-from flow.simulate.build import Build
-from flow.simulate.icarus import icarus_program
-from flow.simulate.running import running
-from models.afe import write_converter
-from models.chip import front_end_of, golden_frame
-from models.digital.stream import decode_stream
-from models.parameters import ConverterParameters
-from models.scene import Sampling, open_clip
+from talbot.base.tools import ToolError
+from talbot.flow.frame import hardware
+from talbot.flow.frame.job import Clock, simulate_frame
+from talbot.flow.frame.request import request
+from talbot.flow.frame.test.frame_test import MODE_CASES, asked_of, exposure
+from talbot.flow.sequence.job import results
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.icarus import icarus_program
+from talbot.flow.simulate.running import running
+from talbot.models.afe import write_converter
+from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.stream import decode_stream
+from talbot.models.parameters import ConverterParameters
+from talbot.models.scene import Sampling, open_clip
 
 SIZE = {"rows": 13, "cols": 50, "lanes": 4}
 

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, TileParameters
+from talbot.models.parameters import ParameterError, TileParameters
 
 from .header import StreamHeader
 from .payload import base_of, encode_row, encode_rows, row_bytes_max

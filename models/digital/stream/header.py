@@ -8,8 +8,8 @@ from typing import NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.scan import Scan
-from models.parameters import (
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import (
     COLS_MAX,
     LANES,
     MODES,
@@ -22,7 +22,7 @@ from models.parameters import (
     check_choice,
     check_int,
 )
-from models.parameters.stream_format import CRC, FIELD_BYTES, HEADER_BYTES, HEADER_FIELDS, MAGIC, VERSION
+from talbot.models.parameters.stream_format import CRC, FIELD_BYTES, HEADER_BYTES, HEADER_FIELDS, MAGIC, VERSION
 
 from .crc import one_byte_errors
 

@@ -8,8 +8,8 @@ is accepted when its index is plausible and the row (or trailer) after it fits a
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ROWS_MAX
-from models.parameters.stream_format import COUNTED_BYTES
+from talbot.models.parameters import ROWS_MAX
+from talbot.models.parameters.stream_format import COUNTED_BYTES
 
 from .header import Layout
 from .payload import check_row, find_row, row_bytes_max, row_fits

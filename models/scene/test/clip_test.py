@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.parameters import ParameterError
-from models.scene import Sampling, load, open_clip, resample
+from talbot.models.parameters import ParameterError
+from talbot.models.scene import Sampling, load, open_clip, resample
 
 SAMPLING = Sampling(12, 18)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from skimage.data import stereo_motorcycle
 
-from models.scene import Sampling, Scene, load, resample, warp
-from models.scene.views import Pictured, Second, Shifted, view
+from talbot.models.scene import Sampling, Scene, load, resample, warp
+from talbot.models.scene.views import Pictured, Second, Shifted, view
 
 
 def _ramp(rows, cols):
