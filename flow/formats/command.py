@@ -17,7 +17,7 @@ from talbot.rtl.verilog import export_verilog
 
 from .codes import default_codes, load_codes
 from .measure import THRESHOLDS, growth, measure
-from .table import chart, markdown
+from .table import chart, markdown, page, tables
 from .tokens import FORMATS
 
 DEFAULT_THRESHOLD = 10
@@ -26,7 +26,7 @@ DEFAULT_THRESHOLD = 10
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot formats`."""
     out = RESULTS / "formats"
-    parser.add_argument("--out", type=Path, default=out, help="folder of formats.csv, formats.md and formats.png")
+    parser.add_argument("--out", type=Path, default=out, help="folder of formats.csv, .md and .png, and of the page")
     parser.add_argument("--codes", type=Path, help="npz with codes and ideal, both (rows, cols), in place of the scene")
     parser.add_argument("--document", type=Path, help="also put the tables between the marks of this Markdown file")
 
@@ -37,14 +37,17 @@ def run(options: Namespace) -> int:
     source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
     rows = measure(codes, ideal, THRESHOLDS, lambda every: tqdm(every, desc="threshold", disable=None))
     growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
-    text = markdown(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD, source)
+    found = tables(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD)
+    text = markdown(found, source)
     with staged(options.out) as part:
         write_csv(part / "formats.csv", rows)
         (part / "formats.md").write_text(text)
         save(chart(rows), part / "formats.png")
+        (part / "report.html").write_text(page(found, chart(rows), source))
     if options.document:
         insert(options.document, "formats", text.split("\n", 2)[2].strip() + "\n")
     print(text, end="")
+    print(f"look at {options.out / 'report.html'}", file=sys.stderr)
     return 0
 
 

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from talbot.base.files import check_folder, staged
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import FrontEnd, trim_codes, trim_gain
-from talbot.models.capture import Exposure, Region, Views, choose_views, currents, exposed, integrate
+from talbot.models.capture import Exposure, Region, Views, choose_views, exposed, integrate, moving_currents
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
@@ -70,10 +70,10 @@ def expose(
     front_end: of an earlier frame of the same chip; None: trimmed to a frame of a flat field. views: None: as many as
     the request says. number: of the frame in a sequence; each has temporal noise of its own.
     """
-    sensor, frame = request.sensor, request.frame
+    sensor, frame = request.lit, request.frame
     front_end = _numbered(front_end or trimmed(request), sensor, number)
-    views = views or choose_views(scene, sensor, frame.timing, request.views, read=todo.read)
-    pairs = currents(scene, sensor, todo, regions=views.regions)
+    views = views or choose_views(scene, sensor, frame.exposing, request.views, read=todo.read)
+    pairs = moving_currents(scene, sensor, todo, frame.exposing, regions=views.regions)
 
     def samples(noise: float) -> Values:
         exposure = _exposure(request, noise, number)
@@ -87,7 +87,7 @@ def expose(
 
 def trimmed(request: FrameRequest) -> FrontEnd:
     """The sensor's front end; its trims come from a frame of a flat field."""
-    return front_end_of(request.sensor, trim_codes(measured_gains(flat_field(request), request.sensor.tile)))
+    return front_end_of(request.lit, trim_codes(measured_gains(flat_field(request), request.lit.tile)))
 
 
 def _numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> FrontEnd:
@@ -103,15 +103,15 @@ def flat_field(request: FrameRequest) -> Values:
 
     One frame of the same chip with noise of its own, from which the trims are measured as on a bench.
     """
-    sensor, frame = request.sensor, request.frame
+    sensor, frame = request.lit, request.frame
     pair = integrate(load("flat:50", Sampling.of(sensor)), sensor, Region(1, np.ones(sensor.shape, bool)))[0]
-    exposure = replace(_exposure(request, request.noise), timing=replace(frame.timing, n_cm=0))
+    exposure = replace(_exposure(request, request.noise), timing=replace(frame.exposing, n_cm=0))
     return expose_pair(pair, exposure, tap=BENCH) - expose_pair(0 * pair, replace(exposure, noise=0.0))
 
 
 def _exposure(request: FrameRequest, noise: float, number: int = 0) -> Exposure:
-    sensor = request.sensor
-    return Exposure(sensor.electrical, request.frame.timing, sensor.chip.f_clk, noise, request.seed, number)
+    sensor = request.lit
+    return Exposure(sensor.electrical, request.frame.exposing, sensor.chip.f_clk, noise, request.seed, number)
 
 
 def read_out(

@@ -120,7 +120,7 @@ class _Chooser:
             return self._views
         strength = _gradients(scene)
         if self._views is None or strength > self._limit:
-            sensor, timing = self._request.sensor, self._request.frame.timing
+            sensor, timing = self._request.lit, self._request.frame.exposing
             found = choose_views(scene, sensor, timing, self._request.views, read=todo.read)
             if self._views is None or found.most >= self._views.most:
                 self._views = _everywhere(found)

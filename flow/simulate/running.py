@@ -70,9 +70,9 @@ class Running:
             self._read()
         line, _, self._got["activity"] = self._got["activity"].partition(b"\n")
         activity = json.loads(line)
-        cycles = activity.pop("cycles")
+        integrated, cycles = activity.pop("integrated"), activity.pop("cycles")
         stream, miso = self._taken("stream", activity["bytes"]), self._taken("miso", replies)
-        return FrameRun(stream, miso, activity, cycles, perf_counter() - start)
+        return FrameRun(stream, miso, activity, integrated, cycles, perf_counter() - start)
 
     def _taken(self, name: str, size: int) -> bytes:
         while len(self._got[name]) < size:

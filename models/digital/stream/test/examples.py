@@ -1,4 +1,4 @@
-"""The worked examples of docs/stream.md, written by the encoder: `python -m talbot.models.digital.stream.test.examples`."""
+"""The worked examples of docs/stream.md: `python -m talbot.models.digital.stream.test.examples` writes them."""
 
 import numpy as np
 
