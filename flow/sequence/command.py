@@ -43,12 +43,15 @@ def _with_scene(parser: ArgumentParser) -> None:
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
+    from talbot.flow.frame.figures import exposure_line
+
     from .outputs import rate_line, size_line
 
     print(
         f"{s['scene']}, {s['mode']} mode, {s['rows']} x {s['cols']}, {s['frames']} frames: "
         f"{s['frames_that_differ']} differ from the model"
     )
+    print(f"  {exposure_line(s)}")
     print(f"  {size_line(s)}")
     print(f"  {rate_line(s)}")
     print(f"  look at {folder / 'report.html'}")

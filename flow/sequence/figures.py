@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from talbot.flow.frame.figures import energy_of, mismatches
+from talbot.flow.frame.figures import energy_of, exposure_of, mismatches
 from talbot.flow.frame.quality import decoding_error, ideal_samples, snr
 from talbot.flow.frame.result import FrameResult
 
@@ -25,6 +25,7 @@ def of_frame(result: FrameResult) -> dict[str, Any]:
         "conversions_made": chip.status["conversions_made"],
         "conversions_left_out": chip.status["conversions_left_out"],
         "cycles": chip.status["cycles"],
+        "deviating_rows": exposure_of(result)["deviating_rows"],
         "snr_db": snr(error[:, -1:], signal[:, -1:]) if frame.phase else snr(error, signal),
         "energy_uj": [energy["total"], energy["total_high"]],
         "views": result.exposed.views.most,

@@ -6,18 +6,18 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup
 from PIL import Image, ImageDraw, ImageFont
 
 from talbot.base import page
 from talbot.base.animation import Animation
 from talbot.base.charts import curves, svg
 from talbot.base.files import check_folder, staged
+from talbot.base.page import Tile
 from talbot.base.progress import Frames
 from talbot.flow.frame import pictures
-from talbot.flow.frame.figures import camera_line, camera_of
+from talbot.flow.frame.figures import camera_line, camera_of, exposure_line, exposure_of
 from talbot.flow.frame.job import Clock
-from talbot.flow.frame.report import Tile, decibels
+from talbot.flow.frame.report import decibels
 from talbot.flow.frame.request import FrameRequest
 from talbot.flow.frame.result import FrameResult
 from talbot.models.parameters import sensor_text
@@ -28,7 +28,7 @@ from .job import results
 
 ANIMATIONS = {"edge": "edges.webp", "raw": "edges.webp", "image": "image.webp", "tof": "image.webp"}
 NAMES = ("stream.bin", "sensor.toml", "scene.png", "report.html", "summary.json", *ANIMATIONS.values())
-SCALE = 127.0  # codes of full colour: the same in all frames
+SCALE = 64.0  # codes of full colour: the same in all frames
 WIDTH = 384  # px of the animation at least
 STRIP = 20  # px of the line of figures below it
 
@@ -41,7 +41,7 @@ def run(
     arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
     """
     check_folder("out", request.folder)
-    clock, frames, last = Clock(), [], None
+    clock, frames, last, shown = Clock(), [], None, None
     with staged(request.folder, NAMES) as folder:
         name = ANIMATIONS[request.frame.mode]
         with (folder / "stream.bin").open("wb") as stream, Animation(folder / name) as animation:
@@ -49,7 +49,8 @@ def run(
                 with clock.step("figures"):
                     figures = of_frame(result)
                 with clock.step("pictures"):
-                    animation.add(picture(result, figures, f"{len(frames) + 1}/{clip.count or '-'}"), seconds)
+                    shown = picture(result, figures, f"{len(frames) + 1}/{clip.count or '-'}")
+                    animation.add(shown, seconds)
                 stream.write(result.stream)
                 if last is None:
                     _first(folder, result)
@@ -57,11 +58,11 @@ def run(
                 last = result
                 frames.append(figures)
                 progress.step()
-        if last is None:
+        if last is None or shown is None:
             raise AssertionError("no frame and no error")
         summary = _about(request, clip, last) | of_all(frames, last, clock.seconds)
         summary |= {"arguments": dict(arguments or {}), "each": frames}
-        (folder / "report.html").write_text(_page(summary, name))
+        (folder / "report.html").write_text(_page(summary, name, shown))
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     return summary
 
@@ -131,11 +132,12 @@ def _about(request: FrameRequest, clip: Clip, last: FrameResult) -> dict[str, An
         {"scene": clip.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
         | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": request.noise, "seed": request.seed}
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
-        | {"camera": camera}
+        | {"camera": camera, "exposure": exposure_of(last)}
     )
 
 
-def _page(s: Mapping[str, Any], animation: str) -> str:
+def _page(s: Mapping[str, Any], animation: str, last: Image.Image) -> str:
+    """The page; last: picture of the last frame, for its card in the index."""
     frames, right = s["each"], not s["frames_that_differ"]
     tiles = [
         Tile(
@@ -149,11 +151,44 @@ def _page(s: Mapping[str, Any], animation: str) -> str:
     ]
     size = [(i, frame["stream_bytes"], "") for i, frame in enumerate(frames)]
     noise = [(i, frame["snr_db"], "") for i, frame in enumerate(frames) if frame["snr_db"] is not None]
-    charts = [
+    drawn = [
         curves({"bytes": size}, "frame", "bytes", "Bytes of each frame"),
         curves({"SNR": noise}, "frame", "SNR (dB)", "SNR of each frame"),
     ]
-    template = Path(__file__).with_name("sequence.html")
-    charts = [Markup(svg(chart)) for chart in charts]
-    texts = {"camera": camera_line(dict(s)), "size": size_line(s), "rate": rate_line(s)}
-    return page.render(template, s=s, tiles=tiles, animation=animation, charts=charts, **texts)
+    lines = {"camera": camera_line(dict(s)), "exposure": exposure_line(dict(s))}
+    return page.render(
+        Path(__file__).with_name("sequence.html"),
+        f"{s['scene']}: {s['frames']} frames in {s['mode']} mode",
+        picture=last,
+        s=s,
+        tiles=tiles,
+        animation=animation,
+        charts=[svg(chart) for chart in drawn],
+        head=list(COLUMNS.values()),
+        rows=[[_cell(frame[name]) for name in COLUMNS] for frame in frames],
+        size=size_line(s),
+        rate=rate_line(s),
+        **lines,
+    )
+
+
+COLUMNS = {
+    "frame_number": "frame",
+    "stream_bytes": "bytes",
+    "stream_mismatches": "bytes that differ",
+    "conversions_made": "conversions",
+    "conversions_left_out": "left out",
+    "cycles": "cycles",
+    "deviating_rows": "rows that integrate longer",
+    "snr_db": "SNR (dB)",
+    "energy_uj": "energy (uJ)",
+    "views": "views",
+}
+
+
+def _cell(value: int | float | list[float] | None) -> str:
+    if isinstance(value, list):
+        return f"{value[0]:.1f} to {value[1]:.1f}"
+    if isinstance(value, float):
+        return f"{value:.1f}"
+    return "-" if value is None else f"{value:,}"

@@ -18,6 +18,7 @@ from talbot.flow.simulate.icarus import icarus_program
 from talbot.flow.simulate.running import running
 from talbot.models.afe import write_converter
 from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.exposure import integration_cycles
 from talbot.models.digital.stream import decode_stream
 from talbot.models.parameters import ConverterParameters
 from talbot.models.scene import Sampling, open_clip
@@ -107,11 +108,13 @@ def test_the_first_frame_is_that_of_a_picture_alone(tmp_path):
 @pytest.mark.parametrize("mode, phase", MODE_CASES)
 def test_a_sequence_in_every_mode(mode, phase):
     asked = request(**SIZE, mode=mode, phase=phase, threshold=3, frame_number=65534)
-    found = frames_of(asked, pictures(4))
+    found, timing = frames_of(asked, pictures(4)), asked.frame.exposing
     assert [frame.decoded.header.frame_number for frame in found] == [65534, 65535, 0, 1]
     for frame in found:
         assert frame.stream == frame.golden.stream and frame.decoded.complete
         np.testing.assert_array_equal(frame.decoded.samples, frame.golden.sent)
+        assert not frame.exposed.scene.speed and set(frame.chip.integrated) == {sum(integration_cycles(timing))}
+    assert (timing.exposure > 0) == (mode != "tof")
     assert found[0].chip.cycles > found[1].chip.cycles == found[3].chip.cycles  # one byte of frame_number is new
 
 
