@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Renew the locks (make locks): for Python 3.11 and later on every platform, versions and hashes of what runs (run), what
-# video files add (video), tests and verification (test), what cells and layouts add (layout), what `make lint` adds (lint); LibreLane has an
-# environment of its own. pdk.lock is kept by hand: one wheel whose dependencies are not wanted.
+# video files add (video), tests and verification (test), cells and layouts (layout), `make lint` (lint); LibreLane has
+# an environment of its own. pdk.lock is kept by hand: one wheel whose dependencies are not wanted.
 set -euo pipefail
 cd "$(dirname "$0")"
 compile() { uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-annotate --no-header "$@"; }
