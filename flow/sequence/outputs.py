@@ -155,7 +155,6 @@ def _page(s: Mapping[str, Any], animation: str, last: Image.Image) -> str:
         curves({"bytes": size}, "frame", "bytes", "Bytes of each frame"),
         curves({"SNR": noise}, "frame", "SNR (dB)", "SNR of each frame"),
     ]
-    lines = {"camera": camera_line(dict(s)), "exposure": exposure_line(dict(s))}
     return page.render(
         Path(__file__).with_name("sequence.html"),
         f"{s['scene']}: {s['frames']} frames in {s['mode']} mode",
@@ -168,7 +167,8 @@ def _page(s: Mapping[str, Any], animation: str, last: Image.Image) -> str:
         rows=[[_cell(frame[name]) for name in COLUMNS] for frame in frames],
         size=size_line(s),
         rate=rate_line(s),
-        **lines,
+        camera=camera_line(dict(s)),
+        exposure=exposure_line(dict(s)),
     )
 
 
