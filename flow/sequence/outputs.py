@@ -3,9 +3,11 @@
 import json
 from collections.abc import Mapping
 from dataclasses import replace
+from os import times
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from talbot.base import page
@@ -41,11 +43,12 @@ def run(
     arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
     """
     check_folder("out", request.folder)
-    clock, frames, last, shown = Clock(), [], None, None
+    clock, frames, last, shown, began = Clock(), [], None, None, None
     with staged(request.folder, NAMES) as folder:
         name = ANIMATIONS[request.frame.mode]
         with (folder / "stream.bin").open("wb") as stream, Animation(folder / name) as animation:
             for result, seconds in results(request, clip, clock, progress.note):
+                began = began or times()
                 with clock.step("figures"):
                     figures = of_frame(result)
                 with clock.step("pictures"):
@@ -58,9 +61,11 @@ def run(
                 last = result
                 frames.append(figures)
                 progress.step()
-        if last is None or shown is None:
+        if last is None or shown is None or began is None:
             raise AssertionError("no frame and no error")
+        spent = np.subtract(times(), began)[:4].tolist()  # the simulator's are counted at its end: all frames
         summary = _about(request, clip, last) | of_all(frames, last, clock.seconds)
+        summary |= {"processor_s": {"python": sum(spent[:2]), "simulator": sum(spent[2:])}}
         summary |= {"arguments": dict(arguments or {}), "each": frames}
         (folder / "report.html").write_text(_page(summary, name, shown))
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
@@ -103,9 +108,13 @@ def rate_line(s: Mapping[str, Any]) -> str:
     """Frames a second and where the time of a frame goes, in ms; the simulator's runs beside the rest."""
     parts = {name: 1e3 * s["wall_s"].get(name, 0.0) / s["frames"] for name in STEPS}
     text = ", ".join(f"{STEPS[name]} {ms:.1f}" for name, ms in parts.items())
+    python = 1e3 * s["processor_s"]["python"] / max(s["frames"] - 1, 1)  # since the first was there
+    simulator = 1e3 * s["processor_s"]["simulator"] / s["frames"]
+    clock = f"{s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s"
     return (
         f"{s['frames_per_s']:.1f} frames/s once set up ({s['frames_per_s_in_all']:.1f} in all); ms a frame: {text}; "
-        f"beside them the simulator {1e3 * s['rtl_s'] / s['frames']:.1f}, {s['rtl_cycles_per_s'] / 1e6:.1f} M cycles/s"
+        f"beside them the simulator {1e3 * s['rtl_s'] / s['frames']:.1f}, {clock}; "
+        f"processor time: Python {python:.1f}, simulator {simulator:.1f}"
     )
 
 
@@ -146,7 +155,7 @@ def _page(s: Mapping[str, Any], animation: str, last: Image.Image) -> str:
             "good" if right else "bad",
         ),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
-        Tile(decibels(s["snr_db_mean"]), "SNR of the decoded samples, mean"),
+        Tile(decibels(s["snr_db_mean"]), "SNR of the decoded samples, mean (nothing sent: 0 dB)"),
         Tile(f"{s['frames_per_s']:.1f} /s", "frames simulated once set up"),
     ]
     size = [(i, frame["stream_bytes"], "") for i, frame in enumerate(frames)]
