@@ -39,7 +39,7 @@ class FieldPrior:
     """
 
     level: float = 0.5
-    contrast: float = 0.1
+    contrast: float = 0.25
     length: float = 30.0
     noise: float = 0.006
     far: float = -2.5
