@@ -8,6 +8,8 @@ from talbot.base.progress import Steps
 from talbot.flow.frame import arguments as text
 from talbot.models.parameters import STANDARD, read_sensor
 
+QUIET = 0.5  # of the default noise: what rounding to codes leaves without any other
+
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot lightfield`: texts, checked by `run`."""
@@ -38,7 +40,9 @@ def run(options: Namespace) -> int:
         if getattr(options, name) is not None:
             numbers[name] = text.integer(name, getattr(options, name), 1, high)
     far = text.real("far", options.far, -20, 20)
+    noise = text.real("noise", options.noise, 0, 100)
     prior = FieldPrior(
+        noise=FieldPrior.noise * max(noise, QUIET),
         far=far,
         near=text.real("near", options.near, far, 20),
         disparities=text.integer("disparities", options.disparities, 1, 500),
@@ -49,7 +53,7 @@ def run(options: Namespace) -> int:
         sensor=read_sensor(options.sensor) if options.sensor else STANDARD,
         converter=None if options.sensor else "typical",
         mode="raw",
-        noise=text.real("noise", options.noise, 0, 100),
+        noise=noise,
         seed=text.integer("seed", options.seed, 0, 2**32 - 1),
         out=options.out or Path("build/lightfield") / Path(options.scene).stem,
         **numbers,

@@ -12,11 +12,10 @@ from talbot.flow.frame import pictures
 from talbot.flow.frame.report import Views, decibels
 from talbot.models.reconstruct.refocus import refocus
 
-from .job import SURE, Fields, depth_map
+from .fields import BEST, SURE, Fields, depth_map
 
 Values = npt.NDArray[np.floating]
 NAMES = ("lightfield.html", "summary.json", "lightfield.npz", "views.webp")
-BEST, LINEAR = "mixture", "linear"
 FRAME_MS = 90  # of the moving picture
 VIEW = 256  # px, width of a view on the page at most
 SHEET = 1600  # px, width of all views at most
@@ -24,7 +23,7 @@ SHEET = 1600  # px, width of all views at most
 
 def write(folder: Path, fields: Fields) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
-    best = fields.found[BEST]
+    best = fields.best
     np.savez(folder / "lightfield.npz", light_field=best.light_field, disparity=best.disparity, spread=best.spread)
     top = _top(fields.truth)
     _moving(folder / "views.webp", best.light_field, top)
@@ -49,19 +48,14 @@ def write(folder: Path, fields: Fields) -> None:
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
     right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
-    linear, best = s["methods"][LINEAR], s["methods"][BEST]
+    linear, best = s["methods"]["linear"], s["methods"][BEST]
+    free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
-        Tile(
-            f"{decibels(best['psnr_db'])}",
-            f"mixture (sum image copied: {decibels(s['baselines']['sum_image_psnr_db'])})",
-        ),
-        Tile(f"{decibels(linear['psnr_db'])}", f"linear, {linear['seconds']:.2f} s a frame"),
+        Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
+        Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
         Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
         Tile("byte for byte" if right else "differs", "chip against golden model", "good" if right else "bad"),
-        Tile(
-            number(s["disparity_median_px"]),
-            f"px per view step, median error of disparity (of 1 for all, RMS {number(s['disparity_rms_constant_px'])})",
-        ),
+        Tile(number(s["disparity_rms_px"]), f"px per view step, error of disparity RMS (one for all: {constant})"),
     ]
 
 
@@ -72,14 +66,10 @@ def table(s: dict[str, Any]) -> list[tuple[str, ...]]:
         rows.append((name, decibels(s["baselines"][key]), "", "", "0", "", "", "", ""))
     for name, m in s["methods"].items():
         note = "" if m["gain_db"] is None or m["gain_db"] > 0 else ": no better than the sum image"
-        figures = (
-            decibels(m["psnr_db"]),
-            decibels(m["gain_db"]),
-            *map(number, (m["ssim"], m["slope"], m["correlation"])),
-        )
-        rows.append(
-            (name + note, *figures, decibels(m["psnr_db_float"]), f"{m['seconds']:.2f}", f"{m['seconds_once']:.1f}")
-        )
+        shape = (number(m[key]) for key in ("ssim", "slope", "correlation"))
+        times = f"{m['seconds']:.2f}", f"{m['seconds_once']:.1f}"
+        figures = decibels(m["psnr_db"]), decibels(m["gain_db"]), *shape, decibels(m["psnr_db_float"]), *times
+        rows.append((name + note, *figures))
     return rows
 
 
@@ -100,8 +90,7 @@ def _top(values: Values) -> float:
 
 def _depth(fields: Fields) -> list[Picture]:
     """True and found disparity, gray where it is not sure, and depth."""
-    best, scene = fields.found[BEST], fields.result.exposed.scene
-    assert best.disparity is not None and best.spread is not None
+    best, scene = fields.best, fields.result.exposed.scene
     found = np.where(best.spread <= SURE, best.disparity, np.nan)
     known = best.disparity if scene.disparity is None else np.asarray(scene.disparity, float)
     low, high = float(known.min()), float(known.max())
@@ -120,22 +109,17 @@ def _depth(fields: Fields) -> list[Picture]:
         near, far = float(scene.depth.min()), float(scene.depth.max()) + 1e-3
         caption = f"depth: {100 * s['depth_rms_m']:.3g} cm RMS of {100 * s['range_m']:.3g} cm"
         caption += f" (one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm)"
-        out.append(
-            Picture(
-                "depth", "", caption, pictures.depth(depth, near, far), Scale(pictures.depth_colours(), near, far, "m")
-            )
-        )
+        scale = Scale(pictures.depth_colours(), near, far, "m")
+        out.append(Picture("depth", "", caption, pictures.depth(depth, near, far), scale))
     return out
 
 
 def _refocused(fields: Fields, top: float) -> list[Picture]:
     """The middle view, and pictures focused far, at the focal plane and near."""
-    best = fields.found[BEST]
-    assert best.disparity is not None
+    best = fields.best
     middle = len(best.light_field) // 2
-    out = [
-        Picture("all", "", "all in focus: the middle view", pictures.gray(best.light_field[middle, middle], high=top))
-    ]
+    image = pictures.gray(best.light_field[middle, middle], high=top)
+    out = [Picture("all", "", "all in focus: the middle view", image)]
     ends = np.quantile(best.disparity, (0.05, 0.5, 0.95))
     for name, disparity in zip(("far", "middle", "near"), ends, strict=True):
         image = refocus(best.light_field, float(disparity))

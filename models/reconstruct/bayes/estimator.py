@@ -25,6 +25,7 @@ from .windows import Axis, Group, even
 
 Floats = npt.NDArray[np.floating]
 UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
+PLAIN = 2.0  # times the noise's variance: windows that differ less from a uniform one show no disparity
 FLOOR = 0.05  # of a whitened sample's variance, below which windows count as equally well explained
 
 
@@ -166,17 +167,39 @@ class FieldEstimator:
         """
         turned = self._turned(pair)
         groups = [(d, a, self._samples(turned, d, a)) for d, a in self._groups()]
+        grid, (level, plain) = self.prior.grid, self._uniform(groups)
         chance = self._probability(np.stack([self._score(c, groups) for c in self.components]))
-        grid = self.prior.grid
+        chance[:, plain] = 1 / len(grid)
         mean = np.tensordot(grid, chance, 1)
         spread = np.sqrt(np.maximum(np.tensordot(grid**2, chance, 1) - mean**2, 0))
         down, across = self.y.spread(), self.x.spread()
-        out = np.zeros((self.views, self.views, *self.shape), np.float32)
+        chance[:, plain] = 0  # no disparity is needed: all views are equal
+        flat = (down @ (plain * level) @ across.T).astype(np.float32)
+        out = np.tile(flat, (self.views, self.views, 1, 1))
         for part, component in zip(chance, self.components, strict=True):
             near = maximum_filter(part, 3) > 0  # each pixel is between the middles of at most 2 x 2 blocks
             if near.any():
                 out += self._estimate(component, groups, near) * (down @ part @ across.T).astype(np.float32)
         return Estimate(out, *((down @ values @ across.T).astype(np.float32) for values in (mean, spread)))
+
+    def _uniform(
+        self, groups: Sequence[tuple[Group, Group, Floats]]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
+        """Radiance of the uniform scene that is nearest to each window, and whether the noise explains the rest.
+
+        Both (block rows, block cols).
+        """
+        level = np.zeros((len(self.y.blocks), len(self.x.blocks)))
+        plain = np.zeros(level.shape, bool)
+        totals = self.covariances.weights.sum((1, 2))
+        for down, across, samples in groups:
+            white = totals[self._diodes(down, across)[2]].astype(np.float32)
+            found = white @ samples / (white @ white)
+            rest = np.square(samples - white[:, None] * found).mean(0)
+            place = down.blocks, across.blocks
+            level[place] = found.reshape(level[place].shape)
+            plain[place] = (rest < PLAIN * self.prior.noise**2).reshape(level[place].shape)
+        return level, plain
 
     def _score(self, component: Component, groups: Sequence[tuple[Group, Group, Floats]]) -> Floats:
         """How badly each window fits to a disparity: -2 log p(differences | sums), (block rows, block cols).
