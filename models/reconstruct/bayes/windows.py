@@ -100,6 +100,17 @@ class Axis:
 
 
 def even(places: npt.NDArray[np.int64]) -> slice:
-    """The slice of evenly spaced places."""
+    """Make the slice of some places.
+
+    Parameters
+    ----------
+    places : int64 (n,)
+        At least one, evenly spaced, rising.
+
+    Returns
+    -------
+    slice
+        Of these places.
+    """
     step = int(places[1] - places[0]) if len(places) > 1 else 1
     return slice(int(places[0]), int(places[-1]) + 1, step)
