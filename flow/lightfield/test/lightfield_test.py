@@ -45,7 +45,8 @@ def test_files(done):
     assert {path.name for path in folder.iterdir()} == {*page.NAMES}
     with np.load(folder / "lightfield.npz") as found:
         assert found["light_field"].shape == (5, 5, 40, 48) and found["disparity"].shape == (40, 48)
-    assert Image.open(folder / "views.webp").n_frames == 16
+    with Image.open(folder / "views.webp") as moving:
+        assert moving.n_frames == 16
     text = (folder / "lightfield.html").read_text()
     assert f"{s['methods']['mixture']['psnr_db']:.1f} dB" in text and "direct: no better than the sum image" in text
 
