@@ -74,6 +74,10 @@ sequence: $(READY) $(if $(VIDEO),$(VIDEO_READY))  ## SCENE=clip.gif, a folder of
 sensor: $(READY)  ## the standard sensor as a file to start from: make sensor OUT=sensor.toml, then make sim SENSOR=sensor.toml
 	@$(talbot) sensor
 
+.PHONY: lightfield
+lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth, beside free baselines: build/lightfield/<scene>/ (SCENE=)
+	@$(talbot) lightfield
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)
