@@ -25,8 +25,6 @@ NAMES = (
     *("stream.bin", "decoded.npz", "sensor.toml", "report.html", "summary.json", "waves.vcd"),
     *(f"{name}.png" for name in PICTURES),
 )
-VIEW = 256  # px, width of a view on the page at most
-SHEET = 1600  # px, width of all views on the page at most
 
 
 def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
@@ -51,7 +49,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
 def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     """The single pictures of the mode."""
     frame, golden, decoded, scene = result.request.frame, result.golden, result.decoded, result.exposed.scene
-    out = [_gray("scene", "the scene, centre view", scene.image, 0.0, _top(scene.image))]
+    out = [_gray("scene", "the scene, centre view", scene.image, 0.0, pictures.brightest(scene.image))]
     samples = decoded.samples.astype(float)
     converted = "which pixels were converted (yellow), unread (light)"
     if frame.mode == "edge":
@@ -65,11 +63,11 @@ def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     elif frame.mode == "tof":
         strength = result.echo[1]
         caption = f"2-D image, amplitude of the modulated light: {against(summary)}"
-        out.append(_gray("image", caption, *_within(result, strength, 0.0, _top(strength)), "codes"))
+        out.append(_gray("image", caption, *_within(result, strength, 0.0, pictures.brightest(strength)), "codes"))
         out.append(_depth(result, summary))
     else:
         caption = f"2-D image, the sum of each pair: {against(summary)}"
-        out.append(_gray("image", caption, *_within(result, result.image, 0.0, _top(result.image))))
+        out.append(_gray("image", caption, *_within(result, result.image, 0.0, pictures.brightest(result.image))))
     decisions = pictures.decisions(golden.read, np.any(golden.converted, axis=2))
     return [*out, Picture("conversions", "", converted, decisions)]
 
@@ -128,10 +126,6 @@ def _within(result: GoldenResult, image: Values, low: float, high: float) -> tup
     return out, low, high
 
 
-def _top(values: npt.NDArray[np.floating]) -> float:
-    return max(float(np.quantile(values, 0.999)), 1e-6)
-
-
 def _sheets(result: FrameResult) -> list[Picture]:
     """The contact sheets of the mode."""
     sensor, frame = result.request.sensor, result.request.frame
@@ -161,18 +155,15 @@ def _views(fields: list[tuple[str, Values]]) -> list[Views]:
     """The fields for the slider, and the error of the second."""
     if not fields:
         return []
-    columns, top = len(fields[0][1]), _top(fields[0][1])
-    width = min(VIEW, SHEET // columns)
-    out = []
-    for caption, field in fields:
-        views = [[pictures.gray(view, high=top) for view in row] for row in field]
-        out.append(Views(caption, columns, pictures.sprite(views, width), pictures.gray_scale(0.0, top, "")))
+    top = pictures.brightest(fields[0][1])
+    scaled = pictures.gray_scale(0.0, top, "")
+    out = [Views.of(caption, pictures.grays(field, top), scaled) for caption, field in fields]
     if len(fields) > 1:
         error = fields[1][1] - fields[0][1]
         scale = max(float(np.quantile(np.abs(error), 0.99)), 1e-6)
         views = [[pictures.signed(view, scale) for view in row] for row in error]
         scaled = pictures.signed_scale(scale, "")
-        out.append(Views("error: the estimate less the scene's", columns, pictures.sprite(views, width), scaled))
+        out.append(Views.of("error: the estimate less the scene's", views, scaled))
     return out
 
 

@@ -25,6 +25,16 @@ def gray(values: Values, low: float = 0.0, high: float = 1.0, gamma: float = 2.2
     return pillow.fromarray(np.round(255 * unit ** (1 / gamma)).astype(np.uint8), "L")
 
 
+def grays(field: Values, high: float) -> list[list[Image]]:
+    """Each view of a light field l[v, u, y, x], black at 0, white at ``high``."""
+    return [[gray(view, high=high) for view in row] for row in field]
+
+
+def brightest(values: Values) -> float:
+    """What is shown white: all but a thousandth is darker."""
+    return max(float(np.quantile(values, 0.999)), 1e-6)
+
+
 def signed(values: Values, scale: float) -> Image:
     """Signed values (rows, cols) as blue (-scale) .. white (0) .. red (+scale)."""
     unit = np.clip(np.asarray(values, float) / max(scale, np.finfo(float).tiny), -1, 1)[..., None]

@@ -11,6 +11,10 @@ from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
 
 from .figures import camera_line, energy_line, exposure_line, trims_line
+from .pictures import sprite
+
+VIEW = 256  # px, width of a view on a page at most
+SHEET = 1600  # px, width of all views on a page at most
 
 
 class Views(NamedTuple):
@@ -20,6 +24,11 @@ class Views(NamedTuple):
     columns: int
     sprite: Image
     scale: Scale | None = None
+
+    @classmethod
+    def of(cls, caption: str, views: Sequence[Sequence[Image]], scale: Scale | None = None) -> "Views":
+        """Of pictures, row by row."""
+        return cls(caption, len(views), sprite(views, min(VIEW, SHEET // len(views))), scale)
 
     @property
     def src(self) -> str:
@@ -35,6 +44,12 @@ def decibels(value: float | None) -> str:
     return "-" if value is None else f"{value:.1f} dB"
 
 
+def agreement(differ: int, unit: str = "values", of: str = "") -> Tile:
+    """Whether the chip and the golden model agree. differ: how many do not."""
+    about = f"chip against golden model{of}"
+    return Tile(f"{differ} {unit} differ", about, "bad") if differ else Tile("byte for byte", about, "good")
+
+
 def against(s: dict[str, Any]) -> str:
     """PSNR of the 2-D image beside that of flat gray and of JPEG."""
     own, gray, jpeg = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg"))
@@ -45,10 +60,8 @@ def against(s: dict[str, Any]) -> str:
 
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
-    right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
-    equal = ("byte for byte", "good") if right else (f"{s['stream_mismatches']} bytes differ", "bad")
     return [
-        Tile(equal[0], "chip against golden model", equal[1]),
+        agreement(s["stream_mismatches"] or s["decoded_mismatches"]),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
         Tile(decibels(s["snr_db"]), f"SNR of the decoded samples (nothing sent: {decibels(s['snr_nothing_sent_db'])})"),
         Tile(f"{100 * s['conversions_left_out'] / max(s['samples'], 1):.1f} %", "of the conversions left out"),

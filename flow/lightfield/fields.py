@@ -53,14 +53,15 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     estimator = FieldEstimator(sensor, scene.views, prior, pupil)
     operator = CaptureOperator(sensor)
     reached = cells(scene.views)[..., None, None]  # corners that the round pupil does not reach have no light
-    found, figured = {}, {}
+    seen = truth * reached
+    free, found, figured = baselines(result.image, seen), {}, {}
     for name in METHODS:
         note(name)
         got, seconds = measure(name, estimator, operator, sent)
         float_got = measure(name, estimator, operator, ideal)[0]
         found[name] = got._replace(light_field=got.light_field * reached)
-        figured[name] = figures(got.light_field * reached, truth * reached, result.image) | seconds
-        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, truth * reached)
+        figured[name] = figures(got.light_field * reached, seen, free["sum_image_psnr_db"]) | seconds
+        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, seen)
     summary = {
         "scene": result.request.name,
         "rows": truth.shape[2],
@@ -72,7 +73,7 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
         "stream_mismatches": mismatches(result.stream, result.golden.stream),
         "decoded_mismatches": int((result.decoded.samples != result.golden.sent).sum()),
         "methods": figured,
-        "baselines": baselines(result.image, truth * reached),
+        "baselines": free,
     }
     field, disparity, spread = found[BEST]
     assert disparity is not None and spread is not None

@@ -62,13 +62,13 @@ def measure(
     return found, {"seconds": perf_counter() - ready, "seconds_once": ready - start}
 
 
-def figures(found: Values, truth: Values, copied: Values) -> dict[str, float | None]:
+def figures(found: Values, truth: Values, free: float | None) -> dict[str, float | None]:
     """Of a light field against the true one: PSNR, SSIM (mean of the views), gain over the copied image, parallax.
 
     slope, correlation: of the difference of opposite outer views, horizontal and vertical, to the true one; None where
-    the true views are equal. copied: (rows, cols), the sum image that the gain is against.
+    the true views are equal. free: PSNR (dB) of the copied sum image, which the gain is against.
     """
-    psnr, free = psnr_db(found, truth), psnr_db(np.broadcast_to(copied, truth.shape), truth)
+    psnr = psnr_db(found, truth)
     slope, correlation = parallax(found, truth)
     gain = None if psnr is None or free is None else psnr - free
     return {"psnr_db": psnr, "ssim": ssim(found, truth), "gain_db": gain, "slope": slope, "correlation": correlation}

@@ -9,7 +9,7 @@ import numpy.typing as npt
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
 from talbot.flow.frame import pictures
-from talbot.flow.frame.report import Views, decibels
+from talbot.flow.frame.report import Views, agreement, decibels
 from talbot.models.reconstruct.refocus import refocus
 
 from .fields import BEST, SURE, Fields, depth_map
@@ -17,15 +17,13 @@ from .fields import BEST, SURE, Fields, depth_map
 Values = npt.NDArray[np.floating]
 NAMES = ("lightfield.html", "summary.json", "lightfield.npz", "views.webp")
 FRAME_MS = 90  # of the moving picture
-VIEW = 256  # px, width of a view on the page at most
-SHEET = 1600  # px, width of all views at most
 
 
 def write(folder: Path, fields: Fields) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     best = fields.best
     np.savez(folder / "lightfield.npz", light_field=best.light_field, disparity=best.disparity, spread=best.spread)
-    top = _top(fields.truth)
+    top = pictures.brightest(fields.truth)
     _moving(folder / "views.webp", best.light_field, top)
     shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
     groups = [("Depth", _depth(fields)), ("Refocused, by the mixture", _refocused(fields, top))]
@@ -39,7 +37,7 @@ def write(folder: Path, fields: Fields) -> None:
         tiles=headline(s),
         head=("", "PSNR", "gain", "SSIM", "slope", "correlation", "PSNR, float", "seconds", "once"),
         rows=table(s),
-        views=[_view(caption, field, top) for caption, field in shown],
+        views=[Views.of(caption, pictures.grays(field, top)) for caption, field in shown],
         groups=[group for group in groups if group[1]],
     )
     (folder / "lightfield.html").write_text(text)
@@ -47,14 +45,13 @@ def write(folder: Path, fields: Fields) -> None:
 
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
-    right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
     linear, best = s["methods"]["linear"], s["methods"][BEST]
     free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
         Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
         Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
         Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
-        Tile("byte for byte" if right else "differs", "chip against golden model", "good" if right else "bad"),
+        agreement(s["stream_mismatches"] or s["decoded_mismatches"]),
         Tile(number(s["disparity_rms_px"]), f"px per view step, error of disparity RMS (one for all: {constant})"),
     ]
 
@@ -76,16 +73,6 @@ def table(s: dict[str, Any]) -> list[tuple[str, ...]]:
 def number(value: float | None) -> str:
     """A figure of two decimals."""
     return "-" if value is None else f"{value:.2f}"
-
-
-def _view(caption: str, field: Values, top: float) -> Views:
-    width = min(VIEW, SHEET // len(field))
-    sheets = [[pictures.gray(view, high=top) for view in row] for row in field]
-    return Views(caption, len(field), pictures.sprite(sheets, width))
-
-
-def _top(values: Values) -> float:
-    return max(float(np.quantile(values, 0.999)), 1e-6)
 
 
 def _depth(fields: Fields) -> list[Picture]:

@@ -19,7 +19,7 @@ from talbot.base.progress import Frames
 from talbot.flow.frame import pictures
 from talbot.flow.frame.figures import camera_line, camera_of, exposure_line, exposure_of
 from talbot.flow.frame.job import Clock
-from talbot.flow.frame.report import decibels
+from talbot.flow.frame.report import agreement, decibels
 from talbot.flow.frame.request import FrameRequest
 from talbot.flow.frame.result import FrameResult
 from talbot.models.parameters import sensor_text
@@ -147,13 +147,9 @@ def _about(request: FrameRequest, clip: Clip, last: FrameResult) -> dict[str, An
 
 def _page(s: Mapping[str, Any], animation: str, last: Image.Image) -> str:
     """The page; last: picture of the last frame, for its card in the index."""
-    frames, right = s["each"], not s["frames_that_differ"]
+    frames = s["each"]
     tiles = [
-        Tile(
-            "byte for byte" if right else f"{s['frames_that_differ']} frames differ",
-            f"chip against golden model, {s['frames']} frames",
-            "good" if right else "bad",
-        ),
+        agreement(s["frames_that_differ"], "frames", f", {s['frames']} frames"),
         Tile(f"{s['compression_ratio']:.1f} : 1", f"{s['stream_bytes']:,} of {s['raw_bytes']:,} bytes"),
         Tile(decibels(s["snr_db_mean"]), "SNR of the decoded samples, mean (nothing sent: 0 dB)"),
         Tile(f"{s['frames_per_s']:.1f} /s", "frames simulated once set up"),

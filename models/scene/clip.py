@@ -13,7 +13,7 @@ import numpy.typing as npt
 from talbot.models.parameters import ParameterError
 
 from .light_field import LightField
-from .picture_file import frames_of, loaded, luminance_of, opened
+from .picture_file import frames_of, loaded, luminance_of, opened, undamaged
 from .sampling import Sampling
 
 VIDEOS = ".mp4", ".m4v", ".mov", ".mkv", ".webm", ".avi"
@@ -145,10 +145,8 @@ def _animated(path: Path, sampling: Sampling) -> Clip:
     def _read() -> Iterator[Frame]:
         with opened(path, "scene") as picture:
             for number in range(count):
-                try:
+                with undamaged("scene", path, f"frame {number}"):
                     picture.seek(number)
-                except Exception as error:
-                    raise ParameterError(f"scene = {str(path)!r}: frame {number} is damaged ({error})") from None
                 luminance = luminance_of(loaded(picture, path, "scene"), path, *sampling.shape)
                 seconds = float(picture.info.get("duration") or 0) / 1000
                 yield Frame(luminance, seconds if seconds >= SHORTEST else 1 / RATE)

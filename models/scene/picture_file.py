@@ -1,6 +1,8 @@
 """From any image file to linear luminance: 8 or 16 bit, gray, colour, palette or alpha, of any size."""
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -198,10 +200,8 @@ def frames_of(picture: Image.Image, path: str | Path) -> int:
     ParameterError
         If it is damaged.
     """
-    try:
+    with undamaged("scene", path):
         return int(getattr(picture, "n_frames", 1)) if picture.format in ANIMATED else 1
-    except Exception as error:  # a damaged file may raise nearly anything in a decoder
-        raise ParameterError(f"scene = {str(path)!r}: the image is damaged ({error})") from None
 
 
 def loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
@@ -226,13 +226,19 @@ def loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
     ParameterError
         If it is damaged.
     """
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # odd metadata is no concern of ours; damaged pixels raise
-            picture.load()
-    except Exception as error:  # a damaged file may raise nearly anything in a decoder
-        raise ParameterError(f"{field} = {str(path)!r}: the image is damaged ({error})") from None
+    with undamaged(field, path), warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # odd metadata is no concern of ours; damaged pixels raise
+        picture.load()
     return picture
+
+
+@contextmanager
+def undamaged(field: str, path: str | Path, part: str = "the image") -> Iterator[None]:
+    """Decode within: a damaged file, which may raise nearly anything in a decoder, is a ParameterError."""
+    try:
+        yield
+    except Exception as error:
+        raise ParameterError(f"{field} = {str(path)!r}: {part} is damaged ({error})") from None
 
 
 def _luminance(picture: Image.Image, path: str | Path, factor: int) -> npt.NDArray[np.float32]:

@@ -16,12 +16,11 @@ from talbot.models.parameters import (
     Window,
 )
 from talbot.models.parameters.registers import register_map
+from talbot.rtl.amp_ctrl.ports import TIMING
 from talbot.rtl.reg_file import RegFileFL, chip_status
 
 from .golden_run import GoldenRun, idle_pins
 from .pins import declare_pins
-
-TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
 
 
 def frame_of(cfg: Any) -> FrameParameters:

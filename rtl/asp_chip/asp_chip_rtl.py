@@ -5,6 +5,7 @@ from pymtl3 import Component, Wire, connect, update
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.adc_bank import AdcBank
 from talbot.rtl.amp_ctrl import AmpCtrl
+from talbot.rtl.amp_ctrl.ports import SLOT, TIMING
 from talbot.rtl.phase_path import PhasePath
 from talbot.rtl.readout_seq import ReadoutSeq
 from talbot.rtl.reg_file import RegFile
@@ -19,10 +20,8 @@ from .resets_rtl import Resets, children_reset_by
 from .state_rtl import State
 from .status_rtl import Status
 
-TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
 PHASES = ("pixel_reset", "shutter", "ref_ctl", "integrate", "expose", "cm_reset", "read", "sample", "tap")
 ADDRESS = ("row", "group", "k", "sub", "en")
-SLOT = ("slot_resets", "slot_reads", "slot_opens")
 WINDOW = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation")
 TOF = 3
 

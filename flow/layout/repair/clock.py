@@ -32,7 +32,7 @@ class _Group(NamedTuple):
 
 
 def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int) -> int:
-    """Group the registers of each enable, and those without one, anew by their places; how many drivers were added.
+    """Group the registers of each enable, and those without one, by their places; how many drivers were added.
 
     Every group has a gate or a buffer in its middle (see `netlist.gating.drive_registers`), is of ``most`` registers at
     most and no load that is too large for the last of ``sizes``. The tree's leaves get about as many of these each, and
@@ -60,10 +60,10 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
     there = [plan.point(nets[net][0]) if net in nets else plan.ports[net] for net in ends]
     numbers = assigned([plan.point(name) for name, _ in made], there) if made else []
     loads: dict[str, Sinks] = {}
-    for (name, pin), number in zip(made, numbers, strict=True):
-        plan.instances[name].pins[pin] = ends[number]
-        loads.setdefault(ends[number], []).append((name, pin))
+    for end, number in zip(made, numbers, strict=True):
+        loads.setdefault(ends[number], []).append(end)
     for net, sinks in loads.items():
+        plan.connect(sinks, net)
         if net in nets:  # the port's is driven from outside
             driver, pin, _ = nets[net]
             load = plan.load(drives, net, [plan.point(driver)], sinks)

@@ -5,9 +5,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from talbot.base.liberty.group import Group
 
+Curve = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]  # loads (pF), ns
 SIZE = re.compile(r"(\w+_x)(\d+)")  # a cell's name: what it does, and its size
 
 
@@ -60,6 +62,11 @@ def _slews(pin: Group) -> list[Group]:
 
 def _limit(table: Group, slew_ns: float) -> float:
     """The load (pF) at which the table's slew is ``slew_ns``, at most its last; 0 if none is as fast."""
-    slews, loads, values = table.array("index_1"), table.array("index_2"), table.array("values")
-    row = [np.interp(slew_ns, slews, column) for column in values.T]
+    loads, row = over_loads(table, slew_ns)
     return 0.0 if row[0] > slew_ns else float(np.interp(slew_ns, row, loads))
+
+
+def over_loads(table: Group, slew_ns: float) -> Curve:
+    """A table (ns) at a slew of the input, over its loads."""
+    slews = table.array("index_1")
+    return table.array("index_2"), np.array([np.interp(slew_ns, slews, column) for column in table.array("values").T])

@@ -4,17 +4,15 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from talbot.base.liberty.group import Group
 
-from .drive import Drives
+from .drive import Curve, Drives, over_loads
 from .repair import BUFFER, BUFFER_NS, NEAR, OWN, End, Plan, Sinks, Slacks, connected, split, swap
 
 SLEW_NS = 0.2  # of the input, for a cell's delay
 NEXT = 0.25  # of a slew, which the cell behind it is slower by, about
 GAIN_NS = 0.01  # least that a change is made for
-Curve = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]  # loads (pF), ns
 
 
 @dataclass(frozen=True)
@@ -159,8 +157,5 @@ def _curve(pin: Group) -> Curve | None:
 
 def _worst(pin: Group, kind: str) -> Curve | None:
     """The largest values of the tables ``kind`` of a pin, over its loads."""
-    curves = []
-    for table in (table for arc in pin.all("timing") for table in arc.all(kind)):
-        slews, loads = table.array("index_1"), table.array("index_2")
-        curves.append((loads, np.array([np.interp(SLEW_NS, slews, column) for column in table.array("values").T])))
+    curves = [over_loads(table, SLEW_NS) for arc in pin.all("timing") for table in arc.all(kind)]
     return (curves[0][0], np.max([ns for _, ns in curves], axis=0)) if curves else None

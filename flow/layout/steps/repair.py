@@ -5,6 +5,8 @@ from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.liberty.read import read
 from talbot.base.steps import Files, Step
@@ -17,7 +19,7 @@ from ..geometry.rows import free_rows
 from ..netlist.netlist import Netlist
 from ..repair.clock import regrouped
 from ..repair.drive import Drives
-from ..repair.repair import OWN, Plan, Slacks, clock_nets, repaired
+from ..repair.repair import OWN, Plan, clock_nets, repaired
 from ..repair.speed import Delays, quickened
 from ..repair.wires import femtofarad_um
 from ..timing.estimate import setup_slacks
@@ -101,7 +103,8 @@ class Repair(Step[RepairParameters]):
         delays, limits, short = (
             Delays.of(liberty), Drives.of(liberty, self.parameters.slew_ns), Drives.of(liberty, BUFFERED_NS)
         )  # fmt: skip
-        added, slacks, found, window = 0, dict[tuple[str, str], float](), list[tuple[float, Plan, Slacks]](), WINDOW_NS
+        added, slacks, window = 0, dict[tuple[str, str], float](), WINDOW_NS
+        best = -np.inf, plan, slacks
         if CLOCK_GATE.cell in plan.widths:
             added = regrouped(plan, Drives.of(liberty, CLOCK_NS), CLOCK_CELLS, REGISTERS)
         kept = clock_nets(plan.instances.values())
@@ -109,15 +112,15 @@ class Repair(Step[RepairParameters]):
             repaired(plan, limits, kept, slacks)
             now = replace(netlist, instances=tuple(plan.instances.values()))
             slacks = setup_slacks(now, plan.wires(now), inputs["liberty"], inputs["sdc"])
-            if not found or min(slacks.values()) > found[-1][0]:
-                found.append((min(slacks.values()), deepcopy(plan), slacks))
+            if min(slacks.values()) > best[0]:
+                best = min(slacks.values()), deepcopy(plan), slacks
             else:  # go on from the best, with less at a time
                 window *= SHRINK
-                plan, slacks = deepcopy(found[-1][1]), found[-1][2]
-            if found[-1][0] >= MARGIN_NS or window < LEAST_NS:
+                plan, slacks = deepcopy(best[1]), best[2]
+            if best[0] >= MARGIN_NS or window < LEAST_NS:
                 break
-            quickened(plan, short, delays, kept, slacks, found[-1][0] + window)
-        worst, plan, _ = found[-1]
+            quickened(plan, short, delays, kept, slacks, best[0] + window)
+        worst, plan, _ = best
         cells = {instance.name: instance.cell for instance in netlist.instances}
         sized = sum(instance.cell != cells.get(name, instance.cell) for name, instance in plan.instances.items())
         counts = {"sized": sized, "buffers": sum(name.endswith(OWN) for name in plan.instances)}

@@ -3,7 +3,7 @@
 //
 // Order: the steps of a frame ascend strictly in (row, k, group, sub), and the document requires each.
 // Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is required, it has been
-// sent when END is offered. Only `column_ok`, `row_ok` and `lanes_of` state the document's rules. Rows are compared by
+// sent when END is offered. Only scan_order.sv and `lanes_of` state the document's rules. Rows are compared by
 // their place, {tile, row in the tile}, which ascends with their `index`.
 // Which rows are reset when: reset_pointer.sv.
 // Progress: a rank, which never falls in a frame, rises in every cycle but those that wait for the link (an offer), the
@@ -31,26 +31,8 @@ module ReadoutSeqProof (
   localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, SHIFT = $clog2(`LANES);
 
   // The document
-  wire [7:0] stride_mask = (8'd1 << decimation) - 8'd1;
+  `SCAN_ORDER
   wire [1:0] subs = mode == 3 ? 3 : mode == 2 ? 1 : 0;
-  wire window_ok = row0 <= row1 && row1 <= (`ROWS - 1) / `TILE_ROWS && col0 <= col1
-                   && col1 <= (`COLS - 1) / `TILE_COLS;
-  function column_ok(input [1:0] row_in_tile, input [2:0] k);
-    column_ok = k < `TILE_COLS && mask[type_at(`TILE_COLS * row_in_tile + k)] && `TILE_COLS * {4'b0, col0} + k < `COLS;
-  endfunction
-  function [5:0] columns_of(input [1:0] row_in_tile);
-    integer i;
-    for (i = 0; i < 6; i = i + 1) columns_of[i] = column_ok(row_in_tile, i);
-  endfunction
-  function [9:0] index(input [9:0] place);
-    index = `TILE_ROWS * place[9:2] + place[1:0];
-  endfunction
-  function row_ok(input [9:0] place);
-    row_ok = place[9:2] >= row0 && place[9:2] <= row1 && ((place[9:2] - row0) & stride_mask) == 0
-             && place[1:0] < `TILE_ROWS && `TILE_ROWS * {2'b0, place[9:2]} + place[1:0] < `ROWS
-             && columns_of(place[1:0]) != 0;
-  endfunction
-  wire [9:0] lead = mode == 3 ? 10'd0 : exposure;
   function [`LANES - 1:0] lanes_of(input [7:0] group, input [2:0] k);
     integer lane;
     reg [12:0] tile;

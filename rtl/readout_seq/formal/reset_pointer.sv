@@ -17,25 +17,7 @@ module ResetPointerProof (
   ReadoutSeq dut (.*);
 
   // The document
-  wire [7:0] stride_mask = (8'd1 << decimation) - 8'd1;
-  wire window_ok = row0 <= row1 && row1 <= (`ROWS - 1) / `TILE_ROWS && col0 <= col1
-                   && col1 <= (`COLS - 1) / `TILE_COLS;
-  function column_ok(input [1:0] row_in_tile, input [2:0] k);
-    column_ok = k < `TILE_COLS && mask[type_at(`TILE_COLS * row_in_tile + k)] && `TILE_COLS * {4'b0, col0} + k < `COLS;
-  endfunction
-  function [5:0] columns_of(input [1:0] row_in_tile);
-    integer i;
-    for (i = 0; i < 6; i = i + 1) columns_of[i] = column_ok(row_in_tile, i);
-  endfunction
-  function [9:0] index(input [9:0] place);
-    index = `TILE_ROWS * place[9:2] + place[1:0];
-  endfunction
-  function row_ok(input [9:0] place);
-    row_ok = place[9:2] >= row0 && place[9:2] <= row1 && ((place[9:2] - row0) & stride_mask) == 0
-             && place[1:0] < `TILE_ROWS && `TILE_ROWS * {2'b0, place[9:2]} + place[1:0] < `ROWS
-             && columns_of(place[1:0]) != 0;
-  endfunction
-  wire [9:0] lead = mode == 3 ? 10'd0 : exposure;
+  `SCAN_ORDER
   wire [1:0] r0 = 0, r1 = 1, r2 = 2, r3 = 3;   // names: Yosys takes a function of numbers for a constant
   wire [3:0] rows_of_tile = {columns_of(r3) != 0, columns_of(r2) != 0, columns_of(r1) != 0, columns_of(r0) != 0}
                             & ((1 << `TILE_ROWS) - 1);
