@@ -11,6 +11,7 @@ from talbot.rtl.verilog import export_verilog
 from .design import DESIGNS, Design, macro_modules
 from .options import LEAST_UTILIZATION, Options
 from .steps.antenna import Antenna
+from .steps.arrange import Arrange, ArrangeParameters
 from .steps.assemble import Assemble, AssembleParameters
 from .steps.block_liberty import BlockLiberty, BlockLibertyParameters
 from .steps.drc import Drc
@@ -48,7 +49,7 @@ CHIP_FRAME = {"rows": 384, "cols": 384, "tiles": 1}
 ASSEMBLED = {"repair.netlist": "assemble.netlist"}
 ASSEMBLED |= dict.fromkeys(("repair.placement", "route.placement"), "assemble.placement")
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
-EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second attempt has the one that its first has not
+PACKED = 0.6  # spread of a round's second attempt
 OBLONG = 1.25  # width by height of a round's second attempt, of the square where the first is not
 
 
@@ -79,27 +80,25 @@ def synthesis_steps(design: Design, options: Options) -> list[Step]:
     return [library, *timing, TimedSynthesis(parameters, options.corners[0], slowest(options.corners))]
 
 
-def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Place]]:
-    """Pairs (floorplan, placement), the smallest area first; in a frame all are as large.
+def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Place, Arrange]]:
+    """Floorplan and placement, the smallest area first; in a frame all are as large.
 
-    At every utilization the design's variation of density and shape come first, then others: Coriolis has no seed, and
-    these are what its result depends on.
+    At every utilization the design's spread and shape come first, then others.
     """
     places = tuple((macro.instance, DESIGNS[macro.design].top, *macro.at) for macro in design.macros)
-    own, other = design.density_variation, OBLONG if design.aspect == 1.0 else 1.0
+    own, other = design.spread, OBLONG if design.aspect == 1.0 else 1.0
+    place = Place(PlaceParameters(options.pdk, design.clock.port, macros=macro_modules(design)))
     begin = min(options.utilization, coriolis_platform(options.pdk).utilization_most)
     if design.frame:
         shape = FloorplanParameters(options.pdk, begin, frame=design.frame)
-        for variation in (EVEN, UNEVEN):
-            yield (Floorplan(shape), Place(PlaceParameters(options.pdk, design.clock.port, options.effort, variation)))
+        for spread in (own, PACKED):
+            yield Floorplan(shape), place, Arrange(ArrangeParameters(options.pdk, options.effort, spread))
         return
     for k in range(int((begin - LEAST_UTILIZATION) / UTILIZATION_STEP + 1e-9) + 1):
-        for variation, aspect in ((own, design.aspect), (EVEN if own > EVEN else UNEVEN, other)):
+        for spread, aspect in ((own, design.aspect), (PACKED, other)):
             utilization = round(begin - UTILIZATION_STEP * k, 4)
-            parameters = PlaceParameters(
-                options.pdk, design.clock.port, options.effort, variation, macros=macro_modules(design)
-            )
-            yield Floorplan(FloorplanParameters(options.pdk, utilization, aspect, places)), Place(parameters)
+            floorplan = Floorplan(FloorplanParameters(options.pdk, utilization, aspect, places))
+            yield floorplan, place, Arrange(ArrangeParameters(options.pdk, options.effort, spread))
 
 
 def routing_steps(design: Design, options: Options) -> list[Step]:

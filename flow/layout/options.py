@@ -16,14 +16,14 @@ class Options:
 
     pdk: process. utilization: cells' area by core area at which the search begins. liberty: characterized cells, a file
     a corner; () for the process's corners, measured now. untimed: whether there is no timing at all. effort: of the
-    placer, 1..3. decks: pairs (name, path) of the foundry's own checks (`platforms.foundry`).
+    placer, 1..9. decks: pairs (name, path) of the foundry's own checks (`platforms.foundry`).
     """
 
     pdk: str = "sky130"
     utilization: float = 0.8
     liberty: tuple[Path, ...] = ()
     untimed: bool = False
-    effort: int = 2
+    effort: int = 3
     decks: tuple[tuple[str, Path], ...] = ()
 
     @property
@@ -44,4 +44,4 @@ class Options:
         if len({path.stem for path in self.liberty}) != len(self.liberty):
             raise ParameterError(f"liberty = {', '.join(map(str, self.liberty))}: must be of different corners")
         check_real("utilization", self.utilization, LEAST_UTILIZATION, 0.95)
-        check_int("effort", self.effort, 1, 3)
+        check_int("effort", self.effort, 1, 9)

@@ -27,9 +27,9 @@ def lay_out_smallest(
     for step in synthesis_steps(design, options):
         runner.run(step)
     tried, placed, misfit = [], 0, None
-    for floorplan, place in attempts(design, options):
+    for floorplan, place, arrange in attempts(design, options):
         shape = floorplan.parameters
-        attempt = Attempt(shape.utilization, shape.aspect, place.parameters.density_variation)
+        attempt = Attempt(shape.utilization, shape.aspect, arrange.parameters.spread)
         tried.append(attempt)
         try:
             attempt.utilization = runner.run(floorplan)["metrics"]["utilization"]
@@ -40,6 +40,7 @@ def lay_out_smallest(
         found = runner.run(place)["metrics"]
         if found["stopped"] is not None:
             continue
+        runner.run(arrange)
         repair, route, *checks = routing_steps(design, options)
         runner.run(repair)
         attempt.open_nets = runner.run(route)["metrics"]["open_nets"]

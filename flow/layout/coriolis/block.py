@@ -25,7 +25,7 @@ def make_block(cell: Any, request: dict[str, Any]) -> "TalbotBlock":
     cfg = conf.cfg
     cfg.etesian.bloat = "disabled"
     cfg.etesian.uniformDensity = True
-    cfg.etesian.densityVariation = request["density_variation"]
+    cfg.etesian.densityVariation = 0.05
     cfg.etesian.aspectRatio = 1.0
     # One of the diodes that Coriolis adds against antennas stays open; the antenna step checks the result
     cfg.etesian.antennaGateMaxWL = u(40000.0)

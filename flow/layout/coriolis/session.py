@@ -21,7 +21,7 @@ def configure(request: dict[str, Any]) -> None:
         cfg.misc.info = cfg.misc.paranoid = cfg.misc.bug = False
         cfg.misc.logMode = cfg.misc.verboseLevel1 = True
         cfg.misc.verboseLevel2 = False
-        cfg.etesian.effort = request["effort"]
+        cfg.etesian.effort = 1  # `arrange` places the cells again
         cfg.anabatic.topRoutingLayer = request["metals"][-1]["name"]
     environment = CRL.AllianceFramework.get().getEnvironment()
     environment.setCLOCK(f"^{re.escape(CLOCK)}$")

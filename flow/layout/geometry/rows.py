@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from talbot.base.steps import StepError
+
 from ..netlist.placed import MIRRORED
 
 Place = tuple[float, float, str]  # x, y in um and orientation of a cell's origin, as in `netlist.placed.placement`
@@ -33,6 +35,17 @@ class Rows:
             begin = spans.pop(k - 1)[0]
             k -= 1
         spans.insert(k, [begin, end])
+
+    def claim(self, width: float, place: Place) -> None:
+        """Take the place for a cell ``width`` (um) wide, which is free. Raises StepError where it is not."""
+        x, y, orientation = place
+        begin, end = round(x / self.site), round((x + width) / self.site)
+        spans = self.rows.get((y, orientation), [])
+        k = bisect(spans, [begin + 1]) - 1
+        if k < 0 or spans[k][1] < end:
+            raise StepError(f"no place for a cell of {width:g} um at {x:g}, {y:g} um")
+        first, last = spans.pop(k)
+        spans[k:k] = [span for span in ([first, begin], [end, last]) if span[0] < span[1]]
 
     def take(self, width: float, x: float, y: float) -> Place | None:
         """The place for a cell ``width`` wide, which is taken; None if there is none.

@@ -1,12 +1,14 @@
 """Drivers that are too weak for their nets get larger ones, or buffers behind them."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from ..geometry.rows import Place, Rows
+from talbot.platforms.coriolis import CoriolisPlatform
+
+from ..geometry.rows import Place, Rows, free_rows
 from ..netlist.buffering import clusters
 from ..netlist.netlist import OUTPUT_PINS, Buffer, Instance, Netlist
 from ..netlist.placed import MIRRORED
@@ -31,7 +33,7 @@ class Plan:
     """A placed netlist while it is repaired.
 
     instances, places: of all cells but fill, by name. widths: of the library's cells, um. rows: what is free.
-    ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port.
+    ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port. Without these two no load.
     """
 
     instances: dict[str, Instance]
@@ -39,8 +41,8 @@ class Plan:
     widths: Mapping[str, float]
     rows: Rows
     ports: Mapping[str, Point]
-    femtofarad_um: float
-    outside: Mapping[str, float]
+    femtofarad_um: float = 0.0
+    outside: Mapping[str, float] = field(default_factory=dict)
     added: int = 0
 
     def point(self, name: str) -> Point:
@@ -93,6 +95,29 @@ class Plan:
             made.append((Instance(f"fill_{k}", cell, {}), [None, cell, *place]))
         instances, places = zip(*made, strict=True)
         return replace(netlist, instances=instances), list(places)
+
+
+def planned(
+    netlist: Netlist,
+    placement: Mapping[str, Any],
+    floorplan: Mapping[str, Any],
+    areas: Mapping[str, float],
+    tech: CoriolisPlatform,
+) -> Plan:
+    """A placement as a Plan. areas: um2 by cell. floorplan, placement: as their steps write them."""
+    widths = {cell: round(area / tech.row_um, 4) for cell, area in areas.items()}
+    width, height = floorplan["width_um"], floorplan["height_um"]
+    sides = {"west": lambda at: (0, at), "east": lambda at: (width, at)}
+    sides |= {"south": lambda at: (at, 0), "north": lambda at: (at, height)}
+    placed = zip(netlist.instances, placement["instances"], strict=True)
+    working = [(instance, place) for instance, (_, _, *place) in placed if instance.pins]
+    return Plan(
+        instances={instance.name: instance for instance, _ in working},
+        places={instance.name: tuple(place) for instance, place in working},
+        widths=widths,
+        rows=free_rows(placement["instances"], widths, tech.fill_cells, tech.site_um, tech.row_um),
+        ports={net: sides[side](at) for side, net, at in placement["pins"]},
+    )
 
 
 def length(points: list[Point]) -> float:

@@ -30,7 +30,7 @@ class Attempt:
 
     utilization: float
     aspect: float
-    density_variation: float
+    spread: float
     open_nets: int | None = None
     rules_broken: int | None = None
 

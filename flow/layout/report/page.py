@@ -108,7 +108,7 @@ def _corners(s: dict[str, Any]) -> tuple[list[str], list[list[str | None]]] | No
 
 def _attempts(s: dict[str, Any]) -> list[list[str | None]]:
     """Rows of the search for the smallest area."""
-    names = "utilization", "aspect", "density_variation", "open_nets", "rules_broken"
+    names = "utilization", "aspect", "spread", "open_nets", "rules_broken"
     rows = [[_text(attempt[name]) for name in names] for attempt in s.get("attempts") or ()]
     return [[*row[:3], row[3] or "placer stopped", *row[4:]] for row in rows]
 

@@ -13,7 +13,7 @@ from talbot.base.gds import read_gds, write_gds
 from talbot.base.paths import ROOT
 from talbot.base.steps import Files, Step
 from talbot.base.tools import finish
-from talbot.models.parameters import check_int, check_real
+from talbot.models.parameters import check_real
 from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.macro import Macro
@@ -25,7 +25,6 @@ from ..route.ports import draw_ports, edge_ports, label_straps
 from ..route.rules import RoutingRules
 
 MODEL = "talbot_block"  # Coriolis works in lower case
-OPTIONS = ("effort", "density_variation", "strap_pitch_um")  # in a request, as those of the technology
 OF_TECH = ("row_um", "grid_um", "strap_um", "rail", "rail_um", "rail_overlap_um", "rails_over_edge", "pin_pitch_um")
 LEAF_ROWS, LEAF_SINKS = 8, 6  # of a leaf of the clock tree: its least side (Coriolis takes no less than 7), its sinks
 PHASES = ("clock_tree_s", "placement_s", "power_s")
@@ -35,21 +34,16 @@ PHASES = ("clock_tree_s", "placement_s", "power_s")
 class PlaceParameters:
     """Parameters of `Place`.
 
-    pdk: process. clock: name of the clock port, '' without one. effort: of the placer, 1..3.
-    density_variation: how unevenly the placer may spread the empty sites; what is packed does not route.
-    strap_pitch_um: of a pair of power straps. macros: modules laid out before.
+    pdk: process. clock: name of the clock port, '' without one. strap_pitch_um: of a pair of power straps.
+    macros: modules laid out before.
     """
 
     pdk: str = "sky130"
     clock: str = "clk"
-    effort: int = 2
-    density_variation: float = 0.05
     strap_pitch_um: float = field(default=45.0, metadata={"unit": "um"})
     macros: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        check_int("effort", self.effort, 1, 3)
-        check_real("density_variation", self.density_variation, 0.01, 0.9)
         check_real("strap_pitch_um", self.strap_pitch_um, 10, 1000)
 
 
@@ -159,7 +153,7 @@ class Place(Step[PlaceParameters]):
             "vias": [asdict(via) for via in tech.vias],
             **{name: getattr(tech, name) for name in OF_TECH},
             "over_um": OVER_UM,
-            **{name: getattr(p, name) for name in OPTIONS},
+            "strap_pitch_um": p.strap_pitch_um,
         }
 
     def leaf_um(self, plan: dict[str, Any], netlist: Netlist) -> float:

@@ -11,15 +11,14 @@ from talbot.base.gds import db, read_gds, write_gds
 from talbot.base.liberty.read import read
 from talbot.base.steps import Files, Step
 from talbot.models.parameters import check_real
-from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
+from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
 
 from ..geometry.instances import insert
-from ..geometry.rows import free_rows
 from ..netlist.netlist import Netlist
 from ..repair.clock import regrouped
 from ..repair.drive import Drives
-from ..repair.repair import OWN, Plan, clock_nets, repaired
+from ..repair.repair import OWN, Plan, clock_nets, planned, repaired
 from ..repair.speed import Delays, quickened
 from ..repair.wires import femtofarad_um
 from ..timing.estimate import setup_slacks
@@ -58,8 +57,8 @@ class Repair(Step[RepairParameters]):
     name = "repair"
     inputs = {
         "gds": "place.gds",
-        "netlist": "place.netlist",
-        "placement": "place.placement",
+        "netlist": "arrange.netlist",
+        "placement": "arrange.placement",
         "floorplan": "floorplan.floorplan",
         "masks": "library.gds",
         "areas": "library.areas",
@@ -87,7 +86,10 @@ class Repair(Step[RepairParameters]):
         areas = json.loads(inputs["areas"].read_text())
         layout, counts = read_gds(inputs["gds"]), {"clock_drivers": 0, "sized": 0, "buffers": 0, "estimate_ns": None}
         if p.corner:
-            begin = self.plan(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
+            begin = planned(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
+            begin.femtofarad_um = femtofarad_um(tech, wire_corner(p.corner))
+            outputs_of = (net for port in netlist.ports if port.direction == "output" for net in port.bits())
+            begin.outside = dict.fromkeys(outputs_of, p.load_pf)
             plan, counts = self.best(begin, netlist, inputs)
             netlist, placement["instances"] = plan.listed(netlist, placement["instances"], tech.fill_cells)
         draw(layout, read_gds(inputs["masks"]), areas, placement["instances"])
@@ -125,28 +127,6 @@ class Repair(Step[RepairParameters]):
         sized = sum(instance.cell != cells.get(name, instance.cell) for name, instance in plan.instances.items())
         counts = {"sized": sized, "buffers": sum(name.endswith(OWN) for name in plan.instances)}
         return plan, {"clock_drivers": added, "estimate_ns": round(worst, 3), **counts}
-
-    def plan(
-        self, netlist: Netlist, placement: dict[str, Any], floorplan: dict[str, Any], areas: dict[str, float],
-        tech: CoriolisPlatform,
-    ) -> Plan:  # fmt: skip
-        """The placement as `repaired` takes it."""
-        widths = {cell: round(area / tech.row_um, 4) for cell, area in areas.items()}
-        width, height = floorplan["width_um"], floorplan["height_um"]
-        sides = {"west": lambda at: (0, at), "east": lambda at: (width, at)}
-        sides |= {"south": lambda at: (at, 0), "north": lambda at: (at, height)}
-        placed = zip(netlist.instances, placement["instances"], strict=True)
-        working = [(instance, place) for instance, (_, _, *place) in placed if instance.pins]
-        outputs = [net for port in netlist.ports if port.direction == "output" for net in port.bits()]
-        return Plan(
-            instances={instance.name: instance for instance, _ in working},
-            places={instance.name: tuple(place) for instance, place in working},
-            widths=widths,
-            rows=free_rows(placement["instances"], widths, tech.fill_cells, tech.site_um, tech.row_um),
-            ports={net: sides[side](at) for side, net, at in placement["pins"]},
-            femtofarad_um=femtofarad_um(tech, wire_corner(self.parameters.corner)),
-            outside=dict.fromkeys(outputs, self.parameters.load_pf),
-        )
 
 
 def draw(layout: "db.Layout", library: "db.Layout", cells: dict[str, float], placed: list[list[Any]]) -> None:
