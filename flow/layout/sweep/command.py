@@ -17,7 +17,7 @@ from talbot.models.parameters import ParameterError
 from .plots import effort_plot, pareto_plot
 from .points import candidates, effort_point, variant_point
 
-EFFORTS, VARIATIONS, UTILIZATIONS = (1, 2, 3), (0.05, 0.15, 0.3), (0.76, 0.84, 0.92)
+EFFORTS, SPREADS, UTILIZATIONS = (1, 3, 6), (0.5, 0.75, 1.0), (0.48, 0.54, 0.6)
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -40,9 +40,9 @@ def jobs(options: Namespace) -> list[Job]:
     inputs = tuple(options.liberty)
     if options.what == "effort":
         chosen, made = flat_design(options.design), []
-        for utilization, effort, variation in product(options.utilization or UTILIZATIONS, EFFORTS, VARIATIONS):
-            name = f"effort_{chosen.name}_{effort}_{variation:g}_{utilization:g}"
-            arguments = chosen, liberty, str(options.out), effort, variation, utilization
+        for utilization, effort, spread in product(options.utilization or UTILIZATIONS, EFFORTS, SPREADS):
+            name = f"effort_{chosen.name}_{effort}_{spread:g}_{utilization:g}"
+            arguments = chosen, liberty, str(options.out), effort, spread, utilization
             made.append(Job(name, effort_point, arguments, inputs))
         return made
     found = {made.name: made for made in candidates()}

@@ -10,7 +10,7 @@ from matplotlib.ticker import LogFormatter
 from talbot.base.charts import COLOURS
 
 QUALITY = ("area_um2", "area, um2"), ("wire_um", "wire length, um"), ("wns_ns", "worst setup slack, ns")
-MARKS = {1: "o", 2: "s", 3: "^"}  # of an effort
+MARKS = {1: "o", 3: "s", 6: "^"}
 Point = dict[str, Any]  # of points.py, for JSON
 
 
@@ -52,7 +52,7 @@ def pareto_plot(points: Sequence[Point]) -> Figure:
 def effort_plot(points: Sequence[Point]) -> Figure:
     """Plot seconds of place and route against area, wire length and worst slack.
 
-    A mark an effort, a colour a utilization, the variations of density as labels; crosses at the bottom did not close.
+    A mark an effort, a colour a utilization, the spread as labels; crosses at the bottom did not close.
     """
     figure = Figure(figsize=(13, 4.6), layout="constrained")
     shares = sorted({point["utilization"] for point in points})
@@ -65,7 +65,7 @@ def effort_plot(points: Sequence[Point]) -> Figure:
         for (value, effort, share), same in alike(points, key).items():
             axes.plot([point["seconds"] for point in same], [value] * len(same), MARKS[effort], color=colour[share])
             if key != "area_um2":  # which follows from the utilization
-                label, at = ", ".join(f"{point['variation']:g}" for point in same), (same[-1]["seconds"], value)
+                label, at = ", ".join(f"{point['spread']:g}" for point in same), (same[-1]["seconds"], value)
                 axes.annotate(label, at, fontsize=7, xytext=(6, -3), textcoords="offset points")
         axes.set(xlabel="seconds of placement, routing and rerouting", ylabel=words)
         axes.margins(0.08)

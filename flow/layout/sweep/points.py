@@ -56,27 +56,27 @@ def _signoff(design: Design, options: Options) -> list[Step]:
 
 
 def effort_point(
-    design: Design, liberty: Sequence[str], out: str, effort: int, variation: float, utilization: float
+    design: Design, liberty: Sequence[str], out: str, effort: int, spread: float, utilization: float
 ) -> dict[str, Any]:
     """Place and route a design once; quality where it closes, and the seconds of place and route.
 
-    effort: of the placer. variation: of density. closed: every net is routed and no rule broken.
+    effort: of the placer. spread: of what is empty, the share between cells. closed: every net is routed and no rule
+    broken.
     """
     options = Options("sky130", utilization, tuple(map(Path, liberty)), effort=effort)
-    design = replace(design, density_variation=variation)
+    design = replace(design, spread=spread)
     runner = _runner(design, options, out)
-    floorplan, place = next(attempts(design, options))
+    floorplan, place, arrange = next(attempts(design, options))
     for step in (*synthesis_steps(design, options), floorplan):
         runner.run(step)
     found = runner.run(place)
-    made: dict[str, Any] = {"effort": effort, "variation": variation, "utilization": utilization, "closed": False}
+    made: dict[str, Any] = {"effort": effort, "spread": spread, "utilization": utilization, "closed": False}
     made |= {"seconds": found["wall_s"], "stopped": found["metrics"]["stopped"]}
     if found["metrics"]["stopped"] is not None:
         return made
     repair, route, *others = routing_steps(design, options)
-    runner.run(repair)
-    wires = runner.run(route)
-    made["seconds"] = round(made["seconds"] + wires["wall_s"], 2)
+    arranged, _, wires = (runner.run(step) for step in (arrange, repair, route))
+    made["seconds"] = round(made["seconds"] + arranged["wall_s"] + wires["wall_s"], 2)
     if wires["metrics"]["open_nets"]:
         return made
     broken = sum(runner.run(step)["metrics"].get(f"{step.name}_violations", 0) for step in others)

@@ -78,13 +78,13 @@ def source(plan, net):
 def check_places(plan):
     """No two cells share a site, and with the empty places they are all sites."""
     taken = set()
-    for name, (x, y, _) in plan.places.items():
-        sites = {(y, round(x / SITE) + k) for k in range(round(WIDTHS[plan.instances[name].cell] / SITE))}
+    for name, (x, *row) in plan.places.items():
+        sites = {(*row, round(x / SITE) + k) for k in range(round(WIDTHS[plan.instances[name].cell] / SITE))}
         assert not sites & taken
         taken |= sites
     fill = plan.rows.filled({cell: WIDTHS[cell] for cell in FILL})
-    for cell, (x, y, _) in fill:
-        sites = {(y, round(x / SITE) + k) for k in range(round(WIDTHS[cell] / SITE))}
+    for cell, (x, *row) in fill:
+        sites = {(*row, round(x / SITE) + k) for k in range(round(WIDTHS[cell] / SITE))}
         assert not sites & taken
         taken |= sites
     assert len(taken) == 4 * 400 / SITE

@@ -16,7 +16,7 @@ def test_plots(tmp_path):
     point = {"variant": "radix4", "bits": 8, "closed": True, "area_um2": 1e4, "f_max_mhz": 80.0, "pj_result": 20.0}
     rest = [point | {"variant": "cordic", "pj_result": None}, {"variant": "radix2", "bits": 4, "closed": False}]
     save(pareto_plot([point, *rest]), tmp_path / "pareto.png")
-    tried = {"effort": 2, "variation": 0.1, "utilization": 0.8, "seconds": 9.0, "closed": False}
+    tried = {"effort": 3, "spread": 0.5, "utilization": 0.8, "seconds": 9.0, "closed": False}
     closed = tried | {"closed": True, "area_um2": 1e4, "wire_um": 1e4, "wns_ns": 3.0}
     save(effort_plot([closed, tried | {"utilization": 0.9}]), tmp_path / "e.png")
     assert all((tmp_path / name).stat().st_size > 10_000 for name in ("pareto.png", "e.png"))
