@@ -1,4 +1,4 @@
-"""How many views a capture needs, measured before it is made: on every pixel, or in a large array on bands of it."""
+"""How many views a capture needs, measured before it is made on tile rows spread evenly over the array."""
 
 from time import perf_counter
 from typing import NamedTuple
@@ -18,9 +18,8 @@ Values = npt.NDArray[np.float64]
 REFERENCE = 31  # views along the pupil's diameter that the error is measured against
 LADDER = (7, 9, 11, 15, 21, 27)
 BOUND = 0.5  # codes
-SAFETY = 0.9  # of the bound, for the bands that are not measured
-BAND = 4  # tile rows
-PROBE = 384 * 384  # pixels that are measured at most, but for one band
+SAFETY = 0.9  # of the bound, for the rows that are not measured
+PROBE = 24  # tile rows that are measured at most
 
 
 class Views(NamedTuple):
@@ -59,7 +58,7 @@ def choose_views(
     """Choose the views of a capture.
 
     The differences are captured through REFERENCE views and through ever more of them, until the error is below the
-    bound: on every pixel that is read, or on PROBE of them in bands spread evenly. Tiles whose light varies least over
+    bound: in PROBE tile rows spread evenly over those that are read, or in all. Tiles whose light varies least over
     the pupil keep the scene's own grid, as many as the error allows: regions in focus, and plain ones.
 
     Parameters
@@ -126,11 +125,11 @@ class _Probe:
 
     def __init__(self, scene: Scene, sensor: SensorParameters, timing: AmpTiming, read: npt.NDArray[np.bool_]) -> None:
         self.scene, self.sensor = scene, sensor
-        band = np.arange(scene.shape[0]) // (BAND * sensor.tile.rows)  # of each row
-        full = np.unique(band[read.any(1)])
-        count = min(max(PROBE // (BAND * sensor.tile.rows * scene.shape[1]), 1), full.size)
+        tile_row = np.arange(scene.shape[0]) // sensor.tile.rows  # of each row
+        full = np.unique(tile_row[read.any(1)])
+        count = min(PROBE, full.size)
         measured = full[((np.arange(count) + 0.5) * full.size / count).astype(int)]
-        self.pixels = read & np.isin(band, measured)[:, None]
+        self.pixels = read & np.isin(tile_row, measured)[:, None]
         self.unit = codes_per_unit(sensor, timing)
         gains = optical_gains(sensor.tile, sensor.optics)
         self.gains = gains[sensor.tile.type_map(*scene.shape)][self.pixels]

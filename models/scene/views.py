@@ -28,28 +28,29 @@ class Second:
         self.image, self.scale, self.offset = image, scale, offset
         everywhere = np.ones(disparity.shape, bool)
         here = np.full(disparity.shape, warp.NO_SURFACE)
-        warp.splat(here, disparity, everywhere, -(scale * disparity + offset), 0.0, 0.0)
+        warp.splat(here, disparity, everywhere, -scale, -offset, 0.0, 0.0)
         self.alone = here == warp.NO_SURFACE  # shown by this picture alone
         warp.fill_rows(here, self.alone)
         self.disparity = here
 
-    def fill(self, out: Floats, surface: Floats, wanted: Bools, dv: float, du: float) -> None:
-        """Fill the holes of a view (surface == NO_SURFACE) in place where this picture shows their contents.
+    def claim(self, surface: Floats, dv: float, du: float) -> Bools:
+        """Fill the holes of a view's disparity map in place where this picture shows their contents.
 
         Parameters
         ----------
-        out : float64 (rows, cols)
-            Radiance of the view.
         surface : float64 (rows, cols)
-            Disparity map of the view.
-        wanted : bool (rows, cols)
-            Pixels to fill.
+            Disparity map of the view; NO_SURFACE is a hole.
         dv, du : float
             Offset of the view in view steps.
+
+        Returns
+        -------
+        bool (rows, cols)
+            Pixels filled.
         """
         own = np.full(surface.shape, warp.NO_SURFACE)
-        warp.splat(own, self.disparity, self.alone, self.scale * self.disparity + self.offset, dv, du)
-        warp.fetch_second(out, surface, own, self.image, wanted, self.scale, self.offset, dv, du, RADIANCE_MAX)
+        warp.splat(own, self.disparity, self.alone, self.scale, self.offset, dv, du)
+        return warp.claim(surface, own, self.image.shape[1] - 1, du - self.scale, -self.offset)
 
 
 def view(
@@ -91,14 +92,19 @@ def view(
     wanted = np.ones(disparity.shape, bool) if wanted is None else wanted
     if np.ptp(disparity):
         surface = np.full(disparity.shape, warp.NO_SURFACE)
-        warp.splat(surface, disparity, use, np.zeros(disparity.shape), dv, du)
+        warp.splat(surface, disparity, use, 0.0, 0.0, dv, du)
     else:
         surface = disparity.copy()  # a plane hides nothing; its border goes on outside
+    other = np.zeros_like(wanted) if second is None else second.claim(surface, dv, du)
+    y, x, behind_y, behind_x = warp.background(surface, wanted, dv, du).T
+    if y.size:
+        wanted = wanted.copy()
+        wanted[behind_y, behind_x] = True
     out = np.zeros(image.shape)
-    warp.fetch(out, image, surface, wanted, dv, du, RADIANCE_MAX)
+    warp.fetch(out, image, surface, wanted, dv, du, 0.0, RADIANCE_MAX)
     if second is not None:
-        second.fill(out, surface, wanted, dv, du)
-    warp.fill_from_background(out, surface, wanted, dv, du)
+        warp.fetch(out, second.image, surface, wanted & other, dv, du - second.scale, -second.offset, RADIANCE_MAX)
+    out[y, x], surface[y, x] = out[behind_y, behind_x], surface[behind_y, behind_x]
     return out, surface
 
 
@@ -142,10 +148,9 @@ class Pictured:
         whole[self.inner] = wanted
         if wanted.all():
             return lambda dv, du: self._view(dv, du, np.ones_like(whole), self.use)
-        # A hole is filled from beside it, and a pixel is warped from at most the reach away.
-        near = np.asarray(maximum_filter(whole, 2 * self.reach + 1), bool)
-        use = self.use & np.asarray(maximum_filter(near, 2 * self.reach + 1), bool)
-        return lambda dv, du: self._view(dv, du, near, use)
+        # A hole is filled from at most the reach away, and a pixel is warped from as far.
+        use = self.use & np.asarray(maximum_filter(whole, 4 * self.reach + 1), bool)
+        return lambda dv, du: self._view(dv, du, whole, use)
 
     def _view(self, dv: float, du: float, wanted: Bools, use: Bools) -> tuple[Floats, Floats]:
         image, surface = view(self.image, self.disparity, dv, du, self.second, use, wanted)

@@ -10,6 +10,7 @@ from numba import njit
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
+Places = npt.NDArray[np.int64]
 
 FOOTPRINT = 0.75  # px around its target that a pixel claims: surfaces stretched by up to 1.5 get no cracks
 NO_SURFACE = -1e30  # no surface
@@ -17,7 +18,7 @@ JUMP = 0.25  # px per view step: a larger step between neighbours is a border of
 
 
 @njit(cache=True, nogil=True)
-def splat(target: Floats, disparity: Floats, use: Bools, shift: Floats, dv: float, du: float) -> None:
+def splat(target: Floats, disparity: Floats, use: Bools, scale: float, offset: float, dv: float, du: float) -> None:
     """Warp a disparity map into a z-buffer; the largest disparity (the nearest surface) wins.
 
     Parameters
@@ -28,8 +29,8 @@ def splat(target: Floats, disparity: Floats, use: Bools, shift: Floats, dv: floa
         Px per view step.
     use : bool (rows, cols)
         Pixels to warp.
-    shift : float64 (rows, cols)
-        Px to the right of every pixel before the step.
+    scale, offset : float
+        A pixel of disparity d is ``scale * d + offset`` px further to the right before the step.
     dv, du : float
         View steps.
     """
@@ -39,7 +40,7 @@ def splat(target: Floats, disparity: Floats, use: Bools, shift: Floats, dv: floa
             if not use[y, x]:
                 continue
             d = disparity[y, x]
-            ty, tx = y - dv * d, x + shift[y, x] - du * d
+            ty, tx = y - dv * d, x + (scale * d + offset) - du * d
             if not (-2 < ty < rows + 1 and -2 < tx < cols + 1):
                 continue
             for r in range(max(0, int(np.ceil(ty - FOOTPRINT))), min(rows, int(np.floor(ty + FOOTPRINT)) + 1)):
@@ -158,100 +159,89 @@ def cubic(image: Floats, y: float, x: float) -> float:
 
 
 @njit(cache=True, nogil=True)
-def fetch(out: Floats, image: Floats, disparity: Floats, wanted: Bools, dv: float, du: float, high: float) -> None:
+def fetch(
+    out: Floats, image: Floats, surface: Floats, wanted: Bools, dv: float, du: float, right: float, high: float
+) -> None:
     """Sample a picture for a view with a known disparity map.
 
     Parameters
     ----------
     out : float64 (rows, cols)
-        Receives the view where it has a surface.
+        Receives the view where it is wanted and has a surface.
     image : float64 (rows, cols)
         The picture.
-    disparity : float64 (rows, cols)
+    surface : float64 (rows, cols)
         Disparity map of the view; NO_SURFACE is no surface.
     wanted : bool (rows, cols)
         Pixels to sample.
     dv, du : float
-        Offset of the view in view steps.
+        From the view to the picture in view steps.
+    right : float
+        Px to the right in the picture beside it.
     high : float
         Largest value; the smallest is 0.
     """
     for y in range(out.shape[0]):
         for x in range(out.shape[1]):
-            d = disparity[y, x]
+            d = surface[y, x]
             if wanted[y, x] and d > NO_SURFACE:
-                out[y, x] = min(max(cubic(image, y + dv * d, x + du * d), 0.0), high)
+                out[y, x] = min(max(cubic(image, y + dv * d, x + du * d + right), 0.0), high)
 
 
 @njit(cache=True, nogil=True)
-def fetch_second(
-    out: Floats,
-    surface: Floats,
-    own: Floats,
-    image: Floats,
-    wanted: Bools,
-    scale: float,
-    offset: float,
-    dv: float,
-    du: float,
-    high: float,
-) -> None:
-    """Fill the holes of a view in place from the second picture of a pair.
+def claim(surface: Floats, own: Floats, last: int, right: float, offset: float) -> Bools:
+    """Fill the holes of a view's disparity map in place with the surfaces of another picture.
 
     Parameters
     ----------
-    out : float64 (rows, cols)
-        Radiance of the view.
-    surface : float64 (rows, cols)
-        Disparity map of the view; NO_SURFACE is a hole.
-    own : float64 (rows, cols)
-        Disparity map of the view from the second picture alone.
-    image : float64 (rows, cols)
-        The second picture.
-    wanted : bool (rows, cols)
-        Pixels to fill.
-    scale, offset : float
-        A pixel of disparity d is ``scale * d + offset`` px to the left in the second picture.
-    dv, du : float
-        Offset of the view in view steps.
-    high : float
-        Largest value; the smallest is 0.
+    surface, own : float64 (rows, cols)
+        Disparity map of the view, and the other picture's; NO_SURFACE is a hole.
+    last : int
+        Last column of the other picture.
+    right, offset : float
+        A pixel of disparity d shows what is ``right * d + offset`` px to the right in the other picture.
+
+    Returns
+    -------
+    bool (rows, cols)
+        Pixels filled.
     """
-    for y in range(out.shape[0]):
-        for x in range(out.shape[1]):
-            if not wanted[y, x]:
-                continue
+    out = np.zeros(surface.shape, np.bool_)
+    for y in range(surface.shape[0]):
+        for x in range(surface.shape[1]):
             d = own[y, x]
-            place = x + du * d - (scale * d + offset)
-            if surface[y, x] == NO_SURFACE and d > NO_SURFACE and 0 <= place <= image.shape[1] - 1:
-                out[y, x] = min(max(cubic(image, y + dv * d, place), 0.0), high)
-                surface[y, x] = d
+            if d > NO_SURFACE and surface[y, x] == NO_SURFACE and 0 <= x + right * d + offset <= last:
+                surface[y, x], out[y, x] = d, True
+    return out
 
 
 @njit(cache=True, nogil=True)
-def fill_from_background(out: Floats, disparity: Floats, wanted: Bools, dv: float, du: float) -> None:
-    """Fill every wanted pixel without a surface in place from the nearest pixel on the background side.
+def background(surface: Floats, wanted: Bools, dv: float, du: float) -> Places:
+    """For every wanted pixel without a surface the nearest pixel on the background side.
 
     The search runs both ways along the direction of the view's step; the farther of the two surfaces is taken.
 
     Parameters
     ----------
-    out : float64 (rows, cols)
-        Radiance of the view.
-    disparity : float64 (rows, cols)
+    surface : float64 (rows, cols)
         Disparity map of the view; NO_SURFACE is no surface.
     wanted : bool (rows, cols)
-        Pixels to fill.
+        Pixels of interest.
     dv, du : float
         Offset of the view in view steps; not both 0.
+
+    Returns
+    -------
+    int64 (n, 4)
+        Row and column of the pixel, then of the one behind it; pixels without any are left out.
     """
-    rows, cols = out.shape
+    rows, cols = surface.shape
     length = max(abs(dv), abs(du))
     sy, sx = dv / length, du / length
-    known = disparity.copy()
+    found = [(0, 0, 0, 0) for _ in range(0)]
     for y in range(rows):
         for x in range(cols):
-            if not wanted[y, x] or known[y, x] > NO_SURFACE:
+            if not wanted[y, x] or surface[y, x] > NO_SURFACE:
                 continue
             best, by, bx = np.inf, y, x
             for sign in (-1, 1):
@@ -260,10 +250,14 @@ def fill_from_background(out: Floats, disparity: Floats, wanted: Bools, dv: floa
                     r, c = int(np.round(y + sign * i * sy)), int(np.round(x + sign * i * sx))
                     if r < 0 or r >= rows or c < 0 or c >= cols:
                         break
-                    if known[r, c] > NO_SURFACE:
-                        if known[r, c] < best:
-                            best, by, bx = known[r, c], r, c
+                    if surface[r, c] > NO_SURFACE:
+                        if surface[r, c] < best:
+                            best, by, bx = surface[r, c], r, c
                         break
                     i += 1
             if best < np.inf:
-                out[y, x], disparity[y, x] = out[by, bx], known[by, bx]
+                found.append((y, x, by, bx))
+    out = np.empty((len(found), 4), np.int64)
+    for i, place in enumerate(found):
+        out[i, 0], out[i, 1], out[i, 2], out[i, 3] = place
+    return out

@@ -3,7 +3,7 @@
 import numpy as np
 from skimage.data import stereo_motorcycle
 
-from models.scene import Sampling, resample, warp
+from models.scene import Sampling, load, resample, warp
 from models.scene.views import Pictured, Second, view
 
 
@@ -88,3 +88,14 @@ def test_light_field_cuts_its_margin_off():
     assert whole.shape == (5, 5, 20, 30)
     np.testing.assert_allclose(whole[2, 4], image[3:23, 5:35], atol=1e-12)
     np.testing.assert_allclose(whole[0, 2], image[1:21, 3:33], atol=1e-12)
+
+
+def test_some_pixels_of_a_view_are_those_of_the_whole():
+    """Holes too, which are filled from beyond what is wanted."""
+    sampling = Sampling(120, 150)
+    seen = load("motorcycle", sampling).render
+    wanted = np.zeros(sampling.shape, bool)
+    wanted[40:44], wanted[80:90, 30:70] = True, True
+    for dv, du in ((0.0, 0.0), (1.3, -2.4), (2.4, 2.4), (0.0, -1.0)):
+        for part, whole in zip(seen(wanted)(dv, du), seen(wanted | ~wanted)(dv, du), strict=True):
+            np.testing.assert_array_equal(part[wanted], whole[wanted])
