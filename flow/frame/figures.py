@@ -12,7 +12,7 @@ from base.verilator import verilator_version
 from models.afe.trim import TRIM_MAX, TRIM_MIN
 from models.parameters import EnergyParameters, LightParameters
 from models.parameters.energy import DECISIONS, WINDOW, Events
-from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
 from .result import FrameResult
@@ -157,12 +157,12 @@ def summarize(result: FrameResult) -> dict[str, Any]:
     """
     asked, golden, chip, decoded = result.request, result.golden, result.chip, result.decoded
     sensor, frame, status = asked.sensor, asked.frame, chip.status
-    ideal, marks = result.exposed.ideal, 2 * int(golden.read.any(1).sum())
+    ideal, marks = result.exposed.ideal, MARK.size * decoded.segments
     sent, size = golden.read.sum() * golden.sent.shape[2], len(chip.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
     tokens = size - HEADER_BYTES - TRAILER_BYTES - marks
     error = decoding_error(decoded.samples, ideal, golden.read, frame)
-    parts = {"header": HEADER_BYTES, "tokens": tokens, "row marks": marks, "trailer": TRAILER_BYTES}
+    parts = {"header": HEADER_BYTES, "tokens": tokens, "marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
     tools = {name: version(name) for name in ("pymtl3", "numpy", "numba")}
     return (

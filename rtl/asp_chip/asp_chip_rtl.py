@@ -118,7 +118,7 @@ class AspChip(Component):
         s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made
         s.encoder.left_out //= s.bank.left_out
-        for name in (*WINDOW, "threshold", "frame_number"):
+        for name in (*WINDOW, "threshold", "frame_number", "resync", "n_cm", "t_int", "calibration"):
             connect(getattr(s.encoder, name), getattr(cfg, name))
 
         s.link.loop_enable //= cfg.loop_enable

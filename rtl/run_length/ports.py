@@ -16,6 +16,10 @@ HEADER_PORTS = {
     "mask": Bits24,
     "threshold": Bits7,
     "frame_number": Bits16,
+    "resync": Bits2,
+    "n_cm": Bits8,
+    "t_int": Bits16,
+    "calibration": Bits8,
 }
 
 

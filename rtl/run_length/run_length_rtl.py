@@ -26,8 +26,8 @@ class RunLength(Component):
         s.crc16 = Crc16()
         s.crc32 = Crc32()
         s.queue = ByteQueue()
-        s.row = Wire(Bits10)
-        s.following = Wire(Bits10)  # the row after this one's mark
+        s.row = Wire(Bits10)  # the segment's first
+        s.following = Wire(Bits10)  # the row after this segment's mark
         s.mark = Wire(Bits16)
         s.word = Wire(Bits32)  # a count or the CRC-32
         s.place = Wire(Bits2)  # of the byte in it, 0 on top
@@ -42,6 +42,7 @@ class RunLength(Component):
         s.control.rdy //= s.recv.rdy
         s.control.packer_ready //= s.packer.ready
         s.control.packer_val //= s.packer.val
+        s.control.resync //= s.resync
         s.control.queue_ready //= s.queue.ready
         s.control.queue_last //= s.queue.last
         s.control.frame_sync //= s.frame_sync

@@ -18,7 +18,7 @@ module AspChipWires (
   (* hierconn *) wire \dut.encoder.reset , \dut.generator.reset , \dut.frame_status.reset , \dut.resets.reset ;
 
   // RegFile's bits: in the order of the register map, trims in the lowest bits
-  localparam TRIMS = 384, CONFIGURATION = TRIMS + 199;
+  localparam TRIMS = 384, CONFIGURATION = TRIMS + 209;
   (* hierconn *) wire [CONFIGURATION - 1:0] \dut.regs.cfg ;
   (* hierconn *) wire [63:0] \dut.regs.cycles , \dut.regs.conversions_made , \dut.regs.conversions_left_out ;
   (* hierconn *) wire [63:0] \dut.seq.cycles ;
@@ -32,7 +32,9 @@ module AspChipWires (
   (* hierconn *) wire [23:0] \dut.seq.mask , \dut.encoder.mask ;
   (* hierconn *) wire [7:0] \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ;
   (* hierconn *) wire [7:0] \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ;
-  (* hierconn *) wire [15:0] \dut.encoder.frame_number , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ;
+  (* hierconn *) wire [1:0] \dut.encoder.resync ;
+  (* hierconn *) wire [7:0] \dut.encoder.n_cm , \dut.encoder.calibration ;
+  (* hierconn *) wire [15:0] \dut.encoder.t_int , \dut.encoder.frame_number , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ;
   (* hierconn *) wire [15:0] \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard ;
   (* hierconn *) wire [TRIMS - 1:0] \dut.balancer.trims ;
   (* hierconn *) wire \dut.phase.on , \dut.encoder.phase ;
@@ -70,14 +72,16 @@ module AspChipWires (
 
   always @* begin
     p_configuration: assert (cfg == {
-        \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.seq.mode , \dut.seq.decimation ,
+        \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.encoder.resync , \dut.seq.mode , \dut.seq.decimation ,
         \dut.bank.threshold , \dut.phase.noise_floor , \dut.seq.mask , \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 ,
-        \dut.seq.col1 , \dut.encoder.frame_number , \dut.amp.n_cm , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ,
-        \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.balancer.trims });
+        \dut.seq.col1 , \dut.encoder.frame_number , \dut.amp.n_cm , \dut.encoder.calibration , \dut.amp.t_reset ,
+        \dut.amp.t_int , \dut.amp.t_cm , \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.balancer.trims });
     p_header: assert ({\dut.encoder.mode , \dut.encoder.decimation , \dut.encoder.threshold , \dut.encoder.mask ,
-                       \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 } ==
+                       \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ,
+                       \dut.encoder.n_cm , \dut.encoder.t_int } ==
                       {\dut.seq.mode , \dut.seq.decimation , \dut.bank.threshold , \dut.seq.mask ,
-                       \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 });
+                       \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ,
+                       \dut.amp.n_cm , \dut.amp.t_int });
     p_mode: assert (\dut.bank.mode == \dut.seq.mode && mode == \dut.seq.mode
                     && \dut.phase.on == (phase && mode == 3) && \dut.encoder.phase == \dut.phase.on );
     p_counts: assert (\dut.regs.cycles == \dut.seq.cycles
