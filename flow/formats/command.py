@@ -4,6 +4,7 @@ import sys
 import tempfile
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -15,7 +16,8 @@ from flow.sizes.measure import YOSYS_MISSING, yosys_installed
 from flow.sizes.measure import measure as size_of
 from rtl.verilog import export_verilog
 
-from .codes import default_codes, load_codes
+from . import company
+from .codes import codes_of, load_codes
 from .measure import THRESHOLDS, growth, measure
 from .table import chart, markdown
 from .tokens import FORMATS
@@ -33,18 +35,27 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure every format in every order, write and print the tables."""
-    codes, ideal = load_codes(options.codes) if options.codes else default_codes()
+    codes, ideal = load_codes(options.codes) if options.codes else codes_of()
     source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
     rows = measure(codes, ideal, THRESHOLDS, lambda every: tqdm(every, desc="threshold", disable=None))
     growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
     text = markdown(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD, source)
+    beside: list[dict[str, Any]] = []
+    for name in [] if options.codes else tqdm(company.SCENES, desc="scene", disable=None):
+        beside += company.compare(name, codes_of(name)[0])
+    tables = company.markdown(beside, DEFAULT_THRESHOLD) if beside else ""
     with staged(options.out) as part:
         write_csv(part / "formats.csv", rows)
         (part / "formats.md").write_text(text)
+        if beside:
+            write_csv(part / "company.csv", beside)
+            (part / "company.md").write_text(tables)
         save(chart(rows), part / "formats.png")
     if options.document:
         insert(options.document, "formats", text.split("\n", 2)[2].strip() + "\n")
-    print(text, end="")
+        if beside:
+            insert(options.document, "company", tables)
+    print(text, tables, sep="\n", end="")
     return 0
 
 

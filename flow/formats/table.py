@@ -41,8 +41,8 @@ def markdown(
         for name in FORMATS
     ]
     thresholds = [
-        [r["threshold"], f"{r['psnr_db']:.2f}", share(r), f"{r['bytes']:,}"]
-        + [f"{r['ratio']:.2f}", f"{r['entropy_ratio']:.2f}"]
+        [r["threshold"], f"{r['psnr_db']:.2f}", share(r), f"{r['stream']:,}"]
+        + [f"{r['ratio'] * r['bytes'] / r['stream']:.2f}", f"{r['entropy_ratio']:.2f}"]
         for r in chosen
     ]
     out = [
@@ -52,13 +52,14 @@ def markdown(
         "",
         f"Threshold {threshold}: {at[0]['psnr_db']:.1f} dB, {share(at[0])} of the samples are "
         f"not zero, and their zero-order entropy allows {at[0]['entropy_ratio']:.2f} : 1. Compression (a byte a "
-        "sample over all bytes of the frame), what random codes grow by, and gates of the packer:",
+        "sample over all bytes of the frame, a mark after every part that the order cuts it into), what random codes "
+        "grow by, and gates of the packer:",
         "",
         *_table(["format", *ORDERS, "noise grows", "gates"], formats),
         "",
         *_table(["order", "must be held", "a wrong byte costs"], [[n, o.buffer, o.lost] for n, o in ORDERS.items()]),
         "",
-        f"{CHOSEN[0].upper()}{CHOSEN[1:]}, {CHIP}:",
+        "The chip's stream, with its default segments:",
         "",
         *_table(["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"], thresholds),
     ]

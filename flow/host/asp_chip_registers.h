@@ -334,7 +334,7 @@ enum asp_amp_state { ASP_AMP_STATE_IDLE = 0, ASP_AMP_STATE_GUARD = 1, ASP_AMP_ST
 enum asp_seq_state { ASP_SEQ_STATE_IDLE = 0, ASP_SEQ_STATE_CHECK = 1, ASP_SEQ_STATE_WAIT = 2, ASP_SEQ_STATE_DRAIN = 3, ASP_SEQ_STATE_FRAME = 4, ASP_SEQ_STATE_ROW = 5, ASP_SEQ_STATE_SAMPLE = 6, ASP_SEQ_STATE_END = 7 };
 
 /* encoder_state (ro): Encoder. 0 idle (no frame), 1 header (sends the header), 2 rows (sends samples), 3 mark */
-/* (sends a row mark), 4 trailer (sends the trailer), 5 drain (the last bytes wait). */
+/* (sends a mark), 4 trailer (sends the trailer), 5 drain (the last bytes wait). */
 #define ASP_ENCODER_STATE_ADDRESS 0x69u
 #define ASP_ENCODER_STATE_SHIFT 0u
 #define ASP_ENCODER_STATE_WIDTH 3u

@@ -51,7 +51,7 @@ def changes(count: int, seed: Sequence[int]) -> list[int]:
 
 
 def check_position(frame: Real, position: int, change: int, around: str) -> int:
-    """Decode the frame with one byte changed; returns 1 if a segment is lost, or 0. Raises AssertionError with the byte."""
+    """Decode the frame with one byte changed; returns 1 if a segment is lost, else 0. Raises AssertionError."""
     data = bytearray(frame.data)
     data[position] ^= change
     before = len(frame.data) if around == "between frames" else 0
@@ -65,7 +65,7 @@ def check_position(frame: Real, position: int, change: int, around: str) -> int:
         assert hit or found.complete and not found.errors, f"{where}: frame {i} is damaged, too"
         wrong = np.flatnonzero((found.samples != frame.samples).reshape(len(frame.samples), -1).any(1)).tolist()
         assert set(wrong) <= set(found.bad_rows), f"{where}: rows {wrong} are wrong, {found.bad_rows} are reported"
-        assert len(found.bad_rows) <= hit * frame.most, f"{where}: {len(found.bad_rows)} rows are lost: {found.bad_rows}"
+        assert len(found.bad_rows) <= hit * frame.most, f"{where}: rows {found.bad_rows} are lost"
     lost = int(any(found.bad_rows for found in frames))
     assert lost == 0 or around == "followed by bytes" and position >= HEADER_BYTES, f"{where}: a row is lost"
     return lost

@@ -99,7 +99,7 @@ module PayloadProof (
     end
     if (!first) begin
       inv_coder: assert (\dut.coder.k == k && \dut.coder.r2 == r2 && \dut.coder.credit == credit
-                         && \dut.coder.run == run && r2 <= 12 && run < 13'd1 << k);
+                         && \dut.coder.run == run && r2 <= 12 && k <= 11 && run < 13'd1 << k);
       inv_credit: assert (run == 0 || {1'b0, credit[7:2]} + r2[3:1] >= k + 7'd17);
       inv_plain: assert (coded || run == 0 || ended);
       inv_fresh: assert (!fresh || run == 0);
