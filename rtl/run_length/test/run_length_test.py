@@ -329,7 +329,7 @@ class TestRunLengthFL:
             ]
             header = header_of(mode, threshold=1, resync=resync)
             marks = [first for first, _, _ in segments(header, rows)]
-            assert (len(marks) == len(rows)) == (resync == 0) and len(marks) > 2
+            assert (len(marks) == len(rows)) == (resync == 0) and len(marks) > 1
             got = self.bench(header).run(scan_of(rows), taken=pick.choice((ALWAYS, [True, False, True])))
             assert got == stream_of(header, rows, 0, 0)
 
