@@ -87,12 +87,12 @@ class FrameParameters:
         Replace the comparators by a digital pattern.
     frame_number : int
         0..65535.
+    timing : AmpTiming
+        Durations of the amplifier's phases.
     resync : int
         A mark follows the first row that ends 64 * resync bytes or more behind the mark before, 0..3 (0: every row).
     calibration : int
         The host's number for its trims, gain and clock, 0..255; the stream carries it.
-    timing : AmpTiming
-        Durations of the amplifier's phases.
     """
 
     window: Window
@@ -105,9 +105,9 @@ class FrameParameters:
     overlap: bool = True
     test_pattern: bool = False
     frame_number: int = 0
+    timing: AmpTiming = AmpTiming()
     resync: int = 2
     calibration: int = 0
-    timing: AmpTiming = AmpTiming()
 
     def __post_init__(self) -> None:
         check_choice("mode", self.mode, MODES)

@@ -39,8 +39,8 @@ def frame_of(cfg: Any) -> FrameParameters:
         bool(cfg.overlap),
         bool(cfg.test_pattern),
         int(cfg.frame_number),
-        int(cfg.resync),
-        int(cfg.calibration),
+        resync=int(cfg.resync),
+        calibration=int(cfg.calibration),
     )
 
 
