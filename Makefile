@@ -9,16 +9,25 @@ TESTS_READY := $(VENV)/.tests-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
 
-# Arguments of `make sim`, each also an option of `talbot sim`
-SIM_OPTIONS := SCENE DEPTH F_NUMBER FOCAL FOCUS SCALE PUPIL VIEWS MODE THRESHOLD ROWS COLS TYPES WINDOW DECIMATION LANES CONVERTER NOISE SEED OUT WAVES
-quoted = '$(subst ','\'',$(1))'
-sim_arguments = $(foreach o,$(SIM_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z_ a-z-) $(call quoted,$($(o))))) $(if $(PHASE),--phase)
+# A variable of the command line is an option of the target's command, which takes it as it was typed and refuses what it
+# does not know (talbot/make.py). KNOWN: make's own, and those that go into the environment. PLAIN: targets without a
+# command, which know these alone.
+KNOWN := PYTHON PDK_ROOT SCHEDULER
+PLAIN := help setup setup-layout sim-help test lint format locks librelane bench tools have-tools clean
+GIVEN := $(foreach name,$(.VARIABLES),$(if $(filter command,$(origin $(name))),$(name)))
+$(foreach name,$(filter-out $(KNOWN),$(GIVEN)),$(eval unexport $(name)))
+GOALS := $(or $(MAKECMDGOALS),help)
+ifeq ($(MAKELEVEL)$(filter-out $(PLAIN),$(GOALS)),0)
+known := $(KNOWN) $(if $(filter test,$(GOALS)),COMPLETE)
+$(foreach name,$(filter-out $(known),$(GIVEN)),$(error $(name) = '$(value $(name))': must be a variable of make $(GOALS): $(known)))
+endif
+talbot = $(PY) -m talbot --make '$@ $(KNOWN)'
 
 .PHONY: help
 help:  ## this list
 	@echo "Talbot: from the optics of an angle-sensitive pixel to a layout. Targets:"
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## */  make \1\t/' | expand -t 20
-	@echo "Arguments of sim: $(SIM_OPTIONS) PHASE=1   (make sim SCENE=photo.png THRESHOLD=12; see make sim-help)"
+	@echo "A command's options are variables: make sim SCENE=photo.png THRESHOLD=12 PHASE=0 (see make sim-help)"
 
 $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/run.lock
@@ -45,15 +54,19 @@ setup-layout: $(LAYOUT_READY)  ## what cells and layouts add to it: PDKs, KLayou
 
 .PHONY: sim
 sim: $(READY)  ## a scene through the golden models and the chip's Verilog: build/sim/<scene>/report.html
-	@$(PY) -m talbot sim $(sim_arguments)
+	@$(talbot) sim
 
 .PHONY: sim-help
 sim-help: $(READY)  ## the arguments of make sim, explained
 	@$(PY) -m talbot sim --help
 
+.PHONY: sensor
+sensor: $(READY)  ## the standard sensor as a file to start from: make sensor OUT=sensor.toml, then make sim SENSOR=sensor.toml
+	@$(talbot) sensor
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
-	@$(PY) -m pytest -n auto --dist loadfile $(if $(COMPLETE),--complete)
+	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)
 
 SOURCES = $(shell git ls-files '*.py' ':!:*/test/*' ':!:*_bench.py' ':!:rtl' ':!:conftest.py')
 .PHONY: lint
@@ -77,68 +90,65 @@ locks: $(READY)  ## renew requirements/*.lock from pyproject.toml (uv)
 
 .PHONY: formal
 formal: $(TESTS_READY)  ## properties of every block proven, and that each catches its broken twin (needs Yosys, z3: make tools)
-	@$(PY) -m talbot formal
+	@$(talbot) formal
 
 .PHONY: coverage
 coverage: $(TESTS_READY)  ## line, branch, expression, toggle, state machines and test plans: 100 %
-	@$(PY) -m talbot coverage
+	@$(talbot) coverage
 
 .PHONY: mutate
 mutate: $(TESTS_READY)  ## bugs planted in the RTL, each of which a test must find [SEED=2: another sample]
-	@$(PY) -m talbot mutate $(if $(SEED),--seed $(SEED))
+	@$(talbot) mutate
 
 .PHONY: verify
 verify: $(TESTS_READY) $(LAYOUT_READY)  ## all of the verification: build/verify/report.html; goes on where it was [SEED=2]
 	@bash requirements/tools.sh --missing iverilog yosys z3
-	@$(PY) -m talbot verify $(if $(SEED),--seed $(SEED))
+	@$(talbot) verify
 
 .PHONY: verilog
-verilog: $(READY)  ## build/verilog/<top>.v, linted
-	@$(PY) -m talbot verilog --out build/verilog --check
+verilog: $(READY)  ## build/verilog/<top>.sv, linted, and <top>.core for FuseSoC
+	@$(talbot) verilog --out build/verilog --core --check
 
 .PHONY: tradeoff
 tradeoff: $(READY)  ## error against run time: tables and plots in build/tradeoff/
-	@$(PY) -m talbot tradeoff
+	@$(talbot) tradeoff
 
 .PHONY: stability
 stability: $(READY)  ## stiff and extreme cases: bound against measured
-	@$(PY) -m talbot stability
+	@$(talbot) stability
 
 .PHONY: formats
 formats: $(TESTS_READY)  ## stream formats, scan orders and general coders compared: build/formats/
-	@$(PY) -m talbot formats --document docs/stream.md
+	@$(talbot) formats --document docs/stream.md
 
 .PHONY: document
-document: $(READY)  ## the documents for a host: docs/registers.*, the tables of docs/host.md, the C header
-	@$(PY) -m talbot document
+document: $(TESTS_READY)  ## the documents for a host: docs/registers.*, docs/host.md's tables, C header; HTML, IP-XACT: build/registers/
+	@$(talbot) document
 
 .PHONY: sizes
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)
-	@$(PY) -m talbot sizes --document README.md
+	@$(talbot) sizes --document README.md
 
+ifeq ($(BACKEND),openroad)
+layout: KNOWN += BACKEND
+endif
 .PHONY: layout
 layout: $(TESTS_READY) $(LAYOUT_READY) $(if $(filter openroad,$(BACKEND)),,have-tools)  ## the chip, DESIGN=quad_divider, or the whole die, DESIGN=asp_sensor, to GDS, checked [BACKEND=openroad PDK=sky130 UTILIZATION=0.8 UNTIMED=1 LIBERTY='a.lib b.lib' ANALOG=folder]
-ifeq ($(BACKEND),openroad)
-	@$(PY) -m talbot openroad $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
-else
-	@$(PY) -m talbot layout $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK)) \
-		$(if $(BACKEND),--backend $(BACKEND)) $(if $(UTILIZATION),--utilization $(UTILIZATION)) $(if $(UNTIMED),--untimed) \
-		$(if $(ANALOG),--analog $(call quoted,$(ANALOG))) $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
-endif
+	@$(talbot) $(if $(filter openroad,$(BACKEND)),openroad,layout)
 
 .PHONY: layout-pareto
 layout-pareto: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the divider's variants and widths laid out: area, clock, energy: build/layout/sweep/ (LIBERTY='a.lib b.lib')
-	@$(PY) -m talbot layout-sweep pareto $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+	@$(talbot) layout-sweep pareto
 
 .PHONY: layout-effort
 layout-effort: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## a layout's quality against the placer's effort: build/layout/sweep/ (LIBERTY='a.lib b.lib')
-	@$(PY) -m talbot layout-sweep effort --design $(or $(DESIGN),quad_divider) \
-		$(foreach file,$(LIBERTY),--liberty $(call quoted,$(file)))
+	@$(talbot) layout-sweep effort
 
+layout-hierarchy: KNOWN += DESIGNS
 .PHONY: layout-hierarchy
 layout-hierarchy: $(TESTS_READY) $(LAYOUT_READY) have-tools  ## the chip laid out flat and around two blocks laid out before: build/layout/hierarchy/ (DESIGNS='phase_path phase_path_macros' LIBERTY='a.lib b.lib')
 	@for design in $(or $(DESIGNS),asp_chip asp_chip_macros); do \
-		$(PY) -m talbot layout $$design $(foreach file,$(LIBERTY),--liberty $(call quoted,$(file))) || [ $$? = 1 ] || exit 2; \
+		$(talbot) layout $$design || [ $$? = 1 ] || exit 2; \
 	done
 	@$(PY) -m talbot layout-compare $(DESIGNS)
 
@@ -155,26 +165,23 @@ librelane: $(TESTS_READY) $(LAYOUT_READY) have-tools $(LIBRELANE)/.ready  ## Lib
 
 .PHONY: handoff
 handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the byte
-	@$(PY) -m talbot handoff --design $(or $(DESIGN),asp_chip) $(if $(PDK),--pdk $(PDK))
+	@$(talbot) handoff --design asp_chip
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
 	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
 
-CELLS_OPTIONS := LIB CORNER CELLS MODELS NETLIST REFERENCE WORKERS
-cells_arguments = $(foreach o,$(CELLS_OPTIONS),$(if $($(o)),--$(shell echo $(o) | tr A-Z a-z) $(call quoted,$($(o)))))
-
 .PHONY: cells
 cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib
-	@$(PY) -m talbot cells $(cells_arguments)
+	@$(talbot) cells
 
 .PHONY: cells-report
 cells-report: $(LAYOUT_READY) have-tools  ## the characterizer against REFERENCE=folder of SkyWater's tables: build/cells/report/index.html
-	@$(PY) -m talbot cells-report $(if $(REFERENCE),--reference $(call quoted,$(REFERENCE))) $(if $(CORNER),--corner $(CORNER)) $(if $(CELLS),--cells $(call quoted,$(CELLS)))
+	@$(talbot) cells-report
 
 .PHONY: cells-stability
 cells-stability: $(LAYOUT_READY) have-tools  ## stiff and extreme cases of the characterizer: bound against measured
-	@$(PY) -m talbot cells-stability
+	@$(talbot) cells-stability
 
 .PHONY: tools
 tools:  ## Icarus, a native Verilator, Yosys, z3, ngspice, OpenSTA and KLayout from Debian's packages (needs root)

@@ -24,13 +24,14 @@ NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 SLOW = "slow: make verify, or pytest --all"
 # What neither Debian nor PyPI has, or a machine cannot do: skipped with --complete, too
 ELSEWHERE = re.compile(
-    r"slow|benchmark|PDK_ROOT|openroad|a small file system cannot be mounted|needs /proc|no coriolis for"
+    r"slow|benchmark|PDK_ROOT|TT_TOOLS|openroad|a small file system cannot be mounted|needs /proc|no coriolis for"
 )
 # Command that brings what a test was skipped for, by a word of its reason
 BRINGS = {
     "slow": "make verify",
     "benchmark": "make bench",
     "LibreLane": "make librelane",
+    "TT_TOOLS": "TT_TOOLS=<tt-support-tools> PDK_ROOT=<an installed PDK>",
     "PDK_ROOT": "PDK_ROOT=<an installed PDK>",
 } | dict.fromkeys(
     ("klayout", "c4m", "pdkmaster", "coriolis", "sky130"), "make setup-layout (klayout's program: make tools)"
@@ -96,6 +97,20 @@ def pytest_collection_modifyitems(config, items):
     if not installed():
         for item in in_icarus:
             item.add_marker(pytest.mark.skip(reason=MISSING))
+
+
+@pytest.fixture
+def given_verilog(request):
+    """given_verilog(name): files of the netlist in place of what a test builds as ``name``; [] where none are given."""
+    netlists = request.config.stash.get(NETLISTS, None)
+
+    def files(name):
+        found = netlists.files(name) if netlists else []
+        if netlists and not found:
+            pytest.skip(f"--netlist has none of {name}")
+        return found
+
+    return files
 
 
 def pytest_sessionfinish(session):

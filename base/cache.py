@@ -5,11 +5,15 @@ Every cache of the project (simulators, cells, layout steps, proofs, mutants, co
 contents of their input files.
 """
 
+import contextlib
 import hashlib
+import json
 from collections.abc import Callable
 from pathlib import Path
 
 from .files import part_folder
+
+CONTENT = ".content.json"  # digest of each file in a kept folder
 
 
 def digest(*parts: object) -> str:
@@ -29,20 +33,42 @@ def _content(part: object) -> list[bytes]:
         return [part if isinstance(part, bytes) else str(part).encode()]
     if not part.is_dir():
         return [part.read_bytes()]
-    files = sorted(path for path in part.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
-    return [data for path in files for data in (str(path.relative_to(part)).encode(), path.read_bytes())]
+    return [data for name in _names(part) for data in (name.encode(), (part / name).read_bytes())]
 
 
 def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
-    """Return ``folder`` as ``make(temporary folder)`` filled it, now or earlier; after an exception nothing is left."""
+    """Return ``folder`` as ``make(temporary folder)`` filled it, now or earlier; after an exception nothing is left.
+
+    A folder in which a file of then is missing or changed is made again.
+    """
     folder = Path(folder)
-    if folder.exists():
+    if _sound(folder):
         return folder
     with part_folder(folder.parent) as part:
         make(part)
+        files = {name: digest(part / name) for name in _names(part)}
+        (part / CONTENT).write_text(json.dumps(files, indent=0))
+        if folder.exists() and not _sound(folder):
+            with part_folder(folder.parent) as damaged, contextlib.suppress(FileNotFoundError):
+                folder.rename(damaged / folder.name)
         try:
             part.rename(folder)
         except OSError:  # another process was faster
-            if not folder.exists():
+            if not _sound(folder):
                 raise
     return folder
+
+
+def _names(folder: Path) -> list[str]:
+    """The files below ``folder`` that count as its content: not what Python keeps beside its modules."""
+    files = (path for path in folder.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
+    return sorted(str(path.relative_to(folder)) for path in files)
+
+
+def _sound(folder: Path) -> bool:
+    """Whether every file that was made in ``folder`` is as it was; what was added later does not count."""
+    try:
+        files = json.loads((folder / CONTENT).read_text())
+        return all(digest(folder / name) == kept for name, kept in files.items())
+    except (OSError, ValueError, AttributeError):
+        return False

@@ -4,6 +4,7 @@ import io
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import BinaryIO
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
@@ -21,8 +22,8 @@ def svg(figure: Figure) -> str:
     return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg") :], count=1)
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Write a figure as a PNG."""
+def save(figure: Figure, path: Path | BinaryIO) -> None:
+    """Write a figure as a PNG to a path or an open file."""
     FigureCanvasAgg(figure)
     figure.savefig(path, format="png", dpi=130, bbox_inches="tight")
 

@@ -7,6 +7,7 @@ input or a tool that is missing or fails, it raises. In a package the module is 
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from types import ModuleType
@@ -15,6 +16,9 @@ from typing import Any, NoReturn
 from models.parameters import ParameterError
 
 from .tools import ToolError
+
+# A value too long to be read in an error's line, quoted or a word: its beginning, the rest
+LONG = re.compile(r"""('[^']{80})[^']{80,}(?=')|("[^"]{80})[^"]{80,}(?=")|(\S{160})\S{160,}?(?=:?(?:\s|$))""")
 
 
 class HelpFormatter(argparse.RawDescriptionHelpFormatter, argparse.ArgumentDefaultsHelpFormatter):
@@ -29,6 +33,12 @@ class Parser(argparse.ArgumentParser):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**{"allow_abbrev": False, "formatter_class": HelpFormatter} | options)
+        self._negative_number_matcher = re.compile(r"-\.?\d")  # as Python 3.14 has it: -1:3,0:2 and -1e1 are values
+
+    @property
+    def actions(self) -> list[argparse.Action]:
+        """The parser's own arguments, without --help."""
+        return [action for action in self._actions if not isinstance(action, argparse._HelpAction)]
 
     def error(self, message: str) -> NoReturn:
         """Print the line and exit with status 2."""
@@ -88,4 +98,6 @@ def failures(lines: Iterable[str]) -> int:
 
 
 def _report(program: str, message: str) -> None:
-    print(f"{program}: error: {message}", file=sys.stderr)
+    """One line; of a long value in it, the beginning."""
+    text = LONG.sub(lambda found: f"{found[found.lastindex or 0]}...", " ".join(message.split()))
+    print(f"{program}: error: {text}", file=sys.stderr)

@@ -3,12 +3,14 @@
 import contextlib
 import os
 import platform
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from models.parameters import ParameterError
+
+from .supervise import undisturbed, writing
 
 PART = f".part-{platform.node()}-"  # then the process, so that a killed one's leftovers are recognized
 
@@ -26,11 +28,13 @@ def check_folder(field: str, path: Path | str) -> None:
 @contextlib.contextmanager
 def part_folder(folder: Path) -> Iterator[Path]:
     """Yield a temporary folder in ``folder``, removed at the end; what killed processes left there goes, too."""
+    part = folder / f"{PART}{os.getpid()}-{secrets.token_hex(4)}"
+    writing(part)
     folder.mkdir(parents=True, exist_ok=True)
     for left in folder.glob(f"{PART}*"):
         if not _alive(int(left.name.removeprefix(PART).partition("-")[0])):
             shutil.rmtree(left, ignore_errors=True)
-    part = Path(tempfile.mkdtemp(prefix=f"{PART}{os.getpid()}-", dir=folder))
+    part.mkdir(mode=0o700)
     try:
         yield part
     finally:
@@ -39,25 +43,53 @@ def part_folder(folder: Path) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def staged(out: Path | str, replaces: Iterable[str] = ()) -> Iterator[Path]:
-    """Yield a temporary folder; on success each file in it moves into ``out``.
+    """Yield a temporary folder; on success all files and folders in it move into ``out``, or none.
 
     replaces: names of an earlier run's files that are removed where this run did not write them again. On any error or
-    Ctrl-C ``out`` stays as it was; an ``out`` that was created here and is empty is removed.
+    signal ``out`` stays as it was; an ``out`` that was created here and is empty is removed. Raises ParameterError
+    where a folder has a file's name, at once for the names in ``replaces``.
     """
-    out = Path(out)
+    out, replaces = Path(out), set(replaces)
     made = not out.exists()
+    _check_names(out, replaces)
     try:
         with part_folder(out) as part:
-            yield part
-            written = {path.name for path in part.iterdir()}
-            for path in sorted(part.iterdir()):
-                os.replace(path, out / path.name)
-            for name in set(replaces) - written:
-                (out / name).unlink(missing_ok=True)
+            new, old = part / "new", part / "old"
+            new.mkdir()
+            yield new
+            written = {path.name for path in new.iterdir()}
+            _check_names(out, [name for name in written if not (new / name).is_dir()])
+            old.mkdir()
+            with undisturbed():
+                _exchange(out, new, old, sorted(written), sorted(replaces - written))
     finally:
         if made:
             with contextlib.suppress(OSError):
                 out.rmdir()
+
+
+def _check_names(out: Path, names: Iterable[str]) -> None:
+    for name in sorted(names):
+        if (out / name).is_dir() and not (out / name).is_symlink():
+            raise ParameterError(f"out = {str(out)!r}: must not have a folder {name}, which is the name of a result")
+
+
+def _exchange(out: Path, new: Path, old: Path, written: Iterable[str], gone: Iterable[str]) -> None:
+    """Move ``written`` from ``new`` to ``out`` and those of these names, and ``gone``, from there to ``old``.
+
+    Where one cannot be moved, all go back.
+    """
+    moves = [(out / name, old / name) for name in (*written, *gone) if os.path.lexists(out / name)]
+    moves += [(new / name, out / name) for name in written]
+    done = []
+    try:
+        for source, target in moves:
+            os.rename(source, target)
+            done.append((source, target))
+    except BaseException:
+        for source, target in reversed(done):
+            os.rename(target, source)
+        raise
 
 
 @contextlib.contextmanager

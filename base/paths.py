@@ -2,5 +2,19 @@
 
 from pathlib import Path
 
+from platformdirs import user_cache_path
+
 ROOT = Path(__file__).parents[1]
-BUILD = ROOT / "build"
+
+
+def build(root: Path) -> Path:
+    """Folder of what is built and kept: the repository's own, or the user's cache where ``root`` is an installation."""
+    return root / "build" if (root / "pyproject.toml").is_file() else user_cache_path("talbot", appauthor=False)
+
+
+def results(root: Path) -> Path:
+    """Folder of results by default: the repository's own, or one in the working directory."""
+    return root / "build" if (root / "pyproject.toml").is_file() else Path("build")
+
+
+BUILD, RESULTS = build(ROOT), results(ROOT)

@@ -1,5 +1,6 @@
 """Tools as child processes: none outlives an interrupted parent, and errors name the tool that is missing or failed."""
 
+import contextlib
 import os
 import shutil
 import signal
@@ -60,14 +61,19 @@ def finish(
         try:
             out, err = child.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
-            os.killpg(child.pid, signal.SIGKILL)
+            _kill_group(child.pid)
             raise ToolTimeout(f"{name}: no end after {seconds} s") from None
         except BaseException:
-            os.killpg(child.pid, signal.SIGKILL)
+            _kill_group(child.pid)
             raise
     if log:
         out, err = log.read_text(errors="replace"), ""
     return subprocess.CompletedProcess(words, child.returncode, out, err)
+
+
+def _kill_group(leader: int) -> None:
+    with contextlib.suppress(ProcessLookupError):  # it has ended by itself
+        os.killpg(leader, signal.SIGKILL)
 
 
 def run(

@@ -4,7 +4,7 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.paths import ROOT
+from base.paths import RESULTS
 from cells import sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
@@ -22,7 +22,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--netlist", default="extracted", choices=sources.NETLISTS, help=netlists)
     add("--reference", type=Path, help="folder of <cell>.lib.json to compare with")
     add("--workers", type=int, default=-1, help="processes; -1: all cores")
-    add("--out", type=Path, default=ROOT / "build" / "cells", help="folder of the libraries")
+    add("--out", type=Path, default=RESULTS / "cells", help="folder of the libraries")
 
 
 def run(options: Namespace) -> int:

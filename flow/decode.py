@@ -7,24 +7,30 @@ from pathlib import Path
 from base.files import atomic, check_folder
 from models.digital.stream import decode_file
 from models.digital.stream.frame import DecodedFrame
-from models.parameters import TileParameters
+from models.parameters import ParameterError, TileParameters, read_sensor
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot decode`."""
     parser.add_argument("file", type=Path, help="stream.bin of a run, or captured from a chip")
+    parser.add_argument("--sensor", type=Path, help="sensor file of the chip, for its tile (default: the thesis's)")
     parser.add_argument("--out", type=Path, help="the .npz; further frames: X-1.npz ... (default: beside FILE)")
 
 
 def run(options: Namespace) -> int:
-    """Decode the file and print a line for each frame; 1 where a frame is incomplete."""
+    """Decode the file and print a line for each frame; 1 where a frame is damaged, corrected or not."""
     out = options.out or options.file.with_suffix(".npz")
+    if out.is_dir():
+        raise ParameterError(f"out = {str(out)!r}: must be a file, not a folder")
+    if out.exists() and options.file.exists() and out.samefile(options.file):
+        raise ParameterError(f"out = {str(out)!r}: must not be the stream itself")
     check_folder("out", out.parent)
-    frames = decode_to(options.file, out)
+    tile = read_sensor(options.sensor).tile if options.sensor else TileParameters()
+    frames = decode_to(options.file, out, tile)
     for frame in frames:
         print(describe(frame))
     print(f"written: {out}")
-    return 0 if all(frame.complete for frame in frames) else 1
+    return 0 if all(frame.complete and not frame.errors for frame in frames) else 1
 
 
 def decode_to(path: Path, out: Path, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:

@@ -1,10 +1,13 @@
 """What the layout flow (Coriolis, KLayout and the steps of flow.layout) needs of a process: one object a process."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 
+from models.parameters import ParameterError
+
+from .frame import Frame
 from .layers import GdsLayer, Layer, Via
 from .processes import package
 from .wires import Wires
@@ -42,7 +45,7 @@ class CoriolisPlatform:
     metal. fill: of all metals but the lowest. wires: by platforms.wires.CORNERS. corners: at which cells are timed,
     that of synthesis first; () where there are no models of the devices. antenna_walls: whether antenna ratios are
     those of side walls, else of area. utilization_most: at which a search
-    begins. masks: rules of KLayout beyond those of PDKMaster's deck.
+    begins. masks: rules of KLayout beyond those of PDKMaster's deck. frames: outlines of shuttles, by name.
     """
 
     name: str
@@ -75,6 +78,13 @@ class CoriolisPlatform:
     utilization_most: float = 0.95
     masks: Path | None = None
     antenna_walls: bool = True
+    frames: Mapping[str, Frame] = field(default_factory=dict)
+
+    def frame(self, name: str) -> Frame:
+        """Look up a Frame. Raises ParameterError."""
+        if name not in self.frames:
+            raise ParameterError(f"pdk = {self.name!r}: must have the frame {name}")
+        return self.frames[name]
 
 
 def coriolis_platform(pdk: str) -> CoriolisPlatform:

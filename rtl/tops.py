@@ -125,6 +125,9 @@ def pattern(sensor: SensorParameters) -> "Component":
 # Of AspChip: exported by name only, to be proven for any sensor
 PARTS: dict[str, Build] = {"Balance": balance, "Pattern": pattern}
 
+# Of rtl.tinytapeout: Verilog around a top, exported by name only
+WRAPPERS = {"tt_um_talbot_divider": "QuadDividerRadix4", "tt_um_talbot_amp_ctrl": "AmpCtrl"}
+
 # Of rtl.run_length.candidates: exported by name only, to measure their sizes
 PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePacker", "PayloadPacker"
 

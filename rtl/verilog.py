@@ -9,7 +9,7 @@ from base.tools import run
 
 
 def export_verilog(folder: Path, tops: Sequence[str] = (), options: Sequence[object] = ()) -> list[Path]:
-    """Write <top>.v of each of ``tops`` (default: all) into ``folder``; returns the files.
+    """Write <top>.sv of each of ``tops`` (default: all) into ``folder``; returns the files.
 
     options: of the sensor, see `rtl.export`. Raises ToolError.
     """

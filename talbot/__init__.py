@@ -1,1 +1,64 @@
-"""The command-line program: `talbot`."""
+"""Talbot: angle-sensitive-pixel image sensors, from the light field to the bytes of the chip's Verilog and back.
+
+    sensor = talbot.Sensor(rows=64, cols=96, m=0.5)
+    run = sensor.simulate(talbot.LightField.load("views/"), mode="raw")
+    run.reconstruct("light_field")
+
+Everything is loaded when it is first used. Objects show themselves as pictures in a notebook. What is out of range
+raises ParameterError: one line with the field, the value and the range.
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from base.tools import ToolError
+    from models.parameters import ParameterError, PixelType
+
+    from .api.decode import DecodedFrame, decode
+    from .api.image import Image
+    from .api.light_field import LightField
+    from .api.run import Run
+    from .api.sensor import Sensor, scenes
+    from .api.sweep import Tradeoff, tradeoff
+
+__all__ = [
+    "DecodedFrame",
+    "Image",
+    "LightField",
+    "ParameterError",
+    "PixelType",
+    "Run",
+    "Sensor",
+    "ToolError",
+    "Tradeoff",
+    "decode",
+    "scenes",
+    "tradeoff",
+]
+
+_MODULES = {
+    "DecodedFrame": "talbot.api.decode",
+    "Image": "talbot.api.image",
+    "LightField": "talbot.api.light_field",
+    "ParameterError": "models.parameters",
+    "PixelType": "models.parameters",
+    "Run": "talbot.api.run",
+    "Sensor": "talbot.api.sensor",
+    "ToolError": "base.tools",
+    "Tradeoff": "talbot.api.sweep",
+    "decode": "talbot.api.decode",
+    "scenes": "talbot.api.sensor",
+    "tradeoff": "talbot.api.sweep",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module 'talbot' has no attribute {name!r}")
+    value = globals()[name] = getattr(importlib.import_module(_MODULES[name]), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return [*__all__]

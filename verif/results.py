@@ -6,9 +6,9 @@ from math import sqrt
 from pathlib import Path
 
 from base.files import staged
-from base.paths import ROOT
+from base.paths import RESULTS
 
-OUT = ROOT / "build" / "verify"
+OUT = RESULTS / "verify"
 COVERAGE = "line", "branch", "expression", "toggle", "fsm", "functional"
 PROVEN = "proven"
 SEED = 1  # of what is random, unless --seed says otherwise

@@ -1,6 +1,7 @@
 import pytest
 
-from base.files import staged
+from base.files import _exchange, staged
+from models.parameters import ParameterError
 
 
 def test_files_appear_only_when_all_are_written(tmp_path):
@@ -27,3 +28,35 @@ def test_an_error_leaves_what_was_there(tmp_path):
         (folder / "a").write_text("half")
         raise OSError("disk full")
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a", "old")]
+
+
+def test_a_folder_in_the_place_of_a_file_is_refused_before_anything_is_written(tmp_path):
+    (tmp_path / "report").mkdir()
+    with pytest.raises(ParameterError, match="must not have a folder report"), staged(tmp_path, ["report"]):
+        raise AssertionError
+    with pytest.raises(ParameterError, match="must not have a folder report"), staged(tmp_path) as folder:
+        for name in ("a", "report", "z"):
+            (folder / name).write_text("new")
+    assert [path.name for path in tmp_path.iterdir()] == ["report"]
+
+
+def test_all_files_move_or_none(tmp_path):
+    out, new, old = (tmp_path / name for name in ("out", "new", "old"))
+    for folder, names in ((out, "abg"), (new, "ab"), (old, "")):
+        folder.mkdir()
+        for name in names:
+            (folder / name).write_text(folder.name)
+    with pytest.raises(FileNotFoundError):
+        _exchange(out, new, old, ["a", "b", "missing"], ["g"])
+    assert [path.read_text() for path in sorted(out.iterdir())] == ["out"] * 3
+    _exchange(out, new, old, ["a", "b"], ["g"])
+    assert [path.read_text() for path in sorted(out.iterdir())] == ["new"] * 2
+
+
+def test_a_folder_replaces_the_one_before(tmp_path):
+    for names in ("ab", "bc"):
+        with staged(tmp_path) as part:
+            (part / "folder").mkdir()
+            for name in names:
+                (part / "folder" / name).write_text(names)
+    assert [path.read_text() for path in sorted((tmp_path / "folder").iterdir())] == ["bc"] * 2

@@ -49,7 +49,7 @@ def compare(
     verilog: str | Path, blocks: Iterable[str], ours: Path, theirs: Path, store: Path = STORE
 ) -> dict[str, tuple[Mapped, Mapped]]:
     """Map every block to both libraries. verilog: folder of <block>.v. Raises ParameterError, ToolError."""
-    files = {block: Path(verilog) / f"{block}.v" for block in blocks}
+    files = {block: Path(verilog) / f"{block}.sv" for block in blocks}
     for block, file in files.items():
         if not file.exists():
             raise ParameterError(f"blocks = {block!r}: must be a file {file} (make verilog)")

@@ -1,7 +1,6 @@
 """The library's files: GDS, SPICE, Verilog, Liberty of areas and functions, decks, and a package for Coriolis."""
 
 import json
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -59,10 +58,7 @@ def written(folder: str | Path = FOLDER, canvas: Canvas | None = None) -> Path:
         drawn = library(canvas, folder / "drawn")
         with staged(folder) as part:
             write(drawn, canvas, part)
-            for path in part.iterdir():
-                if path.is_dir():
-                    shutil.rmtree(folder / path.name, ignore_errors=True)
-        mark.write_text(stamp)
+            (part / mark.name).write_text(stamp)
     return folder / "compact.gds"
 
 

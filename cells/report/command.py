@@ -8,7 +8,7 @@ from typing import Any
 from base.files import staged
 from base.liberty.read import read
 from base.page import render
-from base.paths import ROOT
+from base.paths import RESULTS
 from cells import sources
 from cells.characterize.conditions import Conditions
 from cells.corner import Corner
@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--corner", default="tt_025C_1v80", help="of the reference")
     parser.add_argument("--models", default="fitted", help="set of device models of the comparison")
     parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "cells" / "report", help="folder of the page")
+    parser.add_argument("--out", type=Path, default=RESULTS / "cells" / "report", help="folder of the page")
 
 
 def run(options: Namespace) -> int:

@@ -10,7 +10,7 @@ from tqdm import tqdm
 
 from base.charts import save
 from base.files import insert, staged
-from base.paths import ROOT
+from base.paths import RESULTS
 from base.table import write_csv
 from flow.sizes.measure import YOSYS_MISSING, yosys_installed
 from flow.sizes.measure import measure as size_of
@@ -27,7 +27,7 @@ DEFAULT_THRESHOLD = 10
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot formats`."""
-    out = ROOT / "build" / "formats"
+    out = RESULTS / "formats"
     parser.add_argument("--out", type=Path, default=out, help="folder of formats.csv, formats.md and formats.png")
     parser.add_argument("--codes", type=Path, help="npz with codes and ideal, both (rows, cols), in place of the scene")
     parser.add_argument("--document", type=Path, help="also put the tables between the marks of this Markdown file")
@@ -67,4 +67,4 @@ def gates_of_packers() -> dict[str, float] | None:
     packers = {name: packer for name, (_, packer) in FORMATS.items()}
     with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
         export_verilog(Path(folder), list(packers.values()))
-        return {name: size_of(Path(folder) / f"{packer}.v", packer).gates for name, packer in packers.items()}
+        return {name: size_of(Path(folder) / f"{packer}.sv", packer).gates for name, packer in packers.items()}

@@ -1,12 +1,16 @@
 """A scene through the golden models and the Verilog of the whole chip."""
 
+import json
+import re
 from argparse import ArgumentParser, Namespace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from base.cache import digest
 from base.progress import Steps
-from models.parameters import LANES, MODES, CameraParameters
+from models.parameters import LANES, MODES, STANDARD, CameraParameters, read_sensor
 
 from . import arguments as text
 
@@ -14,6 +18,11 @@ if TYPE_CHECKING:
     from .request import FrameRequest
 
 
+class Own(str):
+    """Default of an option that a sensor file has, too: the file's counts where none is typed."""
+
+
+NAME_MAX = 120  # characters of a folder's name
 INTEGERS = {"rows": (1, 1024), "cols": (1, 1536), "lanes": (min(LANES), max(LANES)), "threshold": (0, 127)}
 INTEGERS |= {"decimation": (0, 3), "seed": (0, 2**32 - 1)}
 
@@ -29,10 +38,16 @@ CAMERA = {
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot sim`: texts, checked by `run`."""
     add = parser.add_argument
-    add("--scene", default="motorcycle", help="name of a scene (--scene list shows them) or an image file")
+    add(
+        "--scene",
+        default="motorcycle",
+        help="name of a scene (--scene list shows them), an image, or a light field: "
+        "a folder, .npy, .npz, or tiles.png:9 of 9 x 9 views (models/scene/README.md)",
+    )
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
+    add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     for name, words in CAMERA.items():
-        add(f"--{name}", help=words.format(default=CameraParameters()))
+        add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
     add(
         "--views",
         default="auto",
@@ -40,17 +55,17 @@ def add_arguments(parser: ArgumentParser) -> None:
     )
     add("--mode", default="edge", help="one of " + ", ".join(MODES))
     add("--threshold", default="10", help="edge mode: |code| below this is left out, 0..127")
-    add("--rows", default="384", help="pixels, 1..1024")
-    add("--cols", default="384", help="pixels, 1..1536")
+    add("--rows", default=Own("384"), help="pixels, 1..1024")
+    add("--cols", default=Own("384"), help="pixels, 1..1536")
     add("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS))
     add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
     add("--decimation", default="0", help="log2 of the tile step, 0..3")
-    add("--lanes", default="8", help="converters, one of " + ", ".join(map(str, LANES)))
+    add("--lanes", default=Own("8"), help="converters, one of " + ", ".join(map(str, LANES)))
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
-    add("--converter", default="typical", help="typical (INL, DNL, offset, noise as in the report) or ideal")
+    add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
-    add("--out", help="folder for the results (default: build/sim/<scene>)")
+    add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
     add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
 
 
@@ -63,35 +78,84 @@ def run(options: Namespace) -> int:
     if options.scene == "list":
         print("\n".join(sorted(scenes)))
         return 0
+    typed = _typed(options)
+    options.out = options.out or Path("build/sim") / _name(typed)
     asked = _request(options)
+    before = _arguments_of(asked.folder)
     with Steps(STEPS) as steps:
-        summary = run(asked, note=steps.note)
+        summary = run(asked, steps.note, typed)
     _print_figures(summary, asked.folder)
+    if before not in (None, typed):
+        print(f"  replaced there: {_name(before)}")
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
+
+
+def _typed(options: Namespace) -> dict[str, Any]:
+    """The scene, then every argument that is not its default; not the folder."""
+    parser = ArgumentParser()
+    add_arguments(parser)
+    standard, own = vars(parser.parse_args([])), vars(options)
+
+    def told(name: str) -> bool:
+        replaces = own["sensor"] and isinstance(standard[name], Own) and not isinstance(own[name], Own)
+        return bool(replaces) or own[name] != standard[name]
+
+    return {name: own[name] for name in standard if name == "scene" or name != "out" and told(name)}
+
+
+def _name(typed: dict[str, Any]) -> str:
+    """A folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
+    parts = [Path(typed["scene"]).stem]
+    for name, value in list(typed.items())[1:]:
+        value = Path(value).stem if name in ("depth", "sensor") else value
+        parts.append(value if name == "mode" else name if value is True else f"{name}={value}")
+    text = re.sub(r"[^\w.,=+-]", "_", "-".join(parts))
+    return text if len(text) <= NAME_MAX else f"{text[: NAME_MAX - 17]}-{digest(text)}"
+
+
+def _arguments_of(folder: Path) -> dict[str, Any] | None:
+    """The arguments of the run whose results are in ``folder``, None where there is none."""
+    try:
+        found = json.loads((folder / "summary.json").read_text())["arguments"]
+        return found if found["scene"] else None
+    except (OSError, ValueError, LookupError, TypeError):
+        return None
 
 
 def _request(a: Namespace) -> "FrameRequest":
     """The FrameRequest of the options ``a``. Raises ParameterError."""
     from .request import request
 
-    numbers: dict[str, Any] = {name: text.integer(name, getattr(a, name), *ends) for name, ends in INTEGERS.items()}
-    rows = numbers["rows"]
+    sensor = read_sensor(a.sensor) if a.sensor else STANDARD
+    typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
+    numbers: dict[str, Any] = {
+        name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed
+    }
+    rows = numbers.get("rows", sensor.array.rows)
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
-    plain = {name: getattr(a, name) for name in ("scene", "depth", "mode", "phase", "out", "converter")}
+    plain = {name: typed[name] for name in ("scene", "depth", "mode", "phase", "out", "converter") if name in typed}
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
     window = partial(text.window, a.window)
     return request(
-        **plain, **numbers, window=window, mask=mask, camera=_camera(a), views=views, noise=noise, waves=waves
+        **plain,
+        **numbers,
+        sensor=sensor,
+        window=window,
+        mask=mask,
+        camera=_camera(a, sensor.optics.camera),
+        views=views,
+        noise=noise,
+        waves=waves,
     )
 
 
-def _camera(a: Namespace) -> CameraParameters:
-    """The camera of the options ``a``."""
+def _camera(a: Namespace, own: CameraParameters) -> CameraParameters:
+    """The sensor's ``own`` camera with what the options ``a`` change."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     given = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}
     chosen = {field.get(n, n): text.real(n, v, 0, float("inf")) for n, v in given.items() if v is not None}
-    return CameraParameters(**chosen)
+    return replace(own, **chosen)
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:

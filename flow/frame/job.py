@@ -1,7 +1,7 @@
 """The main job: scene -> samples -> chip's Verilog -> stream -> decoded -> compared -> pictures and report."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,7 +25,7 @@ from models.scene import Sampling, Scene, load
 from . import hardware
 from .figures import summarize
 from .request import FrameRequest
-from .result import Exposed, FrameResult
+from .result import Exposed, FrameResult, GoldenResult
 
 Values = npt.NDArray[np.float64]
 BENCH = 4  # the noise of a frame beside those of the four taps
@@ -100,37 +100,60 @@ def read_out(
     with clock.step("decode"):
         golden = golden_frame(exposed.samples, sensor, frame, exposed.front_end)
         decoded = decode_stream(chip.stream, sensor.tile)[0]  # StreamError for a stream without a frame
-    return FrameResult(request, exposed, program, golden, chip, decoded)
+    return FrameResult(request, exposed, golden, decoded, chip, program)
 
 
-def simulate_frame(request: FrameRequest) -> FrameResult:
-    """One frame from the scene to the decoded stream, without files. Raises ParameterError, ToolError."""
-    scene, todo = see(request)
-    return read_out(request, expose(request, scene, todo), hardware.program(request.sensor, todo.taps))
+def simulate_frame(request: FrameRequest, note: Callable[[str], None] = lambda text: None) -> FrameResult:
+    """One frame from the scene to the decoded stream, without files.
+
+    note: as in `run`. Raises ParameterError, ToolError.
+    """
+    clock = Clock(note=note)
+    exposed = _exposed(request, clock)
+    with clock.step("build"):
+        program = hardware.program(request.sensor, exposed.plan.taps, note=note)
+    return read_out(request, exposed, program, clock)
 
 
-def run(request: FrameRequest, note: Callable[[str], None] = lambda text: None) -> dict[str, Any]:
+def golden_result(request: FrameRequest, note: Callable[[str], None] = lambda text: None) -> GoldenResult:
+    """The same frame by the golden chip alone. Raises ParameterError."""
+    clock = Clock(note=note)
+    exposed = _exposed(request, clock)
+    with clock.step("decode"):
+        golden = golden_frame(exposed.samples, request.sensor, request.frame, exposed.front_end)
+        return GoldenResult(request, exposed, golden, decode_stream(golden.stream, request.sensor.tile)[0])
+
+
+def _exposed(request: FrameRequest, clock: Clock) -> Exposed:
+    with clock.step("setup"):
+        scene, todo = see(request)
+    with clock.step("capture"):
+        return expose(request, scene, todo)
+
+
+def run(
+    request: FrameRequest,
+    note: Callable[[str], None] = lambda text: None,
+    arguments: Mapping[str, object] | None = None,
+) -> dict[str, Any]:
     """Run the main job and write its files into ``request.folder``; returns summary.json.
 
     note: called with the name of each of `STEPS` as it starts, and with a line before each long part of one.
-    Raises ParameterError, ToolError, OSError.
+    arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
     """
     from . import outputs  # Matplotlib: not before it is needed
 
     check_folder("out", request.folder)
     clock = Clock(note=note)
-    with clock.step("setup"):
-        scene, todo = see(request)
-    with clock.step("capture"):
-        exposed = expose(request, scene, todo)
+    exposed = _exposed(request, clock)
     with clock.step("build"):
-        program = hardware.program(request.sensor, todo.taps, bool(request.waves), note)
+        program = hardware.program(request.sensor, exposed.plan.taps, bool(request.waves), note)
     with staged(request.folder, outputs.NAMES) as folder:
         waves = Waves(folder / "waves.vcd", *request.waves) if request.waves else None
         result = read_out(request, exposed, program, clock, waves)
         with clock.step("report"):
             summary = summarize(result)
-            summary["wall_s"] = clock.seconds
+            summary |= {"wall_s": clock.seconds, "arguments": dict(arguments or {})}
             outputs.write(folder, result, summary)
         (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
     return summary

@@ -7,20 +7,19 @@ import numpy as np
 import numpy.typing as npt
 
 from base.charts import bars, svg
-from models.parameters import EnergyParameters, LightParameters, sources
-from models.reconstruct import edge_images
+from models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
 from .figures import depth_line
 from .quality import Values, part_read
 from .report import Picture, against, decibels, render
-from .result import FrameResult
+from .result import FrameResult, GoldenResult
 
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
 PICTURES = ("overview", "scene", "differences", "image", "conversions", "phase", "edges", "views", "views_decoded")
 NAMES = (
-    *("stream.bin", "decoded.npz", "report.html", "summary.json", "waves.vcd"),
+    *("stream.bin", "decoded.npz", "sensor.toml", "report.html", "summary.json", "waves.vcd"),
     *(f"{name}.png" for name in PICTURES),
 )
 
@@ -29,11 +28,12 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     (folder / "stream.bin").write_bytes(result.chip.stream)
     result.decoded.save(folder / "decoded.npz")
-    shown, sheets = _pictures(result, summary), _sheets(result, summary)
-    for picture in (*shown, *sheets):
+    (folder / "sensor.toml").write_text(sensor_text(result.request.sensor))
+    singles, sheets = shown(result, summary), _sheets(result, summary)
+    for picture in (*singles, *sheets):
         picture.image.save(folder / f"{picture.name}.png")
-    pictures.overview([(picture.name, picture.image) for picture in shown]).save(folder / "overview.png")
-    large = [picture._replace(image=pictures.enlarge(picture.image, 384)) for picture in shown]
+    pictures.overview([(picture.name, picture.image) for picture in singles]).save(folder / "overview.png")
+    large = [picture._replace(image=pictures.enlarge(picture.image, 384)) for picture in singles]
     chip = chip_svg(result.request.sensor, result.request.frame)
     errors = [svg(figure) for figure in error_plots.figures(result, summary)]
     (folder / "report.html").write_text(
@@ -41,7 +41,7 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     )
 
 
-def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
+def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     """The single pictures of the mode."""
     frame, golden, decoded, scene = result.request.frame, result.golden, result.decoded, result.exposed.scene
     out = [Picture("scene", "", "the scene, centre view", pictures.gray(scene.image, high=_top(scene.image)))]
@@ -76,7 +76,7 @@ def _pictures(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
     return [*out, Picture("conversions", "", converted, decisions)]
 
 
-def _within(result: FrameResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
+def _within(result: GoldenResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
     """The image, white outside the rectangle of what is read: no sample of the frame is there."""
     out, part = np.full_like(image, high), part_read(result.golden.read)
     out[part] = image[part]
@@ -89,12 +89,10 @@ def _top(values: npt.NDArray[np.floating]) -> float:
 
 def _sheets(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
     """The contact sheets of the mode."""
-    sensor, frame, decoded, scene = result.request.sensor, result.request.frame, result.decoded, result.exposed.scene
+    sensor, frame, scene = result.request.sensor, result.request.frame, result.exposed.scene
     out = []
     if frame.mode in ("edge", "raw"):
-        samples = decoded.samples.astype(float)
-        difference = samples[..., 0] if frame.mode == "edge" else samples[..., 0] - samples[..., 1]
-        edges = edge_images(difference, sensor.tile)
+        edges = result.edges
         caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "
         caption += "cosine or sine analyzer; blue negative, red positive"
         sheet = pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))

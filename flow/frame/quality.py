@@ -11,12 +11,13 @@ import numpy.typing as npt
 from PIL import Image
 from skimage.metrics import structural_similarity
 
+from models.capture import cells
 from models.chip import golden_frame
 from models.parameters import FrameParameters
 from models.pixel import depth_of
 from models.reconstruct import psnr_db, psnr_without_mean_db, sum_image, white_sum
 
-from .result import FrameResult
+from .result import GoldenResult
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 TURN = 256  # codes of a phase
@@ -55,7 +56,7 @@ def snr(error: Values, signal: Values) -> float | None:
     return 10 * float(np.log10(power / noise)) if noise and power else None
 
 
-def sent_quality(result: FrameResult) -> dict[str, float | None]:
+def sent_quality(result: GoldenResult) -> dict[str, float | None]:
     """Of the decoded samples against the noiseless ones: snr_db, snr_nothing_sent_db, edges, phases."""
     frame, read, samples = result.request.frame, result.golden.read, result.decoded.samples
     ideal = ideal_samples(result.exposed.ideal, frame)[read]
@@ -88,11 +89,11 @@ def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, floa
     return {name: part / whole if whole else None for name, (part, whole) in zip(names, parts, strict=True)}
 
 
-def image_quality(result: FrameResult) -> dict[str, float | None]:
+def image_quality(result: GoldenResult) -> dict[str, float | None]:
     """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes."""
     part = part_read(result.golden.read)
     truth = np.asarray(result.exposed.scene.image, float)[part]
-    seen, size = coded_sum(result)[part], len(result.chip.stream)
+    seen, size = coded_sum(result)[part], len(result.stream)
     images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
     images |= {f"_{name}": coded(seen, name, size) for name in CODECS}
     out: dict[str, float | None] = {}
@@ -117,7 +118,7 @@ def ssim(image: Values, truth: Values) -> float | None:
     return float(found)
 
 
-def coded_sum(result: FrameResult) -> Values:
+def coded_sum(result: GoldenResult) -> Values:
     """The sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
     asked, samples = result.request, result.exposed.samples
     frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.timing)
@@ -144,18 +145,19 @@ def coded(image: Values, codec: str, size: int) -> Values | None:
     return None if best is None else top * (np.asarray(Image.open(best).convert("L")) / 255.0) ** GAMMA
 
 
-def field_quality(result: FrameResult) -> dict[str, float | None]:
+def field_quality(result: GoldenResult) -> dict[str, float | None]:
     """Of the light field read back in raw mode, against the scene's: PSNR, and that of the sum image in every view."""
     if result.request.frame.mode != "raw":
         return {"light_field_psnr_db": None, "light_field_psnr_copied_db": None}
-    part = (..., *part_read(result.golden.read))
+    # Corners that the round pupil does not reach have no light
+    part = (cells(result.exposed.scene.views), *part_read(result.golden.read))
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
     field = result.light_field[part] / white_sum(result.request.sensor, result.request.frame.timing)
-    copied = np.broadcast_to(result.image[part], truth.shape)
+    copied = np.broadcast_to(result.image[part[1:]], truth.shape)
     return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
 
 
-def depth_quality(result: FrameResult) -> dict[str, float | None]:
+def depth_quality(result: GoldenResult) -> dict[str, float | None]:
     """Of the depth in time of flight, against the scene's where the amplitude is not 0, in m; of one depth for all."""
     truth = result.exposed.scene.depth
     if result.request.frame.mode != "tof" or truth is None:
@@ -173,6 +175,6 @@ def depth_quality(result: FrameResult) -> dict[str, float | None]:
     }
 
 
-def quality(result: FrameResult) -> dict[str, Any]:
+def quality(result: GoldenResult) -> dict[str, Any]:
     """All figures of this file."""
     return sent_quality(result) | image_quality(result) | field_quality(result) | depth_quality(result)

@@ -1,13 +1,14 @@
 """The parameters of one run, validated before anything is computed."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
 from models import parameters
 from models.parameters import (
     ALL_TYPES,
+    STANDARD,
     TYPICAL_CONVERTER,
     CameraParameters,
     FrameParameters,
@@ -15,7 +16,9 @@ from models.parameters import (
     SensorParameters,
     Window,
 )
+from models.scene import LightField
 
+CONVERTERS = {"typical": TYPICAL_CONVERTER, "ideal": parameters.ConverterParameters()}
 Cut = Callable[[Window], Window]  # of the full window
 
 
@@ -23,7 +26,8 @@ Cut = Callable[[Window], Window]  # of the full window
 class FrameRequest:
     """One run of the main job.
 
-    scene: a name of models.scene.scenes or an image file. depth: a file, or None.
+    scene: a name of models.scene.scenes, a file or folder (models/scene/README.md), or a light field.
+    depth: a file, or None.
     views: of the capture along the pupil's diameter, 1..31, or None for as many as it needs.
     noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
     out: folder for the results, or None for build/sim/<scene>.
@@ -31,7 +35,7 @@ class FrameRequest:
 
     sensor: SensorParameters
     frame: FrameParameters
-    scene: str = "motorcycle"
+    scene: str | LightField = "motorcycle"
     depth: str | None = None
     noise: float = 1.0
     seed: int = 1
@@ -52,7 +56,7 @@ class FrameRequest:
     @property
     def name(self) -> str:
         """Name of the scene without folder and suffix."""
-        return Path(self.scene).stem
+        return self.scene.name if isinstance(self.scene, LightField) else Path(self.scene).stem
 
     @property
     def folder(self) -> Path:
@@ -61,26 +65,37 @@ class FrameRequest:
 
 
 def request(
-    rows: int = 384,
-    cols: int = 384,
-    lanes: int = 8,
-    camera: CameraParameters = CameraParameters(),
-    converter: str = "typical",
+    rows: int | None = None,
+    cols: int | None = None,
+    lanes: int | None = None,
+    camera: CameraParameters | None = None,
+    converter: str | None = None,
+    sensor: SensorParameters = STANDARD,
     window: Cut | None = None,
     mask: int = ALL_TYPES,
     **rest: Any,
 ) -> FrameRequest:
-    """A FrameRequest for an array of ``rows`` x ``cols`` pixels behind ``camera``.
+    """A FrameRequest for ``sensor``, or one that has these in place of its own: rows, cols, lanes, camera, converter.
 
     converter: typical or ideal.
     window: the window to read, from the full one (all of it).
     rest: fields of FrameRequest and FrameParameters. Raises ParameterError.
     """
-    array, chip = parameters.ArrayParameters(rows=rows, cols=cols), parameters.ChipParameters(lanes=lanes)
-    ends = TYPICAL_CONVERTER if converter == "typical" else parameters.ConverterParameters()
-    parameters.check_choice("converter", converter, ("typical", "ideal"))
-    sensor = SensorParameters(array=array, chip=chip, converter=ends, optics=parameters.OpticsParameters(camera=camera))
+    parameters.check_choice("converter", converter, (None, *CONVERTERS))
+    sensor = SensorParameters(
+        sensor.tile,
+        _with(sensor.array, rows=rows, cols=cols),
+        _with(sensor.optics, camera=camera),
+        sensor.electrical,
+        CONVERTERS[converter] if converter else sensor.converter,
+        _with(sensor.chip, lanes=lanes),
+    )
     full = sensor.full_window
     own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
     frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)
     return FrameRequest(sensor=sensor, frame=frame, **own)
+
+
+def _with(part: Any, **values: Any) -> Any:
+    """``part`` with those of ``values`` that are not None."""
+    return replace(part, **{name: value for name, value in values.items() if value is not None})

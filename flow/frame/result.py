@@ -1,6 +1,6 @@
 """What one run of the main job holds: its exposure, the chip's frame and the golden one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -11,9 +11,10 @@ from models.afe import FrontEnd
 from models.capture import CaptureOperator, Views
 from models.chip import GoldenFrame
 from models.digital.stream.frame import DecodedFrame
+from models.parameters import SensorParameters
 from models.pixel.time_of_flight import quadrature
 from models.plan import Plan
-from models.reconstruct import light_field_estimate, rebuild, sum_image
+from models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image
 from models.reconstruct.rebuild import Rebuilt
 from models.scene import Scene
 
@@ -41,22 +42,38 @@ class Exposed:
 
 
 @dataclass(frozen=True, eq=False)
-class FrameResult:
-    """Everything of one run, for the figures, the pictures and the report."""
+class GoldenResult:
+    """One run of the golden chip, and its stream decoded."""
 
     request: FrameRequest
     exposed: Exposed
-    program: Path
     golden: GoldenFrame
-    chip: HardwareFrame
     decoded: DecodedFrame
+
+    @property
+    def stream(self) -> bytes:
+        """The bytes that were decoded."""
+        return self.golden.stream
+
+    @cached_property
+    def sensor(self) -> SensorParameters:
+        """The sensor, with as many views as the scene: a light field has its own."""
+        sensor = self.request.sensor
+        return replace(sensor, optics=replace(sensor.optics, views=self.exposed.scene.views))
 
     @cached_property
     def rebuilt(self) -> Rebuilt:
         """The 2-D image rebuilt from the decoded edges and the scene's disparity."""
-        asked, exposed, edges = self.request, self.exposed, self.decoded.samples[..., 0]
-        trim, timing = exposed.front_end.trim, asked.frame.timing
-        return rebuild(edges, self.decoded.read, exposed.scene, asked.sensor, trim, timing)
+        exposed, edges = self.exposed, self.decoded.samples[..., 0]
+        trim, timing = exposed.front_end.trim, self.request.frame.timing
+        return rebuild(edges, self.decoded.read, exposed.scene, self.sensor, trim, timing)
+
+    @property
+    def edges(self) -> npt.NDArray[np.float64]:
+        """One image of decoded differences a pixel type, in codes, (types, tile rows, tile cols); edge and raw mode."""
+        samples = self.decoded.samples.astype(float)
+        difference = samples[..., 0] if self.request.frame.mode == "edge" else samples[..., 0] - samples[..., 1]
+        return edge_images(difference, self.request.sensor.tile)
 
     @cached_property
     def image(self) -> npt.NDArray[np.float64]:
@@ -83,5 +100,21 @@ class FrameResult:
     def light_field(self) -> npt.NDArray[np.float64]:
         """The linear estimate of the light field from the decoded diodes, in LSB; raw mode only."""
         pair = np.moveaxis(self.decoded.samples.astype(float), 2, 0)
-        operator = CaptureOperator(self.request.sensor, read=self.decoded.read)
+        operator = CaptureOperator(self.sensor, read=self.decoded.read)
         return np.asarray(light_field_estimate(operator, pair), float)
+
+
+@dataclass(frozen=True, eq=False)
+class FrameResult(GoldenResult):
+    """Everything of one run through the chip's Verilog, for the figures, the pictures and the report.
+
+    decoded: the chip's stream. program: the simulator.
+    """
+
+    chip: HardwareFrame
+    program: Path
+
+    @property
+    def stream(self) -> bytes:
+        """The bytes that left the chip."""
+        return self.chip.stream

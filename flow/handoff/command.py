@@ -5,7 +5,7 @@ from pathlib import Path
 
 from base.command import failures
 from base.files import check_folder, staged
-from base.paths import ROOT
+from base.paths import RESULTS
 from flow.layout.design import DESIGNS, design, folder_name
 from models.parameters import check_choice
 from platforms.processes import PROCESSES
@@ -18,8 +18,8 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot handoff`."""
     parser.add_argument("--design", default="quad_divider", help=f"one of {', '.join(DESIGNS)}")
     parser.add_argument("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
-    parser.add_argument("--layouts", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "handoff", help="folder of the archive")
+    parser.add_argument("--layouts", type=Path, default=RESULTS / "layout", help="folder of the layouts")
+    parser.add_argument("--out", type=Path, default=RESULTS / "handoff", help="folder of the archive")
 
 
 def run(options: Namespace) -> int:

@@ -9,7 +9,9 @@ from pathlib import Path
 from flow.layout.design import Design
 from flow.layout.netlist.netlist import SUPPLIES
 from flow.layout.report.metrics import broken
+from flow.openroad.tinytapeout import PROJECTS, project_files
 from models.parameters import ParameterError
+from platforms.coriolis import coriolis_platform
 
 from .archive import sha256
 from .pages import datasheet, pinout
@@ -59,7 +61,7 @@ def contents(
     sources = {
         "reports/summary.json": folder / "summary.json",
         "reports/report.html": folder / "report.html",
-        f"rtl/{design.top}.v": folder / "rtl" / f"{design.top}.v",
+        f"rtl/{design.top}.sv": folder / "rtl" / f"{design.top}.sv",
         **{f"{place}/{design.name}.{suffix}": folder / f"{design.name}.{suffix}" for suffix, place in REQUIRED.items()},
     }
     if (page := sources["reports/report.html"]).is_file():
@@ -81,13 +83,28 @@ def contents(
             substitutes[suffix] = substitute
     netlist = files[f"netlist/{design.name}.v"].decode()
     lef = files[f"layout/{design.name}.lef"].decode()
+    frame = coriolis_platform(summary["pdk"]).frame(design.frame) if design.frame else None
+    supplies: dict[str, str] = dict(zip(SUPPLIES, frame.supplies if frame else SUPPLIES, strict=True))
     files |= {
-        f"netlist/{design.name}.power.v": powered(netlist, SUPPLIES).encode(),
+        f"netlist/{design.name}.power.v": powered(netlist, supplies).encode(),
         "pinout.md": pinout(lef).encode(),
         "datasheet.md": datasheet(design, summary, lef, waivers).encode(),
         "waivers.json": _json(waivers),
     }
+    if design.name in PROJECTS:
+        files |= shuttle_files(design, files)
     return files, substitutes
+
+
+def shuttle_files(design: Design, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Tiny Tapeout's project of a finished layout: its own files, beside them the layout's by the name of the top."""
+    verilog = files[f"rtl/{design.top}.sv"].decode()
+    made = {name: text.encode() for name, text in project_files(design, verilog).items()}
+    own = {"gds": "layout/{}.gds", "lef": "layout/{}.lef", "v": "netlist/{}.power.v"}
+    for suffix, source in own.items():
+        if (name := source.format(design.name)) in files:
+            made[f"tinytapeout/{design.top}.{suffix}"] = files[name]
+    return made
 
 
 def plain(data: bytes, folder: Path) -> bytes:

@@ -6,7 +6,7 @@ from typing import Any
 from base.lef.read import read_macro
 from flow.layout.design import Design
 
-WATCHED = {"frame": "a real frame", "tests": "the block's own tests"}
+WATCHED = {"frame": "a real frame", "tests": "the block's own tests", "host": "an example behind its host"}
 
 
 def pinout(lef: str) -> str:

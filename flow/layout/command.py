@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from base.command import failures
-from base.paths import ROOT
+from base.paths import RESULTS
 from base.progress import Steps
 from models.parameters import ParameterError, check_choice
 from platforms.foundry import installed
@@ -21,7 +21,7 @@ from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout`."""
     add = parser.add_argument
-    add("design", help=f"one of {', '.join((*DESIGNS, SENSOR))}")
+    add("design", nargs="?", default=CHIP, help=f"one of {', '.join((*DESIGNS, SENSOR))}")
     add("--pdk", default=PROCESSES[0], help=f"process, one of {', '.join(PROCESSES)}")
     add("--backend", default="coriolis", help="what places and routes: coriolis (openroad: see talbot openroad)")
     add("--utilization", type=float, help="cells' area by core area where the search begins (default: the design's)")
@@ -29,7 +29,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--liberty", type=Path, action="append", default=[], help=cells)
     add("--untimed", action="store_true", help="no timing: cells by area alone")
     add("--analog", type=Path, help=f"folder with <block>.lef and .gds in place of {SENSOR}'s black boxes")
-    add("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+    add("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
 
 
 def run(arguments: Namespace) -> int:

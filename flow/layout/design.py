@@ -53,7 +53,8 @@ class Design:
     the block's tests build it with these parameters, for `pytest --netlist`; a block whose tests have a size of their
     own is laid out in that size. utilization: where the search for the smallest area begins. density_variation: of the
     placer. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
-    asynchronous: inputs that pass synchronizers, a false path.
+    asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it ends in _n. frame: a
+    shuttle's outline, see platforms.frame; '' for the smallest that there is.
     """
 
     name: str
@@ -69,6 +70,8 @@ class Design:
     clock: Clock = Clock()
     io: IoConstraints = IoConstraints()
     asynchronous: tuple[str, ...] = ()
+    reset: str = "reset"
+    frame: str = ""
 
 
 def divider(name: str, variant: str, n_frac: int = 8) -> Design:
@@ -84,6 +87,7 @@ DIVIDER = MacroPlacement("divider", "quad_divider")
 # As in the thesis (B.3.2): both blocks are macros
 TWO = MacroPlacement("phase.divider", "quad_divider", (0.1, 1.0)), MacroPlacement("amp", "amp_ctrl", (0.93, 0.8))
 DIE = IoConstraints(load_pf=0.25)  # of the chip on the sensor's die: the longest nets of flow.layout.sensor
+tile = partial(Design, folder="tinytapeout", reset="rst_n")  # a block behind Tiny Tapeout's pins
 chip = partial(Design, top="AspChip", folder="asp_chip", io=DIE, asynchronous=ASYNCHRONOUS)
 DESIGNS = {
     made.name: made
@@ -108,6 +112,8 @@ DESIGNS = {
             utilization=0.44,
             asynchronous=SPI_INPUTS,
         ),
+        tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
+        tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
         chip("asp_chip", utilization=0.41),
         chip("asp_chip_macros", utilization=0.41, density_variation=0.3, macros=TWO),
     )
@@ -122,11 +128,11 @@ def design(name: str) -> Design:
 
 
 def flat_design(name: str) -> Design:
-    """Look up a Design without macros by its name. Raises ParameterError, also for one with macros."""
+    """Look up a Design without macros and frame by its name. Raises ParameterError, also for one with either."""
     found = design(name)
-    if found.macros:
+    if found.macros or found.frame:
         why = "only make layout with the Coriolis backend supports these"
-        raise ParameterError(f"DESIGN = {name!r}: must be without macros: {why}")
+        raise ParameterError(f"DESIGN = {name!r}: must be without {'macros' if found.macros else 'a frame'}: {why}")
     return found
 
 

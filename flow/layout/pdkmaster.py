@@ -1,6 +1,5 @@
 """PDKMaster's description of a process and its cells, exported for Coriolis, KLayout and simulators."""
 
-import math
 import re
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -10,11 +9,10 @@ from typing import Any
 from base.steps import StepError
 from cells.standard import StandardCells
 from platforms.coriolis import CoriolisPlatform
-from platforms.layers import Layer, Via
+from platforms.layers import Layer
 
 from .netlist.netlist import OUTPUT_PINS
 
-GRID_UM = 0.005  # on which pads are drawn
 DIRECTIONS = {"vdd": "supply", "iovdd": "supply", "vss": "ground", "iovss": "ground"}
 DIRECTIONS |= dict.fromkeys((*OUTPUT_PINS, "co", "s"), "out")
 
@@ -70,50 +68,9 @@ def export_coriolis(folder: Path, description: Any, standard: StandardCells, tec
     text, feeds = re.subn(r"feedNames = '.*'", f"feedNames = '{','.join(tech.fill_cells)}'", export(library))
     if feeds != 1:
         raise StepError(f"library: PDKMaster's export names cells that fill rows {feeds} times, once was expected")
-    (package / "StdCellLib.py").write_text(with_narrow_top(text, tech, description.tech.primitives))
+    (package / "StdCellLib.py").write_text(text)
     if standard.fix:
         (package / "StdCellLib_fix.py").write_text(standard.fix)
-
-
-def with_narrow_top(text: str, tech: CoriolisPlatform, primitives: Any) -> str:
-    """The export for Coriolis with the tracks of the top layer as near as its pads may be.
-
-    PDKMaster keeps room there for vias to the layer above, of which there are none (1.48 um instead of 0.68 um in
-    SKY130). Raises StepError where the export has no such tracks.
-    """
-    below, top, via = tech.metals[-2], tech.metals[-1], tech.vias[-1]
-    pad = via.size_um + 2 * via.enclosure_um
-    begin = text.index(f"metal = tech.getLayer('{top.name}')")
-    head, gauge = text[:begin], text[begin:]
-    around, pitch = f"u({via.enclosure_um})", pad + float(primitives[top.name].min_space)
-    both = f"setEnclosures(via, metal, ({around}, {around}))"
-    gauge, enclosures = re.subn(r"setEnclosures\(via, metal, .*\)", both, gauge, count=1)
-    gauge, tracks = re.subn(r"(u\(0\.0\), )u\([\d.]+\), u\([\d.]+\)", rf"\1u({pitch:g}), u({pad:g})", gauge, count=1)
-    head, pads = with_short_pads(head, below.name, top.name, via, float(primitives[below.name].min_area or 0))
-    if not enclosures or not tracks or not pads:
-        raise StepError(f"library: PDKMaster's export has no gauge of {top.name} that could be narrowed")
-    return head + gauge
-
-
-def with_short_pads(text: str, below: str, above: str, via: Via, area: float) -> tuple[str, int]:
-    """The export with the pads of the layer ``below`` the top one only as long as the least ``area`` (um2) requires.
-
-    PDKMaster's are 1.18 um long in SKY130, and two of them on one track are too near where they are two tracks of the
-    top layer apart. Also returns how many changes there are.
-    """
-
-    def shorter(match: re.Match[str]) -> str:
-        """The enclosures with the length that the area requires."""
-        long, wide = float(match[2]), float(match[3])
-        least = area / (via.size_um + 2 * wide) - via.size_um
-        needed = max(via.enclosure_um, math.ceil(least / 2 / GRID_UM - 1e-9) * GRID_UM)
-        return f"{match[1]}u({min(long, needed):g}), u({wide:g})"
-
-    pattern = (
-        rf"(via = tech\.getLayer\('{below}_{via.name}_{above}'\)\n\s+setEnclosures\(via, metal, \()"
-        r"u\(([\d.]+)\), u\(([\d.]+)\)"
-    )
-    return re.subn(pattern, shorter, text, count=1)
 
 
 def export_decks(description: Any, devices: Any) -> dict[str, str]:

@@ -32,7 +32,7 @@ def lay_out_smallest(
         attempt = Attempt(shape.utilization, shape.aspect, place.parameters.density_variation)
         tried.append(attempt)
         try:
-            runner.run(floorplan)
+            attempt.utilization = runner.run(floorplan)["metrics"]["utilization"]
         except ParameterError as error:
             misfit = error
             continue

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from base.command import failures
 from base.files import check_folder, staged
-from base.paths import ROOT
+from base.paths import RESULTS
 from base.progress import Steps
 from base.tools import ToolError
 from flow.layout.design import DESIGNS, flat_design
@@ -21,16 +21,16 @@ from .stages import run as run_stages
 from .write import write
 
 # Suffixes of the contract of flow.layout -> file of the run, or of a check
-RESULTS = {"lef": "final.lef", "v": "final.v", "power.v": "final.power.v", "spef": "nom.spef", "def": "final.def"}
+FINAL = {"lef": "final.lef", "v": "final.v", "power.v": "final.power.v", "spef": "nom.spef", "def": "final.def"}
 BY_CORNER = {"sdf": "sta_{}.sdf", "lib": "block_liberty_{}.liberty"}
 CHECKED = {"gds": "fill.gds", "sdc": "sdc", "drc.lyrdb": "drc.report", "lvsdb": "lvs.report"}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad`."""
-    parser.add_argument("design", help=f"one of {', '.join(DESIGNS)}")
+    parser.add_argument("design", nargs="?", default="asp_chip", help=f"one of {', '.join(DESIGNS)}")
     parser.add_argument("--pdk", default="sky130", help="process")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+    parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
     parser.add_argument("--write-only", action="store_true", help="write the scripts, run nothing")
 
 
@@ -58,8 +58,8 @@ def run(options: Namespace) -> int:
             for corner in tech.corners
             for suffix, source in BY_CORNER.items()
         }
-        with staged(folder, [f"{chosen.name}.{suffix}" for suffix in (*RESULTS, *results)]) as part:
-            for suffix, file in RESULTS.items():
+        with staged(folder, [f"{chosen.name}.{suffix}" for suffix in (*FINAL, *results)]) as part:
+            for suffix, file in FINAL.items():
                 shutil.copyfile(folder / file, part / f"{chosen.name}.{suffix}")
             for suffix, source in results.items():
                 shutil.copyfile(checked.paths[source], part / f"{chosen.name}.{suffix}")

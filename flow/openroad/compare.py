@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from base.files import insert
-from base.paths import ROOT
+from base.paths import RESULTS
 from flow.layout.design import design
 from flow.layout.report.metrics import broken as broken_of_layout
 
@@ -24,7 +24,7 @@ NOT_RUN = "not run"
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot openroad-compare`."""
     parser.add_argument("designs", nargs="*", default=DESIGNS, metavar="DESIGN", help="designs that are laid out")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+    parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
     parser.add_argument("--document", type=Path, help="also put the table between the marks of this file")
 
 

@@ -16,10 +16,10 @@ from base.files import insert
 from flow.layout.design import design
 from platforms.sky130 import cells as sky130_hd
 from platforms.sky130 import functions
-from platforms.sky130.tinytapeout import FULL, core_um2
+from platforms.sky130.tinytapeout import FRAME, FULL, core_um2
 
 from .stat import counted
-from .tinytapeout import BUS, PROJECTS, TOPS, sources
+from .tinytapeout import PROJECTS
 from .write import rtl
 
 SCRIPT = """
@@ -56,21 +56,20 @@ class Fit:
 
 def fit(name: str, folder: Path) -> tuple[Fit, Path]:
     """The Fit and the netlist's path of the project of design ``name``; files go to ``folder``. Raises ToolError."""
-    project, chosen = PROJECTS[name], design(name)
+    chosen = design(name)
     rtl(chosen, folder)
-    for file in (f"{project.top}.v", BUS):
-        (folder / file).write_text((TOPS / file).read_text())
     (folder / "cells.lib").write_text(functions.small_liberty())
     netlist, stat, script = folder / "netlist.v", folder / "stat.txt", folder / "fit.ys"
-    verilog = " ".join(str(folder / file) for file in sources(project, chosen))
-    names = {"top": project.top, "liberty": folder / "cells.lib", "stat": stat, "netlist": netlist, "sources": verilog}
+    names = {"top": chosen.top, "liberty": folder / "cells.lib", "stat": stat, "netlist": netlist}
+    names["sources"] = folder / f"{chosen.top}.sv"
     script.write_text(SCRIPT.format(constant=f"{sky130_hd.LIBRARY}__{functions.CONSTANT}", **names))
     tools.run(["yosys", "-q", "-s", script])
     cells, area = counted(stat.read_text())
     if cells is None or area is None:
         raise tools.ToolError(f"yosys: {stat}: no number of cells or no area")
     flip_flops = len(re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__{functions.FLIP_FLOP} ", netlist.read_text()))
-    return Fit(name, project.tiles, cells, flip_flops, area, core_um2(project.tiles)), netlist
+    tiles = chosen.frame.removeprefix(FRAME)
+    return Fit(name, tiles, cells, flip_flops, area, core_um2(tiles)), netlist
 
 
 def table(fits: Sequence[Fit]) -> str:

@@ -17,7 +17,7 @@ def librelane(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str,
     """Files of the design: text by path."""
     utilization = round(100 * tech.utilization)
     values = (
-        {"DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.v]"}
+        {"DESIGN_NAME": design.top, "VERILOG_FILES": f"[dir::{design.top}.sv]"}
         | {"CLOCK_PORT": design.clock.port, "CLOCK_PERIOD": design.clock.period_ns}
         | {"PNR_SDC_FILE": "dir::pnr.sdc", "SIGNOFF_SDC_FILE": "dir::signoff.sdc"}
         | {"FP_SIZING": "relative", "FP_CORE_UTIL": utilization, "FP_ASPECT_RATIO": 1}
@@ -25,5 +25,5 @@ def librelane(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str,
     )
     config = "meta:\n  version: 2\n  flow: Classic\n" + "".join(f"{key}: {value}\n" for key, value in values.items())
     constraints = {"pnr.sdc": sdc(design, propagated=False) + PROPAGATE, "signoff.sdc": sdc(design)}
-    files = {"config.yaml": config, **constraints, f"{design.top}.v": verilog}
+    files = {"config.yaml": config, **constraints, f"{design.top}.sv": verilog}
     return {f"librelane/{name}": text for name, text in files.items()}

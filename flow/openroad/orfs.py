@@ -25,7 +25,7 @@ def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]
     period_ps = round(1000 * design.clock.period_ns)  # the default is the number in the SDC, which is in ns
     values = (
         {"DESIGN_NAME": design.top, "DESIGN_NICKNAME": name, "PLATFORM": platform}
-        | {"VERILOG_FILES": f"$(DESIGN_HOME)/src/{name}/{design.top}.v"}
+        | {"VERILOG_FILES": f"$(DESIGN_HOME)/src/{name}/{design.top}.sv"}
         | {"SDC_FILE": f"$(DESIGN_HOME)/{platform}/{name}/constraint.sdc"}
         | {"CORE_UTILIZATION": utilization, "CORE_ASPECT_RATIO": 1, "CORE_MARGIN": 10}
         | {"PLACE_DENSITY_LB_ADDON": 0.1, "ABC_CLOCK_PERIOD_IN_PS": period_ps}
@@ -35,4 +35,4 @@ def orfs(design: Design, tech: OpenRoadPlatform, verilog: str) -> dict[str, str]
     files = {"config.mk": config, "constraint.sdc": sdc(design, propagated=False)}
     files["rules-base.json"] = json.dumps(rules, indent=4) + "\n"
     ours = {f"orfs/{platform}/{name}/{file}": text for file, text in files.items()}
-    return ours | {f"orfs/src/{name}/{design.top}.v": verilog}
+    return ours | {f"orfs/src/{name}/{design.top}.sv": verilog}

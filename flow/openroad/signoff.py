@@ -64,7 +64,7 @@ def given(
     cells = f"read_liberty -ignore_miss_func {made}/functional.lib"
     run(["yosys", "-q", "-p", f"{cells}; proc; write_verilog -noattr {made}/cells.v"])
     return {
-        "rtl": folder / f"{design.top}.v",
+        "rtl": folder / f"{design.top}.sv",
         "sdc": made / "final.sdc",
         "repair.netlist": made / "netlist.json",
         "floorplan.floorplan": made / "floorplan.json",

@@ -9,7 +9,7 @@ CORE_SPACE_UM = 10.0  # from core to die: pins and their way in
 def variables(design: Design, tech: OpenRoadPlatform) -> str:
     """Text of design.tcl; files of the PDK are under the environment's PDK_ROOT."""
     plain = (
-        {"top": design.top, "rtl": f"{design.top}.v", "constraints": f"{design.top}.sdc"}
+        {"top": design.top, "rtl": f"{design.top}.sv", "constraints": f"{design.top}.sdc"}
         | {"period_ps": round(1000 * design.clock.period_ns), "utilization": round(100 * tech.utilization, 1)}
         | {"aspect": 1.0, "core_space": CORE_SPACE_UM, "site": tech.site, "synthesis_liberty": "synthesis.lib"}
         | {"tap_distance": tech.tap_um, "supply": tech.supply[0], "ground": tech.ground[0]}

@@ -3,10 +3,11 @@
 from pathlib import Path
 
 from base.files import staged
-from flow.layout.design import Design
+from flow.layout.design import DESIGNS, Design
 from flow.layout.netlist.gating import ClockGate
 from flow.layout.timing.constraints import sdc
 from platforms.openroad import OpenRoadPlatform
+from platforms.sky130.tinytapeout import FRAME
 from rtl.verilog import export_verilog
 
 from .librelane import librelane
@@ -32,11 +33,11 @@ def write(design: Design, tech: OpenRoadPlatform, folder: Path) -> list[str]:
         **orfs(design, tech, verilog),
         **librelane(design, tech, verilog),
     }
-    if design.name in PROJECTS:
-        files |= project_files(PROJECTS[design.name], design, verilog)
+    if (project := f"{FRAME}{design.name}") in PROJECTS:
+        files |= project_files(DESIGNS[project], rtl(DESIGNS[project], folder / "tinytapeout" / "src"))
     files |= {str(path): text for path, text in ClockGate(*tech.clock_gate).files().items()}
     files |= {script.name: script.read_text() for script in SCRIPTS.glob("*.tcl")}
     for name, text in files.items():
         with staged((folder / name).parent) as part:
             (part / Path(name).name).write_text(text)
-    return [f"{design.top}.v", *sorted(files)]
+    return [f"{design.top}.sv", *sorted(files)]

@@ -12,7 +12,8 @@ from rtl.verilog import export_verilog
 class Build:
     """The chip's constants and the size of the front end's memory.
 
-    taps: sub-frames of a frame, 1 or 4. waves: whether the program can write a VCD.
+    order: pixel type of each position in a tile, row by row. taps: sub-frames of a frame, 1 or 4.
+    waves: whether the program can write a VCD.
     """
 
     rows: int
@@ -23,6 +24,7 @@ class Build:
     iterations: int
     tile_rows: int
     tile_cols: int
+    order: tuple[int, ...]
     taps: int
     waves: bool
 
@@ -32,7 +34,7 @@ class Build:
         array, chip, tile = sensor.array, sensor.chip, sensor.tile
         iterations = chip.cordic_iterations
         sizes = array.rows, array.cols, chip.lanes, chip.divider, chip.n_frac, iterations, tile.rows, tile.cols
-        return cls(*sizes, taps, waves)
+        return cls(*sizes, tile.order, taps, waves)
 
     def parameters(self, option: str) -> list[str]:
         """Each parameter of the module Bench as ``option``NAME=value."""
@@ -40,8 +42,11 @@ class Build:
         return [f"{option}{name.upper()}={getattr(self, name)}" for name in names]
 
     def chip_verilog(self, folder: Path) -> Path:
-        """Export the chip into ``folder``; returns AspChip.v. Raises ToolError."""
-        names = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
-        options: Sequence[str] = [f"--{name.replace('_', '-')}={getattr(self, name)}" for name in names]
+        """Export the chip into ``folder``; returns AspChip.sv. Raises ToolError."""
+        names = "rows", "cols", "lanes", "divider", "n_frac", "iterations", "tile_rows", "tile_cols"
+        options: Sequence[str] = [
+            *(f"--{name.replace('_', '-')}={getattr(self, name)}" for name in names),
+            f"--order={','.join(map(str, self.order))}",
+        ]
         (path,) = export_verilog(folder, ["AspChip"], options)
         return path

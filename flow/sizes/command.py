@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from base.files import insert, staged
-from base.paths import ROOT
+from base.paths import RESULTS
 from rtl.verilog import export_verilog
 
 from .measure import measure
@@ -19,7 +19,7 @@ SENSOR = "rows", "cols", "lanes", "divider", "n_frac", "iterations"
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot sizes`."""
     parser.add_argument("tops", nargs="*", help="tops to measure; default: every one")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "sizes", help="folder of sizes.json and sizes.md")
+    parser.add_argument("--out", type=Path, default=RESULTS / "sizes", help="folder of sizes.json and sizes.md")
     parser.add_argument("--document", type=Path, help="also put the blocks' table between the marks of this file")
     for name in SENSOR:
         parser.add_argument(f"--{name.replace('_', '-')}", help="of the sensor: see talbot verilog --help")

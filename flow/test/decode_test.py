@@ -1,4 +1,5 @@
 import json
+import re
 
 import numpy as np
 import pytest
@@ -47,6 +48,31 @@ def test_damage_is_reported_and_the_rest_is_kept(tmp_path, capsys, stream):
     assert "rows are bad" in error and "trailer" in error
     with np.load(tmp_path / "d.npz") as kept:
         assert kept["bad_rows"].size and not kept["read"][kept["bad_rows"]].any() and kept["made"] == -1
+
+
+@pytest.mark.parametrize("cut", range(1, 15))
+def test_a_cut_trailer_is_damage(tmp_path, capsys, stream, cut):
+    (tmp_path / "s.bin").write_bytes(stream[1][:-cut])
+    assert main(decode, [str(tmp_path / "s.bin")]) == 1
+    assert "trailer" in capsys.readouterr().out
+
+
+def test_a_corrected_byte_is_damage_and_bad_rows_are_listed_once(tmp_path, capsys, stream):
+    for at, said in ((5, "corrected"), (slice(60, 80), "bad rows: ")):
+        data = bytearray(stream[1])
+        data[at] = bytes(20) if isinstance(at, slice) else data[at] ^ 1
+        (tmp_path / "s.bin").write_bytes(data)
+        assert main(decode, [str(tmp_path / "s.bin")]) == 1
+        text = capsys.readouterr().out
+        assert said in text and text.count("bad rows: ") <= 1 and not re.search(r"rows are bad: ", text)
+
+
+@pytest.mark.parametrize("out, must", [("folder", "must be a file, not a folder"), ("s.bin", "must not be the stream")])
+def test_where_it_may_not_write(tmp_path, capsys, stream, out, must):
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "s.bin").write_bytes(stream[1])
+    assert main(decode, [str(tmp_path / "s.bin"), "--out", str(tmp_path / out)]) == 2
+    assert must in capsys.readouterr().err and (tmp_path / "s.bin").read_bytes() == stream[1]
 
 
 @pytest.mark.parametrize("content, message", [(b"", "empty"), (b"no stream", "header"), (bytes(1000), "starts with")])

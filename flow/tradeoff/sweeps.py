@@ -45,6 +45,12 @@ SWEEPS: dict[str, Sweep] = {
 }
 
 
+def measured(name: str, quick: bool = False) -> list[dict[str, Any]]:
+    """The rows of a sweep."""
+    points = tqdm(SWEEPS[name].points(quick), desc=f"{name:10s}", file=sys.stderr, leave=True, disable=None)
+    return [SWEEPS[name].measure(point) for point in points]
+
+
 def run_sweeps(out: Path, only: Sequence[str] | None = None, quick: bool = False) -> dict[str, list[dict[str, Any]]]:
     """Run the sweeps named in ``only`` (default: all) and write their files into ``out``; returns rows by sweep.
 
@@ -55,9 +61,8 @@ def run_sweeps(out: Path, only: Sequence[str] | None = None, quick: bool = False
         check_choice("only", name, list(SWEEPS))
     tables = {}
     for name in names:
-        sweep = SWEEPS[name]
-        bar = tqdm(sweep.points(quick), desc=f"{name:10s}", file=sys.stderr, leave=True, disable=None)
-        rows = tables[name] = [sweep.measure(point) for point in bar]
+        sweep, rows = SWEEPS[name], measured(name, quick)
+        tables[name] = rows
         with staged(out) as folder:
             write_csv(folder / f"{name}.csv", rows)
             save(sweep.plot(rows), folder / f"{name}.png")

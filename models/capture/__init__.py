@@ -3,7 +3,7 @@
 from .expose import Exposure, expose
 from .frame import capture, currents, exposed
 from .operator import CaptureOperator
-from .pupil import Region, integrate
+from .pupil import Region, cells, integrate
 from .ratio import capture_ratio
 from .views import Views, choose_views
 
@@ -14,6 +14,7 @@ __all__ = [
     "Views",
     "capture",
     "capture_ratio",
+    "cells",
     "choose_views",
     "currents",
     "expose",

@@ -86,7 +86,7 @@ def integrate(
     see = scene.view(region.pixels)
     step, middle = scene.views / region.views, (region.views - 1) / 2
     places = np.argwhere(cells(region.views))
-    order = np.reshape(sensor.tile.order, (sensor.tile.rows, sensor.tile.cols))
+    order = sensor.tile.type_map(sensor.tile.rows, sensor.tile.cols)
     rows = np.flatnonzero(region.pixels.any(1))
 
     def _some(part: Ints) -> Floats:
@@ -122,7 +122,7 @@ def add_view(pair: Floats, light: Floats, field: FieldWeights, sensor: SensorPar
     v, u : int
         View row and column.
     """
-    order = np.reshape(sensor.tile.order, (sensor.tile.rows, sensor.tile.cols))
+    order = sensor.tile.type_map(sensor.tile.rows, sensor.tile.cols)
     _add(pair, light, np.ascontiguousarray(field.series[:, :, v, u]), order, field.y, field.x, np.arange(len(light)))
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import AmpTiming, SensorParameters, check_int, check_real
+from models.parameters import AmpTiming, ParameterError, SensorParameters, check_int, check_real
 from models.pixel.trim import optical_gains
 from models.plan import LeftOut, codes_per_unit
 from models.scene import Scene
@@ -84,7 +84,7 @@ def choose_views(
     Raises
     ------
     ParameterError
-        For views or a bound out of range.
+        For views or a bound out of range, or other views than those of a light field.
     """
     check_real("bound", bound, 0.01, 100)
     everywhere = np.ones(scene.shape, bool)
@@ -94,6 +94,8 @@ def choose_views(
     if not scene.angular:
         return Views((Region(1, everywhere),), 1, 0.0)
     if scene.render is None:
+        if views not in (None, scene.views):
+            raise ParameterError(f"views = {views}: must be left out, the light field has its own {scene.views}")
         return Views((Region(scene.views, everywhere),), scene.views, None)
     probe = _Probe(scene, sensor, timing, read)
     if views is not None:

@@ -10,8 +10,9 @@ from .energy import EnergyParameters, LightParameters
 from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
 from .optics import OpticsParameters
 from .sensor import SensorParameters
+from .sensor_file import STANDARD, read_sensor, sensor_of, sensor_text
 from .sources import sources
-from .tile import PixelType, TileParameters
+from .tile import PixelType, Response, TileParameters
 
 __all__ = [
     "ALL_TYPES",
@@ -27,6 +28,7 @@ __all__ = [
     "SAMPLES_PER_PIXEL",
     "SPI_INPUTS",
     "SHORT_TIMING",
+    "STANDARD",
     "TYPICAL_CONVERTER",
     "AmpTiming",
     "ArrayParameters",
@@ -39,11 +41,15 @@ __all__ = [
     "OpticsParameters",
     "ParameterError",
     "PixelType",
+    "Response",
     "SensorParameters",
     "TileParameters",
     "Window",
     "check_choice",
     "check_int",
     "check_real",
+    "read_sensor",
+    "sensor_of",
+    "sensor_text",
     "sources",
 ]

@@ -1,5 +1,6 @@
 """The 24 pixel types and their order in a tile [Jayasuriya2017, Sec. 3.5.1, Fig. 6.3]."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from typing import Self
 
@@ -7,6 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .checks import ParameterError, check_int, check_real
+
+# From incidence angles theta_x and theta_y, arrays (n,) in rad, |theta| <= pi/2, to the response of both diodes,
+# (2, n), finite, 0 or more, the aperture A(theta) included: 1 is as sensitive as a plain diode on the axis.
+Response = Callable[[npt.NDArray[np.floating], npt.NDArray[np.floating]], npt.ArrayLike]
 
 
 @dataclass(frozen=True)
@@ -21,16 +26,27 @@ class PixelType:
         Grating orientation, -180..180 degrees.
     alpha : float
         Phase of the analyzer grating, -2 pi..2 pi rad.
+    m : float or None
+        Modulation depth, 0..1; None is the sensor's own (OpticsParameters.m).
+    response : callable or None
+        A response of one's own in place of Eq. 3.1: see `Response`. ``beta`` then is the fastest angular frequency in
+        it, alpha, gamma_deg and m are labels.
     """
 
     beta: float
     gamma_deg: float
     alpha: float
+    m: float | None = None
+    response: Response | None = None
 
     def __post_init__(self) -> None:
         check_real("beta", self.beta, 0, 50)
         check_real("gamma_deg", self.gamma_deg, -180, 180)
         check_real("alpha", self.alpha, -2 * np.pi, 2 * np.pi)
+        if self.m is not None:
+            check_real("m", self.m, 0, 1)
+        if self.response is not None and not callable(self.response):
+            raise ParameterError(f"response = {self.response!r}: must be a function of theta_x and theta_y")
 
     @property
     def gamma(self) -> float:
@@ -76,6 +92,12 @@ class TileParameters:
     def __post_init__(self) -> None:
         check_int("tile rows", self.rows, 1, 4)
         check_int("tile cols", self.cols, 1, 6)
+        for name in ("types", "order"):  # a list is as good; a tuple has a hash
+            if isinstance(getattr(self, name), str | bytes) or not isinstance(getattr(self, name), Iterable):
+                raise ParameterError(f"{name} = {getattr(self, name)!r}: must be a list")
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+        for index in self.order:
+            check_int("order", index, 0, len(self.types) - 1)
         if len(self.types) != self.rows * self.cols:
             raise ParameterError(f"types = {len(self.types)} entries: must be rows * cols = {self.rows * self.cols}")
         if sorted(self.order) != list(range(len(self.types))):
@@ -95,8 +117,35 @@ class TileParameters:
         TileParameters
             With rows * cols pixel types.
         """
+        check_int("tile rows", rows, 1, 4)
+        check_int("tile cols", cols, 1, 6)
         count = rows * cols
         return cls(rows, cols, _thesis_types()[:count], tuple(kind for kind in _THESIS_ORDER if kind < count))
+
+    @classmethod
+    def of_rows(cls, rows: Iterable[Iterable[PixelType]]) -> Self:
+        """Tile of these pixel types, as they stand.
+
+        Parameters
+        ----------
+        rows : iterable of iterable of PixelType
+            1..4 rows of 1..6 types each; a type may stand in several places.
+
+        Returns
+        -------
+        TileParameters
+            Its types in this order, row by row.
+
+        Raises
+        ------
+        ParameterError
+            For rows of different lengths, or too many.
+        """
+        table = [tuple(row) for row in rows]
+        widths = {len(row) for row in table}
+        if len(widths) != 1:
+            raise ParameterError(f"tile rows = {[len(row) for row in table]} types: must be 1..4 rows of one length")
+        return cls(len(table), max(widths), sum(table, ()), tuple(range(len(table) * max(widths))))
 
     @property
     def n_types(self) -> int:

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial.legendre import leggauss
 
-from models.parameters import OpticsParameters, PixelType, SensorParameters, TileParameters
+from models.parameters import OpticsParameters, ParameterError, PixelType, SensorParameters, TileParameters
 
 from .response import response, vignetting
 
@@ -35,7 +35,12 @@ def density(
     Returns
     -------
     array (types, 2, n)
-        0..2.
+        0..2, or what a type's own response gives.
+
+    Raises
+    ------
+    ParameterError
+        For a type's own response of a wrong shape, negative or not finite.
 
     References
     ----------
@@ -43,17 +48,23 @@ def density(
     """
     theta_x, theta_y = np.arctan(nu_x), np.arctan(nu_y)
     omega = vignetting(nu_x, nu_y, optics.vignetting_power)
-    return np.stack(
-        [
-            np.stack(
-                [
-                    omega * response(t.alpha + flip, t.beta, t.gamma, theta_x, theta_y, optics.m, optics.aperture_sigma)
-                    for flip in (0.0, np.pi)
-                ]
-            )
-            for t in types
-        ]
-    )
+    return np.stack([omega * _diodes(t, optics, theta_x, theta_y) for t in types])
+
+
+def _diodes(
+    kind: PixelType, optics: OpticsParameters, theta_x: npt.NDArray[np.floating], theta_y: npt.NDArray[np.floating]
+) -> npt.NDArray[np.floating]:
+    """Response rho of both diodes of a type, (2, n)."""
+    if kind.response is None:
+        m = optics.m if kind.m is None else kind.m
+        angles = theta_x, theta_y, m, optics.aperture_sigma
+        return np.stack([response(kind.alpha + flip, kind.beta, kind.gamma, *angles) for flip in (0.0, np.pi)])
+    rho = np.asarray(kind.response(theta_x, theta_y), float)
+    if rho.shape != (2, *theta_x.shape):
+        raise ParameterError(f"response = array of shape {rho.shape}: must be {(2, *theta_x.shape)}, both diodes")
+    if not (np.isfinite(rho).all() and rho.min() >= 0):
+        raise ParameterError(f"response = {rho.min():g}..{rho.max():g}: every value must be finite and 0 or more")
+    return rho
 
 
 def cell_nodes(optics: OpticsParameters, v: int, u: int) -> npt.NDArray[np.float64]:

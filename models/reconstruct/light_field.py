@@ -26,7 +26,8 @@ def light_field_estimate(operator: CaptureOperator, pair: npt.NDArray[np.floatin
     Returns
     -------
     array (views, views, rows, cols)
-        l[v, u, y, x] in the unit and type of ``pair`` (a white diode's photocurrent = white).
+        l[v, u, y, x] in the unit and type of ``pair`` (a white diode's photocurrent = white); 0 in the corners that
+        the round pupil does not reach (`models.capture.cells`).
 
     Raises
     ------
@@ -50,5 +51,6 @@ def light_field_estimate(operator: CaptureOperator, pair: npt.NDArray[np.floatin
         return np.zeros(operator.shape, pair.dtype)
     # Phi of one pixel, all types demosaiced to it: (48, v, u).
     back = (operator.weights.astype(float) * seen[:, None, None, None]).reshape(-1, *operator.shape[:2])
-    back /= np.tensordot(back, back.sum((1, 2)), (0, 0))
+    scale = np.tensordot(back, back.sum((1, 2)), (0, 0))
+    back /= np.where(scale > 0, scale, 1)
     return np.tensordot(back.astype(pair.dtype), measured.reshape(-1, *shape), (0, 0))

@@ -11,7 +11,7 @@ from .depth_file import read_depth
 from .picture_file import read_luminance
 from .sampling import Sampling
 from .scene import Scene
-from .targets import IN_FOCUS
+from .targets import IN_FOCUS, plane
 from .views import Pictured
 
 PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "page", "rocket", "text")
@@ -72,7 +72,7 @@ def _on_depth(
     image = resample.resize(luminance, rows, cols, resample.centre_box(height, width, rows, cols))
     image = np.clip(image, 0, 1)  # rounding of the resampling
     if depth is None:
-        depth = np.full(sampling.shape, camera.scaled(camera.PLANE, sampling.camera))
+        _, depth = plane(sampling)
     disparity = camera.disparity(depth, sampling)
     flat = bool(np.abs(disparity).max() * sampling.views < IN_FOCUS)
     seen = None if flat else Pictured(image, disparity, sampling)

@@ -13,6 +13,8 @@ from models.parameters import ParameterError
 from .resample import linear
 
 PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
+FORMATS = "PNG", "JPEG", "TIFF", "WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PPM"  # named to users, where built in
+FLOAT_MAX = float(np.finfo(np.float32).max)
 KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
@@ -76,19 +78,52 @@ def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDAr
         return np.asarray(picture.convert("L"))
 
 
+def read_picture(path: str | Path, low: float = 0.0, high: float = 1.0) -> npt.NDArray[Any]:
+    """Read a picture as stored: gray or RGB codes, or linear values.
+
+    Parameters
+    ----------
+    path : path
+        The image.
+    low, high : float
+        Range of floating-point values.
+
+    Returns
+    -------
+    uint8, uint16 or float32 (height, width) or uint8 (height, width, 3)
+        Transparency shows white.
+
+    Raises
+    ------
+    ParameterError
+        If the file is missing, no image, damaged, too large, or holds NaN or infinity.
+    """
+    with _opened(path, "scene") as picture:
+        picture = ImageOps.exif_transpose(_loaded(picture, path, "scene"))
+        if picture.mode == "F":
+            return _checked_values(np.asarray(picture), path, low, high)
+        if picture.mode.startswith("I"):
+            return _checked_codes(np.asarray(picture), path).astype(np.uint16)
+        return np.asarray(picture.convert("L") if picture.mode in ("1", "L") else _opaque(picture))
+
+
 def _opened(path: str | Path, field: str) -> Image.Image:
     path = Path(path)
+    if path.is_dir():
+        raise ParameterError(f"{field} = {str(path)!r}: must be an image file, not a folder")
     if not path.is_file():
         raise ParameterError(f"{field} = {str(path)!r}: no such file; must be a readable file")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # up to PIXELS_MAX is allowed
+            warnings.simplefilter("ignore")  # up to PIXELS_MAX is allowed; of odd metadata no picture may come
             picture = Image.open(path)
     except Image.DecompressionBombError:
         raise ParameterError(f"{field} = {str(path)!r}: must be an image of 1..{PIXELS_MAX} pixels") from None
     except (UnidentifiedImageError, OSError, ValueError, SyntaxError) as error:
+        Image.init()
+        formats = ", ".join(name for name in FORMATS if name in Image.OPEN)
         raise ParameterError(
-            f"{field} = {str(path)!r}: must be an image file that Pillow reads ({type(error).__name__})"
+            f"{field} = {str(path)!r}: must be an image file that Pillow reads, {formats} ({type(error).__name__})"
         ) from None
     return picture
 
@@ -105,32 +140,83 @@ def _loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
 
 def _luminance(picture: Image.Image, path: str | Path, factor: int) -> npt.NDArray[np.float32]:
     if picture.mode == "F":
-        values = np.asarray(picture)
-        smallest, largest = float(values.min()), float(values.max())
-        if not (smallest >= 0 and largest <= 1):
-            worst = largest if smallest >= 0 else smallest
-            raise ParameterError(
-                f"scene = {str(path)!r}: pixel value {worst:g}: every floating-point pixel must be a "
-                "finite number in [0, 1]"
-            )
+        _checked_values(np.asarray(picture), path)
         return _reduced(picture, factor, np.float32)
     if picture.mode.startswith("I"):
-        codes = np.asarray(picture)
-        if codes.min() < 0 or codes.max() > 65535:
-            raise ParameterError(f"scene = {str(path)!r}: integer pixels must be in 0..65535")
-        return _decode16(_reduced(Image.fromarray(codes.astype(np.float32)), factor, np.float32) / 65535)
+        codes = _checked_codes(np.asarray(picture), path)
+        return decode16(_reduced(Image.fromarray(codes.astype(np.float32)), factor, np.float32) / 65535)
     if picture.mode in ("1", "L"):
         return linear(_reduced(picture.convert("L"), factor, np.uint8))
+    return linear(_reduced(_opaque(picture), factor, np.uint8))
+
+
+def _opaque(picture: Image.Image) -> Image.Image:
+    """RGB, transparency white."""
     if "A" in picture.mode or "transparency" in picture.info:
         picture = picture.convert("RGBA")
         page = Image.new("RGBA", picture.size, (255, 255, 255, 255))
         picture = Image.alpha_composite(page, picture)
-    return linear(_reduced(picture.convert("RGB"), factor, np.uint8))
+    return picture.convert("RGB")
+
+
+def _checked_codes(codes: npt.NDArray[Any], path: str | Path) -> npt.NDArray[Any]:
+    if codes.min() < 0 or codes.max() > 65535:
+        raise ParameterError(f"scene = {str(path)!r}: integer pixels must be in 0..65535")
+    return codes
+
+
+def _checked_values(
+    values: npt.NDArray[Any], path: str | Path, low: float = 0.0, high: float = 1.0
+) -> npt.NDArray[Any]:
+    smallest, largest = float(values.min()), float(values.max())
+    if not (smallest >= low and largest <= high):
+        worst = largest if smallest >= low else smallest
+        raise ParameterError(
+            f"scene = {str(path)!r}: pixel value {worst:g}: every floating-point pixel must be a "
+            f"finite number in [{low:g}, {high:g}]"
+        )
+    return values
 
 
 def _reduced(picture: Image.Image, factor: int, dtype: npt.DTypeLike) -> npt.NDArray[Any]:
     return np.asarray(picture.reduce(factor) if factor > 1 else picture, dtype)
 
 
-def _decode16(unit: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
+def decode16(unit: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
+    """Linear light of sRGB codes.
+
+    Parameters
+    ----------
+    unit : array (...)
+        Codes over the largest one, 0..1.
+
+    Returns
+    -------
+    array (...)
+        0..1.
+
+    References
+    ----------
+    [IEC61966-2-1].
+    """
     return np.where(unit <= 0.04045, unit / 12.92, ((unit + 0.055) / 1.055) ** 2.4)
+
+
+def encode16(light: npt.NDArray[np.floating]) -> npt.NDArray[Any]:
+    """SRGB codes of linear light: the inverse of `decode16`.
+
+    Parameters
+    ----------
+    light : array (...)
+        0..1.
+
+    Returns
+    -------
+    array (...)
+        Codes over the largest one, 0..1, not rounded.
+
+    References
+    ----------
+    [IEC61966-2-1].
+    """
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)

@@ -7,6 +7,8 @@ from pathlib import Path
 from models.parameters import ParameterError
 
 from . import targets
+from .light_field import LightField
+from .light_field_file import named
 from .motorcycle import motorcycle
 from .photograph import PHOTOGRAPHS, photograph, picture
 from .sampling import Sampling
@@ -27,13 +29,13 @@ scenes: dict[str, Callable[..., Scene]] = {
 NUMBERS = {"edge": ("degrees", -360.0, 360.0), "flat": ("percent", 0.0, 1600.0), "polarized": ("percent", 0.0, 100.0)}
 
 
-def load(scene: str, sampling: Sampling, depth: str | Path | None = None) -> Scene:
-    """Load a scene by name, or from an image file.
+def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None = None) -> Scene:
+    """Load a scene by name, or from an image file, or the files of a light field.
 
     Parameters
     ----------
-    scene : str
-        A name in `scenes`, `name:number`, or a path.
+    scene : str or LightField
+        A name in `scenes`, `name:number`, a path (models/scene/README.md), or the light field itself.
     sampling : Sampling
         Array, views and camera.
     depth : path, optional
@@ -49,6 +51,12 @@ def load(scene: str, sampling: Sampling, depth: str | Path | None = None) -> Sce
     ParameterError
         For an unknown name, a number out of range, or a file that cannot be read.
     """
+    if isinstance(scene, str) and scene not in scenes and (read := named(scene)):
+        return load(read(), sampling, depth)
+    if isinstance(scene, LightField):
+        if depth is not None:
+            raise ParameterError(f"depth = {str(depth)!r}: must be left out, a light field has no depth file")
+        return scene.scene(sampling)
     name, colon, number = scene.partition(":")
     if scene not in scenes and not (colon and name in NUMBERS):
         if _looks_like_file(scene):

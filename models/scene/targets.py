@@ -171,21 +171,34 @@ def _places(sampling: Sampling) -> tuple[Floats, Floats]:
     ) / 2
 
 
-def _plane(sampling: Sampling) -> tuple[Floats, Floats]:
-    """Disparity and depth of the plane of pictures without depth."""
+def plane(sampling: Sampling) -> tuple[Floats, Floats]:
+    """The plane of pictures without depth.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and camera.
+
+    Returns
+    -------
+    disparity : float64 (rows, cols)
+        In px per view step.
+    depth : float64 (rows, cols)
+        In m from the camera.
+    """
     depth = np.full(sampling.shape, camera.scaled(camera.PLANE, sampling.camera))
     return camera.disparity(depth, sampling), depth
 
 
 def _uniform(name: str, sampling: Sampling, radiance: float, polarization: Floats | None = None) -> Scene:
     image = np.full(sampling.shape, radiance, sampling.dtype)
-    return Scene(name, sampling.views, image[None, None], image, depth=_plane(sampling)[1], polarization=polarization)
+    return Scene(name, sampling.views, image[None, None], image, depth=plane(sampling)[1], polarization=polarization)
 
 
 def _on_plane(name: str, sampling: Sampling, radiance: Callable[[Floats, Floats], Floats]) -> Scene:
     """``radiance(y, x)`` on a plane; in focus all views are equal, and one is kept."""
     y, x = _places(sampling)
-    disparity, depth = _plane(sampling)
+    disparity, depth = plane(sampling)
     d = disparity.flat[0]
     steps = sampling.steps if abs(d) * sampling.views > IN_FOCUS else np.zeros(1)
 

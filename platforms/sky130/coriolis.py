@@ -5,6 +5,7 @@ from pathlib import Path
 from platforms.coriolis import CoriolisPlatform, Fill
 
 from . import layers, wires
+from .tinytapeout import FRAMES
 
 PLATFORM = CoriolisPlatform(
     name="sky130",
@@ -38,4 +39,5 @@ PLATFORM = CoriolisPlatform(
     masks=Path(__file__).with_name("masks.drc"),
     utilization_most=0.6,
     corners=("tt_025C_1v80", "ss_100C_1v60", "ff_n40C_1v95"),
+    frames=FRAMES,
 )

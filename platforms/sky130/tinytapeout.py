@@ -1,11 +1,32 @@
-"""Tiny Tapeout's tiles on SKY130: their sizes, and the configuration that projects must not change.
+"""Tiny Tapeout's tiles on SKY130: their sizes and ports, and the configuration that projects must not change.
 
-From tt-support-tools (tile_sizes.yaml; the rows of def/tt_block_1x1_pg.def) and src/config.json of its template.
+From tt-support-tools (tile_sizes.yaml; rows and pins of def/tt_block_1x1_pg.def, whose pins have the same places along
+the edge for every number of tiles; precheck/pin_check.py) and src/config.json of its template.
 """
 
+from platforms.frame import Frame
+
+from . import layers
 from .cells import SITE
 
 SIZES_UM = {"1x1": (161.00, 111.52), "1x2": (161.00, 225.76), "2x2": (334.88, 225.76)}
+BYTES = "ui_in", "uio_in", "uo_out", "uio_out", "uio_oe"
+PORTS = "ena", "clk", "rst_n", *(f"{name}[{bit}]" for name in BYTES for bit in range(8))  # from the east on
+FIRST_UM, PITCH_UM = 146.74, 2.76
+PORT_UM = 0.30, 1.00
+CORE_MARGIN_UM = 2.0, 2.0  # straps, on the core alone, must end at most 10 um from the edges
+FRAME = "tt_"  # before the number of tiles: the name of a frame
+FRAMES = {
+    f"{FRAME}{tiles}": Frame(
+        *size,
+        margin_um=CORE_MARGIN_UM,
+        ports=tuple((name, round(FIRST_UM - k * PITCH_UM, 2)) for k, name in enumerate(PORTS)),
+        port_um=PORT_UM,
+        layer=layers.MET4.lef,
+        supplies=("VPWR", "VGND"),
+    )
+    for tiles, size in SIZES_UM.items()
+}
 MARGIN_SITES, MARGIN_ROWS = 12, 2
 FULL = 0.60  # cells' area by core area for which the default density is meant
 

@@ -5,6 +5,7 @@ from pymtl3 import Bits1, Bits2, Bits3, Bits8, Bits10, InPort, OutPort, mk_bits
 from models.parameters.registers import register_map
 
 INPUTS = ("sclk", "csn", "mosi", "link_rdy")
+ORDER = "sclk", "csn", "mosi", "miso", "miso_oe", "link_data", "link_val", "link_rdy", "frame_sync", "busy"
 
 
 def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
@@ -45,7 +46,5 @@ def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
 def declare_pins(s, lanes: int) -> None:
     """Give the component ``s`` its ports."""
     inputs, outputs = pins(lanes)
-    for name, kind in inputs.items():
-        setattr(s, name, InPort(kind))
-    for name, kind in outputs.items():
-        setattr(s, name, OutPort(kind))
+    for name in dict.fromkeys((*ORDER, *inputs, *outputs)):  # by interface: SPI, link, converters, amplifiers
+        setattr(s, name, InPort(inputs[name]) if name in inputs else OutPort(outputs[name]))

@@ -65,10 +65,10 @@ endmodule
 """
 
 
-def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Sequence[str] = ()) -> None:
+def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Sequence[str] = (), *more: str) -> None:
     """Compile module ``top`` of the Verilog files ``sources`` and the Verilog ``texts`` to the file ``program``.
 
-    Raises IcarusError.
+    more: modules beside it. Raises IcarusError.
     """
     if not installed():
         raise IcarusError(MISSING)
@@ -79,7 +79,8 @@ def compile_program(program: Path, sources: Sequence[Path], top: str, texts: Seq
             Path(file).write_text(text)
         files += map(str, sources)  # after the bench: cells without a time scale take the bench's
         with atomic(program) as part:
-            result = finish(["iverilog", "-g2012", "-s", top, "-o", part, *files], seconds=300)
+            roots = [word for root in (top, *more) for word in ("-s", root)]
+            result = finish(["iverilog", "-g2012", *roots, "-o", part, *files], seconds=300)
             if result.returncode:
                 raise IcarusError(f"iverilog refused {top}:\n{(result.stdout + result.stderr).strip()[-2000:]}")
 

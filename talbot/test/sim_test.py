@@ -1,4 +1,4 @@
-"""The command line as a user meets it: what it writes, what it refuses, and what an interruption leaves behind."""
+"""The command line as a user meets it: what it writes and what it refuses."""
 
 import json
 import os
@@ -6,16 +6,15 @@ import resource
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from base.files import PART
 from base.paths import ROOT
+from flow.frame.command import NAME_MAX, _name
 from flow.frame.outputs import NAMES
-from talbot.__main__ import main
+from talbot.commands import main
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
 KEYS = {
@@ -54,13 +53,6 @@ KEYS = {
     "rtl_cycles_per_s",
     "tools",
 }
-
-
-@pytest.fixture(autouse=True)
-def handlers():
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
 
 
 @pytest.fixture
@@ -103,6 +95,32 @@ def test_another_mode_takes_its_old_pictures_away(photograph, tmp_path):
         assert main(["sim", "--scene", photograph, "--mode", mode, "--out", str(tmp_path / "out"), *SMALL]) == 0
         assert (tmp_path / "out" / its).exists()
     assert not (tmp_path / "out" / "views_decoded.png").exists()
+
+
+def test_the_folder_tells_the_settings(photograph, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    small = "cols=50-lanes=4-rows=13"
+    for more, name in ((), "a_photo_s_name"), (("--mode", "tof", "--phase"), "a_photo_s_name-tof"):
+        assert main(["sim", "--scene", photograph, *SMALL, *more]) == 0
+        (folder,) = (tmp_path / "build" / "sim").iterdir()
+        parts = folder.name.split("-")
+        assert "-".join(parts[:1] + parts[1:2] * ("tof" in parts)) == name and ("phase" in parts) == bool(more)
+        assert sorted(part for part in parts if "=" in part) == small.split("-")
+        folder.rename(tmp_path / name)
+    assert "replaced there" not in capsys.readouterr().out
+
+
+def test_a_run_says_what_it_replaced(photograph, tmp_path, capsys):
+    for seed, said in (("1", ""), ("1", ""), ("2", "a_photo_s_name-rows=13-cols=50-lanes=4\n")):
+        assert main(["sim", "--scene", photograph, *SMALL, "--seed", seed, "--out", str(tmp_path / "out")]) == 0
+        assert capsys.readouterr().out.partition("  replaced there: ")[2] == said
+    (tmp_path / "out" / "summary.json").write_text("[]")
+    assert main(["sim", "--scene", photograph, *SMALL, "--out", str(tmp_path / "out")]) == 0
+
+
+def test_a_name_that_is_too_long_stays_one(tmp_path):
+    names = {_name({"scene": "s", "types": ",".join(map(str, range(24))) + "," + last * 200}) for last in "01"}
+    assert len(names) == 2 and {len(name) for name in names} == {NAME_MAX}
 
 
 def test_waves_of_a_window_of_rows(photograph, tmp_path):
@@ -159,6 +177,13 @@ def test_a_decoded_file(photograph, tmp_path, capsys):
         (f"sim --out {__file__}", "must be a folder"),
         ("sim --nothing", "unrecognized arguments: --nothing"),
         ("sim --sce coins", "unrecognized arguments: --sce coins"),
+        ("sim --scene /tmp", "scene = '/tmp': must be an image file, not a folder"),
+        (f"sim --scene {__file__}", "Pillow reads, PNG, JPEG, TIFF, "),
+        ("sim --window -1:3,0:2", "window rows = '-1': must be an integer in 0..95"),
+        ("sim --focus -1e9", "focus = '-1e9': must be a number in [0, inf]"),
+        (f"sim --scene {'x' * 5000}", "x...: File name too long"),
+        (f"sim --rows={'7,' * 2500}", "...': must be an integer in 1..1024"),
+        (f"sim --{'x' * 5000}", "..."),
         ("draw", "invalid choice: 'draw'"),
         ("decode nowhere.bin", "file = nowhere.bin: No such file"),
         (f"decode {__file__}", "a frame starts with b'TLBT'"),
@@ -174,55 +199,8 @@ def test_refused_in_one_line(words, said, tmp_path, monkeypatch, capsys):
         status = stop.code
     out, err = capsys.readouterr()
     assert status == 2 and said in err and err.count("\n") == 1 and err.startswith("talbot: error: ")
+    assert len(err) < 700
     assert not out and not list(tmp_path.iterdir())
-
-
-def started(tmp_path, rows):
-    """`python -m talbot sim` of a sensor that no other test compiles, on its way, to be interrupted."""
-    words = [
-        sys.executable,
-        "-m",
-        "talbot",
-        "sim",
-        "--scene",
-        "coins",
-        "--rows",
-        str(rows),
-        "--cols",
-        "26",
-        "--lanes",
-        "2",
-        "--out",
-        str(tmp_path / "out"),
-        "--waves",
-        "0:1",
-    ]
-    # A job in the background (of a CI, say) ignores Ctrl-C, and so would its children
-    return subprocess.Popen(
-        words,
-        cwd=ROOT,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
-    )
-
-
-@pytest.mark.parametrize("sent, status, rows", [(signal.SIGINT, 2, 14), (signal.SIGTERM, 143, 15)])
-def test_interrupted_in_the_compiler(tmp_path, sent, status, rows):
-    cache = ROOT / "build" / "simulator"
-    child = started(tmp_path, rows)
-    part = f"{PART}{child.pid}-"  # other tests compile beside this one
-    assert any("translating" in line for line in child.stderr)
-    child.send_signal(sent)
-    _, err = child.communicate(timeout=30)
-    assert child.returncode == status and "Traceback" not in err
-    assert not (tmp_path / "out").exists()
-    assert not list(cache.glob(part + "*"))
-    time.sleep(0.2)
-    running = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True).stdout
-    assert str(cache / part) not in running, "a compiler outlived the run"
 
 
 def test_no_room_for_the_results(photograph, tmp_path):

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
 from base.cache import digest
-from base.paths import ROOT
+from base.paths import BUILD, ROOT
 from base.tools import ToolError
 from base.verilator import verilator_folder
 from models.parameters import ArrayParameters, ChipParameters, SensorParameters
@@ -21,7 +21,7 @@ from rtl.tops import build_top
 
 from . import exposure
 
-BUILD = ROOT / "build" / "bench"
+CACHE = BUILD / "bench"
 SIMULATORS = "icarus", "verilator"
 SECONDS = 400  # limit of a build and a run
 TOP = "Flat"
@@ -125,7 +125,7 @@ def simulate(
     if simulator == "icarus" and not installed():
         raise BenchError(MISSING)
     texts = sources(design)
-    folder = BUILD / f"{design.block}.{simulator}.{digest(BUILD_ARGS[simulator], *texts.values())}"
+    folder = CACHE / f"{design.block}.{simulator}.{digest(BUILD_ARGS[simulator], *texts.values())}"
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         (folder / name).write_text(text)

@@ -94,7 +94,7 @@ def fields_of(verilog: str) -> dict[tuple[str, str], dict[int, tuple[str, int]]]
     structs: dict[str, list[tuple[str, int]]] = {}
     for body, name in re.findall(r"(?s)typedef struct packed \{\n(.*?)\} (\w+);", verilog):
         structs[name] = [
-            (field, int(high)) for high, field in re.findall(r"logic \[(\d+):0\] (\w+);", body)
+            (field, int(high or 0)) for high, field in re.findall(r"logic (?:\[(\d+):0\] )?(\w+);", body)
         ]  # the first in the highest bits
     found: dict[tuple[str, str], dict[int, tuple[str, int]]] = defaultdict(dict)
     for module, body in modules(verilog).items():

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from base.cache import cached, digest
+from base.paths import BUILD
 from base.sources import code
 from base.tools import run
 from base.verilator import CXX, compile_runtime, verilator_folder
 from rtl.harness.ports import Port, places, split, total_width, validity
-from verif.results import ROOT
 
-CACHE = ROOT / "build" / "replay"
+CACHE = BUILD / "replay"
 MAIN = Path(__file__).parent / "main.cpp"
 VALUES = ("--x-assign", "fast", "--x-initial", "unique")  # of X
 VERILATE = ("--cc", "--prefix", "VDut", *VALUES, "--noassert", "--no-timing", "-Wno-lint", "-Wno-fatal")

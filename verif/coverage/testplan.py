@@ -9,10 +9,10 @@ from typing import Any
 
 import yaml
 
+from base.paths import ROOT
 from models.parameters import ParameterError, SensorParameters
 from rtl.tops import TOPS, build_top
 from verif.formal import manifest
-from verif.results import ROOT
 
 from .points import POINTS
 from .program import Registers

@@ -97,7 +97,7 @@ def _check_command(source: Path, frames: Sequence[DecodedFrame]) -> None:
     output, errors = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         status = main(decode, [str(source)])
-    wanted = 2 if not frames else int(not all(frame.complete for frame in frames))
+    wanted = 2 if not frames else int(not all(frame.complete and not frame.errors for frame in frames))
     demand(status == wanted, f"exit status {status}, not {wanted}")
     demand(len(output.getvalue().splitlines()) == len(frames) + bool(frames), "not one line per frame")
     demand(status != 2 or errors.getvalue().count("\n") == 1, "an error of more than one line")

@@ -5,10 +5,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from base.paths import ROOT
 from base.tools import ToolTimeout
 from rtl.harness.ports import Port, split, validity
 from verif.coverage.program import tool
-from verif.results import ROOT
 
 from .mutants import BITS, yosys
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from base.paths import ROOT
 from base.tools import ToolError
 from flow.layout.netlist.verilog import modules
 from flow.simulate.divider import exhaustive, simulator
@@ -14,7 +15,7 @@ from verif.coverage.program import compile_program
 from verif.formal import design, manifest
 from verif.formal.proof import Proof
 from verif.formal.prove import prove
-from verif.results import PROVEN, ROOT
+from verif.results import PROVEN
 
 from .equivalence import DIFFERENT, EQUIVALENT, UNKNOWN, compare, the_same
 from .mutants import Mutant, yosys

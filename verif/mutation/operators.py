@@ -65,12 +65,12 @@ def modules_of(verilog: str) -> dict[str, Module]:
     found: dict[str, Module] = {}
     for name, body in modules(verilog).items():
         module = found[name] = Module("always_ff" in body)
-        for way, high, signal in re.findall(r"(?m)^  (input +|output )?logic \[(\d+):0\] (\w+) *[;,]?$", body):
-            module.width[signal] = int(high) + 1
+        for way, high, signal in re.findall(r"(?m)^  (input +|output )?logic (?:\[(\d+):0\] )?(\w+) *[;,]?$", body):
+            module.width[signal] = int(high or 0) + 1
             if way.startswith("input") and signal not in ("clk", "reset"):
                 module.state.append(signal)
         module.state += [s for s in dict.fromkeys(re.findall(r"(?m)^ +(\w+) <= ", body)) if s in module.width]
-        module.parameter = {k: int(v) for k, v in re.findall(r"localparam \S+ \S+ (\w+) += \d+'d(\d+);", body)}
+        module.parameter = {k: int(v) for k, v in re.findall(r"localparam \S+ (?:\S+ )?(\w+) += \d+'d(\d+);", body)}
     return found
 
 

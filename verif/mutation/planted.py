@@ -11,11 +11,11 @@ import pytest
 import yaml
 
 from base.jobs import Job
+from base.paths import ROOT
 from base.sources import code
 from base.tools import ToolError, finish
 from models.parameters import ParameterError
 from rtl.tops import TOPS
-from verif.results import ROOT
 
 FILE = Path(__file__).parent / "planted.yaml"
 LEFT_OUT = shutil.ignore_patterns("build", ".*", "__pycache__")

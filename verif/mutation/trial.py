@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import Phase, settings
 
+from base.paths import ROOT
 from flow.layout.netlist.verilog import modules
 from rtl.harness.driven import Driven
 from rtl.harness.ports import Port, ports_of
@@ -18,7 +19,6 @@ from rtl.harness.translate import translate_component
 from rtl.replay import Trace, whole_level
 from rtl.replay.recorder import OneLevel
 from verif.coverage.program import compile_program
-from verif.results import ROOT
 
 from .mutants import Mutant
 

@@ -16,7 +16,7 @@ from flow.layout.design import design
 from flow.layout.report.metrics import RULES
 from models.parameters import ParameterError
 
-NAME, TOP = "quad_divider", "QuadDividerRadix4"
+NAME, TOP, TILE = "quad_divider", "QuadDividerRadix4", "tt_quad_divider"
 LEF = f"""VERSION 5.8 ;
 MACRO {TOP}
   SIZE 120.000 BY 98.600 ;
@@ -61,21 +61,22 @@ def passing():
 
 @pytest.fixture
 def layouts(tmp_path):
-    """A folder of layouts with one that is complete but for the optional files."""
-    folder = tmp_path / "layout" / NAME
-    (folder / "rtl").mkdir(parents=True)
-    (folder / "rtl" / f"{TOP}.v").write_text("// rtl\n")
-    (folder / "report.html").write_text('<html><img src="picture.png"><img src="data:x"></html>\n')
-    (folder / "picture.png").write_text("picture\n")
-    (folder / "summary.json").write_text(json.dumps(passing()))
-    texts = dict.fromkeys(contents.REQUIRED, "text\n") | {"lef": LEF, "v": NETLIST}
-    for suffix, text in texts.items():
-        (folder / f"{NAME}.{suffix}").write_text(text)
-    return folder.parent
+    """A folder of layouts with two that are complete but for the optional files."""
+    for name in (NAME, TILE):
+        folder, top = tmp_path / "layout" / name, design(name).top
+        (folder / "rtl").mkdir(parents=True)
+        (folder / "rtl" / f"{top}.sv").write_text("// rtl\n")
+        (folder / "report.html").write_text('<html><img src="picture.png"><img src="data:x"></html>\n')
+        (folder / "picture.png").write_text("picture\n")
+        (folder / "summary.json").write_text(json.dumps(passing()))
+        texts = dict.fromkeys(contents.REQUIRED, "text\n") | {"lef": LEF, "v": NETLIST}
+        for suffix, text in texts.items():
+            (folder / f"{name}.{suffix}").write_text(text)
+    return tmp_path / "layout"
 
 
-def run(layouts, out):
-    return main(command, ["--design", NAME, "--layouts", str(layouts), "--out", str(out)])
+def run(layouts, out, name=NAME):
+    return main(command, ["--design", name, "--layouts", str(layouts), "--out", str(out)])
 
 
 def test_made_twice_it_is_the_same_to_the_byte(layouts, tmp_path):
@@ -100,7 +101,7 @@ def test_the_manifest_has_every_file_with_its_hash(layouts, tmp_path):
     assert {
         "layout/quad_divider.gds",
         "layout/quad_divider.lef",
-        "rtl/QuadDividerRadix4.v",
+        "rtl/QuadDividerRadix4.sv",
         "netlist/quad_divider.v",
         "netlist/quad_divider.power.v",
         "pinout.md",
@@ -110,6 +111,18 @@ def test_the_manifest_has_every_file_with_its_hash(layouts, tmp_path):
     } <= set(data)
     assert "| x[10] | input | signal | met2 | 1.2 | 0.4 |" in data["pinout.md"].decode()
     assert "120 x 98.6 um" in data["datasheet.md"].decode()
+
+
+def test_a_shuttles_project_is_beside_its_layout(layouts, tmp_path):
+    assert run(layouts, tmp_path, TILE) == 0
+    with tarfile.open(tmp_path / f"{TILE}.tar.gz") as tar:
+        data = {entry.name.removeprefix(f"{TILE}/"): tar.extractfile(entry).read() for entry in tar}
+    top = design(TILE).top
+    assert data[f"tinytapeout/{top}.gds"] == data[f"layout/{TILE}.gds"]
+    assert data[f"tinytapeout/{top}.lef"] == data[f"layout/{TILE}.lef"]
+    assert b".vdd(VPWR), .vss(VGND)" in data[f"tinytapeout/{top}.v"]
+    assert data[f"tinytapeout/src/{top}.sv"] == data[f"rtl/{top}.sv"]
+    assert b'tiles: "1x1"' in data["tinytapeout/info.yaml"]
 
 
 def test_timing_of_every_corner_goes_along(layouts, tmp_path):
@@ -138,10 +151,10 @@ def test_one_changed_byte_is_another_archive(layouts, tmp_path):
 
 def test_what_is_missing_is_named_and_nothing_written(layouts, tmp_path, capsys):
     (layouts / NAME / f"{NAME}.sdc").unlink()
-    (layouts / NAME / "rtl" / f"{TOP}.v").unlink()
+    (layouts / NAME / "rtl" / f"{TOP}.sv").unlink()
     assert run(layouts, tmp_path / "out") == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and f"without {NAME}.sdc, rtl/{TOP}.v: must be a finished layout" in error
+    assert error.count("\n") == 1 and f"without {NAME}.sdc, rtl/{TOP}.sv: must be a finished layout" in error
     assert not (tmp_path / "out").exists()
 
 
@@ -168,12 +181,12 @@ def test_a_waiver_without_a_reason_is_refused(tmp_path):
 
 
 def test_every_cell_gets_its_supplies():
-    text = powered(NETLIST, ("vdd", "vss"))
-    assert f"module {TOP} (a, q, vdd, vss);" in text and "inout vss;" in text
-    assert text.count(", .vdd(vdd), .vss(vss));") == 2
-    assert "inv_x1 \\u$1  (.i(a), .nq(q), .vdd(vdd), .vss(vss));" in text
+    text = powered(NETLIST, {"vdd": "VPWR", "vss": "VGND"})
+    assert f"module {TOP} (a, q, VPWR, VGND);" in text and "inout VGND;" in text
+    assert text.count(", .vdd(VPWR), .vss(VGND));") == 2
+    assert "inv_x1 \\u$1  (.i(a), .nq(q), .vdd(VPWR), .vss(VGND));" in text
     with pytest.raises(ParameterError, match="not one module"):
-        powered(NETLIST + NETLIST, ("vdd", "vss"))
+        powered(NETLIST + NETLIST, {"vdd": "vdd", "vss": "vss"})
 
 
 def test_lef_is_read_in_the_order_of_the_bits():

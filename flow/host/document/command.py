@@ -1,13 +1,16 @@
-"""Write the documents for a host: docs/registers.*, the C header, the tables of host.md, chip.md and stream.md."""
+"""Write the documents for a host: docs/registers.*, the tables of host.md, chip.md and stream.md, the C header.
+
+For other tools, by PeakRDL: build/registers/ with a site (html/index.html), IP-XACT and a C header of structs.
+"""
 
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from base.files import insert, write
-from base.paths import ROOT
+from base.paths import RESULTS, ROOT
 from models.parameters.registers import register_map
 
-from . import registers, tables
+from . import exports, registers, tables
 from .c_header import c_header
 
 HEADER = Path(__file__).parents[1] / "asp_chip_registers.h"
@@ -17,6 +20,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot document`."""
     parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of host.md, chip.md and stream.md")
     parser.add_argument("--header", type=Path, default=HEADER, help="the C header")
+    parser.add_argument("--exports", type=Path, default=RESULTS / "registers", help="folder of the map for other tools")
 
 
 def run(options: Namespace) -> int:
@@ -25,6 +29,7 @@ def run(options: Namespace) -> int:
     write(options.out / "registers.md", registers.markdown(chip))
     write(options.out / "registers.html", registers.html(chip))
     write(options.header, c_header(chip))
+    exports.export(options.exports)
     for mark, table in tables.TABLES.items():
         insert(options.out / "host.md", mark, table())
     for name in ("chip.md", "stream.md"):

@@ -1,12 +1,16 @@
 """The committed documents are those that the sources give."""
 
 import re
+from xml.etree import ElementTree
 
 from base.paths import ROOT
+from base.tools import run
 from flow.host.document.command import HEADER
+from flow.host.document.exports import HEADER as HEADER_OF_STRUCTS
+from flow.host.document.exports import IPXACT, export
 from flow.host.document.tables import TABLES
 from models.parameters.registers import register_map
-from talbot.__main__ import main
+from talbot.commands import main
 
 TABLED = "host.md", "chip.md", "stream.md"
 WRITTEN = "registers.md", "registers.html", *TABLED
@@ -16,10 +20,30 @@ def test_the_committed_documents_are_current(tmp_path):
     """If this fails: make document."""
     for name in TABLED:
         (tmp_path / name).write_text((ROOT / "docs" / name).read_text())
-    assert main(["document", "--out", str(tmp_path), "--header", str(tmp_path / HEADER.name)]) == 0
+    words = ["--out", tmp_path, "--header", tmp_path / HEADER.name, "--exports", tmp_path / "exports"]
+    assert main(["document", *map(str, words)]) == 0
     for name in WRITTEN:
         assert (tmp_path / name).read_text() == (ROOT / "docs" / name).read_text(), name
     assert (tmp_path / HEADER.name).read_text() == HEADER.read_text()
+
+
+def test_the_map_for_other_tools_has_every_field(tmp_path):
+    export(tmp_path)
+    space = {"i": "http://www.accellera.org/XMLSchema/IPXACT/1685-2014"}
+    component = ElementTree.parse(tmp_path / IPXACT)
+    for register in component.iterfind(".//i:register", space):
+        name, offset = register.findtext("i:name", "", space), register.findtext("i:addressOffset", "", space)
+        for node in register.iterfind("i:field", space):
+            key = f"{name}[0].trim" if name == "trim" else node.findtext("i:name", "", space)
+            field, lsb = register_map()[key], int(node.findtext("i:bitOffset", "", space))
+            assert (field.address, field.lsb) == (int(offset.replace("'h", "0x"), 16), lsb)
+            assert field.width == int(node.findtext("i:bitWidth", "", space))
+    names = {node.text for node in component.iterfind(".//i:field/i:name", space)}
+    site = "".join(path.read_text() for path in (tmp_path / "html").rglob("*.html"))
+    for field in register_map().fields:
+        assert field.name in names and field.name in site and str(ROOT) not in site
+    (tmp_path / "all.c").write_text(f'#include "{HEADER_OF_STRUCTS}"\n_Static_assert(sizeof(asp_chip_t) <= 128, "");\n')
+    run(["gcc", "-std=gnu11", "-Wall", "-Werror", "-fsyntax-only", tmp_path / "all.c"])
 
 
 def test_every_field_is_documented():

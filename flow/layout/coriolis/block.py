@@ -60,8 +60,9 @@ class TalbotBlock(Block):
         return result
 
     def placeIoPins(self) -> None:
-        """Spread the pins over the tracks of their sides."""
-        for side, nets in self.request["pins"].items():
+        """Spread the pins over the tracks of their sides, unless their places are given."""
+        self.pins += self.request["places"]
+        for side, nets in {} if self.pins else self.request["pins"].items():
             self.pins += spread(side, nets, self.request, [x for _, x, _ in self.power.even()])
         self.conf.ioPins = [IoPin(SIDES[side], net, u(at), 0, 1) for side, net, at in self.pins]
         super().placeIoPins()
@@ -71,7 +72,7 @@ class TalbotBlock(Block):
         """Build the clock tree, then place the straps beside its trunk.
 
         Sinks beyond the tree's area hang from its leaves too, except macros: these have a tree of their own and hang
-        from the root.
+        from the root. Ports whose places are given are outside of the core.
         """
         self.conf.placeArea = None
         macros = {macro["name"] for macro in self.request["macros"]}
@@ -80,7 +81,8 @@ class TalbotBlock(Block):
             tree.isUnderArea = lambda plug: plug.getEntity().getInstance().getMasterCell().getName() not in macros
             balance(tree)
         self._timed("clock_tree", super().addHTrees)
-        self.straps = self.power.positions([at for side, _, at in self.pins if side in ("north", "south")])
+        beside = [] if self.request["places"] else [at for side, _, at in self.pins if side in ("north", "south")]
+        self.straps = self.power.positions(beside)
 
     def place(self) -> None:
         """Place the cells."""

@@ -61,14 +61,18 @@ class Straps:
         return self.x
 
     def create(self) -> None:
-        """Draw the straps and via stacks, except stacks that would short to a net or are in macros."""
+        """Draw the straps and via stacks, except stacks that would short to a net or are in macros.
+
+        Where the outermost rails are half outside, straps end with the stacks on these.
+        """
         UpdateSession.open()
         height, width = self.request["height_um"], self.request["strap_um"]
         rows = round(height / self.request["row_um"])
         signals = {name: self._signals(name) for name in self.names[self.request["rail"] + 1 :]}
+        beyond = self.request["rail_overlap_um"] / 2 if self.request["rails_over_edge"] else 0.0
         for supply, x, gaps in self.x:
             net, odd = self.cell.getNet(supply), SUPPLIES.index(supply)
-            ends = [0.0, *(y for gap in gaps for y in gap), height]
+            ends = [-beyond, *(y for gap in gaps for y in gap), height + beyond]
             for low, high in zip(ends[::2], ends[1::2], strict=True):
                 if high > low:
                     low, high = u(self._on_grid(low)), u(self._on_grid(high))

@@ -1,7 +1,7 @@
 """The abstract (LEF) of a block from its GDS: size, pins on edges and straps, obstructions elsewhere."""
 
 import re
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ from platforms.coriolis import CoriolisPlatform
 from platforms.layers import Layer
 
 EDGE_UM = 0.3  # how far from the edge a pin is taken for one
-USES: dict[str, str] = dict(zip(SUPPLIES, ("POWER", "GROUND"), strict=True))
+USES = "POWER", "GROUND"  # of supply and ground
 
 
 class PinArea(NamedTuple):
@@ -42,27 +42,35 @@ def ports(verilog: str) -> dict[str, str]:
     return found
 
 
-def abstract(gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform) -> str:
+def abstract(
+    gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform, supplies: Sequence[str] = SUPPLIES,
+    framed: bool = False,
+) -> str:  # fmt: skip
     """Text of the LEF of the GDS's top cell.
 
-    directions: pin -> 'input' or 'output'; the supplies are pins too. Raises ParameterError for a port without metal.
+    directions: pin -> 'input' or 'output'; the ``supplies`` are pins too. framed: whether the size is the outline's and
+    pins are what is drawn as such. Raises ParameterError for a port without metal.
     """
     layout = read_gds(gds)
     (top,) = layout.top_cells()
     site, row = (round(size / layout.dbu) for size in (tech.site_um, tech.row_um))
     box = top.bbox()
     die = db.Box(0, 0, box.right // site * site, box.top // row * row)  # wells reach farther
+    if framed:
+        die = db.Region(top.shapes(layout.layer(*tech.outline))).bbox()
     found: dict[str, list[PinArea]] = {}
     for metal in tech.metals:
-        for net, pin in _pins(layout, top, die, metal, strap=metal is tech.metals[-1]):
+        strap = metal is tech.metals[-1]
+        pieces = _marked(layout, top, metal) if framed else _pins(layout, top, die, metal, strap, supplies)
+        for net, pin in pieces:
             found.setdefault(net, []).append(PinArea(metal, pin))
-    lacking = sorted((set(directions) | set(SUPPLIES)) - set(found))
+    lacking = sorted((set(directions) | set(supplies)) - set(found))
     if lacking:
         raise ParameterError(f"gds = {gds}: must have metal for the pins {', '.join(lacking[:5])}")
     charges = antennas(layout, top, tech, found, set(directions))
-    pins = []
+    pins, uses = [], dict(zip(supplies, USES, strict=True))
     for name in sorted(found):
-        lines = [f"DIRECTION {directions.get(name, 'inout').upper()}", f"USE {USES.get(name, 'SIGNAL')}"]
+        lines = [f"DIRECTION {directions.get(name, 'inout').upper()}", f"USE {uses.get(name, 'SIGNAL')}"]
         lines += _antenna(charges[name]) if name in charges else ()
         boxes = [Rectangles(metal.lef, [write.um(pin, layout.dbu)]) for metal, pin in found[name]]
         pins.append(write.Pin(name, lines, boxes))
@@ -113,7 +121,9 @@ def _antenna(charge: Charge) -> Iterator[str]:
         yield f"ANTENNADIFFAREA {charge.diffusion:.4f}"
 
 
-def read_back(lef: Path, gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform) -> list[str]:
+def read_back(
+    lef: Path, gds: Path, directions: Mapping[str, str], tech: CoriolisPlatform, supplies: Sequence[str] = SUPPLIES
+) -> list[str]:
     """What is wrong with the file ``lef`` as KLayout reads it, against ``gds``. Other arguments: see `abstract`.
 
     Every pin must be on metal of its layer, and all other metal inside the outline under an obstruction or nearer to a
@@ -138,13 +148,22 @@ def read_back(lef: Path, gds: Path, directions: Mapping[str, str], tech: Corioli
             wrong.append(f"{layer.lef}: a pin where there is no metal")
         if not ((metal & outline) - obstructions - pins.sized(distance)).is_empty():
             wrong.append(f"{layer.lef}: metal that is neither pin nor obstruction")
-    if labelled != set(directions) | set(SUPPLIES):
-        wrong.append(f"pins that differ: {', '.join(sorted(labelled ^ (set(directions) | set(SUPPLIES)))[:5])}")
+    if differ := labelled ^ {*directions, *supplies}:
+        wrong.append(f"pins that differ: {', '.join(sorted(differ)[:5])}")
     return wrong
 
 
+def _marked(layout: "db.Layout", top: "db.Cell", layer: Layer) -> Iterator[tuple[str, "db.Box"]]:
+    """Pairs (net, box) of what is drawn as a layer's pins."""
+    shapes = top.shapes(layout.layer(*layer.pin))
+    texts = [shape.text for shape in shapes.each(db.Shapes.STexts)]
+    for pin in db.Region(shapes).merged().each():
+        for net in sorted({text.string for text in texts if pin.inside(db.Point(text.x, text.y))}):
+            yield net, pin.bbox()
+
+
 def _pins(
-    layout: "db.Layout", top: "db.Cell", die: "db.Box", layer: Layer, strap: bool
+    layout: "db.Layout", top: "db.Cell", die: "db.Box", layer: Layer, strap: bool, supplies: Sequence[str]
 ) -> Iterator[tuple[str, "db.Box"]]:
     """Pairs (net, box) of a layer's metal: signals where it reaches the west or east edge, supplies on the straps."""
     edge = round(EDGE_UM / layout.dbu)
@@ -156,7 +175,7 @@ def _pins(
     for polygon in metal.each():
         shape = db.Region(polygon)
         for net in sorted({text.string for text in (texts & shape).each()}):
-            if net in SUPPLIES:
+            if net in supplies:
                 if strap:
                     yield net, polygon.bbox() & die
             else:

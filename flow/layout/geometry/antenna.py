@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from base.gds import db
 from platforms.coriolis import CoriolisPlatform
 
+from .boxes import Box, corners
+
 SAFE = 1e9  # um2 of metal an um2 of diffusion, in the check of nets without one
 
 
@@ -52,19 +54,41 @@ def connected(
             l2n.connect(metals[-1], below)
 
 
+def metal_beyond(nets: Connected, tech: CoriolisPlatform) -> "db.Region":
+    """Metal of the highest of ``nets``'s layers that is too large for the gates of its net."""
+    metal = tech.metals[len(nets.metals) - 1]
+    base, more = metal.antenna_diffusion
+    factors = (0.0, metal.thickness_um) if tech.antenna_walls else (1.0, 0.0)  # of the metal's area, its edges
+    bad = db.Region()
+    for ratio, by_diffusion in ((metal.antenna_ratio, SAFE), (base, more)):
+        diodes = [[nets.diffusion, by_diffusion]]
+        bad += nets.l2n.antenna_check(nets.gate, 1.0, 0.0, nets.metals[-1], *factors, ratio, diodes)
+    found = db.Region(list(bad.each()))  # no longer of the extraction, which goes on
+    found.remove_properties()  # texts of how it was found
+    return found
+
+
 def violations(
     layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int] | None = None
 ) -> "dict[int, db.Region]":
     """Metal of the nets on which it is too large for their gates, by level of tech.metals; ``levels``: default all."""
-    found = {}
-    for nets in connected(layout, top, tech, range(len(tech.metals)) if levels is None else levels):
-        level = len(nets.metals) - 1
-        metal = tech.metals[level]
-        base, more = metal.antenna_diffusion
-        factors = (0.0, metal.thickness_um) if tech.antenna_walls else (1.0, 0.0)  # of the metal's area, its edges
-        bad = db.Region()
-        for ratio, by_diffusion in ((metal.antenna_ratio, SAFE), (base, more)):
-            diodes = [[nets.diffusion, by_diffusion]]
-            bad += nets.l2n.antenna_check(nets.gate, 1.0, 0.0, nets.metals[-1], *factors, ratio, diodes)
-        found[level] = db.Region(list(bad.each()))  # no longer of the extraction, which goes on
+    every = range(len(tech.metals)) if levels is None else levels
+    return {len(nets.metals) - 1: metal_beyond(nets, tech) for nets in connected(layout, top, tech, every)}
+
+
+def charged(
+    layout: "db.Layout", top: "db.Cell", tech: CoriolisPlatform, levels: Collection[int]
+) -> list[tuple[int, str, tuple[Box, ...]]]:
+    """What `violations` finds: the level, the metal as KLayout writes a polygon, the gates (dbu) that it charges."""
+    found = []
+    for nets in connected(layout, top, tech, levels):
+        for polygon in metal_beyond(nets, tech).each():
+            net = nets.l2n.probe_net(nets.metals[-1], inside(polygon))
+            gates = nets.l2n.shapes_of_net(net, nets.gate, True)
+            found.append((len(nets.metals) - 1, str(polygon), tuple(corners(gate.bbox()) for gate in gates.each())))
     return found
+
+
+def inside(polygon: "db.Polygon") -> "db.Point":
+    """A point inside."""
+    return polygon.decompose_trapezoids()[0].bbox().center()

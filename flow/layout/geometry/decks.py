@@ -38,10 +38,12 @@ def violations(report: Path) -> dict[str, int]:
 
 
 def with_flat_spaces(deck: str) -> str:
-    """The deck with the spaces of drawn layers checked last and flat.
+    """The deck with the spaces of drawn layers checked last, flat and between edges.
 
     Wells, implants and rails continue from cell to cell through whole rows; to check those cell by cell takes two
-    thirds of the deck's time, flat a tenth of that. Raises StepError when the deck has no such rules.
+    thirds of the deck's time, flat a tenth of that. Between polygons each neighbour of a large one is compared with all
+    of its edges: 43 s for local interconnect of 16,000 um2, between edges 0.2 s. Raises StepError when the deck has no
+    such rules.
     """
     drawn = dict(re.findall(r"^(\w+) = (input\(\d+, \d+\))$", deck, re.M))
     rules = [m for m in re.finditer(r"^(\w+)\.space\([\d.]+\)\.output\(\n(?:.*\n)*?\)\n", deck, re.M) if m[1] in drawn]
@@ -50,7 +52,8 @@ def with_flat_spaces(deck: str) -> str:
     for rule in rules:
         deck = deck.replace(rule[0], "", 1)
     layers = dict.fromkeys(rule[1] for rule in rules)
-    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *(rule[0] for rule in rules)])
+    spaces = (rule[0].replace(".space(", ".edges.space(", 1) for rule in rules)
+    return "\n".join([deck, "flat", *(f"{name} = {drawn[name]}" for name in layers), *spaces])
 
 
 def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
@@ -60,3 +63,12 @@ def hole_rules(tech: CoriolisPlatform) -> Iterator[str]:
             yield f"{metal.name} = input({metal.layer}, {metal.datatype})"
             report = f'"{metal.name} hole", "{metal.name} minimum area of a hole"'
             yield f"{metal.name}.holes.with_area(nil, {metal.min_hole_um2}).output({report})"
+
+
+def via_rules(tech: CoriolisPlatform) -> Iterator[str]:
+    """Lines for a deck: every via is inside the metals that it joins; PDKMaster's enclosures do not see one outside."""
+    for level, via in enumerate(tech.vias):
+        yield f"{via.name} = input({via.layer}, {via.datatype})"
+        for metal in tech.metals[level : level + 2]:
+            report = f'"{via.name} outside {metal.name}", "{via.name} that is not inside {metal.name}"'
+            yield f"{via.name}.not_inside(input({metal.layer}, {metal.datatype})).output({report})"

@@ -7,7 +7,9 @@ from typing import Any
 
 from models.parameters import ParameterError
 from platforms.coriolis import CoriolisPlatform
+from platforms.frame import Frame
 
+from ..netlist.netlist import Netlist
 from .macro import Macro
 
 BESIDE_UM = 15.0  # least width of rows beside a macro: a strap of either supply must find a place there
@@ -56,6 +58,31 @@ def place_macros(
         if begin - end < BESIDE_UM:
             raise ParameterError(f"macros = {name}: must be {BESIDE_UM:g} um west of {other}, not {begin - end:.1f} um")
     return made
+
+
+def framed(frame: Frame, origin: tuple[float, float], netlist: Netlist, tech: CoriolisPlatform) -> dict[str, Any]:
+    """What a plan has of a ``frame``, in um from its core, which begins at ``origin`` in the frame.
+
+    Raises ParameterError where the ports are not the netlist's.
+    """
+    own, wanted = {net for port in netlist.ports for net in port.bits()}, {name for name, _ in frame.ports}
+    if own != wanted:
+        raise ParameterError(
+            f"ports = {', '.join(sorted(own ^ wanted)[:5])}: must be those of the frame, and only these"
+        )
+    (left, bottom), (width, length) = origin, frame.port_um
+    top, metal = frame.height_um - bottom, next(metal.name for metal in tech.metals if metal.lef == frame.layer)
+
+    def box(x: float) -> list[float]:
+        """The box of the port at ``x`` in the frame."""
+        return [round(value, 4) for value in (x - left - width / 2, top - length, x - left + width / 2, top)]
+
+    return {
+        "frame": [-left, -bottom, round(frame.width_um - left, 4), top],
+        "ports": [[name, metal, box(x)] for name, x in frame.ports],
+        "supplies": frame.supplies,
+        "pins": {"north": [name for name, _ in sorted(frame.ports, key=lambda port: port[1])]},
+    }
 
 
 def largest_free(width: float, height: float, outers: Sequence[Sequence[float]]) -> list[float]:

@@ -1,6 +1,7 @@
 """PDKMaster's LVS deck for KLayout, adapted."""
 
 import re
+from collections.abc import Sequence
 
 from base.steps import StepError
 from platforms.layers import GdsLayer
@@ -26,10 +27,13 @@ def hierarchical(deck: str, active: GdsLayer) -> str:
     return deck
 
 
-def with_ports(deck: str, netlist: Netlist) -> str:
-    """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match."""
+def with_ports(deck: str, netlist: Netlist, supplies: Sequence[str] = SUPPLIES) -> str:
+    """The LVS deck, ports of the same name given as matching: the comparison starts there, and they must match.
+
+    Ports that no cell is on are not compared: see `Netlist.spice`.
+    """
     if "\nalign\n" not in deck:
         raise StepError("lvs: the deck has no 'align'")
-    names = [net for port in netlist.ports for net in port.bits()] + list(SUPPLIES)
+    names = [*netlist.connected_ports(), *supplies]
     lines = "".join(f'same_nets!("{netlist.name}", "{net}", "{net}")\n' for net in names)
     return deck.replace("\nalign\n", f"\nalign\n{lines}")

@@ -8,7 +8,7 @@ from base.steps import StepError
 from base.tools import run
 
 from .netlist import REGISTER, Netlist, is_register
-from .registers import Bit, Cut
+from .registers import Bit, Cut, active_low
 
 PROOF = "cec -T {seconds} -C 100000000 {gold} {gate}"
 
@@ -54,7 +54,7 @@ class Pair:
         return {
             "same": self.equal(wanted | kept, made | as_held),
             "open": not loose or self.equal_where_defined(sorted(loose)),
-            "reset": not kept or after_reset.equal(kept, as_held, {reset: "1"}),
+            "reset": not kept or after_reset.equal(kept, as_held, {reset: "0" if active_low(reset) else "1"}),
         }
 
     def equal(

@@ -5,7 +5,7 @@ from typing import Any
 
 from .netlist import Instance, Netlist
 
-Placement = dict[str, Any]  # see routed.placement
+Placement = dict[str, Any]  # see netlist.placed.placement
 
 
 def flattened(netlist: Netlist, macros: Mapping[str, Netlist]) -> Netlist:

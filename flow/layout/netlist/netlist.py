@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +13,14 @@ SUPPLIES = ("vdd", "vss")
 # Of the cells of PDKMaster, and of SkyWater
 OUTPUT_PINS = "q", "nq", "zero", "one", "sum", "carry", "X", "Y", "Q", "Q_N", "HI", "LO", "SUM", "COUT"
 MacroNames = Mapping[str, tuple[str, Mapping[str, str]]]  # by instance the cell and its pins by names for Coriolis
+DIODE = "diode_w1"  # of PDKMaster's cells
 REGISTER = "_reg"  # after a register's name: its flip-flop
+
+
+def supplies(plan: Mapping[str, Any]) -> tuple[str, str]:
+    """Names of supply and ground in a design's layout, by its floorplan."""
+    high, low = plan.get("supplies", SUPPLIES)
+    return high, low
 
 
 def register_names(path: Path, top: str) -> set[str]:
@@ -162,13 +169,21 @@ class Netlist:
             lines.append(f"  {i.cell} {_escaped(i.name)} ({joined});")
         return "\n".join([*lines, "endmodule", ""])
 
-    def spice(self, cells: str) -> str:
-        """The subcircuit, its supplies ports too, followed by ``cells``, the text of the cells' subcircuits."""
+    def connected_ports(self) -> list[str]:
+        """Nets of the ports that some cell is on."""
+        used = {net for instance in self.instances for net in instance.pins.values()}
+        return [net for port in self.ports for net in port.bits() if net in used]
+
+    def spice(self, cells: str, supplies: Sequence[str] = SUPPLIES) -> str:
+        """The subcircuit, its ``supplies`` ports too, followed by ``cells``, the text of the cells' subcircuits.
+
+        Ports that no cell is on are left out, as KLayout leaves out nets without a device.
+        """
         orders = {m[1]: m[2].split() for m in re.finditer(r"(?im)^\.subckt (\S+) (.*)$", cells)}
-        ports = [net for port in self.ports for net in port.bits()] + list(SUPPLIES)
+        ports = [*self.connected_ports(), *supplies]
         lines = [f".subckt {self.name} " + " ".join(ports)]
         for number, i in enumerate(self.instances):
-            pins = i.pins | {name: name for name in SUPPLIES}
+            pins = i.pins | dict(zip(SUPPLIES, supplies, strict=True))
             lines.append(f"X{number} " + " ".join(_plain(pins[pin]) for pin in orders[i.cell]) + f" {i.cell}")
         return "\n".join([*lines, ".ends", cells])
 
@@ -195,6 +210,23 @@ def _buses(pins: Mapping[str, str]) -> dict[str, str]:
         else:
             made[pin] = net
     return made | {bus: f"{{{', '.join(bits[k] for k in sorted(bits, reverse=True))}}}" for bus, bits in buses.items()}
+
+
+def diode(net: str, number: int) -> Instance:
+    """Return a diode against antennas on ``net``."""
+    return Instance(f"antenna_{number}", DIODE, {"i": net})
+
+
+def with_diodes(netlist: Netlist, nets: Sequence[str], fill: Mapping[str, int]) -> Netlist:
+    """Add diodes on ``nets``, and so many more (or fewer) cells of each kind of ``fill``."""
+    kept, fewer = [], {cell: -count for cell, count in fill.items() if count < 0}
+    for instance in netlist.instances:
+        if not instance.pins and fewer.get(instance.cell, 0):
+            fewer[instance.cell] -= 1
+        else:
+            kept.append(instance)
+    more = [Instance(f"fill_{cell}_{k}", cell, {}) for cell, count in fill.items() for k in range(count)]
+    return replace(netlist, instances=(*kept, *more, *(diode(net, k) for k, net in enumerate(nets))))
 
 
 def is_register(cell: str) -> bool:

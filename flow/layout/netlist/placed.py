@@ -13,6 +13,9 @@ TURNS = {"0": "R0", "2": "R180", "4": "M90", "6": "M0"}
 MIRRORED = {"0": (1, 1), "2": (-1, -1), "4": (-1, 1), "6": (1, -1)}
 
 
+Masters = Mapping[str, Mapping[str, list[list[Any]]]]  # by cell and pin the boxes as drawn, see `pin_boxes`
+
+
 def placed_netlist(
     netlist: Netlist, names: Mapping[str, str], placed: Sequence[Sequence[Any]], macros: MacroNames
 ) -> Netlist:
@@ -53,9 +56,7 @@ def own_name(names: Mapping[str, str]) -> Callable[[str], str]:
     return lambda plain: nets.get(plain, f"cts_{plain}")
 
 
-def pin_boxes(
-    netlist: Netlist, placed: Sequence[Sequence[Any]], masters: Mapping[str, Mapping[str, list[list[Any]]]]
-) -> dict[str, list[list[list[Any]]]]:
+def pin_boxes(netlist: Netlist, placed: Sequence[Sequence[Any]], masters: Masters) -> dict[str, list[list[list[Any]]]]:
     """By net, of every pin the boxes of which any one is to be met, [layer, left, bottom, right, top] in um.
 
     placed: [number, cell, x, y, orientation] of every instance. masters: by cell and pin such boxes, as drawn.

@@ -124,7 +124,7 @@ class Cut:
         rng = random.Random(1)
         levels: dict[Bit, int] = {"0": 0, "1": ALL}
         after = {bit: rng.getrandbits(LANES) for bit in (*self.registers, *self.inputs)}
-        after |= {bit: ALL for bit, name in self.inputs.items() if name == reset}
+        after |= {bit: 0 if active_low(reset) else ALL for bit, name in self.inputs.items() if name == reset}
         for _ in range(RESET_CYCLES):
             after |= self._next(after)
         guess: dict[Bit, Bit | None] = {bit: "1" if after[bit] else "0" for bit in missing if after[bit] in (0, ALL)}
@@ -223,6 +223,11 @@ class Cut:
         outputs = [*checked, *(name for name, _ in more)]
         head = f".model cut\n.inputs {' '.join(inputs)}\n.outputs {' '.join(outputs)}\n.names const0\n.names const1\n1"
         return used, "\n".join([head, *lines, *(line for _, made in more for line in made), ".end", ""])
+
+
+def active_low(reset: str) -> bool:
+    """Whether a port of that name resets when it is 0."""
+    return reset.endswith("_n")
 
 
 def _unlike(cone: set[Bit], other: set[Bit]) -> tuple[int, int]:

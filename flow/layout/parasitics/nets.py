@@ -9,8 +9,8 @@ from base.gds import db
 from base.steps import StepError
 from platforms.coriolis import CoriolisPlatform
 
+from ..geometry.instances import transformation
 from ..netlist.netlist import Netlist
-from ..netlist.placed import TURNS
 from .shapes import Labels, Shapes, labels
 
 Pin = tuple[str, str]  # instance and its pin, or "" and a port's bit
@@ -31,7 +31,7 @@ def places(
 ) -> dict[str, list[Place]]:
     """Every net's pins and ports, by the texts in the cells and in the top cell.
 
-    placement: JSON of `routed.placement`. Raises StepError for a pin without metal, and for a net whose pins the layout
+    placement: JSON of `repair.placement`. Raises StepError for a pin without metal, and for a net whose pins the layout
     does not connect.
     """
     found: dict[str, list[Place]] = {}
@@ -58,8 +58,7 @@ def _texts(
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if not instance.pins:
             continue
-        turn = getattr(db.Trans, TURNS[orientation])
-        trans = db.Trans(turn, round(x / layout.dbu), round(y / layout.dbu))
+        trans = transformation(layout, x, y, orientation)
         if layout.cell(cell) is None:  # a macro's black box, larger than the macro in its place
             cell, trans = instance.cell, _nearest(layout, instance.cell, trans.disp)
         if cell not in cells:

@@ -3,12 +3,10 @@
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from base.liberty.group import Group
-from base.liberty.read import read
 
 SIZE = re.compile(r"(\w+_x)(\d+)")  # a cell's name: what it does, and its size
 
@@ -25,10 +23,10 @@ class Drives:
     sizes: Mapping[str, Sequence[str]]
 
     @classmethod
-    def of(cls, liberty: Path, slew_ns: float) -> "Drives":
-        """Of a Liberty file (ns, pF), input slews as slow as those of outputs may be."""
+    def of(cls, liberty: Group, slew_ns: float) -> "Drives":
+        """Of a library (ns, pF), input slews as slow as those of outputs may be."""
         inputs, limits = {}, {}
-        cells = read(liberty).all("cell")
+        cells = liberty.all("cell")
         for cell in cells:
             for pin in cell.all("pin"):
                 if pin.text("direction") == "input":
@@ -41,6 +39,10 @@ class Drives:
     def stronger(self, cell: str, pin: str, load: float) -> str | None:
         """The smallest form of ``cell`` that drives ``load`` (pF), None where there is none."""
         return next((name for name in (cell, *self.sizes[cell]) if self.limits[name, pin] >= load), None)
+
+    def best(self, cell: str, pin: str, load: float) -> str:
+        """The same, the largest form where none is strong enough."""
+        return self.stronger(cell, pin, load) or [cell, *self.sizes[cell]][-1]
 
 
 def _larger(name: str, names: set[str]) -> list[str]:

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ..geometry.rows import Place, Rows
 from ..netlist.buffering import clusters
 from ..netlist.netlist import OUTPUT_PINS, Buffer, Instance, Netlist
 from ..netlist.placed import MIRRORED
 from .drive import Drives
-from .rows import Place, Rows
 
 BUFFER = Buffer("buf_x1", "i", "q")  # and its larger forms
 ROUNDS = 8
@@ -20,22 +20,22 @@ NEAR, HALF = 0.1, 0.5  # of the way from a driver to the middle of its sinks: it
 FULL = 0.9  # of what the largest buffer drives, at most, in a group of sinks
 OWN = "_repair"  # ends the name of a buffer that is inserted here
 Point = tuple[float, float]  # um
-Sinks = list[tuple[str, str]]  # instance and pin
-Slacks = Mapping[tuple[str, str], float]  # ns
+End = tuple[str, str]  # instance and pin
+Sinks = list[End]
+Slacks = Mapping[End, float]  # ns
 
 
 @dataclass
 class Plan:
     """A placed netlist while it is repaired.
 
-    instances, places: of all cells but fill, by name. widths: of the library's cells, um. row_um: their height. rows:
-    what is free. ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port.
+    instances, places: of all cells but fill, by name. widths: of the library's cells, um. rows: what is free.
+    ports: where nets of ports end. femtofarad_um: of a wire. outside: pF by net of a port.
     """
 
     instances: dict[str, Instance]
     places: dict[str, Place]
     widths: Mapping[str, float]
-    row_um: float
     rows: Rows
     ports: Mapping[str, Point]
     femtofarad_um: float
@@ -47,7 +47,7 @@ class Plan:
         x, y, orientation = self.places[name]
         across, up = MIRRORED[orientation]
         width = self.widths.get(self.instances[name].cell)
-        return (x, y) if width is None else (x + across * width / 2, y + up * self.row_um / 2)
+        return (x, y) if width is None else (x + across * width / 2, y + up * self.rows.height / 2)
 
     def put(self, instance: Instance, at: Point) -> bool:
         """Place a new ``instance`` near ``at``; False where there is no room."""
@@ -133,28 +133,26 @@ def repaired(
             if larger:
                 counts["sized"] += swap(plan, driver, larger)
             elif net in plan.outside:
-                counts["buffers"] += drive_port(plan, drives, net, driver, load)
+                counts["buffers"] += drive_port(plan, drives, net, (driver, pin), load)
             else:
-                counts["buffers"] += split(plan, drives, net, driver, late(plan, drives, net, driver, sinks, slacks))
+                counts["buffers"] += split(
+                    plan, drives, net, driver, late(plan, drives, net, (driver, pin), sinks, slacks)
+                )
         if counts == before:
             break
     return counts
 
 
-def late(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks, slacks: Slacks | None) -> Sinks:
+def late(plan: Plan, drives: Drives, net: str, driver: End, sinks: Sinks, slacks: Slacks | None) -> Sinks:
     """The sinks that can wait for a buffer, where the others alone are no load that is too large; else all."""
     if not slacks:
         return sinks
     least = min((slacks[end] for end in sinks if end in slacks), default=0.0)
     urgent = [end for end in sinks if slacks.get(end, np.inf) < least + BUFFER_NS]
-    load = plan.load(drives, net, [plan.point(driver)], urgent)
-    (cell, pin), rest = (plan.instances[driver].cell, driver_pin(plan.instances[driver], net)), set(urgent)
-    return [end for end in sinks if end not in rest] if load <= FULL * drives.limits[cell, pin] else sinks
-
-
-def driver_pin(instance: Instance, net: str) -> str:
-    """The pin of ``instance`` that drives ``net``."""
-    return next(pin for pin, own in instance.pins.items() if own == net and pin in OUTPUT_PINS)
+    name, pin = driver
+    load, rest = plan.load(drives, net, [plan.point(name)], urgent), set(urgent)
+    within = load <= FULL * drives.limits[plan.instances[name].cell, pin]
+    return [end for end in sinks if end not in rest] if within else sinks
 
 
 def connected(instances: Mapping[str, Instance]) -> dict[str, tuple[str, str, Sinks]]:
@@ -179,18 +177,17 @@ def swap(plan: Plan, name: str, cell: str) -> bool:
     return False
 
 
-def drive_port(plan: Plan, drives: Drives, net: str, driver: str, load: float) -> int:
+def drive_port(plan: Plan, drives: Drives, net: str, driver: End, load: float) -> int:
     """Insert a buffer between a driver and the net of an output, whose ``load`` (pF) it takes; how many."""
-    if driver.endswith(OWN):
+    name, pin = driver
+    if name.endswith(OWN):
         return 0
-    forms = [BUFFER.cell, *drives.sizes[BUFFER.cell]]
-    cell = next((cell for cell in forms if drives.limits[cell, BUFFER.output] >= load), forms[-1])
-    called = f"{net}_{plan.added}"
-    if not plan.put(BUFFER._replace(cell=cell).instance(f"{called}{OWN}", called, net), plan.point(driver)):
+    called, cell = f"{net}_{plan.added}", drives.best(BUFFER.cell, BUFFER.output, load)
+    if not plan.put(BUFFER._replace(cell=cell).instance(f"{called}{OWN}", called, net), plan.point(name)):
         return 0
     plan.added += 1
-    was = plan.instances[driver]
-    plan.instances[driver] = replace(was, pins=was.pins | {driver_pin(was, net): called})
+    was = plan.instances[name]
+    plan.instances[name] = replace(was, pins=was.pins | {pin: called})
     return 1
 
 
@@ -198,18 +195,16 @@ def split(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks) -> in
     """Insert buffers between a net and its ``sinks``, near ones together; how many."""
     if not sinks or len(sinks) == 1 and sinks[0][0].endswith(OWN):
         return 0  # the port alone is left, or one buffer, which no other one would relieve
-    forms = [BUFFER.cell, *drives.sizes[BUFFER.cell]]
-    limits = {cell: drives.limits[cell, BUFFER.output] for cell in forms}
     start, points = plan.point(driver), np.array([plan.point(name) for name, _ in sinks])
     total = plan.load(drives, net, [start], sinks)
-    count = min(len(sinks), int(-(-total // (FULL * limits[forms[-1]]))))
+    most = FULL * drives.limits[drives.best(BUFFER.cell, BUFFER.output, np.inf), BUFFER.output]
+    count = min(len(sinks), int(-(-total // most)))
     made = 0
     for group in clusters(points, -(-len(sinks) // count)):
         middle, ends = points[group].mean(axis=0), [sinks[k] for k in group]
         at = np.array(start) + (NEAR if count == 1 else HALF) * (middle - start)
         called = f"{net}_{plan.added}"
-        load = plan.load(drives, called, [(at[0], at[1])], ends)
-        cell = next((cell for cell in forms if limits[cell] >= load), forms[-1])
+        cell = drives.best(BUFFER.cell, BUFFER.output, plan.load(drives, called, [(at[0], at[1])], ends))
         name = f"{called}{OWN}"
         if not plan.put(BUFFER._replace(cell=cell).instance(name, net, called), (at[0], at[1])):
             continue

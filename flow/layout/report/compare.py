@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from base.files import staged
 from base.page import render
-from base.paths import ROOT
+from base.paths import RESULTS
 from flow.layout.design import DESIGNS, design, macro_designs
 from models.parameters import ParameterError
 
@@ -34,7 +34,7 @@ ROWS = (
     ("ir_drop_percent", "IR drop, %"),
     ("open_nets", "open nets"),
     ("evictions", "nets evicted for others"),
-    ("antenna_jumpers", "nets with antenna jumpers"),
+    ("diodes", "diodes against antennas"),
     ("drc_violations", "DRC violations"),
     ("antenna_violations", "antennas"),
     ("lvs_match", "LVS match"),
@@ -46,7 +46,7 @@ ROWS = (
 def add_arguments(parser: ArgumentParser) -> None:
     """Arguments of `talbot layout-compare`."""
     parser.add_argument("designs", nargs="*", default=PAIR, metavar="DESIGN", help="designs that are laid out")
-    parser.add_argument("--out", type=Path, default=ROOT / "build" / "layout", help="folder of the layouts")
+    parser.add_argument("--out", type=Path, default=RESULTS / "layout", help="folder of the layouts")
 
 
 def read(folder: Path, name: str) -> dict[str, Any]:

@@ -67,7 +67,7 @@ def summarize(design: Design, options: Options, runner: Runner, attempts: Sequen
         "attempts": [asdict(attempt) for attempt in attempts],
         "macros": {macro.instance: macro.design for macro in design.macros} or None,
         "wire_um": metric("assemble", "wire_um") or metric("route", "wire_um"),
-        **own("route", "open_nets", "evictions", "antenna_jumpers"),
+        **own("route", "open_nets", "evictions", "diodes"),
         "clock_buffers": metric("place", "clock_buffers"),
         **own("repair", "sized", "buffers"),
         "clock_gates": metric("synthesis", "clock_gates"),

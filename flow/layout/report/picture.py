@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from flow.layout.netlist.netlist import Netlist
+from flow.layout.netlist.placed import MIRRORED
 from platforms.coriolis import CoriolisPlatform
 
 PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
@@ -58,8 +59,8 @@ def by_block(
     groups = {}
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if instance.name in found and instance.pins:
-            width, down, left = areas[cell] / tech.row_um, orientation in ("6", "2"), orientation in ("4", "2")
-            box = Rectangle((x - width * left, y - tech.row_um * down), width, tech.row_um)
+            (across, up), width = MIRRORED[orientation], areas[cell] / tech.row_um
+            box = Rectangle((x, y), across * width, up * tech.row_um)
             groups.setdefault(found[instance.name], []).append(box)
     for k, (block, boxes) in enumerate(sorted(groups.items(), key=lambda item: -len(item[1]))):
         axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from ..geometry.boxes import Box
-from .board import CUTS, Board, as_rows
+from .board import CUTS, Board
 from .route import CELL_PINS, Place, Point, Route, around
 from .view import NetView
 
@@ -21,16 +21,6 @@ def accesses(view: NetView, net: str, number: int) -> Accesses:
         if place not in found or cost < view.costs[place]:
             found[place], view.costs[place] = route, cost
     return found
-
-
-def reserve(board: Board) -> None:
-    """Let nets pass beside the pins of others, where there is room, rather than over them."""
-    for net, pins in board.pins.items():
-        view = NetView(board, board.numbers[net])
-        for number in range(len(pins)):
-            made = [_access(board, level, point, place) for place, level, point in _possible(view, net, number)]
-            boxes = {(at, *box) for route in made for at, boxes in route.segments.items() for box in boxes}
-            board.grid.use(as_rows(sorted(boxes), 0))
 
 
 def _possible(view: NetView, net: str, number: int) -> list[Access]:

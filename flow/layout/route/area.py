@@ -4,23 +4,29 @@ from typing import Any
 
 from base.gds import db
 
-from ..geometry.boxes import Box, on_grid
+from ..geometry.boxes import Box, corners, on_grid
 from .route import Route
 from .view import NetView
 
 ROUNDS = 4  # in which narrow places and gaps of a net are filled
 
 
-def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
-    """Whether every piece of metal has the least area, or was given it; gaps within the net are closed.
+def meet_area(view: NetView, route: Route) -> list[tuple[int, Box]]:
+    """Give every piece of metal the least area and close gaps within the net.
 
-    alone: no other net is to make room for that.
+    Return (level, box) of what there is no room for; none if all is done.
     """
-    own = [] if alone else view.board.pins[view.board.nets[view.net]]  # a jumper's end is no port
-    pins = [box for pin in own for box in pin]
+    pins = [box for pin in view.board.pins[view.board.nets[view.net]] for box in pin]
     for level, boxes in route.segments.items():
         layer = view.rules.layers[level]
         boxes += [(left, bottom, right, top) for at, left, bottom, right, top in pins if at == level]
+        for polygon in _merged(boxes).each():
+            lack = layer.area - polygon.area()
+            if lack > 0:
+                made = _longer(view, level, polygon.bbox(), lack)
+                if made is None:
+                    return [(level, corners(polygon.bbox()))]
+                boxes.append(made)
         region = _merged(boxes)
         gap = layer.space // 2
         for polygon in (region.sized(gap).sized(-gap) - region).decompose_trapezoids_to_region().each():
@@ -30,19 +36,11 @@ def meet_area(view: NetView, route: Route, alone: bool = False) -> bool:
             pairs = (*merged.space_check(layer.space).each(), *merged.width_check(layer.width).each())
             more = [_at_least(pair.bbox(), layer.width) for pair in pairs]
             if blocked := [(level, box) for box in more if not view.clear(level, box)]:
-                view.board.add_history(blocked)  # the next try goes elsewhere
-                return False
+                return blocked
             boxes += more
             if not more:
                 break
-        for polygon in _merged(boxes).each():
-            lack = layer.area - polygon.area()
-            if lack > 0:
-                more = _longer(view, level, polygon.bbox(), lack, alone)
-                if more is None:
-                    return False
-                boxes.append(more)
-    return True
+    return []
 
 
 def _merged(boxes: list[Box]) -> "db.Region":
@@ -61,13 +59,13 @@ def _at_least(box: "db.Box", width: int) -> Box:
     return on_grid(box.enlarged(x, y))
 
 
-def _longer(view: NetView, level: int, box: "db.Box", lack: int, alone: bool) -> Box | None:
-    """A box that makes the piece of metal ``box`` larger by ``lack`` nm2, clear of all nets if it can be or, with
-    ``alone``, must; else of what is fixed. None without one."""
+def _longer(view: NetView, level: int, box: "db.Box", lack: int) -> Box | None:
+    """A box that makes the piece of metal ``box`` larger by ``lack`` nm2, clear of all nets if it can be, else of what
+    is fixed. None without one."""
     wide = -(-lack // box.height()) // 10 * 10 + 10
     high = -(-lack // box.width()) // 10 * 10 + 10
     across = [(wide, 0, 0, 0), (0, 0, wide, 0), (wide // 2, 0, wide // 2, 0)]
     along = [(0, high, 0, 0), (0, 0, 0, high), (0, high // 2, 0, high // 2)]
     made = [_corners(box, *sides) for sides in across + along]
-    allowed = (one for others in ([True] if alone else [True, False]) for one in made if view.clear(level, one, others))
+    allowed = (one for others in (True, False) for one in made if view.clear(level, one, others))
     return next(allowed, None)

@@ -1,5 +1,6 @@
 """A layout whose nets can be routed, ripped up and rerouted, net by net."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, TypedDict, TypeVar
 
@@ -38,31 +39,49 @@ class Board:
     What is left is fixed: cells, straps, ports. The shapes of a short belong to the earlier net. boxes: by net
     [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above
     their pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all
-    nets, and where nets CONTENDED. grid: both as places. present: see PRESENT.
+    nets, and where nets CONTENDED. grid: both as places, of middles of segments within ``area`` (nm; default: wherever
+    there is something). present: see PRESENT. diodes: by net and number of a diode's pin that of the gate's. jumpers:
+    by net the numbers of pins that are met from the highest layer alone.
     """
 
-    def __init__(self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes]) -> None:
+    def __init__(
+        self, layout: "db.Layout", rules: RoutingRules, shapes: Mapping[str, NetShapes], area: Box | None = None
+    ) -> None:
         self.layout, self.rules, self.top = layout, rules, layout.top_cell()
         self.nets = list(shapes)
         self.boxes: dict[str, list[tuple[str, Box]]] = {net: [] for net in shapes}
         self.numbers = {net: number for number, net in enumerate(self.nets)}
         self.levels = {layer.name: level for level, layer in enumerate(rules.layers)}
         self.layers = {made.name: layout.layer(made.layer, made.datatype) for made in (*rules.layers, *rules.vias)}
-        self.pins = {net: self._pins(made) for net, made in shapes.items()}
+        self.pins = {net: self._pins(made["pins"]) for net, made in shapes.items()}
         self._lift(shapes)
-        area = corners(self.top.bbox().enlarged(*rules.step))
-        self.fixed, self.routed = Index(area, len(rules.layers)), Index(area, len(rules.layers))
+        area = area or corners(self.top.bbox().enlarged(*rules.step))
+        whole = corners(self.top.bbox().enlarged(*rules.step) + db.Box(*area))
+        self.fixed, self.routed = Index(whole, len(rules.layers)), Index(whole, len(rules.layers))
         self.grid = Grid(area, rules)
         self.rows: dict[str, tuple[Rows, Links]] = {}
         self.present = PRESENT
         self.accesses: dict[str, dict[int, Any]] = {}  # by net and pin, see access
+        self.diodes: defaultdict[str, dict[int, int]] = defaultdict(dict)
+        self.jumpers: defaultdict[str, set[int]] = defaultdict(set)
         self._fix()
         for net in self.nets:
             self._enter(net)
 
-    def _pins(self, made: NetShapes) -> list[list[tuple[int, ...]]]:
+    def _pins(self, made: list[list[list[Any]]]) -> list[list[tuple[int, ...]]]:
         """Of every pin of a net the boxes (level, left, bottom, right, top), nm."""
-        return [[(self.levels[name], *nanometres(um)) for name, *um in pin] for pin in made["pins"]]
+        return [[(self.levels[name], *nanometres(um)) for name, *um in pin] for pin in made]
+
+    def pin_of(self, net: str, gate: Point) -> int:
+        """Number of the pin of ``net`` nearest to a ``gate``, not of a diode."""
+        pins = self.pins[net]
+        own = (number for number in range(len(pins)) if number not in self.diodes[net])
+        return min(own, key=lambda number: _distance(pins[number], gate))
+
+    def add_diode(self, net: str, boxes: list[list[Any]], pin: int) -> None:
+        """Give ``net`` a diode, a pin of ``boxes`` as in NetShapes, to be joined with its pin of that number."""
+        self.diodes[net][len(self.pins[net])] = pin
+        self.pins[net] += self._pins([boxes])
 
     def _lift(self, shapes: Mapping[str, NetShapes]) -> None:
         exact, middles, ports = _claims(shapes)
@@ -201,6 +220,12 @@ def _claims(shapes: Mapping[str, NetShapes]) -> tuple[Owners[Box], Owners[Point]
                 middles.setdefault((part, nanometres((x, y))), net)
         ports |= {(name, nanometres(box)) for pin in made["pins"] for name, *box in pin}
     return exact, middles, ports
+
+
+def _distance(pin: Sequence[Sequence[int]], point: Point) -> int:
+    """From the nearest box of a pin to a point."""
+    x, y = point
+    return min(max(left - x, x - right, 0) + max(bottom - y, y - top, 0) for _, left, bottom, right, top in pin)
 
 
 def middle(box: Sequence[int]) -> Point:

@@ -18,7 +18,6 @@ CONFLICT_NM = 500  # cost of a place where nets contended once, as that of so lo
 HASTE = 5, 4  # factor of the remaining cost: paths of up to so much more are taken for a search so much shorter
 FREE, BLOCKED = 0, -1  # of `Grid.fixed`; else the number of the only net that may pass, and 1
 PAID = 1 << 27  # marks a place in the queue as the end of a path
-HELD = 1_000_000  # so many shapes that no path passes
 METAL, BELOW, ABOVE = range(3)  # what is at a place of a layer: a segment, the pad of a via upwards, of one from below
 Owners = npt.NDArray[np.int32]
 Counts = npt.NDArray[np.int32]
@@ -40,6 +39,7 @@ class Grid:
         self.fixed: Owners = np.zeros((2, self.levels, *shape), np.int32)
         self.used: Counts = np.zeros((2, self.levels, *shape), np.int32)
         self.reach = _reaches(rules)
+        self.apart = [((via.size + via.space - 1) // self.step).tolist() for via in rules.vias[1:]]
         directions = [(1, WRONG_WAY) if layer.horizontal else (WRONG_WAY, 1) for layer in rules.layers[1:]]
         self.prices = np.array(directions) * self.step
         for level, factor in enumerate(LAYER_COSTS[: self.levels - 1]):
@@ -57,6 +57,13 @@ class Grid:
         """Let ``rows`` be in the way of others ``times`` times more."""
         _use(self.used, rows, self.reach, self.step, self.first, times)
 
+    def keep_apart(self, vias: Rows, times: int) -> None:
+        """Let vias too near to those at ``vias``, rows (level, i, j), not at the same places, cost ``times`` more."""
+        for level, i, j in (vias - (1, *self.first)).tolist():
+            across, along = self.apart[level]
+            self.used[1, level, max(0, i - across) : i + across + 1, max(0, j - along) : j + along + 1] += times
+            self.used[1, level, i, j] -= times
+
     def inside(self, place: Place) -> bool:
         """Whether a place is on the grid."""
         return 0 < place[1] - self.first[0] < self.columns - 1 and 0 < place[2] - self.first[1] < self.rows - 1
@@ -70,22 +77,13 @@ class Grid:
         dx, dy = self.step.tolist()
         return [(i, j) for i in range(x // dx, -(-x // dx) + 1) for j in range(y // dy, -(-y // dy) + 1)]
 
-    def free(self, net: int, level: int, box: Box, present: int, vias: bool = False) -> npt.NDArray[np.bool_]:
-        """Whether the places of ``box``, (i, j) to (i, j) without the last, are free to ``net``: array (n, m).
-
-        present: cost of a net that has a place; less is what is left of conflicts.
-        """
-        (a, b), (c, d) = np.array(box).reshape(2, 2) - self.first
-        at = int(vias), level - 1, slice(a, c), slice(b, d)
-        return ((self.fixed[at] == FREE) | (self.fixed[at] == net + 1)) & (self.used[at] < present)
-
     def search(
         self, net: int, box: Box, sources: Sequence[Place], targets: Sequence[Place],
-        factors: Mapping[int, int] | None = None, costs: Mapping[Place, int] | None = None,
+        costs: Mapping[Place, int] | None = None,
     ) -> list[Place] | None:  # fmt: skip
         """Return the places of the cheapest path within ``box`` (nm) from a source to a target, or None.
 
-        net: its number. factors: by level, of the cost of a step. costs: of sources and targets, in conflicts.
+        net: its number. costs: of sources and targets, in conflicts.
         """
         low = np.maximum(np.array(box[:2]) // self.step - self.first, 1)
         high = np.minimum(np.array(box[2:]) // self.step - self.first, (self.columns - 2, self.rows - 2))
@@ -94,13 +92,10 @@ class Grid:
         )
         if not len(begins) or not len(ends):
             return None
-        prices = self.prices.copy()
-        for level, factor in (factors or {}).items():
-            prices[level - 1] *= factor
         self.searches += 1
         path = _search(
             self.fixed, self.used, self.cost, self.seen, self.came, self.goal, self.due, self.searches, net + 1, begins,
-            ends, at_begin, at_end, low, high, prices,
+            ends, at_begin, at_end, low, high, self.prices,
         )  # fmt: skip
         levels, columns, rows = np.unravel_index(path[::-1], self.fixed.shape[1:])
         made = zip((levels + 1).tolist(), (columns + self.first[0]).tolist(), (rows + self.first[1]).tolist())
@@ -136,36 +131,35 @@ def _range(low: int, high: int, reach: int, step: int, first: int, size: int) ->
 
 
 @njit(cache=True)
+def _spans(row: Rows, what: int, reach: Rows, step: Rows, first: Rows, shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Of a row the index of Grid.fixed's first two axes, and the ranges of the others where ``what`` is too near."""
+    kind, at = (0, row[0] - 1) if what == METAL else (1, row[0] - 1 if what == BELOW else row[0] - 2)
+    across, along = reach[row[0], what, 0], reach[row[0], what, 1]
+    if across < 0:
+        return 0, 0, 0, 0, 0, 0
+    a, c = _range(row[1], row[3], across, step[0], first[0], shape[2])
+    b, d = _range(row[2], row[4], along, step[1], first[1], shape[3])
+    return kind, at, a, c, b, d
+
+
+@njit(cache=True)
 def _block(fixed: Owners, rows: Rows, reach: Rows, step: Rows, first: Rows) -> None:
-    for k in range(len(rows)):
-        level, owner = rows[k, 0], rows[k, 5] + 1 if rows[k, 5] >= 0 else BLOCKED
+    for row in rows:
+        owner = row[5] + 1 if row[5] >= 0 else BLOCKED
         for what in range(3):
-            if reach[level, what, 0] < 0:
-                continue
-            kind, at = (0, level - 1) if what == METAL else (1, level - 1 if what == BELOW else level - 2)
-            a, c = _range(rows[k, 1], rows[k, 3], reach[level, what, 0], step[0], first[0], fixed.shape[2])
-            b, d = _range(rows[k, 2], rows[k, 4], reach[level, what, 1], step[1], first[1], fixed.shape[3])
+            kind, at, a, c, b, d = _spans(row, what, reach, step, first, fixed.shape)
             for i in range(a, c):
                 for j in range(b, d):
-                    if fixed[kind, at, i, j] == FREE:
-                        fixed[kind, at, i, j] = owner
-                    elif fixed[kind, at, i, j] != owner:
-                        fixed[kind, at, i, j] = BLOCKED
+                    free = fixed[kind, at, i, j] == FREE or fixed[kind, at, i, j] == owner
+                    fixed[kind, at, i, j] = owner if free else BLOCKED
 
 
 @njit(cache=True)
 def _use(used: Counts, rows: Rows, reach: Rows, step: Rows, first: Rows, times: int) -> None:
-    for k in range(len(rows)):
-        level = rows[k, 0]
+    for row in rows:
         for what in range(3):
-            if reach[level, what, 0] < 0:
-                continue
-            kind, at = (0, level - 1) if what == METAL else (1, level - 1 if what == BELOW else level - 2)
-            a, c = _range(rows[k, 1], rows[k, 3], reach[level, what, 0], step[0], first[0], used.shape[2])
-            b, d = _range(rows[k, 2], rows[k, 4], reach[level, what, 1], step[1], first[1], used.shape[3])
-            for i in range(a, c):
-                for j in range(b, d):
-                    used[kind, at, i, j] += times
+            kind, at, a, c, b, d = _spans(row, what, reach, step, first, used.shape)
+            used[kind, at, a:c, b:d] += times
 
 
 @njit(cache=True)
@@ -223,10 +217,10 @@ def _search(
                 price = prices[level, move // 2]
             else:
                 below, cut = (level, here) if move == 4 else (level - 1, there)
-                if not 0 <= below < levels - 1 or (via[cut] != FREE and via[cut] != owner) or of_via[cut] >= HELD:
+                if not 0 <= below < levels - 1 or (via[cut] != FREE and via[cut] != owner):
                     continue
                 price = VIA_NM + of_via[cut] * CONFLICT_NM
-            if (metal[there] != FREE and metal[there] != owner) or of_metal[there] >= HELD:
+            if metal[there] != FREE and metal[there] != owner:
                 continue
             price += of_metal[there] * CONFLICT_NM
             total = cost[here] + price

@@ -5,7 +5,7 @@ That is negotiated congestion as in PathFinder (McMurchie and Ebeling, FPGA 1995
 
 import tempfile
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -17,14 +17,15 @@ from base.progress import line
 from platforms.coriolis import CoriolisPlatform
 
 from .board import GROWTH, PRESENT, Board
-from .nets import route_net
+from .diodes import Diodes
+from .nets import Leg, clear_of, route_net
 from .route import Route
 from .violations import Violations, find, find_in_file, split_levels
 
 PATIENCE = 6  # evicted nets for every one that is to be routed, at most
 TRIES = 3  # of a net without a path, while others move
 HASTY_TRIES = 3  # of a net, which look for a path nearby alone
-JUMPER_TRIES = 3  # times that a net is routed with antenna jumpers; then it goes without, and keeps its antenna
+WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
 JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
 TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
@@ -35,30 +36,30 @@ MOST_BROKEN = 0.2  # share of the nets that a check may find to be rerouted
 class Routed:
     """What a negotiation came to.
 
-    routes: of the nets that were routed. open: nets without a route. tries, lost, jumps: of every net, how often it was
-    routed at all, found no path, was given antenna jumpers. evictions: times that a net was. respaced, charged: nets
-    that were too near to others, nets that had an antenna.
+    routes: of the nets that were routed; legs: of these, what is left of them where they are evicted. open: nets
+    without a route. tries, lost: of every net, how often it was routed at all, found no path. evictions: times that a
+    net was. respaced: nets that were too near to others.
     """
 
     routes: dict[str, Route] = field(default_factory=dict)
+    legs: dict[str, Sequence[Leg]] = field(default_factory=dict)
     open: list[str] = field(default_factory=list)
     tries: Counter[str] = field(default_factory=Counter)
     lost: Counter[str] = field(default_factory=Counter)
-    jumps: Counter[str] = field(default_factory=Counter)
     evictions: int = 0
     respaced: set[str] = field(default_factory=set)
-    charged: set[str] = field(default_factory=set)
 
 
 def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None) -> Routed:
     """Route the nets ``wanted`` on the ``board`` and every net that they evict, turn by turn.
 
-    state: what this call goes on with; its ``charged`` nets are routed with antenna jumpers where there is room.
+    state: what this call goes on with.
     """
     state = state or Routed()
     waiting = sorted(wanted, key=lambda net: -_hpwl(board, net))  # the long ones while there is room: found faster
     for net in waiting:
-        board.rip_up(net)
+        if net not in state.legs:
+            board.rip_up(net)
     board.charge(PRESENT)
     patience = PATIENCE * len(waiting) + 1000
     while waiting:
@@ -67,11 +68,10 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
         evicted = []
         for net in waiting:
             state.tries[net] += 1
-            jumpers = net in state.charged and state.jumps[net] < JUMPER_TRIES
-            state.jumps[net] += jumpers
-            found = (jumpers and route_net(board, net, jumpers)) or route_net(
-                board, net, hasty=state.tries[net] <= HASTY_TRIES
-            )
+            board.rip_up(net)
+            kept = state.legs.pop(net, ()) if state.tries[net] % WHOLE else ()
+            hasty = state.tries[net] <= HASTY_TRIES
+            found = (route_net(board, net, hasty, kept) if kept else None) or route_net(board, net, hasty)
             if not found or patience < len(found.evicted):
                 state.lost[net] += 1
                 state.routes.pop(net, None)
@@ -83,10 +83,11 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
             patience -= len(found.evicted)
             state.evictions += len(found.evicted)
             for other in found.evicted:
-                board.rip_up(other)
+                state.legs[other] = clear_of(state.legs.get(other, ()), found.route, board)
+                board.put(other, Route.of(leg.route for leg in state.legs[other]))
             board.add_history(found.places)
             board.put(net, found.route)
-            state.routes[net] = found.route
+            state.routes[net], state.legs[net] = found.route, found.legs
             evicted += sorted(found.evicted)
         waiting = list(dict.fromkeys(evicted))
         board.charge(GROWTH * board.present)
@@ -101,8 +102,8 @@ def _hpwl(board: Board, net: str) -> float:
     return max(b[3] for b in boxes) - min(b[1] for b in boxes) + max(b[4] for b in boxes) - min(b[2] for b in boxes)
 
 
-def route(board: Board, nets: Collection[str], tech: CoriolisPlatform) -> Routed:
-    """Route ``nets``, then again those with a violation; what was changed is checked again."""
+def route(board: Board, nets: Collection[str], tech: CoriolisPlatform, diodes: Diodes) -> Routed:
+    """Route ``nets``, check, and route those with a violation again, with a diode or a jumper against an antenna."""
     state, changed = negotiate(board, nets), None
     for _ in range(ROUNDS):
         if state.open:
@@ -110,11 +111,16 @@ def route(board: Board, nets: Collection[str], tech: CoriolisPlatform) -> Routed
         found = check(board, tech) if changed is None else find(board.part(changed), board.rules, tech)
         near, charged = found.nets(board, changed)
         state.respaced |= {*near}
-        state.charged |= {*charged}
-        wanted = {*near, *charged}
-        if not wanted or len(wanted) > MOST_BROKEN * len(board.nets):
+        if len({*near, *(net for net, _ in charged)}) > MOST_BROKEN * len(board.nets):
+            break
+        relieved = {net for net, gate in charged if diodes.relieve(board, net, gate)}
+        wanted = {*near, *relieved}
+        if not wanted:
             break
         before = dict(state.routes)
+        for net in near:
+            state.legs.pop(net, None)
+        board.add_history((level, box) for level, *edges in found.spacing for box in edges)  # else the same again
         negotiate(board, wanted, state)
         changed = {net for net, made in state.routes.items() if made is not before.get(net)}
     return state

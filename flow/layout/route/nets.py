@@ -6,146 +6,224 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.boxes import Box, Boxes
-from .access import Accesses, accesses
+from .access import accesses
 from .area import meet_area
 from .board import Board
-from .route import CELL_PINS, Place, Point, Route
+from .route import Place, Point, Route
 from .view import NetView
 
 MARGINS_NM = (10_000, 40_000)  # of the window around two places to be joined: of a try, of the next
 DETOUR_NM = 240_000  # the same where there was no path at all: round a block
-AROUND_PIN_NM = 20_000  # of that around a pin
-TOP_FACTOR = 8  # of the cost of the top layer where it is to be short
-JUMPER_NM, REACHES = 1500, (40, 80)  # length of an antenna jumper; its distance from a pin, in steps: or farther
-JUMPER_PLACES, APART = 6, 5  # that are tried where there is no room below a jumper, and the steps between them
+REACH, JUMPER = 12, 20  # of a jumper's begin from its pin, of its end from there, in steps
+SAMPLE = 8  # every such place of a path is looked at for the nearest one
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A path of a net with the routes into the pins that it joins. places: rows of the grid. pins: numbers."""
+
+    places: Boxes
+    route: Route
+    pins: frozenset[int]
 
 
 @dataclass(frozen=True)
 class Found:
-    """A route of a net, names of the nets in its way, and (level, Box) of where."""
+    """A route of a net, its legs, names of the nets in its way, and (level, Box) of where."""
 
     route: Route
+    legs: Sequence[Leg]
     evicted: set[str]
     places: list[tuple[int, Box]]
 
 
-def route_net(board: Board, net: str, jumpers: bool = False, hasty: bool = False) -> Found | None:
+@dataclass(frozen=True)
+class End:
+    """What is to be joined: a pin, met over one of ``ways``, or legs that are joined already and met anywhere."""
+
+    ways: Mapping[Place, Route]
+    pins: frozenset[int]
+
+    @property
+    def sample(self) -> Boxes:
+        """Some of the places, an array."""
+        return np.array(list(self.ways)[:: SAMPLE if not self.pins else len(self.ways)])
+
+
+def route_net(board: Board, net: str, hasty: bool = False, kept: Sequence[Leg] = ()) -> Found | None:
     """Route ``net``, which has no shapes on the ``board``, with the fewest nets in its way.
 
-    hasty: whether the first path that there is will do.
-
-    jumpers: whether every cell that has room for it is joined over a jumper on the top layer, against antennas: until
-    that layer is made, what is joined to a gate is short. None when there is no path past what is fixed, or no room for
-    what a rule requires.
+    hasty: whether the first path that there is will do. kept: legs that stay. None when there is no path past what is
+    fixed, or no room for what a rule requires.
     """
     view = NetView(board, board.numbers[net])
     try:
-        made = [_pin_accesses(view, net, number, jumpers) for number in range(len(board.pins[net]))]
-        found = []
-        for margin in (*MARGINS_NM, DETOUR_NM) if all(made) else ():
-            if found and margin == DETOUR_NM:
-                break
-            route = _connected(view, made, margin, jumpers)
-            if route and meet_area(view, route):
-                found.append(Found(route, *view.conflicts(route)))
-                if hasty or not found[-1].evicted:
-                    break
-        return min(found, key=lambda one: len(one.evicted), default=None)
+        return _best(view, net, hasty, kept)
     finally:
         view.release()
 
 
-def _connected(view: NetView, pins: Sequence[Accesses], margin: int, jumpers: bool) -> Route | None:
-    """Join the ``pins``, always the one nearest to what is joined; None without a path."""
-    factors = {len(view.rules.layers) - 1: TOP_FACTOR} if jumpers else None
-    route, tree = Route(), {}
-    waiting = [list(access) for access in pins]
-    joined = np.array(waiting[0])
-    left = list(range(1, len(pins)))
-    nearest = {k: _nearest(view, waiting[k], joined) for k in left}
+def _best(view: NetView, net: str, hasty: bool, kept: Sequence[Leg]) -> Found | None:
+    if not view.board.jumpers[net] <= _jumped(view, net, kept):
+        kept = ()  # they might be in a jumper's way
+    for leg in kept:
+        view.hold(leg.places)
+    kept = [*kept, *_diodes(view, net, kept)]
+    kept = [*kept, *_jumpers(view, net, kept)]
+    ends, found, lacking = _ends(view, net, kept), [], []
+    for margin in (*MARGINS_NM, DETOUR_NM) if all(end.ways for end in ends) else ():
+        if found and margin == DETOUR_NM:
+            break
+        view.release()
+        for leg in kept:
+            view.hold(leg.places)
+            if leg.pins & view.board.jumpers[net]:
+                view.avoid(_below(leg.route, len(view.rules.layers) - 1))
+        view.avoid(lacking)
+        legs = _connected(view, ends, margin)
+        if legs is None:
+            continue
+        route = Route.of(leg.route for leg in (*kept, *legs))
+        if lack := meet_area(view, route):
+            view.board.add_history(lack)
+            lacking += lack
+        else:
+            found.append(Found(route, (*kept, *legs), *view.conflicts(route)))
+            if hasty or not found[-1].evicted:
+                break
+    return min(found, key=lambda one: len(one.evicted), default=None)
+
+
+def _below(route: Route, top: int) -> list[tuple[int, Box]]:
+    """(level, box) of the segments below level ``top``."""
+    return [(level, box) for level, made in route.segments.items() if level < top for box in made]
+
+
+def clear_of(legs: Sequence[Leg], route: Route, board: Board) -> list[Leg]:
+    """Those of ``legs`` that are not too near to another net's ``route``; none if all are not."""
+    left = [leg for leg in legs if not leg.route.near(route, board.rules)]
+    return left if len(left) < len(legs) else []
+
+
+def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
+    """Legs from diodes that none of ``kept`` joins to their gates: charge must have a way down before others join."""
+    joined, made = set[int]().union(*(leg.pins for leg in kept)), list[Leg]()
+    for diode, gate in view.board.diodes.get(net, {}).items():
+        if diode in joined:
+            continue
+        here, there = _ways(view, net, gate, [*kept, *made]), accesses(view, net, diode)
+        if not here or not there:
+            continue
+        box = _box(*_nearest(view, *(np.array(list(ways)) for ways in (here, there)))[1:], MARGINS_NM[0])
+        if path := view.board.grid.search(view.net, box, list(here), list(there), view.costs):
+            route = Route.of((here[path[0]], there[path[-1]]))
+            route.draw(view.rules, path)
+            made.append(Leg(np.array(path), route, frozenset((gate, diode))))
+            view.hold(made[-1].places)
+    return made
+
+
+def _jumpers(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:
+    """Legs from gates to the highest layer and along it: until that is made, little metal is joined to them."""
+    top, made = len(view.rules.layers) - 1, list[Leg]()
+    for number in view.board.jumpers[net] - _jumped(view, net, kept):
+        ways = _ways(view, net, number, kept)
+        if not ways:
+            continue
+        grid, (_, i, j), reach = view.board.grid, next(iter(ways)), range(-REACH, REACH + 1, 2)
+        x, y = grid.at(i, j)
+        path = grid.search(
+            view.net,
+            _box((x, y), (x, y), MARGINS_NM[0]),
+            list(ways),
+            [(top, i + a, j + b) for a in reach for b in reach],
+            view.costs,
+        )
+        if path is None:
+            continue
+        _, i, j = path[-1]
+        a, b = (JUMPER, 0) if view.rules.layers[top].horizontal else (0, JUMPER)
+        column = _box(grid.at(i - a, j - b), grid.at(i + a, j + b), 0)
+        run = grid.search(view.net, column, path[-1:], [(top, i - a, j - b), (top, i + a, j + b)])
+        if run and all(level == top for level, *_ in run):
+            route = Route.of((ways[path[0]],))
+            route.draw(view.rules, [*path, *run[1:]])
+            made.append(Leg(np.array([*path, *run[1:]]), route, frozenset((number,))))
+            view.hold(made[-1].places)
+    return made
+
+
+def _jumped(view: NetView, net: str, kept: Sequence[Leg]) -> set[int]:
+    """Pins that have a jumper."""
+    return {pin for leg in kept for pin in leg.pins & view.board.jumpers[net] if len(_open(view, net, leg))}
+
+
+def _ways(view: NetView, net: str, number: int, legs: Sequence[Leg]) -> Mapping[Place, Route]:
+    """Ways into a pin: where one of ``legs`` has one that, for vias into one pin would be too near."""
+    ways = accesses(view, net, number)
+    taken = {tuple(place) for leg in legs if number in leg.pins for place in leg.places.tolist()}
+    return dict.fromkeys(taken & ways.keys(), Route()) or ways
+
+
+def _open(view: NetView, net: str, leg: Leg) -> Boxes:
+    """Places of a leg that others may join: of one into a pin with a jumper the far end of this alone."""
+    if not leg.pins & view.board.jumpers[net]:
+        return leg.places
+    return leg.places[-1:][leg.places[-1:, 0] == len(view.rules.layers) - 1]
+
+
+def _ends(view: NetView, net: str, kept: Sequence[Leg]) -> list[End]:
+    """What the legs ``kept`` come to, then the pins that none of them joins."""
+    groups: list[tuple[set[Place], set[Place], set[int]]] = []  # places open to others, all, pins
+    for leg in kept:
+        group = *(set(map(tuple, places.tolist())) for places in (_open(view, net, leg), leg.places)), set(leg.pins)
+        met = [other for other in groups if other[1] & group[1] or other[2] & group[2]]
+        groups = [other for other in groups if other not in met]
+        groups.append(tuple(one.union(*others) for one, *others in zip(group, *met, strict=True)))
+    joined = set[int]().union(*(pins for *_, pins in groups))
+    ends = [End(dict.fromkeys(places or every, Route()), frozenset()) for places, every, _ in groups]
+    left = [number for number in range(len(view.board.pins[net])) if number not in joined]
+    return ends + [End(accesses(view, net, number), frozenset([number])) for number in left]
+
+
+def _connected(view: NetView, ends: Sequence[End], margin: int) -> list[Leg] | None:
+    """Join the ``ends``, always the one nearest to what is joined, by legs; None without a path."""
+    legs, tree, first = list[Leg](), dict[Place, None](), ends[0]
+    left = list(range(1, len(ends)))
+    nearest = {k: _nearest(view, ends[k].sample, first.sample) for k in left}
     while left:
         k = min(left, key=lambda k: nearest[k][0])
         left.remove(k)
-        path = _path(view, _box(*nearest[k][1:], margin), tree or pins[0], pins[k], factors)
+        box, sources = _box(*nearest[k][1:], margin), list(tree or first.ways)
+        path = view.board.grid.search(view.net, box, sources, list(ends[k].ways), view.costs)
         if path is None:
             return None
+        pins, route = ends[k].pins, Route()
         if not tree:
-            route.join(pins[0][path[0]])
-        route.join(pins[k][path[-1]])
+            pins |= first.pins
+            route.join(first.ways[path[0]])
+            tree |= {} if first.pins else dict.fromkeys(first.ways)
+        route.join(ends[k].ways[path[-1]])
         route.draw(view.rules, path)
-        tree |= dict.fromkeys(path)
+        new = path if ends[k].pins else [*path, *ends[k].ways]
+        tree |= dict.fromkeys(new)
+        legs.append(Leg(np.array(path), route, pins))
+        view.hold(legs[-1].places)
         for other in left:
-            closer = _nearest(view, waiting[other], np.array(path))
+            closer = _nearest(view, ends[other].sample, np.array(new[::SAMPLE] + new[-1:]))
             nearest[other] = closer if closer[0] < nearest[other][0] else nearest[other]
-    return route
+    return legs
 
 
-def _path(
-    view: NetView, box: Box, sources: Mapping[Place, object], targets: Accesses, factors: Mapping[int, int] | None
-) -> list[Place] | None:
-    return view.board.grid.search(view.net, box, list(sources), list(targets), factors, view.costs)
-
-
-def _nearest(view: NetView, places: Sequence[Place], joined: Boxes) -> tuple[int, Point, Point]:
-    """(distance, points, nm) of the first of ``places`` and the nearest of the array ``joined`` of places."""
-    (dx, dy), (_, i, j) = view.rules.step, places[0]
-    points = joined[:, 1:] * (dx, dy)
-    distances = np.abs(points - (i * dx, j * dy)).sum(1)
-    x, y = points[distances.argmin()].tolist()
-    return int(distances.min()), (i * dx, j * dy), (x, y)
+def _nearest(view: NetView, places: Boxes, joined: Boxes) -> tuple[int, Point, Point]:
+    """(distance, points, nm) of the nearest two of two arrays of places."""
+    here, there = (at[:, 1:] * np.array(view.rules.step) for at in (places, joined))
+    distances = np.abs(here[:, None] - there[None]).sum(2)
+    k, other = np.unravel_index(distances.argmin(), distances.shape)
+    (a, b), (c, d) = here[k].tolist(), there[other].tolist()
+    return int(distances[k, other]), (a, b), (c, d)
 
 
 def _box(one: Point, other: Point, margin: int) -> Box:
     (a, b), (c, d) = one, other
     return min(a, c) - margin, min(b, d) - margin, max(a, c) + margin, max(b, d) + margin
-
-
-def _pin_accesses(view: NetView, net: str, number: int, jumpers: bool) -> Accesses:
-    """Routes into a pin, over an antenna jumper if that is wanted and there is room."""
-    found = accesses(view, net, number)
-    if not jumpers or view.board.pins[net][number][0][0] != CELL_PINS:
-        return found
-    return _jumper(view, found) or found
-
-
-def _jumper(view: NetView, pin: Accesses) -> Accesses:
-    """The same pin met on the top layer alone, JUMPER_NM from the via that leads down; {} where there is no room.
-
-    What is below the jumper is an obstacle from then on.
-    """
-    grid, top = view.board.grid, len(view.rules.layers) - 1
-    dx, dy = view.rules.step
-    right, up = (-(-JUMPER_NM // dx), 0) if view.rules.layers[top].horizontal else (0, -(-JUMPER_NM // dy))
-    places: dict[Place, Place] = {}
-    _, i, j = next(iter(pin))
-    for reach in REACHES:
-        if places:
-            break
-        x, y = i - reach - right, j - reach - up
-        box = max(x, grid.first[0]), max(y, grid.first[1]), i + reach + right, j + reach + up
-        west, south = int(box[0]), int(box[1])
-        present = view.board.present
-        free, vias = grid.free(view.net, top, box, present), grid.free(view.net, top - 1, box, present, vias=True)
-        for column, row in np.argwhere(vias).tolist():
-            for a, b in (column + right, row + up), (column - right, row - up):
-                if not (0 <= a < vias.shape[0] and 0 <= b < vias.shape[1] and vias[a, b]):
-                    continue
-                if free[min(a, column) : max(a, column) + 1, min(b, row) : max(b, row) + 1].all():
-                    places[top, column + west, row + south] = top, a + west, b + south
-    at = [grid.at(i, j) for _, i, j in pin]
-    ends = min(x for x, _ in at), min(y for _, y in at), max(x for x, _ in at), max(y for _, y in at)
-    for _ in range(JUMPER_PLACES):
-        path = _path(view, _box(ends[:2], ends[2:], AROUND_PIN_NM), pin, dict.fromkeys(places, Route()), None)
-        if path is None:
-            break
-        route, end = Route(), places[path[-1]]
-        route.join(pin[path[0]])
-        route.draw(view.rules, path)
-        if meet_area(view, route, alone=True):
-            below = [(level, box) for level, boxes in route.segments.items() if level != top for box in boxes]
-            route.draw(view.rules, [path[-1], end])
-            view.hold(below)
-            return {end: route}
-        _, i, j = path[-1]
-        places = {at: end for at, end in places.items() if abs(at[1] - i) + abs(at[2] - j) > APART}
-    return {}

@@ -1,6 +1,6 @@
-"""The ports of a block: pieces of metal at its edge, inside of it, above all that cells use."""
+"""The ports of a block: metal at its edge, inside of it, above all that cells use, or where a frame has them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from base.gds import db
@@ -10,35 +10,39 @@ from ..geometry.boxes import Box
 from .rules import RoutingRules
 
 LEVELS = {"west": 3, "east": 3, "south": 2, "north": 2}  # of the metals, from that of the cells' pins up
-Port = tuple[str, str, float]  # side, net, offset in um along the side
+Place = tuple[str, str, float]  # side, net, offset in um along the side
+Port = tuple[str, str, Sequence[float]]  # net, metal, box in um
+
+
+def edge_ports(places: Iterable[Place], edges: "db.Box", rules: RoutingRules, tech: CoriolisPlatform) -> Iterator[Port]:
+    """Ports at ``places`` of the sides of the box ``edges`` (nm)."""
+    for side, net, offset in places:
+        level = min(LEVELS[side], len(tech.metals) - 1)
+        box = _box(side, round(1000 * offset), edges, rules, level)
+        yield net, tech.metals[level].name, [value / 1000 for value in box]
 
 
 def draw_ports(
-    layout: "db.Layout", ports: Sequence[Port], replaced: Iterable[Sequence[Any]],
-    rules: RoutingRules, tech: CoriolisPlatform,
-) -> dict[str, list[Any]]:  # fmt: skip
+    layout: "db.Layout", ports: Iterable[Port], replaced: Iterable[Sequence[Any]], tech: CoriolisPlatform
+) -> dict[str, list[Any]]:
     """Draw ``ports`` with their texts in place of all texts and ``replaced``, [layer, left, bottom, right, top] in um.
 
     By net the box of its port, in the same form.
     """
-    top, made = layout.top_cell(), {}
-    edges = top.bbox()
-    numbers = {metal.name: metal.layer for metal in tech.metals}
-    old = {(numbers[name], *(round(1000 * value) for value in um)) for name, *um in replaced}
+    top, made, metals = layout.top_cell(), {}, {metal.name: metal for metal in tech.metals}
+    old = {(metals[name].layer, *(round(1000 * value) for value in um)) for name, *um in replaced}
     for index in layout.layer_indexes():
         number = layout.get_info(index).layer
         for shape in list(top.shapes(index).each()):
             box = shape.bbox()
             if shape.is_text() or (number, box.left, box.bottom, box.right, box.top) in old:
                 shape.delete()
-    for side, net, offset in ports:
-        level = min(LEVELS[side], len(tech.metals) - 1)
-        metal, box = tech.metals[level], _box(side, round(1000 * offset), edges, rules, level)
+    for net, name, um in ports:
+        metal, box = metals[name], db.DBox(*um).to_itype(layout.dbu)
         for at in (metal.gds, metal.pin):
-            top.shapes(layout.layer(*at)).insert(db.Box(*box))
-        middle = db.Trans((box[0] + box[2]) // 2, (box[1] + box[3]) // 2)
-        top.shapes(layout.layer(metal.layer, 0)).insert(db.Text(net, middle))
-        made[net] = [metal.name, *(value / 1000 for value in box)]
+            top.shapes(layout.layer(*at)).insert(box)
+        top.shapes(layout.layer(metal.layer, 0)).insert(db.Text(net, db.Trans(box.center() - db.Point())))
+        made[net] = [name, *um]
     return made
 
 

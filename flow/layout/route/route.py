@@ -1,8 +1,10 @@
 """The shapes of a net: its segments and vias."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
+
+import numpy as np
 
 from ..geometry.boxes import Box
 from .rules import RoutingRules
@@ -19,6 +21,24 @@ class Route:
     segments: dict[int, list[Box]] = field(default_factory=dict)
     vias: dict[int, list[Point]] = field(default_factory=dict)
     lengths: dict[int, int] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, parts: "Iterable[Route]") -> "Route":
+        """All of ``parts``."""
+        made = cls()
+        for part in parts:
+            made.join(part)
+        return made
+
+    def near(self, other: "Route", rules: RoutingRules) -> bool:
+        """Whether a segment is nearer to one of ``other`` than the least space."""
+        for level in self.segments.keys() & other.segments.keys():
+            ours, theirs = (np.array(route.segments[level])[:, None] for route in (self, other))
+            theirs, space = theirs.swapaxes(0, 1), rules.layers[level].space
+            gaps = np.maximum(ours[..., :2] - theirs[..., 2:], theirs[..., :2] - ours[..., 2:])
+            if (gaps < space).all(-1).any():
+                return True
+        return False
 
     def segment(self, level: int, box: Box, length: int = 0) -> None:
         """Add a segment, or a pad without a length."""

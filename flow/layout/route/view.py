@@ -1,44 +1,55 @@
 """The board as one net sees it: what is clear to it, and whom it is too near to."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
-from ..geometry.boxes import Box
+from ..geometry.boxes import Box, Boxes
 from .board import CONTENDED, Board, as_rows
-from .grid import HELD
+from .index import Rows
 from .route import Place, Route
+
+OWN = 40  # cost of a via too near to another one of its net, in conflicts
+AVOIDED = 2000  # cost of a place too near to what its net is to avoid, in conflicts
 
 
 class NetView:
     """The board as the net with the number ``net`` sees it.
 
-    held: boxes of its own that its other segments avoid. costs: of places from which its pins are met, in conflicts.
+    costs: of places from which its pins are met, in conflicts. vias, avoided: of its own, from
+    which others keep away.
     """
 
     def __init__(self, board: Board, net: int) -> None:
         self.board, self.rules, self.net = board, board.rules, net
-        self.held: list[tuple[int, Box]] = []
         self.costs: dict[Place, int] = {}
+        self.vias: list[Boxes] = []
+        self.avoided: list[Rows] = []
 
-    def hold(self, boxes: Sequence[tuple[int, Box]]) -> None:
-        """Let pairs (level, box in nm) be obstacles, until `release`."""
-        self.held += boxes
-        self.board.grid.use(as_rows([(level, *box) for level, box in boxes], self.net), HELD)
+    def hold(self, places: Boxes) -> None:
+        """Let other vias of this net keep away from those of a path, rows (level, i, j), until `release`."""
+        low = np.minimum(places[:-1], places[1:])
+        self.vias.append(low[places[:-1, 0] != places[1:, 0]])
+        self.board.grid.keep_apart(self.vias[-1], OWN)
+
+    def avoid(self, places: Iterable[tuple[int, Box]]) -> None:
+        """Let this net keep away from ``places`` (level, box), until `release`."""
+        self.avoided.append(as_rows([(level, *box) for level, box in places], self.net))
+        self.board.grid.use(self.avoided[-1], AVOIDED)
 
     def release(self) -> None:
-        """Let nothing be held any longer."""
-        self.board.grid.use(as_rows([(level, *box) for level, box in self.held], self.net), -HELD)
-        self.held = []
+        """Let vias and segments be anywhere again."""
+        for vias in self.vias:
+            self.board.grid.keep_apart(vias, -OWN)
+        for rows in self.avoided:
+            self.board.grid.use(rows, -AVOIDED)
+        self.vias, self.avoided = [], []
 
     def clear(self, level: int, box: Box, others: bool = False) -> bool:
         """Whether nothing fixed, nor any net with ``others``, is nearer to ``box`` (nm) than the least space."""
         reach = self.reach(level, box)
-        if self.board.fixed.count(level, reach, self.net) or (
-            others and self.board.routed.count(level, reach, self.net)
-        ):
-            return False
-        return not any(at == level and _touch(reach, held) for at, held in self.held)
+        near = self.board.fixed.count(level, reach, self.net)
+        return not near and not (others and self.board.routed.count(level, reach, self.net))
 
     def congestion(self, level: int, box: Box) -> int:
         """Cost of others' segments, and of conflicts before, nearer to ``box`` (nm) than the least space."""
@@ -62,7 +73,3 @@ class NetView:
         """Return the box in which other nets are too near to ``box`` (nm)."""
         space = self.rules.layers[level].space - 1
         return box[0] - space, box[1] - space, box[2] + space, box[3] + space
-
-
-def _touch(one: Box, other: Box) -> bool:
-    return one[0] <= other[2] and other[0] <= one[2] and one[1] <= other[3] and other[1] <= one[3]

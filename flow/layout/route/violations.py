@@ -7,7 +7,7 @@ from pathlib import Path
 from base.gds import db, read_gds
 from platforms.coriolis import CoriolisPlatform
 
-from ..geometry.antenna import violations as antennas
+from ..geometry.antenna import charged
 from ..geometry.boxes import Box, corners
 from .board import Board
 from .rules import RoutingRules
@@ -17,19 +17,21 @@ from .rules import RoutingRules
 class Violations:
     """Violations of a layout.
 
-    spacing: (level, box, box) of two edges (nm) that are too near, of metal or of the vias below it.
-    antennas: (level, polygon as KLayout writes it).
+    spacing: (level, box, box) of two edges (nm) that are too near, of metal or of the vias below it, or of vias that
+    overlap.
+    antennas: (level, polygon as KLayout writes it, gates on it in nm).
     Levels are those of RoutingRules.layers.
     """
 
     spacing: tuple[tuple[int, Box, Box], ...] = ()
-    antennas: tuple[tuple[int, str], ...] = ()
+    antennas: tuple[tuple[int, str, tuple[Box, ...]], ...] = ()
 
     def __add__(self, other: "Violations") -> "Violations":
         return Violations(self.spacing + other.spacing, self.antennas + other.antennas)
 
-    def nets(self, board: Board, among: Iterable[str] | None = None) -> tuple[list[str], list[str]]:
-        """Return the nets that are too near to others or to themselves, of two the first, and those with an antenna.
+    def nets(self, board: Board, among: Iterable[str] | None = None) -> tuple[list[str], list[tuple[str, Box]]]:
+        """Return the nets that are too near to others or to themselves, of two the first, and those with an antenna,
+        each with a gate on it, as often as it has one.
 
         Both sorted, of the names ``among`` alone if given.
         """
@@ -38,8 +40,8 @@ class Violations:
         for level, *edges in self.spacing:
             owners = {number for box in edges for number in board.owners(level, box)} & numbers
             spacing |= {board.nets[min(owners)]} if owners else set()
-        charged = {net for level, polygon in self.antennas for net in board.within(level, polygon)}
-        return sorted(spacing), sorted(net for net in charged if board.numbers[net] in numbers)
+        found = {(net, gates) for level, metal, gates in self.antennas for net in board.within(level, metal)}
+        return sorted(spacing), sorted((net, gates[0]) for net, gates in found if board.numbers[net] in numbers)
 
 
 def find(
@@ -56,9 +58,9 @@ def find(
         found = metal.space_check(layer.space), metal.width_check(layer.width), cuts.space_check(via.space)
         for pair in (pair for pairs in found for pair in pairs.each()):
             spacing.append((level, corners(pair.first.bbox()), corners(pair.second.bbox())))
-    bad = antennas(layout, top, tech, levels).items()
-    charged = [(level, str(polygon)) for level, region in bad for polygon in region.each()]
-    return Violations(tuple(spacing), tuple(charged))
+        for joined in cuts.merged().with_area(via.size**2, True).each():
+            spacing.append((level, *[corners(joined.bbox())] * 2))
+    return Violations(tuple(spacing), tuple(charged(layout, top, tech, levels)))
 
 
 def find_in_file(path: Path, rules: RoutingRules, tech: CoriolisPlatform, levels: Collection[int]) -> Violations:

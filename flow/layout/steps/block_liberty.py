@@ -1,6 +1,7 @@
 """The block's Liberty at one corner: delays, constraints and capacitances at its ports."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,7 @@ from base.liberty.write import text
 from base.steps import Files, StepError
 from base.tools import run
 
-from ..netlist.netlist import SUPPLIES, Netlist
+from ..netlist.netlist import SUPPLIES, Netlist, supplies
 from ..power.energy import Cells
 from ..timing.boundary import CHECK_LOAD_PF, CHECK_SLEW_NS, Boundary, Sources, measure
 from .corner import CornerStep
@@ -59,7 +60,8 @@ class BlockLiberty(CornerStep[BlockLibertyParameters]):
         files = Sources(inputs["liberty"], inputs["verilog"], folder, inputs["spef"])
         found = measure(netlist, clock, files, SLEWS, LOADS)
         corner, area = self.parameters.corner, plan["width_um"] * plan["height_um"]
-        outputs["liberty"].write_text(liberty(netlist, clock, found, corner, inputs["liberty"], area))
+        model = liberty(netlist, clock, found, corner, inputs["liberty"], area, supplies(plan))
+        outputs["liberty"].write_text(model)
         error = self.model_error(netlist, files, outputs["liberty"])
         return {"model_error_ns": error, "arcs": len(found.delays) + len(found.checks)}
 
@@ -89,11 +91,14 @@ def _wrapper(netlist: Netlist) -> str:
     return "\n".join([*lines, "endmodule", ""])
 
 
-def liberty(netlist: Netlist, clock: str, found: Boundary, corner: str, source: Path, area: float) -> str:
+def liberty(
+    netlist: Netlist, clock: str, found: Boundary, corner: str, source: Path, area: float,
+    supplies: Sequence[str] = SUPPLIES,
+) -> str:  # fmt: skip
     """Text of the Liberty. source: the cells' Liberty, whose units and thresholds it has. area: um2."""
     cells = read(source)
     attributes = {name: value for name, value in cells.attributes.items() if not name.startswith("default_")}
-    attributes["voltage_map"] = [(SUPPLIES[0], cells.number("nom_voltage")), (SUPPLIES[1], 0.0)]
+    attributes["voltage_map"] = [(supplies[0], cells.number("nom_voltage")), (supplies[1], 0.0)]
     library = Group("library", (f"{netlist.name}__{corner}",), attributes)
     if conditions := cells.one("operating_conditions"):
         library.groups.append(conditions)
@@ -106,7 +111,7 @@ def liberty(netlist: Netlist, clock: str, found: Boundary, corner: str, source: 
     cell = library.add("cell", netlist.name, area=round(area, 4), cell_leakage_power=leakage)
     for flag in ("dont_touch", "dont_use", "interface_timing"):  # without the last OpenSTA finds latches
         cell.attributes[flag] = True
-    for supply, kind in zip(SUPPLIES, ("primary_power", "primary_ground"), strict=True):
+    for supply, kind in zip(supplies, ("primary_power", "primary_ground"), strict=True):
         cell.add("pg_pin", supply, pg_type=kind, voltage_name=supply)
     for port in netlist.ports:
         group = cell

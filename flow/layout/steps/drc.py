@@ -6,7 +6,7 @@ from typing import Any
 from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
-from ..geometry.decks import hole_rules, run_exported, violations, with_flat_spaces
+from ..geometry.decks import hole_rules, run_exported, via_rules, violations, with_flat_spaces
 from .parameters import PdkParameters
 
 WARNING = "[Warning]"
@@ -29,7 +29,7 @@ class Drc(Step[PdkParameters]):
         deck = with_flat_spaces(inputs["deck"].read_text())
         tech = coriolis_platform(self.parameters.pdk)
         masks = [tech.masks.read_text()] if tech.masks else []
-        outputs["deck"].write_text("\n".join([deck, *hole_rules(tech), *masks]) + "\n")
+        outputs["deck"].write_text("\n".join([deck, *hole_rules(tech), *via_rules(tech), *masks]) + "\n")
         status, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"])
         if status:
             lines = output.strip().splitlines()

@@ -28,7 +28,8 @@ GATE = (
 class EquivalenceParameters:
     """Parameters of `Equivalence`.
 
-    top: module. clock, reset: its ports. seconds: time limit of a proof, beyond which it fails.
+    top: module. clock, reset: its ports, the latter active at 0 if it ends in _n. seconds: time limit of a proof,
+    beyond which it fails.
     """
 
     top: str = ""

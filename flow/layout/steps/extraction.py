@@ -1,8 +1,9 @@
 """Parasitics of every net from the finished layout, as SPEF at the corners of wires."""
 
+import json
 from typing import Any
 
-from base.gds import read_gds
+from base.gds import db, read_gds
 from base.steps import Files, Step
 from platforms.coriolis import coriolis_platform
 from platforms.extraction import extraction_platform
@@ -22,6 +23,7 @@ class Extraction(Step[PdkParameters]):
 
     name = "extraction"
     inputs = {"gds": "fill.gds", "netlist": "repair.netlist", "placement": "route.placement"}
+    inputs |= {"plan": "floorplan.floorplan"}
     outputs = {"typ": "parasitics.spef", "min": "parasitics.min.spef", "max": "parasitics.max.spef"}
     metrics = {"wire_pf": "pF", "largest_ff": "fF", "largest_ohm": "Ohm"}
     tools = ("python klayout",)
@@ -30,6 +32,8 @@ class Extraction(Step[PdkParameters]):
         pdk, netlist = self.parameters.pdk, Netlist.read(inputs["netlist"])
         tech, devices = coriolis_platform(pdk), extraction_platform(pdk)
         layout, corners = read_gds(inputs["gds"]), [tech.wires[name] for name in outputs]
+        left, bottom, *_ = json.loads(inputs["plan"].read_text()).get("frame", (0.0, 0.0))
+        layout.top_cell().transform(db.DTrans(left, bottom))  # to where the cells were placed
         found = list(extract(layout, netlist, inputs["placement"], tech, devices, corners))
         for name, nets in zip(outputs, found, strict=True):
             outputs[name].write_text(spef(netlist, nets))

@@ -13,11 +13,10 @@ from base.steps import Files
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..netlist.netlist import Netlist
+from ..netlist.placed import MIRRORED
 from ..power.mesh import Box, Gap, Tap, drops, metal
 from .corner import CornerStep
 
-MIRRORED = {"6", "2"}  # orientations of Hurricane (MY, R2) in which a cell extends downwards from its origin
-LEFTWARDS = {"4", "2"}  # ... (MX, R2) in which it extends to the left of it
 Rows = Sequence[Sequence[Any]]  # of the placement's JSON
 Point = tuple[float, float]  # um
 Values = npt.NDArray[np.float64]
@@ -93,9 +92,8 @@ def currents(
     found = []
     for instance, (_, cell, x, y, orientation) in zip(netlist.instances, placed, strict=True):
         if instance.name in power:
-            width = areas[cell] / tech.row_um
-            row = round(y / tech.row_um) - (orientation in MIRRORED)
-            middle = x + width / 2 * (-1 if orientation in LEFTWARDS else 1)
+            (across, up), width = MIRRORED[orientation], areas[cell] / tech.row_um
+            row, middle = round(y / tech.row_um) - (up < 0), x + across * width / 2
             found.append(Current(row, middle, power[instance.name] * 1e-6 / tech.supply_v))
     return found
 

@@ -1,11 +1,13 @@
 """The block's abstract, LEF: outline, pins, obstructions, and what each pin gathers and bears as an antenna."""
 
+import json
 from typing import Any
 
 from base.steps import Files, Step, StepError
 from platforms.coriolis import coriolis_platform
 
 from ..geometry.abstract import abstract, ports, read_back
+from ..netlist.netlist import supplies
 from .parameters import PdkParameters
 
 
@@ -13,14 +15,16 @@ class Lef(Step[PdkParameters]):
     """Written from the GDS, then read by KLayout and compared with it."""
 
     name = "lef"
-    inputs = {"gds": "fill.gds", "verilog": "stream_out.verilog"}
+    inputs = {"gds": "fill.gds", "verilog": "stream_out.verilog", "plan": "floorplan.floorplan"}
     outputs = {"lef": "block.lef"}
     metrics = {"pins": ""}
     tools = ("python klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         tech, directions = coriolis_platform(self.parameters.pdk), ports(inputs["verilog"].read_text())
-        outputs["lef"].write_text(abstract(inputs["gds"], directions, tech))
-        if wrong := read_back(outputs["lef"], inputs["gds"], directions, tech):
+        plan = json.loads(inputs["plan"].read_text())
+        own = supplies(plan)
+        outputs["lef"].write_text(abstract(inputs["gds"], directions, tech, own, framed="frame" in plan))
+        if wrong := read_back(outputs["lef"], inputs["gds"], directions, tech, own):
             raise StepError(f"lef: read back, it differs from the GDS: {'; '.join(wrong)}")
         return {"pins": len(directions)}

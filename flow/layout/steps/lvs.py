@@ -1,5 +1,6 @@
 """Layout against netlist, down to transistors: the deck that PDKMaster exports for the process, in KLayout."""
 
+import json
 from typing import Any
 
 from base.steps import Files, Step, StepError
@@ -7,12 +8,14 @@ from platforms.coriolis import coriolis_platform
 
 from ..geometry.decks import run_exported
 from ..geometry.lvs_deck import hierarchical, with_ports
-from ..netlist.netlist import Netlist
+from ..netlist.netlist import Netlist, supplies
 from .parameters import PdkParameters
 
 
 class Lvs(Step[PdkParameters]):
     """The reference is the final netlist with the cells' transistor netlists; every port must match by name.
+
+    A port that no cell is on is no net to KLayout; that it has its metal, and is no short, `extraction` checks.
 
     A cell is compared once, transistor by transistor, and its instances by their pins: a fifth of the flat comparison's
     time for 1,300 cells, and less for more.
@@ -20,13 +23,16 @@ class Lvs(Step[PdkParameters]):
 
     name = "lvs"
     inputs = {"gds": "fill.gds", "spice": "stream_out.spice", "netlist": "repair.netlist", "deck": "library.lvs"}
+    inputs |= {"plan": "floorplan.floorplan"}
     outputs = {"report": "lvs.lvsdb", "deck": "ports.lvs"}
     metrics = {"lvs_match": ""}
     tools = ("klayout",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
         deck = hierarchical(inputs["deck"].read_text(), coriolis_platform(self.parameters.pdk).active)
-        outputs["deck"].write_text(with_ports(deck, Netlist.read(inputs["netlist"])))
+        outputs["deck"].write_text(
+            with_ports(deck, Netlist.read(inputs["netlist"]), supplies(json.loads(inputs["plan"].read_text())))
+        )
         _, output = run_exported(outputs["deck"], inputs["gds"], outputs["report"], SPICE_FILE=inputs["spice"])
         if not outputs["report"].exists() or ("LVS OK" in output) == ("LVS Failed" in output):
             raise StepError(f"lvs: KLayout gave no verdict: {output.strip().splitlines()[-1:]}")

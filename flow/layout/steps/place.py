@@ -21,7 +21,7 @@ from ..geometry.macro_cells import OVER_UM, make_solid
 from ..netlist.names import plain_macros, plain_names
 from ..netlist.netlist import MacroNames, Netlist
 from ..netlist.placed import own_name, placed_netlist, placement
-from ..route.ports import draw_ports, label_straps
+from ..route.ports import draw_ports, edge_ports, label_straps
 from ..route.rules import RoutingRules
 
 MODEL = "talbot_block"  # Coriolis works in lower case
@@ -94,7 +94,7 @@ class Place(Step[PlaceParameters]):
         make_solid(outputs["gds"], request["macros"], coriolis_platform(self.parameters.pdk))
         placed, own = placement(names, result), own_name(names)
         shapes = {own(net): made for net, made in result["shapes"].items()}
-        self.ports(placed, shapes, inputs["rules"], outputs)
+        self.ports(plan, placed, shapes, inputs["rules"], outputs)
         masters = result["masters"]
         for name, (cell, pins) in macros.items():
             module = next(instance.cell for instance in netlist.instances if instance.name == name)
@@ -110,11 +110,15 @@ class Place(Step[PlaceParameters]):
             **{name: round(result["times"].get(name.removesuffix("_s"), 0), 2) for name in PHASES},
         }
 
-    def ports(self, placed: dict[str, Any], shapes: dict[str, Any], rules: Path, outputs: Files) -> None:
+    def ports(
+        self, plan: dict[str, Any], placed: dict[str, Any], shapes: dict[str, Any], rules: Path, outputs: Files
+    ) -> None:
         """Draw the ports in place of Coriolis's, which may be on metal of cells, and label the straps."""
         tech, layout = coriolis_platform(self.parameters.pdk), read_gds(outputs["gds"])
         replaced = [box for made in shapes.values() for box in made["ports"]]
-        drawn = draw_ports(layout, placed["pins"], replaced, RoutingRules.of(tech, json.loads(rules.read_text())), tech)
+        own = RoutingRules.of(tech, json.loads(rules.read_text()))
+        ports = plan.get("ports") or edge_ports(placed["pins"], layout.top_cell().bbox(), own, tech)
+        drawn = draw_ports(layout, ports, replaced, tech)
         for net, made in shapes.items():
             made["ports"] = [drawn[net]] if net in drawn else []
         label_straps(layout, placed["straps"], tech)
@@ -150,6 +154,7 @@ class Place(Step[PlaceParameters]):
                 for macro in plan["macros"]
             ],
             "pins": {side: [names[net] for net in nets] for side, nets in plan["pins"].items()},
+            "places": [["north", names[net], (box[0] + box[2]) / 2] for net, _, box in plan.get("ports", ())],
             "metals": [asdict(metal) for metal in tech.metals],
             "vias": [asdict(via) for via in tech.vias],
             **{name: getattr(tech, name) for name in OF_TECH},
@@ -158,11 +163,16 @@ class Place(Step[PlaceParameters]):
         }
 
     def leaf_um(self, plan: dict[str, Any], netlist: Netlist) -> float:
-        """Side of a leaf of the clock tree, um, with LEAF_SINKS cells. Coriolis makes it up to twice as long."""
+        """Least side of a leaf of the clock tree, um, so that one with LEAF_SINKS cells can be.
+
+        Coriolis quarters what is at least twice as long on both sides, so the shorter side of the tree's box counts.
+        """
         sinks = sum(self.parameters.clock in instance.pins.values() for instance in netlist.instances)
         per_um2 = sinks / (plan["width_um"] * plan["height_um"])
         least = LEAF_ROWS * coriolis_platform(self.parameters.pdk).row_um
-        return max(least, round((LEAF_SINKS / per_um2) ** 0.5, 3)) if sinks else least
+        left, bottom, right, top = plan["tree"]
+        shorter, longer = sorted((right - left, top - bottom))
+        return max(least, round((LEAF_SINKS / per_um2 * shorter / longer) ** 0.5, 3)) if sinks else least
 
     def macro(
         self, macro: Macro, placed: dict[str, Any], netlist: Netlist, name: str, pins: Mapping[str, str]

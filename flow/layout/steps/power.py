@@ -11,18 +11,16 @@ from models.parameters import check_real
 
 from ..netlist.netlist import Netlist
 from ..power.energy import Cells, blocks, powers
-from ..timing.opensta import opensta
+from ..timing.opensta import TIMED, opensta
 from .corner import CornerStep
 
-SLEWS = """
-read_liberty {liberty}
-read_verilog {verilog}
-link_design {top}
-source {sdc}
-read_spef {spef}
+SLEWS = (
+    TIMED
+    + """
 set sta_report_default_digits 5
 foreach pin [get_pins *] {{ report_slews $pin }}
 """
+)
 
 
 KINDS = "internal", "switching", "leakage"

@@ -6,16 +6,17 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from base.gds import db, read_gds, write_gds
+from base.liberty.read import read
 from base.steps import Files, Step
 from models.parameters import check_real
 from platforms.coriolis import CoriolisPlatform, coriolis_platform
 from platforms.wires import wire_corner
 
+from ..geometry.instances import insert
+from ..geometry.rows import free_rows
 from ..netlist.netlist import Netlist
-from ..netlist.placed import TURNS
 from ..repair.drive import Drives
 from ..repair.repair import Plan, clock_nets, repaired
-from ..repair.rows import free_rows
 from ..repair.wires import femtofarad_um
 from ..timing.estimate import setup_slacks
 
@@ -86,8 +87,8 @@ class Repair(Step[RepairParameters]):
     def best(self, plan: Plan, netlist: Netlist, inputs: Files) -> tuple[Plan, dict[str, float]]:
         """The best plan that ``plan`` leads to, and what of it is counted."""
         kept, found = clock_nets(netlist), list[tuple[float, Plan, dict[str, float]]]()
-        first, *slews = self.parameters.slews_ns
-        counts = repaired(plan, Drives.of(inputs["liberty"], first), kept)
+        (first, *slews), liberty = self.parameters.slews_ns, read(inputs["liberty"])
+        counts = repaired(plan, Drives.of(liberty, first), kept)
         for slew in (*slews, 0.0):
             now = replace(netlist, instances=tuple(plan.instances.values()))
             slacks = setup_slacks(now, plan.wires(now), inputs["liberty"], inputs["sdc"])
@@ -95,7 +96,7 @@ class Repair(Step[RepairParameters]):
             found.append((worst, deepcopy(plan), counts | {"estimate_ns": round(worst, 3)}))
             if worst >= MARGIN_NS or not slew:
                 break
-            more = repaired(plan, Drives.of(inputs["liberty"], slew), kept, slacks, MARGIN_NS)
+            more = repaired(plan, Drives.of(liberty, slew), kept, slacks, MARGIN_NS)
             counts = {name: counts[name] + more[name] for name in counts}
         return max(found, key=lambda one: one[0])[1:]
 
@@ -115,8 +116,7 @@ class Repair(Step[RepairParameters]):
             instances={instance.name: instance for instance, _ in working},
             places={instance.name: tuple(place) for instance, place in working},
             widths=widths,
-            row_um=tech.row_um,
-            rows=free_rows(placement["instances"], widths, tech.fill_cells, tech.site_um),
+            rows=free_rows(placement["instances"], widths, tech.fill_cells, tech.site_um, tech.row_um),
             ports={net: sides[side](at) for side, net, at in placement["pins"]},
             femtofarad_um=femtofarad_um(tech, wire_corner(self.parameters.corner)),
             outside=dict.fromkeys(outputs, self.parameters.load_pf),
@@ -129,16 +129,13 @@ def draw(layout: "db.Layout", library: "db.Layout", cells: dict[str, float], pla
     for instance in list(top.each_inst()):
         if instance.cell.name in cells:
             instance.delete()
-    indices = {}
     for cell in library.each_cell():
         drawn = layout.cell(cell.name) or layout.create_cell(cell.name)
         drawn.clear()
         drawn.copy_shapes(cell)
-        indices[cell.name] = drawn.cell_index()
-    for _, cell, x, y, orientation in placed:
-        if cell in indices:
-            turn = getattr(db.Trans, TURNS[orientation])
-            top.insert(db.CellInstArray(indices[cell], db.Trans(turn, round(x / layout.dbu), round(y / layout.dbu))))
+    for _, cell, *place in placed:
+        if cell in cells:
+            insert(top, library, cell, *place)
     for cell in layout.top_cells():
         if cell.cell_index() != top.cell_index():
             cell.prune_cell()

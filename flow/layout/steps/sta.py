@@ -4,17 +4,14 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from base.steps import Files, StepError
+from base.steps import Files
 
-from ..timing.opensta import opensta
+from ..timing.opensta import TIMED, opensta, worst_slack
 from .corner import CornerStep
 
-SCRIPT = """
-read_liberty {liberty}
-read_verilog {verilog}
-link_design {top}
-source {sdc}
-read_spef {spef}
+SCRIPT = (
+    TIMED
+    + """
 puts "WORST setup [worst_slack -max]"
 puts "WORST hold [worst_slack -min]"
 report_checks -path_delay max -fields {{slew capacitance net}} -digits 4
@@ -22,6 +19,7 @@ report_checks -path_delay min -fields {{slew capacitance net}} -digits 4
 report_check_types -all_violators
 write_sdf -digits 4 -no_timestamp {sdf}
 """
+)
 LIMITS = {"max_transition": "slew_violations", "max_capacitance": "capacitance_violations"}  # OpenSTA's: ours
 
 
@@ -51,9 +49,9 @@ class Sta(CornerStep[StaParameters]):
         script = SCRIPT.format(top=self.parameters.top, sdf=outputs["sdf"], **inputs)
         report = opensta(outputs["report"].with_name("sta.log"), script)
         outputs["report"].write_text(report)
-        worst = worst_slacks(report, "sta")
-        f_max = round(1000 / (self.parameters.period_ns - worst["setup"]), 2)
-        slacks = {"wns_ns": round(worst["setup"], 4), "whs_ns": round(worst["hold"], 4)}
+        setup, hold = (worst_slack(report, kind) for kind in ("setup", "hold"))
+        f_max = round(1000 / (self.parameters.period_ns - setup), 2)
+        slacks = {"wns_ns": round(setup, 4), "whs_ns": round(hold, 4)}
         return slacks | {"f_max_mhz": f_max} | beyond_limits(report)
 
 
@@ -62,11 +60,3 @@ def beyond_limits(report: str) -> dict[str, int]:
     sections = re.split(r"(?m)^(max_\w+)$", report)
     found = dict(zip(sections[1::2], sections[2::2], strict=True))
     return {name: found.get(limit, "").count("(VIOLATED)") for limit, name in LIMITS.items()}
-
-
-def worst_slacks(report: str, step: str) -> dict[str, float]:
-    """Slacks (ns) of 'setup' and 'hold' from OpenSTA's output of SCRIPT. Raises StepError in the name of ``step``."""
-    worst = {kind: float(value) for kind, value in re.findall(r"WORST (\w+) (\S+)", report)}
-    if set(worst) != {"setup", "hold"}:
-        raise StepError(f"{step}: OpenSTA: no slack")
-    return worst

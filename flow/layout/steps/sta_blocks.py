@@ -6,9 +6,9 @@ from typing import Any
 from base.steps import Files
 
 from ..netlist.netlist import Netlist
-from ..timing.opensta import opensta
+from ..timing.opensta import opensta, worst_slack
 from .corner import CornerStep
-from .sta import SCRIPT, worst_slacks
+from .sta import SCRIPT
 
 
 @dataclass(frozen=True)
@@ -44,5 +44,5 @@ class StaBlocks(CornerStep[StaBlocksParameters]):
         script = SCRIPT.format(top=p.top, liberty=libraries, sdc=inputs["sdc"], **files)
         report = opensta(folder / "sta.log", script)
         outputs["report"].write_text(report)
-        worst = worst_slacks(report, self.name)
-        return {"blocks_wns_ns": round(worst["setup"], 4), "blocks_whs_ns": round(worst["hold"], 4)}
+        setup, hold = (round(worst_slack(report, kind), 4) for kind in ("setup", "hold"))
+        return {"blocks_wns_ns": setup, "blocks_whs_ns": hold}

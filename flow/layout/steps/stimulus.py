@@ -1,4 +1,7 @@
-"""The stimulus of a block: its ports in a real frame, recorded in the chip's RTL; else in its own tests."""
+"""The stimulus of a block: its ports in a real frame, recorded in the chip's RTL; else in its own tests.
+
+A wrapper's is recorded behind its host.
+"""
 
 import json
 import sys
@@ -14,6 +17,8 @@ from base.steps import Files, Step, StepError
 from base.tools import ToolError, finish, run
 from flow.simulate.build import Build
 from flow.simulate.icarus import icarus_program
+from rtl.tinytapeout.host import EXAMPLES
+from rtl.tinytapeout.host import simulate as simulate_host
 from rtl.verilog import export_verilog
 
 from ..netlist.verilog import modules
@@ -31,7 +36,7 @@ TAP = """module Tap;
     file = $fopen(name, "w");
   end
   reg fresh = 1;
-  always @(posedge Clock.clk) begin
+  always @(posedge {clock}) begin
     $fwrite(file, "%b %h %h\\n", fresh, {{{inputs}}}, {{{outputs}}});
     fresh <= 0;
   end
@@ -66,7 +71,7 @@ class Stimulus(Step[StimulusParameters]):
     """A time-of-flight frame with phases, which uses every block, of the scene of `make sim`.
 
     The chip has a small array; for AspChip itself a few tiles are read. A block that is not in that chip with the same
-    Verilog has the trace of its own tests.
+    Verilog has the trace of its own tests. A wrapper has that of an example behind its host.
     """
 
     name = "stimulus"
@@ -84,8 +89,10 @@ class Stimulus(Step[StimulusParameters]):
         with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
             folder = Path(folder)
             export_verilog(folder, [CHIP], self.parameters.options)
-            chip, own = (folder / f"{CHIP}.v").read_text(), inputs["rtl"].read_text()
-            if set(modules(own).items()) <= set(modules(chip).items()):
+            chip, own = (folder / f"{CHIP}.sv").read_text(), inputs["rtl"].read_text()
+            if top in EXAMPLES:
+                head = in_host(self.parameters, inputs["rtl"], folder, outputs["trace"])
+            elif set(modules(own).items()) <= set(modules(chip).items()):
                 head = in_frame(self.parameters, folder, outputs["trace"])
             else:
                 head = in_tests(top, own, folder, outputs["trace"])
@@ -101,24 +108,17 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     from models.chip import golden_frame
 
     design = folder / "hierarchy.json"
-    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.v; hierarchy -top {CHIP}; proc; write_json {design}"])
+    run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.sv; hierarchy -top {CHIP}; proc; write_json {design}"])
     tree = json.loads(design.read_text())["modules"]
     path = instance_of(tree, CHIP, parameters.top) or ()
-    module = next(found for name, found in tree.items() if name.lstrip("\\") == parameters.top)
-    ports = [
-        {"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
-        for name, port in module["ports"].items()
-        if name != "clk"
-    ]
-    names = [(".".join(("Clock.bench.chip", *path, port["path"])), port["output"]) for port in reversed(ports)]
-    inputs, outputs = (", ".join(name for name, output in names if output == wanted) for wanted in (False, True))
-    (folder / "tap.v").write_text(TAP.format(inputs=inputs, outputs=outputs))
+    ports = ports_of(tree, parameters.top)
+    (folder / "tap.v").write_text(tap("Clock.clk", ".".join(("Clock.bench.chip", *path)), ports))
     window = partial(middle, tiles=parameters.tiles) if parameters.tiles else None
     asked = request(parameters.rows, parameters.cols, scene=SCENE, mode="tof", phase=True, window=window)
     chip = replace(asked.sensor.chip, divider=parameters.divider, n_frac=parameters.n_frac)
     asked = replace(asked, sensor=replace(asked.sensor, chip=chip))
     exposed = expose(asked, *see(asked))
-    program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.v", folder / "tap.v"], ("Tap",))
+    program = icarus_program(Build.of(asked.sensor, TAPS), folder, [folder / f"{CHIP}.sv", folder / "tap.v"], ("Tap",))
     more = (f"+tap={folder / 'tap.trace'}",)
     seen = simulate(program, asked.sensor, asked.frame, exposed.samples, exposed.front_end, more=more)
     if seen.stream != golden_frame(exposed.samples, asked.sensor, asked.frame, exposed.front_end).stream:
@@ -127,6 +127,35 @@ def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[
     trace.write_text("\n".join(lines) + "\n")
     head = {"source": "frame", "scene": SCENE, "instance": ".".join(path)}
     return head | {"ports": ports, "cycles": len(lines), "results": results(lines, ports)}
+
+
+def ports_of(tree: Mapping[str, Any], module: str) -> list[dict[str, Any]]:
+    """Ports of a module in Yosys's JSON, without the clock, as the head of a trace has them."""
+    found = next(found for name, found in tree.items() if name.lstrip("\\") == module)
+    return [
+        {"path": name, "width": len(port["bits"]), "output": port["direction"] == "output"}
+        for name, port in found["ports"].items()
+        if name != "clk"
+    ]
+
+
+def tap(clock: str, instance: str, ports: Sequence[Mapping[str, Any]]) -> str:
+    """Verilog that writes the values of an instance's ``ports`` at every rising edge of ``clock``."""
+    names = [(f"{instance}.{port['path']}", port["output"]) for port in reversed(ports)]
+    inputs, outputs = (", ".join(name for name, output in names if output == wanted) for wanted in (False, True))
+    return TAP.format(clock=clock, inputs=inputs, outputs=outputs)
+
+
+def in_host(parameters: StimulusParameters, rtl: Path, folder: Path, trace: Path) -> dict[str, Any]:
+    """Record a wrapper whose Verilog is the file ``rtl`` behind its host, to the file ``trace``; the head."""
+    design, top = folder / "wrapper.json", parameters.top
+    run(["yosys", "-q", "-p", f"read_verilog -sv {rtl}; hierarchy -top {top}; proc; write_json {design}"])
+    ports = ports_of(json.loads(design.read_text())["modules"], top)
+    written = folder / "tap.trace"
+    simulate_host(top, EXAMPLES[top], [rtl], folder, tap("host.clk", "host.dut", ports), [f"+tap={written}"])
+    lines = recorded(written.read_text())
+    trace.write_text("\n".join(lines) + "\n")
+    return {"source": "host", "ports": ports, "cycles": len(lines), "results": results(lines, ports)}
 
 
 def recorded(tap: str) -> list[str]:

@@ -10,7 +10,7 @@ from base.charts import save
 from base.files import check_folder, staged
 from base.jobs import Job
 from base.jobs import run as run_jobs
-from base.paths import ROOT
+from base.paths import RESULTS
 from flow.layout.design import flat_design
 from models.parameters import ParameterError
 
@@ -31,7 +31,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     utilizations = ", ".join(map(str, UTILIZATIONS))
     add("--utilization", type=float, action="append", help=f"of effort (again for more; default: {utilizations})")
     add("--workers", type=int, default=1, help="layouts at a time, -1 for all cores")
-    add("--out", type=Path, default=ROOT / "build" / "layout" / "sweep", help="folder of the tables and plots")
+    add("--out", type=Path, default=RESULTS / "layout" / "sweep", help="folder of the tables and plots")
 
 
 def jobs(options: Namespace) -> list[Job]:

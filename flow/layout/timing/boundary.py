@@ -10,15 +10,13 @@ from pathlib import Path
 
 from flow.layout.netlist.netlist import OUTPUT_PINS, Netlist, is_register
 
-from .opensta import opensta
+from .opensta import LINK, opensta
 
 FAR_NS = 100.0  # clock period of the measurement; OpenSTA computes in single precision
 CHECK_SLEW_NS, CHECK_LOAD_PF = 0.09, 0.027  # off every grid: where a model is compared with its netlist
-LOAD = """
-read_liberty {liberty}
-read_verilog {verilog}
-link_design {top}
-{spef}
+LOAD = (
+    f"{LINK}{{spef}}"
+    + """
 create_clock -name {clock} -period {period:g} [get_ports {clock}]
 set_propagated_clock [get_clocks {clock}]
 set sta_report_default_digits 6
@@ -28,6 +26,7 @@ proc slack {{args}} {{
   return none
 }}
 """
+)
 OUTPUTS = """
 set_output_delay 0 -clock {clock} [all_outputs]
 set_false_path -from [get_ports {{{inputs}}}]

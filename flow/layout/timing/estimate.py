@@ -7,10 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from base.steps import StepError
-
 from ..netlist.netlist import OUTPUT_PINS, Netlist
-from .opensta import opensta
+from .opensta import TIMED, opensta, worst_slack
 from .spef import spef
 
 # Of a net that is not placed: fF a driven pin, as many at most; what drives more gets a buffer once it is placed
@@ -22,15 +20,7 @@ foreach pin [get_pins */*] {
 }
 """
 UNLOADED = "set_load 0 [all_outputs]"  # a weak driver of a port gets a buffer, too
-SCRIPT = """
-read_liberty {liberty}
-read_verilog {verilog}
-link_design {top}
-source {sdc}
-read_spef {spef}
-{more}
-puts "WORST setup [worst_slack -max]"
-"""
+SCRIPT = f'{TIMED}{{more}}\nputs "WORST setup [worst_slack -max]"'
 
 
 def unplaced(netlist: Netlist, clock: str) -> dict[str, tuple[float, float]]:
@@ -43,10 +33,7 @@ def setup_slack(
     netlist: Netlist, nets: Mapping[str, tuple[float, float]], liberty: Path, sdc: Path, more: str = ""
 ) -> float:
     """Worst setup slack, ns. nets: (fF, ohm) by net. more: commands after the SDC. Raises StepError without a slack."""
-    found = re.search(r"WORST setup (\S+)", _report(netlist, nets, liberty, sdc, more))
-    if not found:
-        raise StepError("estimate: OpenSTA: no slack")
-    return float(found[1])
+    return worst_slack(_report(netlist, nets, liberty, sdc, more), "setup")
 
 
 def setup_slacks(

@@ -6,6 +6,21 @@ from pathlib import Path
 from base.steps import StepError
 from base.tools import ToolError, finish
 
+LINK = """
+read_liberty {liberty}
+read_verilog {verilog}
+link_design {top}
+"""
+TIMED = f"{LINK}source {{sdc}}\nread_spef {{spef}}\n"  # of a netlist with its constraints and parasitics
+
+
+def worst_slack(report: str, kind: str) -> float:
+    """Slack (ns) that a script printed as "WORST kind ns". Raises StepError without one."""
+    found = re.search(rf"WORST {kind} (\S+)", report)
+    if not found:
+        raise StepError(f"OpenSTA: no slack of {kind}")
+    return float(found[1])
+
 
 def opensta(path: Path, script: str) -> str:
     """Write ``script`` to the file ``path`` and run it; OpenSTA's output.

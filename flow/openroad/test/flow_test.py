@@ -112,8 +112,8 @@ def test_every_stage_runs_with_known_commands_only(pdk, openroad, tmp_path, monk
     assert summary["wns_ns"] == dict.fromkeys(CORNERS, 1.5) and summary["router_drc_violations"] == 0
     assert len(summary["slacks_by_wires"]) == 2 * len(WIRES) * len(CORNERS) and summary["slew_violations"] == 0
     assert re.search(r"sky130_fd_sc_hd__dfxtp_1 \\\S+_reg ", (folder / "netlist.v").read_text())
-    assert (folder / "QuadDividerRadix4.v").read_text().count("module QuadDividerRadix4") == 1
-    assert "dfxtp" not in (folder / "QuadDividerRadix4.v").read_text()  # the RTL is left as it was
+    assert (folder / "QuadDividerRadix4.sv").read_text().count("module QuadDividerRadix4") == 1
+    assert "dfxtp" not in (folder / "QuadDividerRadix4.sv").read_text()  # the RTL is left as it was
     assert summary["area_um2"] == 600
     timed = [f"{corner}.{suffix}" for corner in CORNERS for suffix in ("lib", "sdf")]
     assert {f"quad_divider.{suffix}" for suffix in ("gds", "lef", "v", "spef", "sdc", *timed)} <= {

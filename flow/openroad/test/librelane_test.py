@@ -14,7 +14,7 @@ from flow.openroad import command
 from flow.openroad.test import librelane_pdk
 from flow.openroad.tinytapeout import PROJECTS
 from platforms.sky130 import cells as sky130_hd
-from platforms.sky130.tinytapeout import SIZES_UM
+from platforms.sky130.tinytapeout import FRAME, SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
 RUN = Path(__file__).parent / "librelane_run.py"
@@ -81,7 +81,7 @@ def test_a_design_loads_without_a_warning(name, written, pdk):
     [
         ("FP_CORE_UTIL:", "FP_CORE_UTILL:", "Unknown key 'FP_CORE_UTILL'"),
         ("FP_ASPECT_RATIO: 1", "FP_ASPECT_RATIO: wide", "is invalid: 'wide'"),
-        ("dir::AmpCtrl.v", "dir::nowhere.v", "does not exist"),
+        ("dir::AmpCtrl.sv", "dir::nowhere.v", "does not exist"),
         ("PL_TARGET_DENSITY_PCT:", "PL_TARGET_DENSITY:", "is deprecated"),
     ],
 )
@@ -94,8 +94,8 @@ def test_a_wrong_variable_would_be_found(right, wrong, said, written, pdk):
 @pytest.mark.parametrize("name", PROJECTS)
 def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk):
     """Its template's names for four variables are old ones in LibreLane 3, which says so and takes them."""
-    source, project = written(name) / "tinytapeout" / "src", PROJECTS[name]
-    files = sorted(path.name for path in source.glob("*.v"))
+    source, project = written(name.removeprefix(FRAME)) / "tinytapeout" / "src", design(name)
+    files = sorted(path.name for path in source.glob("*.*v"))
     config = source / "config_merged.json"
     config.write_text(
         json.dumps(
@@ -104,7 +104,7 @@ def test_a_tiny_tapeout_project_loads_with_what_its_tools_add(name, written, pdk
                 **json.loads((source / "config.json").read_text()),
                 "DESIGN_NAME": project.top,
                 "VERILOG_FILES": [f"dir::{file}" for file in files],
-                "DIE_AREA": [0, 0, *SIZES_UM[project.tiles]],
+                "DIE_AREA": [0, 0, *SIZES_UM[project.frame.removeprefix(FRAME)]],
             }
         )
     )

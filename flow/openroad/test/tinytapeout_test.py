@@ -1,27 +1,24 @@
-"""The Tiny Tapeout projects: simulated from their pins against the golden models, as Verilog and as a netlist of
-sky130_fd_sc_hd; their files as its tools check them."""
+"""The Tiny Tapeout projects: their files as its tools check them, their netlists of sky130_fd_sc_hd from their pins."""
 
 import json
 import re
 import shutil
-from pathlib import Path
+import sys
+from functools import cache
 
-import numpy as np
 import pytest
 
-from base.tools import ToolError, run
+from base.paths import ROOT
+from base.tools import ToolError, finish, run
 from flow.layout.design import design
 from flow.openroad.fit import fit
-from flow.openroad.tinytapeout import BUS, PROJECTS, TOPS, Project, project_files
+from flow.openroad.tinytapeout import PROJECTS, Project, project_files
 from flow.openroad.write import rtl
-from models.digital.amp_ctrl import waveform
-from models.digital.divider import quad_divide
-from models.parameters import AmpTiming, ParameterError
+from models.parameters import ParameterError
 from platforms.sky130 import cells as sky130_hd
-from platforms.sky130.tinytapeout import FULL, core_um2
+from platforms.sky130.tinytapeout import FULL, SIZES_UM, core_um2
 
-HOST = Path(__file__).parent / "host.v"
-PINS = ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy")
+TOPS = ROOT / "rtl" / "tinytapeout"
 
 
 def tools():
@@ -39,123 +36,38 @@ pytestmark = pytest.mark.skipif(bool(tools()), reason=tools())
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """made(name): (folder with the sources, Fit, netlist)."""
-    done = {}
-
-    def make(name):
-        if name not in done:
-            folder = tmp_path_factory.mktemp(name)
-            done[name] = folder, *fit(name, folder)
-        return done[name]
-
-    return make
+    """made(name): (Fit, netlist)."""
+    return cache(lambda name: fit(name, tmp_path_factory.mktemp(name)))
 
 
 @pytest.fixture(scope="module")
-def verilog(tmp_path_factory):
-    """verilog(name): the Verilog files of the project."""
-    done = {}
+def files(tmp_path_factory):
+    """files(name): those of the project."""
 
     def export(name):
-        if name not in done:
-            done[name] = tmp_path_factory.mktemp(name)
-            rtl(design(name), done[name])
-        project = PROJECTS[name]
-        return [TOPS / f"{project.top}.v", TOPS / BUS, done[name] / f"{design(name).top}.v"]
+        chosen = design(name)
+        return project_files(chosen, rtl(chosen, tmp_path_factory.mktemp(name)))
 
-    return export
+    return cache(export)
 
 
-@pytest.fixture(params=["verilog", pytest.param("gates", marks=pytest.mark.slow)])
-def simulate(request, verilog, made, tmp_path):
-    """simulate(name, words): what the host shows, lines of '<uio_out> <uo_out>'."""
-
-    def call(name, words):
-        if request.param == "gates":
-            netlist = made(name)[2]
-            cells = sorted(set(netlist.read_text().split()) & {f"{sky130_hd.LIBRARY}__{cell}" for cell in _cells()})
-            files = [
-                netlist,
-                *(sky130_hd.file(cell.removeprefix(f"{sky130_hd.LIBRARY}__"), "functional.v") for cell in cells),
-            ]
-        else:
-            files = verilog(name)
-        program = tmp_path / "host.hex"
-        program.write_text("\n".join(f"{word:03x}" for word in [*words, 0x600]) + "\n")
-        run(
-            [
-                "iverilog",
-                "-g2012",
-                f"-DTOP={PROJECTS[name].top}",
-                "-s",
-                "host",
-                "-o",
-                tmp_path / "host.vvp",
-                f"-I{sky130_hd.file('dfxtp_1', 'lef').parent}",
-                HOST,
-                *files,
-            ]
-        )
-        said = run(["vvp", "-n", tmp_path / "host.vvp", f"+program={program}"]).splitlines()
-        return [line for line in said if line and line[0] in "01xzte"]
-
-    return call
-
-
-def _cells():
-    return [
-        path.name.removeprefix(f"{sky130_hd.LIBRARY}__").removesuffix(".functional.v")
-        for path in (sky130_hd.folder() / "cells").glob("*/*.functional.v")
-    ]
-
-
-def test_the_divider_gives_what_the_golden_model_gives(simulate):
-    rng = np.random.default_rng(5)
-    pairs = [(0, 0), (-256, 255), (255, 255), (0, -256), (100, 100), *rng.integers(-256, 256, (25, 2)).tolist()]
-    floors = rng.integers(0, 64, len(pairs)).tolist()
-    words, expected = [], []
-    for (x, y), floor in zip(pairs, floors, strict=True):
-        high = floor << 2 | (y >> 8 & 1) << 1 | x >> 8 & 1
-        words += [0x100, x & 255, y & 255, high, 0, 0x300]
-        r = quad_divide(x, y, noise_floor=floor)
-        flags = int(r.octant) << 5 | int(r.zero) << 4 | int(r.amp_valid) << 3
-        for address, value in enumerate((r.phase, r.ratio, r.amp, flags)):
-            words += [0x100 | address, 0x400]
-            expected.append(f"10000000 {int(value):08b}")
-    *said, enabled = simulate("quad_divider", words)
-    assert said == expected and enabled == "enabled 11000000"
-
-
-def test_a_start_during_a_division_drops_it(simulate):
-    words = [0x100, 7, 3, 0, 0, 0x103, 0, 0x100, 200, 100, 0, 0, 0x300, 0x100, 0x400]
-    said = simulate("quad_divider", words)
-    assert said[0] == f"10000000 {int(quad_divide(200, 100).phase):08b}"
-
-
-@pytest.mark.parametrize("four_tap, n_cm", [(False, 0), (True, 3)])
-def test_the_row_is_the_golden_waveform(simulate, four_tap, n_cm):
-    timing = AmpTiming(5, 300, 4, 3, 6, 2, n_cm)
-    durations = [getattr(timing, name) for name in ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard")]
-    data = [byte for value in durations for byte in (value & 255, value >> 8)] + [n_cm]
-    expected = waveform(timing, four_tap, np.ones(20000, bool))
-    cycles = len(expected["busy"])
-    said = simulate("amp_ctrl", [0x201, 0x100, *data, 0x500 | cycles // 256 + 1, int(four_tap)])
-    rows = [line for line in said if " " in line and line[0] in "01x"]
-    first = next(k for k, row in enumerate(rows) if row.split()[1][0] == "1")  # busy
-    for k in range(cycles):
-        uio, uo = rows[first + k].split()
-        pins = {name: int(uo[7 - bit]) for bit, name in enumerate(PINS)} | {
-            "done": int(uio[0]),
-            "cfg_err": int(uio[1]),
-            "tap": int(uio[2:4], 2),
-        }
-        assert pins == {name: int(expected[name][k]) if name in expected else 0 for name in pins}, k
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PROJECTS)
+def test_its_netlist_passes_the_tests_from_its_pins(name, made):
+    netlist, top = made(name)[1], design(name).top
+    cells = sorted(set(re.findall(rf"(?m)^\s+{sky130_hd.LIBRARY}__(\w+) ", netlist.read_text())))
+    models = netlist.with_name("cells.v")
+    text = "".join(sky130_hd.file(cell, "functional.v").read_text() for cell in cells)
+    models.write_text(text.replace('`include "../..', f'`include "{sky130_hd.folder()}'))
+    command = [sys.executable, "-m", "pytest", "rtl/tinytapeout", "-p", "no:xdist", f"--netlist={top}={netlist}"]
+    done = finish([*command, f"--cells={models}"], cwd=ROOT)
+    assert not done.returncode and re.search(r"[12] passed", done.stdout), done.stdout[-2000:]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PROJECTS)
 def test_it_fits_its_tiles(name, made):
-    found = made(name)[1]
+    found = made(name)[0]
     assert 0.1 < found.share < FULL
     assert found.flip_flops < found.cells
 
@@ -165,28 +77,30 @@ def test_room_of_a_tile():
 
 
 @pytest.mark.parametrize("name", PROJECTS)
-def test_the_files_pass_the_checks_of_tiny_tapeouts_tools(name):
+def test_the_files_pass_the_checks_of_tiny_tapeouts_tools(name, files):
     yaml = pytest.importorskip("yaml", reason="PyYAML is not installed (make setup)")
-    files = project_files(PROJECTS[name], design(name), "module x; endmodule\n")
-    info = yaml.safe_load(files["tinytapeout/info.yaml"])
+    made = files(name)
+    info = yaml.safe_load(made["tinytapeout/info.yaml"])
     project = info["project"]
     assert info["yaml_version"] == 6 and project["top_module"].startswith("tt_um_")
-    assert all(project[key] for key in ("title", "author", "description", "language", "tiles", "source_files"))
+    assert project["tiles"] in SIZES_UM
+    assert all(project[key] for key in ("title", "author", "description", "language", "source_files"))
     assert isinstance(project["clock_hz"], int)
     assert set(info["pinout"]) == {f"{bank}[{k}]" for bank in ("ui", "uo", "uio") for k in range(8)}
-    assert {f"tinytapeout/src/{file}" for file in project["source_files"]} <= set(files)
-    assert json.loads(files["tinytapeout/src/config.json"])["CLOCK_PERIOD"] == design(name).clock.period_ns
-    assert "## How it works" in files["tinytapeout/docs/info.md"]
-    top = files[f"tinytapeout/src/{project['top_module']}.v"]
-    assert f"module {project['top_module']}\n" in top
+    assert {f"tinytapeout/src/{file}" for file in project["source_files"]} <= set(made)
+    assert json.loads(made["tinytapeout/src/config.json"])["CLOCK_PERIOD"] == design(name).clock.period_ns
+    page = made["tinytapeout/docs/info.md"]
+    assert "PyMTL" not in page
+    for file in (f"{project['top_module']}.v", "tt_bytes.v"):  # the comment at the head of each
+        assert (TOPS / file).read_text().splitlines()[0].removeprefix("// ") in page
 
 
 @pytest.mark.parametrize("name", PROJECTS)
-def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, tmp_path):
+def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, files, tmp_path):
     """As tt-support-tools' check_ports and find_top_verilog do it."""
-    files = project_files(PROJECTS[name], design(name), "module x; endmodule\n")
-    top = PROJECTS[name].top
-    (tmp_path / "top.v").write_text(files[f"tinytapeout/src/{top}.v"])
+    top = design(name).top
+    verilog = files(name)[f"tinytapeout/src/{top}.sv"]
+    (tmp_path / "top.v").write_text(verilog)
     run(
         [
             "yosys",
@@ -200,17 +114,9 @@ def test_its_ports_are_those_of_every_tile_and_its_top_is_found_once(name, tmp_p
         **dict.fromkeys(("ui_in", "uio_in"), ("input", 8)),
         **dict.fromkeys(("uo_out", "uio_out", "uio_oe"), ("output", 8)),
     }
-    modules = [
-        module
-        for path, text in files.items()
-        if path.endswith(".v")
-        for module in re.findall(r"(?:^|\s)module\s+(\w+)", text)
-    ]
-    assert modules.count(top) == 1
+    assert re.findall(r"(?:^|\s)module\s+(\w+)", verilog).count(top) == 1
 
 
 def test_a_project_checks_itself():
-    good = vars(PROJECTS["amp_ctrl"])
-    for change, said in (({"tiles": "9x9"}, "tiles"), ({"top": "divider"}, "top"), ({"ui": ("a",)}, "ui = 1 pins")):
-        with pytest.raises(ParameterError, match=said):
-            Project(**good | change)
+    with pytest.raises(ParameterError, match="ui = 1 pins"):
+        Project(**vars(PROJECTS["tt_amp_ctrl"]) | {"ui": ("a",)})

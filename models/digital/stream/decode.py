@@ -176,12 +176,5 @@ def _decode_around(
         ordinal, at, tail = body.decode(found[1], found[0], not bad)
     frame.bad_rows = frame.layout.rows[bad].tolist()
     if bad:
-        frame.errors.append(f"byte {frame.start}: {len(bad)} of {body.total} rows are bad: {_spans(frame.bad_rows)}")
+        frame.errors.append(f"byte {frame.start}: {len(bad)} of {body.total} rows are bad")
     return ordinal, at, tail, search.limit
-
-
-def _spans(rows: list[int]) -> str:
-    """Ascending integers as text: '3, 5..9'."""
-    starts = [i for i in range(len(rows)) if i == 0 or rows[i] != rows[i - 1] + 1]
-    pairs = [(rows[i], rows[j - 1]) for i, j in zip(starts, starts[1:] + [len(rows)], strict=True)]
-    return ", ".join(f"{a}..{b}" if b > a else f"{a}" for a, b in pairs[:8]) + (", ..." if len(pairs) > 8 else "")

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 from models.parameters.divider import DIVIDERS
 
 if TYPE_CHECKING:
-    from systemrdl.node import FieldNode, RegNode
+    from systemrdl.node import AddrmapNode, FieldNode, RegNode
 
 SOURCE = Path(__file__).parent / "asp_chip.rdl"
 
@@ -189,15 +189,20 @@ def _fields(register: "RegNode") -> Iterator[Field]:
         )
 
 
-@cache
-def register_map() -> RegisterMap:
-    """Register map of the chip; the first call takes 0.1 s, most of it the import of the compiler."""
+def compiled() -> "AddrmapNode":
+    """Compile asp_chip.rdl: the chip's address map, for exporters of other formats."""
     from systemrdl.compiler import RDLCompiler  # imported where it is needed: it is slow
 
     compiler = RDLCompiler()
     compiler.compile_file(str(SOURCE))
-    top = compiler.elaborate().top
-    return RegisterMap(tuple(f for register in top.registers(unroll=True) for f in _fields(register)))
+    return compiler.elaborate().top
+
+
+@cache
+def register_map() -> RegisterMap:
+    """Register map of the chip; the first call takes 0.1 s, most of it the import of the compiler."""
+    registers = compiled().registers(unroll=True)
+    return RegisterMap(tuple(f for register in registers for f in _fields(register)))
 
 
 def trim_range() -> tuple[int, int]:

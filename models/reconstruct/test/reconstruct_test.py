@@ -1,13 +1,22 @@
 """Back from samples: what must come back exactly does, the rest to a bound."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from models.afe import trim_codes, trim_gain
-from models.capture import CaptureOperator
-from models.parameters import AmpTiming, ArrayParameters, ParameterError, SensorParameters, TileParameters
+from models.capture import CaptureOperator, cells
+from models.parameters import (
+    AmpTiming,
+    ArrayParameters,
+    OpticsParameters,
+    ParameterError,
+    SensorParameters,
+    TileParameters,
+)
 from models.pixel import optical_gains, view_weights
 from models.plan import codes_per_unit
 from models.reconstruct import (
@@ -97,6 +106,13 @@ def test_linear_estimate_of_a_uniform_scene_is_exact(dtype):
     found = light_field_estimate(operator, operator.forward(np.full((5, 5, 13, 20), 0.3, dtype)))
     assert found.shape == (5, 5, 13, 20) and found.dtype == dtype
     np.testing.assert_allclose(found, 0.3, rtol=1e-5)
+
+
+def test_views_that_the_pupil_does_not_reach_are_dark():
+    sensor = replace(_sensor(8, 12), optics=OpticsParameters(views=7))
+    operator = CaptureOperator(sensor)
+    found = light_field_estimate(operator, operator.forward(np.full((7, 7, 8, 12), 0.3)))
+    np.testing.assert_allclose(found, 0.3 * cells(7)[..., None, None] * np.ones((8, 12)))
 
 
 def test_linear_estimate_leans_to_the_lit_view():

@@ -13,6 +13,7 @@ from models.scene import Sampling, load
 from .focused import focused
 
 SMALL = focused(Sampling(rows=16, cols=24), 0.0)
+TIFF = b"II*\0\x08\0\0\0"  # of a TIFF or DNG, whose directory is cut
 
 
 def _saved(tmp_path, array, name="p.png", mode=None):
@@ -105,12 +106,12 @@ def test_floating_point_is_linear(tmp_path):
     np.testing.assert_allclose(load(_saved(tmp_path, np.full((20, 30), 0.25, np.float32), "p.tif"), SMALL).image, 0.25)
 
 
-@pytest.mark.parametrize("content", [b"", b"not an image", b"\x89PNG\r\n\x1a\n" + b"\0" * 50])
+@pytest.mark.parametrize("content", [b"", b"not an image", b"\x89PNG\r\n\x1a\n" + b"\0" * 50, TIFF + b"\x09\0\xff"])
 def test_not_an_image(tmp_path, content):
     path = tmp_path / "p.png"
     path.write_bytes(content)
-    with pytest.raises(ParameterError, match=r"scene = .*p\.png"):
-        load(str(path), SMALL)
+    with pytest.raises(ParameterError, match=r"scene = .*p\.png': must be an image file .* PNG, JPEG, TIFF, "):
+        load(str(path), SMALL)  # a warning of Pillow's would be an error here
 
 
 def test_truncated_image(tmp_path):
@@ -122,8 +123,8 @@ def test_truncated_image(tmp_path):
 
 
 def test_folder_and_missing_file(tmp_path):
-    for path in (tmp_path, tmp_path / "none.png"):
-        with pytest.raises(ParameterError, match="no such file"):
+    for path, said in ((tmp_path, "must be an image file, not a folder"), (tmp_path / "none.png", "no such file")):
+        with pytest.raises(ParameterError, match=said):
             load(str(path), SMALL)
 
 

@@ -176,7 +176,7 @@ def test_a_toggle_is_excluded_by_a_proof_only(tmp_path):
 
 def test_a_constant_that_toggles_is_an_error(result):
     found = judge("EdgeAdc", plan(), [result], {("EdgeAdc", "go", 0), ("EdgeAdc", "threshold", 6)})
-    toggled = {f"EdgeAdc.go[0]:{edge} = toggled: must be constant" for edge in ("0->1", "1->0")}
+    toggled = {f"EdgeAdc.go:{edge} = toggled: must be constant" for edge in ("0->1", "1->0")}
     assert found.constant == 4 and set(found.errors) == toggled
     still = replace(result, counts=tuple(replace(count, times=0) for count in result.counts))
     assert not judge("EdgeAdc", plan(), [still, result], {("EdgeAdc", "go", 0)}).errors  # of another parameter set

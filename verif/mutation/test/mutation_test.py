@@ -6,6 +6,7 @@ import subprocess
 import pytest
 
 from base.command import main
+from base.paths import ROOT
 from models.parameters import SensorParameters
 from rtl.asp_chip.balance_rtl import Balance
 from rtl.harness.ports import Port, ports_of
@@ -20,7 +21,6 @@ from verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, 
 from verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, own_tests
 from verif.mutation.mutants import Mutant, generate, shares, with_mutants
 from verif.mutation.trial import attempt
-from verif.results import ROOT
 
 pytestmark = pytest.mark.skipif(
     not (shutil.which("yosys") and shutil.which("yosys-abc")), reason="needs Yosys: make tools"

@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from base.command import main
+from base.paths import ROOT
 from rtl.tops import TOPS
-from verif.results import ROOT
 from verif.suite import command
 from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
 from verif.suite.command import forget, jobs, options_of, summarize

@@ -1,10 +1,14 @@
 """What is changed of PDKMaster's decks, and a deck that cannot be changed so."""
 
+import shutil
+
 import pytest
 
+from base.gds import db, write_gds
 from base.steps import StepError
-from flow.layout.geometry.decks import with_flat_spaces
+from flow.layout.geometry.decks import run_deck, via_rules, violations, with_flat_spaces
 from flow.layout.geometry.lvs_deck import hierarchical
+from platforms.coriolis import coriolis_platform
 
 DRC = """deep
 nwm = input(64, 20)
@@ -31,7 +35,22 @@ connect(poly, poly_pin)
 def test_spaces_of_drawn_layers_are_checked_flat_and_the_rest_as_before():
     deep, flat = with_flat_spaces(DRC).split("\nflat\n")
     assert "nwm.space" not in deep and "both.space(0.2)" in deep and "nwm.width" in deep
-    assert flat == 'nwm = input(64, 20)\nnwm.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
+    assert flat == 'nwm = input(64, 20)\nnwm.edges.space(1.27).output(\n    "nwm space", "nwm minimum space"\n)\n'
+
+
+@pytest.mark.skipif(not shutil.which("klayout"), reason="klayout: not found; install it with: make tools")
+@pytest.mark.parametrize("end, found", ((500, {}), (350, {"via3 outside m4": 1}), (200, {"via3 outside m4": 1})))
+def test_a_via_that_sticks_out_of_its_metal_is_found(tmp_path, end, found):
+    tech, layout = coriolis_platform("sky130"), db.Layout()
+    top = layout.create_cell("top")
+    shapes = (tech.metals[3].gds, (0, 0, 500, 500)), (tech.metals[4].gds, (0, 0, 500, end))
+    for at, box in (*shapes, (tech.vias[3].gds, (150, 200, 350, 400))):
+        top.shapes(layout.layer(*at)).insert(db.Box(*box))
+    write_gds(layout, tmp_path / "top.gds")
+    head = f"source('{tmp_path}/top.gds')\nreport('vias', '{tmp_path}/found.lyrdb')"
+    (tmp_path / "vias.drc").write_text("\n".join([head, *via_rules(tech), ""]))
+    run_deck(tmp_path / "vias.drc", tmp_path / "found.lyrdb", {})
+    assert violations(tmp_path / "found.lyrdb") == found
 
 
 def test_a_deck_without_spaces_is_refused():

@@ -12,7 +12,7 @@ def gate(layout, tech):
         (tech.poly, 0.4, -1, 0.55, 1),
         (tech.contact, 0.4, -0.9, 0.55, -0.8),
         (low.gds, 0.3, -1, 0.7, -0.5),
-        (via.gds, 0.4, -0.7, 0.5, -0.6),
+        (via.gds, 0.4, -0.75, 0.4 + via.size_um, -0.75 + via.size_um),
         (metal.gds, 0.3, -0.8, 0.7, -0.5),
     ):
         cell.shapes(layout.layer(*layer)).insert(db.DBox(*box))

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from base.liberty.read import read
+from flow.layout.geometry.rows import Rows, free_rows
 from flow.layout.netlist.netlist import Instance, Netlist, Port
 from flow.layout.repair.drive import Drives
-from flow.layout.repair.repair import OWN, Plan, clock_nets, connected, length, repaired
-from flow.layout.repair.rows import Rows, free_rows
+from flow.layout.repair.repair import OWN, Plan, clock_nets, connected, length, repaired, swap
 from flow.layout.timing.constraints import sdc
 from flow.layout.timing.estimate import setup_slack, setup_slacks
 
@@ -57,10 +58,10 @@ def chain(xs):
     """Inverters at ``xs`` (um), the first of which drives all others; rows of 400 um with empty places."""
     instances = {"first": Instance("first", "inv_x1", {"i": "a", "nq": "n"})}
     instances |= {f"u{k}": Instance(f"u{k}", "inv_x1", {"i": "n", "nq": f"z{k}"}) for k in range(len(xs) - 1)}
-    rows, places = Rows(SITE), {}
+    rows, places = Rows(SITE, ROW), {}
     for y in range(4):
         rows.give(400.0, (0.0, y * ROW, "0"))
-    plan = Plan({}, places, WIDTHS, ROW, rows, {"a": (0.0, 0.0)}, 0.2, {})
+    plan = Plan({}, places, WIDTHS, rows, {"a": (0.0, 0.0)}, 0.2, {})
     for (name, instance), x in zip(instances.items(), xs, strict=True):
         assert plan.put(instance, (x, 4.0)), name
     return plan
@@ -140,9 +141,22 @@ def test_a_loaded_output_has_a_buffer_of_its_own():
     check_places(plan)
 
 
+@pytest.mark.parametrize("turn", ["0", "6"])
+def test_a_larger_form_stays_in_its_row(turn):
+    """Rows upright and mirrored in turn, two of which begin at the same height."""
+    rows = Rows(SITE, ROW)
+    for k in range(1, 5):
+        for place in ((0.0, 2 * k * ROW, "0"), (0.0, 2 * k * ROW, "6")):
+            rows.give(400.0, place)
+    places = {"u": (100.0, 4 * ROW, turn)}
+    plan = Plan({"u": Instance("u", "inv_x1", {"i": "a", "nq": "n"})}, places, WIDTHS, rows, {}, 0.2, {})
+    rows.take(1.0, 100.0, plan.point("u")[1])
+    assert swap(plan, "u", "inv_x4") and plan.places["u"] == (99.5, 4 * ROW, turn)
+
+
 def test_without_room_nothing_changes():
     plan = chain([10.0, 380.0])
-    plan.rows = Rows(SITE)
+    plan.rows = Rows(SITE, ROW)
     before = dict(plan.instances), dict(plan.places)
     assert repaired(plan, drives(), set()) == {"sized": 0, "buffers": 0}
     assert (plan.instances, plan.places) == before
@@ -152,8 +166,8 @@ def test_listed_as_before_with_other_fill():
     instances = [Instance("u0", "inv_x1", {"i": "a", "nq": "z"}), *(Instance(f"f{k}", "tie", {}) for k in range(6))]
     placed = [[7, "inv_x1", 0.0, 0.0, "0"], *([None, "tie", 1.0 + SITE * k, 0.0, "0"] for k in range(6))]
     netlist = Netlist("N", (Port("a", "input", 1), Port("z", "output", 1)), tuple(instances))
-    rows = free_rows(placed, WIDTHS, FILL, SITE)
-    plan = Plan({"u0": instances[0]}, {"u0": (0.0, 0.0, "0")}, WIDTHS, ROW, rows, {}, 0.2, {})
+    rows = free_rows(placed, WIDTHS, FILL, SITE, ROW)
+    plan = Plan({"u0": instances[0]}, {"u0": (0.0, 0.0, "0")}, WIDTHS, rows, {}, 0.2, {})
     made, places = plan.listed(netlist, placed, FILL)
     assert places[0] == placed[0] and made.instances[0] == instances[0]
     assert [place[1] for place in places[1:]] == ["tie_w4", "tie", "tie"]
@@ -170,14 +184,14 @@ def test_clock_nets_reach_from_the_port_to_the_registers():
 
 
 def test_limits_are_read_off_the_tables(tmp_path):
-    found = Drives.of(liberty(tmp_path / "l.lib"), 1.1)
+    found = Drives.of(read(liberty(tmp_path / "l.lib")), 1.1)
     assert found.inputs["inv_x1", "i"] == 0.001
     assert found.limits["inv_x1", "nq"] == pytest.approx((1.1 - 0.2) / 10)
     assert found.limits["inv_x4", "nq"] == 0.3  # its max_capacitance
     assert found.stronger("inv_x1", "nq", 0.05) == "inv_x1"
     assert found.stronger("inv_x1", "nq", 0.2) == "inv_x4"
     assert found.stronger("inv_x1", "nq", 0.5) is None
-    assert Drives.of(tmp_path / "l.lib", 0.05).limits["inv_x1", "nq"] == 0
+    assert Drives.of(read(tmp_path / "l.lib"), 0.05).limits["inv_x1", "nq"] == 0
 
 
 def test_length_of_a_net():

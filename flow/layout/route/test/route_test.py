@@ -1,14 +1,23 @@
 """Nets are joined from pin to pin around others, and every rule is kept."""
 
 import random
+from collections import Counter
+from itertools import pairwise
 
+import numpy as np
 import pytest
 
+from flow.layout.geometry.boxes import corners
+from flow.layout.geometry.instances import insert
 from flow.layout.geometry.test.gate import gate
+from flow.layout.netlist.netlist import Instance, Netlist, with_diodes
 from flow.layout.route.board import Board
-from flow.layout.route.negotiate import negotiate
-from flow.layout.route.nets import route_net
+from flow.layout.route.diodes import Diodes
+from flow.layout.route.negotiate import negotiate, route
+from flow.layout.route.nets import clear_of, route_net
+from flow.layout.route.route import Route
 from flow.layout.route.rules import RoutingRules
+from flow.layout.route.view import NetView
 from flow.layout.route.violations import Violations, find, split_levels
 from platforms.coriolis import coriolis_platform
 
@@ -71,6 +80,9 @@ def nets(layout, top, points):
 def broken(layout, top):
     """Violations of width, space and area by rule."""
     found = {}
+    for via in RULES.vias:
+        region = db.Region(top.begin_shapes_rec(layout.layer(via.layer, via.datatype))).merged()
+        found[f"{via.name} space"] = region.space_check(via.space).count()
     for layer in RULES.layers[1:]:
         region = db.Region(top.begin_shapes_rec(layout.layer(layer.layer, layer.datatype))).merged()
         found |= {
@@ -86,10 +98,10 @@ def um(boxes):
     return [[RULES.layers[level].name, *(value / 1000 for value in box)] for level, *box in boxes]
 
 
-def alone(pins, jumpers=False, layout=None):
+def alone(pins, layout):
     """The layout with one net routed between ``pins``; None without a path."""
     board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": list(map(um, pins))}})
-    found = route_net(board, "w1", jumpers)
+    found = route_net(board, "w1")
     if found is None:
         return None, None
     board.put("w1", found.route)
@@ -100,15 +112,14 @@ def test_two_pins_with_nothing_between():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
     assert len(set(nets(layout, top, [(0, 5_000, 5_000), (0, 30_015, 20_000)]))) == 2
-    layout, _ = alone(pins, layout=layout)
+    layout, _ = alone(pins, layout)
     first, second = nets(layout, layout.top_cell(), [(0, 5_000, 5_000), (0, 30_015, 20_000)])
     assert first == second
     assert broken(layout, layout.top_cell()) == {}
 
 
 @pytest.mark.parametrize("seed", range(6))
-@pytest.mark.parametrize("jumpers", [False, True])
-def test_through_congestion(seed, jumpers):
+def test_through_congestion(seed):
     rng = random.Random(seed)
     layout, top = empty()
     pins = [pin(layout, top, 85 * rng.randrange(40, 430), 5 * rng.randrange(800, 7000)) for _ in range(4)]
@@ -120,15 +131,10 @@ def test_through_congestion(seed, jumpers):
                 box = (ends[0], track - half, ends[1], track + half)
                 draw(layout, top, level, *(box if RULES.layers[level].horizontal else (box[1], box[0], box[3], box[2])))
     before = broken(layout, top)
-    layout, route = alone(pins, jumpers, layout)
-    if route is None:
-        assert jumpers  # there may be no room for a jumper
-        return
+    layout, _ = alone(pins, layout)
     points = [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]
     assert len(set(nets(layout, layout.top_cell(), points))) == 1
     assert broken(layout, layout.top_cell()) == before
-    if jumpers:
-        assert route.lengths[4] >= 1_500
 
 
 def walls(layout, top, *xs):
@@ -142,7 +148,25 @@ def test_a_pin_behind_a_wall_is_given_up():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_000, 30_000)]
     walls(layout, top, 20_000)
-    assert alone(pins, layout=layout) == (None, None)
+    assert alone(pins, layout) == (None, None)
+
+
+def test_without_room_for_the_least_area_the_way_is_another():
+    """In a pen with two ways up through m3, the nearer too narrow for a piece of that layer."""
+    layout, top = empty()
+    dx, dy = RULES.step
+    at = db.Point(70 * dx, 60 * dy), db.Point(30_000, 30_000)
+    pins = [pin(layout, top, point.x, point.y) for point in at]
+    inside, outside = db.Box(5_000, 5_000, 15_000, 15_000), db.Box(4_600, 4_600, 15_400, 15_400)
+    narrow, wide = db.Box(1_000, 1_000).moved(at[0].x, at[0].y), db.Box(4_000, 4_000).moved(8_000, 8_000)
+    holes = {1: [inside], 2: [inside], 3: [narrow, wide]}
+    for level, boxes in holes.items():
+        for part in (db.Region(outside) - db.Region(boxes)).decompose_trapezoids():
+            draw(layout, top, level, *corners(part.bbox()))
+    layout, _ = alone(pins, layout)
+    assert layout is not None
+    assert len(set(nets(layout, layout.top_cell(), [(0, point.x, point.y) for point in at]))) == 1
+    assert broken(layout, layout.top_cell()) == {}
 
 
 def test_a_net_without_a_path_is_ripped_up():
@@ -194,7 +218,7 @@ def test_a_net_in_the_way_is_evicted():
 def test_a_board_draws_what_it_lifted():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]
-    layout, route = alone(pins, layout=layout)
+    layout, route = alone(pins, layout)
     segments = [
         [RULES.layers[level].name, *(v / 1000 for v in box)] for level, made in route.segments.items() for box in made
     ]
@@ -240,9 +264,170 @@ def test_nets_that_are_too_near_or_have_an_antenna():
         },
     )
     whole = find(board.drawn(), RULES, TECH)
-    assert whole.nets(board) == (["w1"], ["w0"])
+    own = (1_400, 5_000, 1_550, 5_500)  # w0's gate
+    assert whole.nets(board) == (["w1"], [("w0", own)])
     assert whole.nets(board, ["w2"]) == (["w2"], [])
     for net in segments:
         assert find(board.part([net]), RULES, TECH).nets(board, [net]) == whole.nets(board, [net])
     parts = [find(board.drawn(), RULES, TECH, levels) for levels in split_levels(RULES, 2)]
-    assert sum(parts, Violations()).nets(board) == (["w1"], ["w0"])
+    assert sum(parts, Violations()).nets(board) == (["w1"], [("w0", own)])
+
+
+@pytest.mark.parametrize("off", [(0, 30), (170, 5), (145, 145), (200, 100)])
+def test_vias_that_overlap_or_are_too_near(off):
+    """Of one net, whose metal covers both; a via twice at one place is one."""
+    layout, top = empty()
+    (dx, dy), via = off, RULES.vias[2]
+    draw(layout, top, 2, 4_000, 4_000, 6_000, 6_000)
+    draw(layout, top, 3, 4_000, 4_000, 6_000, 6_000)
+    for x, y in ((4_500, 4_500), (4_500, 4_500), (4_500 + dx, 4_500 + dy)):
+        top.shapes(layout.layer(via.layer, via.datatype)).insert(db.Box(x, y, x + via.size, y + via.size))
+    box = ["m2", 4.0, 4.0, 6.0, 6.0], ["m3", 4.0, 4.0, 6.0, 6.0]
+    board = Board(layout, RULES, {"w1": {"segments": list(box), "vias": [], "pins": []}})
+    assert find(board.drawn(), RULES, TECH).nets(board) == (["w1"], [])
+
+
+def library():
+    """A layout of the cells that fill rows and of the diode, two sites and one wide; their areas, the diode's pin."""
+    made = db.Layout()
+    for name in TECH.fill_cells:
+        made.create_cell(name)
+    diode = made.create_cell("diode_w1")
+    for layer in (TECH.active, TECH.contact, TECH.metals[0].gds):
+        diode.shapes(made.layer(*layer)).insert(db.DBox(0.175, 0.435, 0.345, 1.905))
+    sites = {"tie": 1, "tie_w2": 2, "tie_w4": 4, "tie_w8": 8, "diode_w1": 1}
+    areas = {name: count * TECH.site_um * TECH.row_um for name, count in sites.items()}
+    return made, areas, {"diode_w1": {"i": [["li", 0.175, 0.435, 0.345, 1.905]]}}
+
+
+@pytest.mark.parametrize("room", [True, False])
+def test_an_antenna_gets_a_diode_where_there_is_fill(room):
+    layout, top = empty()
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
+    top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(5_000, 5_000))))
+    cells, areas, masters = library()
+    rows = (3.12, "6"), (3.12, "0"), (9.36, "6")  # two begin at the same height
+    placed = [[None, "tie_w8", 9.36 + 4.16 * k, *row] for k in range(3) for row in rows]
+    for _, cell, *place in placed:
+        insert(top, cells, cell, *place)
+    far = pin(layout, top, 350_030, 36_000)
+    pins = [[["m1", 5.3, 4.2, 5.7, 4.5]], um(far)]
+    others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": pins}} | others)
+    diodes = Diodes(placed if room else [], masters, cells, areas, TECH)
+    found = route(board, ["w1"], TECH, diodes)
+    drawn = board.drawn()
+    assert found.open == [] and diodes.nets == ["w1"] * room
+    assert bool(find(drawn, RULES, TECH).antennas) != room
+    assert broken(drawn, drawn.top_cell()) == {}
+    names = Counter(instance.cell.name for instance in drawn.top_cell().each_inst())
+    widths = {name: area / TECH.row_um for name, area in areas.items()}
+    taken = Counter()
+    for instance in (one for one in drawn.top_cell().each_inst() if one.cell.name != "gate"):
+        taken[instance.dtrans.disp.y, instance.dtrans.is_mirror()] += widths[instance.cell.name]
+    assert taken == pytest.approx({(y, turn == "6"): 3 * widths["tie_w8"] for y, turn in rows})
+    assert names["diode_w1"] == room
+    reference = with_diodes(
+        Netlist("", (), tuple(Instance("", place[1], {}) for place in placed)), ["w1"] * room, diodes.fill
+    )
+    del names["gate"]
+    assert Counter(instance.cell for instance in reference.instances) == +names
+    if room:
+        trans = next(i.dtrans for i in drawn.top_cell().each_inst() if i.cell.name == "diode_w1")
+        end, inside = trans.disp, trans * db.DPoint(0.26, 1.0)
+        assert abs(end.x - 9.36) < 0.1  # beside the gate, not at the far end
+        ends = [(1, 5_500, 4_350), (0, round(1000 * inside.x), round(1000 * inside.y))]
+        assert len(set(nets(drawn, drawn.top_cell(), [*ends, (0, 350_030, 36_000)]))) == 1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_legs_that_stay_are_joined_again(seed):
+    """Of a net with six pins every leg is taken away in turn, then half of them: the others stay where they are."""
+    rng = random.Random(seed)
+    layout, top = empty()
+    at = [(85 * rng.randrange(40, 430), 5 * rng.randrange(800, 7000)) for _ in range(6)]
+    pins = [pin(layout, top, *point) for point in at]
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": list(map(um, pins))}})
+    whole = route_net(board, "w1")
+    assert len(whole.legs) == 5 and set().union(*(leg.pins for leg in whole.legs)) == set(range(6))
+    for lost in ([0], [1], [2], [3], [4], [0, 2, 4], [1, 3]):
+        kept = [leg for k, leg in enumerate(whole.legs) if k not in lost]
+        found = route_net(board, "w1", kept=kept)
+        assert found.legs[: len(kept)] == tuple(kept)
+        board.put("w1", found.route)
+        drawn = board.drawn()
+        board.rip_up("w1")
+        points = [(0, (p[0][1] + p[0][3]) // 2, (p[0][2] + p[0][4]) // 2) for p in pins]
+        assert len(set(nets(drawn, drawn.top_cell(), points))) == 1
+        assert broken(drawn, drawn.top_cell()) == {}
+
+
+def test_legs_are_clear_of_another_route():
+    layout, top = empty()
+    pins = [pin(layout, top, x, 20_000) for x in (5_000, 20_000, 35_020)]
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": list(map(um, pins))}})
+    legs = route_net(board, "w1").legs
+    ends = [(level, box) for level, made in legs[1].route.segments.items() for box in made]
+    level, box = max(ends, key=lambda end: end[1][0])  # the farthest from the first leg
+    beside = Route({level: [(box[0], box[3] + RULES.layers[level].space - 5, box[2], box[3] + 1_000)]})
+    far = Route({level: [(box[0], box[3] + 5_000, box[2], box[3] + 6_000)]})
+    assert clear_of(legs, beside, board) == [legs[0]]
+    assert clear_of(legs, far, board) == []  # in the way is what no leg is
+
+
+def test_what_is_too_long_for_a_diode_gets_a_jumper():
+    """345 um of one layer beside a gate of 0.075 um2."""
+    layout, top = empty()
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
+    top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(5_000, 5_000))))
+    cells, areas, masters = library()
+    placed = [[None, "tie_w8", 9.36, 3.12, "0"]]
+    insert(top, cells, *placed[0][1:])
+    others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
+    pins = [[["m1", 5.3, 4.2, 5.7, 4.5]], um(pin(layout, top, 350_030, 5_000))]
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": pins}} | others)
+    diodes = Diodes(placed, masters, cells, areas, TECH)
+    found = route(board, ["w1"], TECH, diodes)
+    drawn = board.drawn()
+    assert found.open == [] and diodes.nets == ["w1"] and board.jumpers["w1"] == {0}
+    assert find(drawn, RULES, TECH) == Violations()
+    assert broken(drawn, drawn.top_cell()) == {}
+    assert len(set(nets(drawn, drawn.top_cell(), [(1, 5_500, 4_350), (0, 350_030, 5_000), (0, 9_620, 4_000)]))) == 1
+
+
+def test_a_jumper_is_not_made_past_legs_that_stay():
+    """A trunk beside a gate: a jumper would have to go round it, and may not be able to."""
+    layout, top = empty()
+    top.shapes(layout.layer(235, 4)).insert(db.Box(0, 0, 10 * SIDE, SIDE))
+    top.insert(db.CellInstArray(gate(layout, TECH).cell_index(), db.Trans(db.Vector(170_000, 5_000))))
+    ends = [um(pin(layout, top, x, 4_300)) for x in (5_015, 350_030)]
+    others = {f"w{k}": {"segments": [], "vias": [], "pins": []} for k in range(2, 10)}
+    own = {"segments": [], "vias": [], "pins": [*ends, [["m1", 170.3, 4.2, 170.7, 4.5]]]}
+    trunk = route_net(Board(layout.dup(), RULES, {"w1": own | {"pins": ends}}), "w1").legs
+    board = Board(layout, RULES, {"w1": own} | others)
+    board.jumpers["w1"].add(2)
+    found = route_net(board, "w1", kept=trunk)
+    assert found.legs[0].pins == {2}  # the jumper is the first
+    board.put("w1", found.route)
+    drawn = board.drawn()
+    assert find(drawn, RULES, TECH) == Violations()
+    assert len(set(nets(drawn, drawn.top_cell(), [(1, 170_500, 4_350), (0, 5_015, 4_300), (0, 350_030, 4_300)]))) == 1
+
+
+def test_vias_of_a_net_keep_apart():
+    """A way up beside a via of the same net goes elsewhere, or where that is."""
+    layout, _ = empty()
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": []}})
+    view = NetView(board, 0)
+    source, target = (1, 100, 100), (2, 101, 140)
+    used = board.grid.used.copy()
+    view.hold(np.array([(1, 100, 101), (2, 100, 101)]))
+    path = board.grid.search(0, (0, 0, SIDE, SIDE), [source], [target])
+    (via,) = [one for one, other in pairwise(path) if one[0] != other[0]]
+    view.release()
+    dx, dy = (abs(via[axis + 1] - (100, 101)[axis]) * RULES.step[axis] for axis in (0, 1))
+    least = RULES.vias[1].size + RULES.vias[1].space
+    assert dx >= least or dy >= least or (dx, dy) == (0, 0)
+    assert (board.grid.used == used).all()
+    path = board.grid.search(0, (0, 0, SIDE, SIDE), [(1, 101, 101)], [(2, 101, 140)])
+    assert path[1] == (2, 101, 101)  # else straight up

@@ -195,7 +195,7 @@ def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
         check=True,
         capture_output=True,
     )
-    chip = tmp_path / "AspChip.v"
+    chip = tmp_path / "AspChip.sv"
     text = made[0]["die_plan.verilog"].read_text().replace("Core core", "AspChip core")
     top = tmp_path / "top.v"
     top.write_text(text)

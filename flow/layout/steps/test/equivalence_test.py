@@ -68,12 +68,12 @@ def made(tmp_path_factory):
     return folder
 
 
-def verdict(folder, netlist, rtl=RTL):
+def verdict(folder, netlist, rtl=RTL, reset="reset"):
     """What Equivalence says of ``netlist`` (Netlist) against the Verilog ``rtl``."""
     netlist.write(folder / "tried.json")
     (folder / "tried.v").write_text(netlist.verilog())
     (folder / "tried_rtl.v").write_text(rtl)
-    return Equivalence(EquivalenceParameters("Counter")).run(
+    return Equivalence(EquivalenceParameters("Counter", reset=reset)).run(
         {
             "rtl": folder / "tried_rtl.v",
             "netlist": folder / "tried.json",
@@ -107,6 +107,17 @@ def test_every_swapped_cell_is_found(made):
         pins = {"nq" if pin == "q" else pin: net for pin, net in old.pins.items()}
         swapped = (*netlist.instances[:k], Instance(old.name, swaps[old.cell], pins), *netlist.instances[k + 1 :])
         assert verdict(made, replace(netlist, instances=swapped))["equivalence"] == "failed"
+
+
+@pytest.mark.parametrize("reset, result", (("rst_n", "proven"), ("reset", "failed")))
+def test_a_reset_may_be_active_at_0(tmp_path, reset, result):
+    """A register that is constant only after the reset; the other name's is no port."""
+    rtl = RTL.replace("input reset", "input rst_n").replace("reset ?", "!rst_n ?").replace("step[0] & 1'b0", "never")
+    synthesized(tmp_path, RTL.replace("input reset", "input rst_n").replace("reset ?", "!rst_n ?"))
+    netlist = Netlist.read(tmp_path / "netlist.json")
+    kept = tuple(i for i in netlist.instances if i.name != "never_reg")
+    found = verdict(tmp_path, replace(netlist, instances=kept), rtl, reset)
+    assert (found["equivalence"], found["constant_registers"]) == (result, int(result == "proven"))
 
 
 def test_a_cut_net_is_found(made):

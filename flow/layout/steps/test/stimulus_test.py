@@ -1,10 +1,14 @@
 """The place of a block in the chip, and whether it is the same block."""
 
+import json
+import shutil
+
 import pytest
 
 from flow.layout.netlist.verilog import modules
-from flow.layout.steps.stimulus import instance_of, middle, recorded, results, settled
+from flow.layout.steps.stimulus import Stimulus, StimulusParameters, instance_of, middle, recorded, results, settled
 from models.parameters import Window
+from rtl.verilog import export_verilog
 
 BLOCK = """
 module Leaf (input clk);
@@ -46,6 +50,23 @@ def test_a_reset_lasts_as_long_as_outputs_are_unknown():
 
 def test_a_trace_begins_fresh():
     assert recorded("1 x 3\n0 1f 3\n0 1f x3\n0 2f 3\n") == ["1 1f 3", "1 1f 03", "0 2f 3"]
+
+
+@pytest.mark.skipif(not (shutil.which("iverilog") and shutil.which("yosys")), reason="iverilog, yosys: make tools")
+def test_a_wrappers_is_that_of_its_host(tmp_path):
+    top = "tt_um_talbot_divider"
+    (rtl,) = export_verilog(tmp_path, [top])
+    step = Stimulus(StimulusParameters(top, "tinytapeout"))
+    found = step.run({"rtl": rtl}, {name: tmp_path / file for name, file in step.outputs.items()})
+    lines = (tmp_path / "stimulus.trace").read_text().split("\n")[:-1]
+    ports = {port["path"]: port["width"] for port in json.loads((tmp_path / "stimulus.json").read_text())["ports"]}
+    assert found == {"source": "host", "cycles": len(lines), "results": 0} and len(lines) > 500
+    assert ports == dict.fromkeys(("ena", "rst_n"), 1) | dict.fromkeys(
+        ("ui_in", "uo_out", "uio_in", "uio_out", "uio_oe"), 8
+    )
+    fresh = [line.startswith("1") for line in lines]
+    assert fresh[0] and not any(fresh[fresh.index(False) :])  # once reset, nothing is unknown
+    assert all("x" not in line for line in lines)
 
 
 def test_results_are_what_left():

@@ -5,14 +5,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from ..netlist.placed import MIRRORED
+
 Place = tuple[float, float, str]  # x, y in um and orientation of a cell's origin, as in `netlist.placed.placement`
 
 
 @dataclass
 class Rows:
-    """Spans free of cells that do something. site: um. rows: by (y, orientation), [first site, end] in order."""
+    """Spans free of cells that do something.
+
+    site: um. height: of a row, um. rows: by (y, orientation), [first site, end] in order.
+    """
 
     site: float
+    height: float
     rows: dict[tuple[float, str], list[list[int]]] = field(default_factory=dict)
 
     def give(self, width: float, place: Place) -> None:
@@ -29,14 +35,18 @@ class Rows:
         spans.insert(k, [begin, end])
 
     def take(self, width: float, x: float, y: float) -> Place | None:
-        """The place nearest to (x, y), um, for a cell ``width`` wide, which is taken; None if there is none."""
+        """The place for a cell ``width`` wide, which is taken; None if there is none.
+
+        It is nearest to where the cell begins at x, and its middle is at y, um.
+        """
         sites, best, least = round(width / self.site), None, float("inf")
-        for row in sorted(self.rows, key=lambda row: abs(row[0] - y)):
-            if abs(row[0] - y) >= least:
+        off = {row: abs(row[0] + MIRRORED[row[1]][1] * self.height / 2 - y) for row in self.rows}
+        for row in sorted(off, key=lambda row: off[row]):
+            if off[row] >= least:
                 break
             for k, (begin, end) in enumerate(self.rows[row]):
                 at = min(max(round(x / self.site), begin), end - sites)
-                far = abs(at * self.site - x) + abs(row[0] - y)
+                far = abs(at * self.site - x) + off[row]
                 if at >= begin and far < least:
                     best, least = (row, k, at), far
         if best is None:
@@ -60,10 +70,10 @@ class Rows:
 
 
 def free_rows(
-    instances: Sequence[Sequence[Any]], widths: Mapping[str, float], fill: Sequence[str], site: float
+    instances: Sequence[Sequence[Any]], widths: Mapping[str, float], fill: Sequence[str], site: float, height: float
 ) -> Rows:
     """The places of the cells ``fill`` among ``instances``, [number, cell, x, y, orientation]."""
-    made = Rows(site)
+    made = Rows(site, height)
     for _, cell, *place in instances:
         if cell in fill:
             made.give(widths[cell], tuple(place))

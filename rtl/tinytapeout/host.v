@@ -36,7 +36,7 @@ module host;
   initial begin
     if (!$value$plusargs("program=%s", file)) $finish;
     $readmemh(file, words);
-    #205 rst_n = 1;
+    #205.05 rst_n = 1;  // all other delays are multiples of 0.1: never at an edge of clk, which would be a race
     #100;
     for (at = 0; words[at] !== 12'h600; at = at + 1) case (words[at][11:8])
       4'h0: send(0, words[at][7:0]);

@@ -1,0 +1,159 @@
+"""A program in a child process, so that SIGINT, SIGTERM and SIGHUP end it at any moment and leave nothing behind.
+
+The parent waits. At a signal it kills every process below it (tools in sessions of their own too), removes what was
+being written, and exits with 128 + the signal's number. No code of the program is interrupted, so none of it has to be
+ready for that; where files must appear together, `undisturbed` lets the end wait.
+"""
+
+import contextlib
+import ctypes
+import fcntl
+import os
+import shutil
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+RUN = "TALBOT_RUN"  # the environment's name of the run's folder: temporary files, and the two files below
+WRITTEN, LOCK = "written", "lock"
+ENDS = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
+SET_CHILD_SUBREAPER = 36  # linux/prctl.h: processes whose parent ended become this one's
+PATIENCE = 10.0  # s that files may take to appear
+
+
+def supervised(program: Callable[[], int]) -> int:
+    """The exit status of ``program``, run in a child; 128 + the number of the signal that ended it.
+
+    Inside a supervised run: the program's status, run here. A signal that this process ignores (nohup) is left ignored.
+    """
+    if _run():
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDS)
+        return program()
+    ends = {number for number in ENDS if signal.getsignal(number) != signal.SIG_IGN}
+    signal.pthread_sigmask(signal.SIG_BLOCK, {*ends, signal.SIGCHLD})
+    folder = Path(tempfile.mkdtemp(prefix="talbot-"))
+    ctypes.CDLL(None).prctl(SET_CHILD_SUBREAPER, 1)
+    child = os.fork()
+    if not child:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal, it comes to the whole group
+        for number in ENDS[1:]:
+            signal.signal(number, lambda *_: None)  # and is the default again in what is started
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {*ENDS, signal.SIGCHLD})
+        os.environ |= {RUN: str(folder), "TMPDIR": str(folder)}
+        tempfile.tempdir = None
+        return program()
+    number, status = _end_of(child, ends)
+    if number:
+        _wait_for_files(folder)
+    _kill_all(patience=0 if number else 1)
+    if number:
+        _remove_written(folder)
+        line = "interrupted" if number == signal.SIGINT else f"ended by {signal.Signals(number).name}"
+        clear = "\r\x1b[K" if sys.stderr.isatty() else ""
+        print(f"{clear}talbot: error: {line}; nothing was left half-written", file=sys.stderr)
+    shutil.rmtree(folder, ignore_errors=True)
+    return 128 + number if number else status
+
+
+@contextlib.contextmanager
+def undisturbed() -> Iterator[None]:
+    """Let the end of the run wait while files appear together. Not to be nested."""
+    folder = _run()
+    if not folder:
+        yield
+        return
+    with (folder / LOCK).open("a") as lock:
+        fcntl.flock(lock, fcntl.LOCK_SH)
+        yield
+
+
+def writing(folder: Path) -> None:
+    """Note a folder that is about to be made: at the run's end by a signal it goes with all that is in it.
+
+    Folders above it that do not exist yet go where they are empty then.
+    """
+    run = _run()
+    if run:
+        new = [path for path in folder.absolute().parents if not path.exists()]
+        with (run / WRITTEN).open("a") as file:
+            file.write("".join(f"{path}\0" for path in [*new, folder.absolute()]) + "\0")
+
+
+def _run() -> Path | None:
+    name = os.environ.get(RUN)
+    return Path(name) if name and os.path.isdir(name) else None
+
+
+def _end_of(child: int, ends: set[signal.Signals]) -> tuple[int, int]:
+    """Wait: (the signal that came, or that killed the child, or 0, status of the child)."""
+    while True:
+        number = signal.sigwait({*ends, signal.SIGCHLD})
+        if number != signal.SIGCHLD:
+            return number, 0
+        while (found := _reaped()) is not None:
+            if found[0] == child:
+                code = os.waitstatus_to_exitcode(found[1])
+                return max(0, -code), max(0, code)
+
+
+def _reaped() -> tuple[int, int] | None:
+    """A child that ended and its status; None where none has."""
+    try:
+        found = os.waitpid(-1, os.WNOHANG)
+    except ChildProcessError:
+        return None
+    return found if found[0] else None
+
+
+def _wait_for_files(folder: Path) -> None:
+    """Hold the lock of `undisturbed`, up to PATIENCE; it is let go when this process ends."""
+    lock = os.open(folder / LOCK, os.O_CREAT | os.O_WRONLY)
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        with contextlib.suppress(BlockingIOError):
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return
+        time.sleep(0.005)
+
+
+def _kill_all(patience: float) -> None:
+    """Kill all processes below this one, those that do not end by themselves in ``patience`` s."""
+    end = time.monotonic() + patience
+    while True:
+        while _reaped():
+            pass
+        below = _below(os.getpid())
+        if not below:
+            return
+        if time.monotonic() >= end:
+            for process in below:
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(process, signal.SIGKILL)
+        time.sleep(0.002)
+
+
+def _below(top: int) -> list[int]:
+    """Every process below ``top``, from /proc."""
+    children: dict[int, list[int]] = {}
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):  # it has ended
+            parent = int(path.read_text().rpartition(")")[2].split()[1])
+            children.setdefault(parent, []).append(int(path.parent.name))
+    found = [top]
+    for process in found:
+        found += children.get(process, [])
+    return found[1:]
+
+
+def _remove_written(run: Path) -> None:
+    with contextlib.suppress(FileNotFoundError):
+        groups = (run / WRITTEN).read_text().split("\0\0")
+        for group in reversed([group.split("\0") for group in groups if group]):
+            *new, folder = map(Path, group)
+            shutil.rmtree(folder, ignore_errors=True)
+            for path in new:
+                with contextlib.suppress(OSError):
+                    path.rmdir()

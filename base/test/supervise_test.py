@@ -1,0 +1,129 @@
+"""A supervised program that a signal ends: no process and no file of it is left, and files that appear together do."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from base.files import PART
+from base.paths import ROOT
+
+PROGRAM = """
+import os, signal, subprocess, sys, time
+from pathlib import Path
+from base.files import atomic, staged
+from base.supervise import supervised
+out = Path(sys.argv[1])
+def tools():
+    for _ in range(200):
+        subprocess.Popen(["sleep", "20"], start_new_session=True)
+        print("begun", flush=True)
+    time.sleep(20)
+def orphans():
+    subprocess.run(["sh", "-c", "setsid sh -c 'sleep 20 & sleep 20' & sleep 20 &"])
+    print("begun", flush=True)
+    time.sleep(20)
+def writes():
+    with staged(out / "new" / "out") as part, atomic(out / "other" / "file"):
+        (part / "half").write_text("")
+        print("begun", flush=True)
+        time.sleep(20)
+def publishes():
+    with staged(out / "out") as part:
+        for i in range(20000):
+            (part / str(i)).touch()
+        print("begun", flush=True)
+    time.sleep(20)
+def crashes():
+    with atomic(out / "file"):
+        os.kill(os.getpid(), signal.SIGSEGV)
+def leaves():
+    subprocess.Popen(["sleep", "20"], start_new_session=True)
+    return 7
+sys.exit(supervised(globals()[sys.argv[2]]))
+"""
+
+
+def started(folder, words, prepare=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)):
+    """A Python with ``words`` in a session of its own, known by TEST_MARK=``folder``, in which Ctrl-C counts."""
+    environment = {key: value for key, value in os.environ.items() if key != "TALBOT_RUN"}
+    return subprocess.Popen(
+        [sys.executable, *words],
+        cwd=ROOT,
+        env=environment | {"TEST_MARK": str(folder), "TMPDIR": str(folder)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+        preexec_fn=prepare,
+    )
+
+
+def program(out, name, **more):
+    """The program on its way, and the text by which its processes are known."""
+    return started(out, ["-c", PROGRAM, str(out), name], **more), f"TEST_MARK={out}"
+
+
+def running(mark):
+    """Processes whose environment has ``mark``."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/environ"):
+        try:
+            if mark.encode() in path.read_bytes().split(b"\0"):
+                found.append(path.parent.name)
+        except OSError:
+            pass
+    return found
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("whole_group", [False, True])
+@pytest.mark.parametrize("name", ["tools", "orphans", "writes"])
+def test_nothing_is_left(tmp_path, name, sent, whole_group):
+    process, mark = program(tmp_path, name)
+    process.stdout.readline()
+    assert len(running(mark)) > 1
+    (os.killpg if whole_group else os.kill)(process.pid, sent)
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 128 + sent and err.count("\n") == 1 and "nothing was left half-written" in err
+    assert not running(mark) and not list(tmp_path.iterdir())
+
+
+def test_files_that_appear_together_do(tmp_path):
+    process, mark = program(tmp_path, "publishes")
+    process.stdout.readline()
+    while not (tmp_path / "out" / "0").exists():
+        pass
+    seen = len(os.listdir(tmp_path / "out"))
+    process.terminate()
+    process.communicate(timeout=20)
+    assert process.returncode == 143 and seen < 20000
+    names = os.listdir(tmp_path / "out")
+    assert len(names) == 20000 and not any(name.startswith(PART) for name in names) and not running(mark)
+
+
+def test_a_program_that_crashes_is_cleared_away_too(tmp_path):
+    process, mark = program(tmp_path, "crashes")
+    _, err = process.communicate(timeout=20)
+    assert process.returncode == 139 and "SIGSEGV" in err
+    assert not running(mark) and not list(tmp_path.iterdir())
+
+
+def test_a_tool_that_a_program_forgets_ends_with_it(tmp_path):
+    process, mark = program(tmp_path, "leaves")
+    process.communicate(timeout=20)
+    assert process.returncode == 7 and not running(mark)
+
+
+def test_an_ignored_signal_stays_ignored(tmp_path):
+    """As nohup does it."""
+    process, mark = program(tmp_path, "leaves", prepare=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+    for _ in range(20):
+        process.send_signal(signal.SIGHUP)
+        time.sleep(0.01)
+    process.communicate(timeout=20)
+    assert process.returncode == 7 and not running(mark)

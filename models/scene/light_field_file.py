@@ -1,0 +1,203 @@
+"""Light fields in files, as the data sets and NumPy have them.
+
+x.npy               the array
+x.npz               `light_field` (or the only array), and perhaps `disparity`
+folder              input_Cam000.png ... row by row, as HCI's 4D data set [Honauer2016], and gt_disp_lowres.pfm if it is
+                    there; or out_RR_CC_*.png, as the Stanford archive [Vaish2008]
+image, with views   one picture of views x views tiles of one size
+
+Pictures are 8-bit or 16-bit sRGB codes, or floating-point TIFF (linear). Folders are written as HCI's.
+"""
+
+import math
+import re
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from PIL import Image
+
+from models.parameters import ParameterError, check_int
+
+from .light_field import LightField
+from .picture_file import FLOAT_MAX, encode16, read_picture
+
+SUFFIXES = ".npy", ".npz"
+PICTURES = "png|jpe?g|tiff?|webp|bmp|ppm|pgm"
+HCI = re.compile(rf"input_Cam(\d{{3}})\.(?:{PICTURES})", re.I)
+STANFORD = re.compile(rf"out_(\d+)_(\d+)(?:_.*)?\.(?:{PICTURES})", re.I)
+DISPARITY = "gt_disp_lowres.pfm"
+BYTES_MAX = 1 << 32  # of a light field in memory
+TILED = re.compile(rf"(.+\.(?:{PICTURES})):(.*)", re.I | re.S)  # on the command line: tiles.png:9
+
+
+def named(scene: str) -> Callable[[], LightField] | None:
+    """What reads a scene's name on the command line, where it is a light field's.
+
+    Parameters
+    ----------
+    scene : str
+        A folder, a .npy or .npz file, or image:views.
+
+    Returns
+    -------
+    callable or None
+        Reads it; None for another kind of scene.
+    """
+    tiled = TILED.fullmatch(scene)
+    if tiled and not Path(scene).exists():
+        views = int(tiled[2]) if tiled[2].isdecimal() and len(tiled[2]) < 9 else tiled[2]
+        return lambda: read_light_field(tiled[1], views)
+    return (lambda: read_light_field(scene)) if Path(scene).is_dir() or scene.lower().endswith(SUFFIXES) else None
+
+
+def read_light_field(path: str | Path, views: Any = None) -> LightField:
+    """Read a light field.
+
+    Parameters
+    ----------
+    path : path
+        As the head of this file lists.
+    views : int, optional
+        Views along each axis, 1..31; of one tiled image alone, which must have it.
+
+    Returns
+    -------
+    LightField
+        With the file's or folder's name.
+
+    Raises
+    ------
+    ParameterError
+        For what is missing, damaged, incomplete or of a wrong shape or type.
+    """
+    path = Path(path)
+    numpy = path.suffix.lower() in SUFFIXES
+    if views is not None and (numpy or path.is_dir()):
+        raise ParameterError(f"views = {views!r}: must be left out, {str(path)!r} has its own")
+    if path.is_dir():
+        return _folder(path)
+    if numpy:
+        return _numpy(path)
+    picture = read_picture(path)
+    check_int("views", views, 1, 31)
+    views = int(views or 1)
+    height, width = picture.shape[:2]
+    if height % views or width % views:
+        raise ParameterError(f"views = {views}: must divide the image's height and width, {height} x {width}")
+    tiles = picture.reshape(views, height // views, views, width // views, *picture.shape[2:])
+    return LightField(tiles.swapaxes(1, 2), name=path.stem)
+
+
+def write_light_field(light_field: LightField, path: str | Path) -> None:
+    """Write a light field in the form of the path's name.
+
+    Parameters
+    ----------
+    light_field : LightField
+        The light field. Pictures take its codes as they are; linear radiance becomes sRGB codes, gray of 16 bits,
+        colours of 8.
+    path : path
+        x.npy, x.npz, an image file, or a folder, which is created. Disparity goes into .npz and folders alone.
+
+    Raises
+    ------
+    ParameterError
+        For radiance above 1, or 16-bit colours, in pictures.
+    OSError
+        If it cannot be written.
+    """
+    path, values = Path(path), light_field.values
+    if path.suffix.lower() == ".npy":
+        np.save(path, values)
+    elif path.suffix.lower() == ".npz":
+        if light_field.disparity is None:
+            np.savez_compressed(path, light_field=values)
+        else:
+            np.savez_compressed(path, light_field=values, disparity=light_field.disparity)
+    elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
+        tiles = _codes(values).swapaxes(1, 2)
+        side = light_field.views
+        Image.fromarray(tiles.reshape(side * tiles.shape[1], side * tiles.shape[3], *tiles.shape[4:])).save(path)
+    else:
+        codes = _codes(values)
+        path.mkdir(exist_ok=True)
+        for i, view in enumerate(codes.reshape(-1, *codes.shape[2:])):
+            Image.fromarray(view).save(path / f"input_Cam{i:03d}.png")
+        if light_field.disparity is not None:
+            Image.fromarray(light_field.disparity.astype(np.float32)).save(path / DISPARITY)
+
+
+def _codes(values: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """What a PNG can hold of them: uint8, or uint16 of gray."""
+    colour = values.ndim == 5
+    if values.dtype.kind == "f":
+        if values.max() > 1:
+            raise ParameterError(f"light field = {values.max():g}: must be at most 1 in pictures; write .npy or .npz")
+        codes = encode16(values.astype(float)) * (255 if colour else 65535)
+        return np.rint(codes).astype(np.uint8 if colour else np.uint16)
+    if colour and values.dtype == np.uint16:
+        raise ParameterError("light field = uint16 colours: must be 8 bits in pictures; write .npy or .npz")
+    return values
+
+
+def _folder(path: Path) -> LightField:
+    found = sorted(entry for entry in path.iterdir() if entry.is_file())
+    hci = {int(m[1]): entry for entry in found if (m := HCI.fullmatch(entry.name))}
+    stanford = {(int(m[1]), int(m[2])): entry for entry in found if (m := STANFORD.fullmatch(entry.name))}
+    count = len(hci) or len(stanford)
+    if not count:
+        raise ParameterError(
+            f"scene = {str(path)!r}: must be an image file, not a folder without input_Cam000.png ... "
+            "or out_00_00*.png ..."
+        )
+    side = math.isqrt(count)
+    check_int("views", side, 1, 31)
+    files = {divmod(i, side): entry for i, entry in hci.items()} if hci else stanford
+    gaps = [place for place in np.ndindex(side, side) if place not in files]
+    if gaps or count != side * side:
+        missing = f"row {gaps[0][0]}, column {gaps[0][1]}" if gaps else "another row"
+        raise ParameterError(
+            f"scene = {str(path)!r}: has {count} views: must be a square of them; "
+            f"of {side} x {side} is missing {missing}"
+        )
+    first = read_picture(files[0, 0])
+    if first.nbytes * count > BYTES_MAX:
+        raise ParameterError(f"scene = {str(path)!r}: {first.nbytes * count} bytes: must be at most {BYTES_MAX}")
+    values = np.empty((side, side, *first.shape), first.dtype)
+    for place in np.ndindex(side, side):
+        view = first if place == (0, 0) else read_picture(files[place])
+        if view.shape != first.shape or view.dtype != first.dtype:
+            raise ParameterError(
+                f"scene = {str(files[place])!r}: {view.dtype} {view.shape}: must be as the first view, "
+                f"{first.dtype} {first.shape}"
+            )
+        values[place] = view
+    disparity = read_picture(path / DISPARITY, -FLOAT_MAX, FLOAT_MAX) if (path / DISPARITY).is_file() else None
+    return LightField(values, disparity, path.resolve().name)
+
+
+def _numpy(path: Path) -> LightField:
+    if not path.is_file():
+        raise ParameterError(f"scene = {str(path)!r}: no such file; must be a readable file")
+    disparity = None
+    try:
+        if path.suffix.lower() == ".npy":
+            values = np.load(path, mmap_mode="r", allow_pickle=False)
+        else:
+            if any(item.file_size > BYTES_MAX for item in zipfile.ZipFile(path).infolist()):
+                raise ParameterError(f"scene = {str(path)!r}: arrays must have at most {BYTES_MAX} bytes")
+            with np.load(path, allow_pickle=False) as archive:
+                key = archive.files[0] if len(archive.files) == 1 else "light_field"
+                if key not in archive:
+                    raise ParameterError(f"scene = {str(path)!r}: must hold an array named light_field, or one alone")
+                values = archive[key]
+                disparity = archive["disparity"] if key == "light_field" and "disparity" in archive else None
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
+        if isinstance(error, ParameterError):
+            raise
+        raise ParameterError(f"scene = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None
+    return LightField(values, disparity, path.stem)

@@ -1,0 +1,65 @@
+"""A microcontroller at a project's pins: programs for host.v, which runs in Icarus; its comment lists the words."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from base.tools import run
+from models.parameters import AmpTiming
+from rtl.harness.icarus import compile_program
+
+BENCH = Path(__file__).with_name("host.v")
+ADDRESS, WAIT, SHOW, ROW, END = 0x100, 0x300, 0x400, 0x500, 0x600
+START, RESULTS = 3, 4  # of the divider: the address that starts a division, bytes of its result
+HOLD_FREE = 0x201
+DURATIONS = "t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard"  # of the amplifier control, 16 bits each
+
+
+def divisions(requests: Iterable[tuple[int, int, int]]) -> list[int]:
+    """Program for the divider: for each request (x, y, noise floor / 4) the four bytes of its result are shown."""
+    words = []
+    for x, y, floor in requests:
+        high = floor << 2 | (y >> 8 & 1) << 1 | x >> 8 & 1
+        words += [ADDRESS, x & 255, y & 255, high, 0, WAIT]
+        for address in range(RESULTS):
+            words += [ADDRESS | address, SHOW]
+    return words
+
+
+def row(timing: AmpTiming, four_tap: bool, cycles: int) -> list[int]:
+    """Program for the amplifier control: one row, shown in at least so many ``cycles``."""
+    durations = [getattr(timing, name) for name in DURATIONS]
+    data = [byte for value in durations for byte in (value & 255, value >> 8)] + [timing.n_cm]
+    return [HOLD_FREE, ADDRESS, *data, ROW | cycles // 256 + 1, int(four_tap)]
+
+
+EXAMPLES = {
+    "tt_um_talbot_divider": divisions(
+        [
+            (0, 0, 0),
+            (100, 100, 0),
+            (-256, 255, 3),
+            (255, -17, 9),
+            (-31, -200, 63),
+            (88, 3, 1),
+            (-5, 6, 0),
+            (0, -256, 20),
+        ]
+    ),
+    "tt_um_talbot_amp_ctrl": row(AmpTiming(9, 60, 4, 5, 6, 7, 3), True, 1023),
+}
+
+
+def simulate(
+    top: str, words: Sequence[int], sources: Sequence[Path], folder: Path, more: str = "", options: Sequence[str] = ()
+) -> list[str]:
+    """Run the program ``words`` on the module ``top`` of the Verilog files ``sources``; the lines that it shows.
+
+    folder: of the files that Icarus reads. more: Verilog beside the bench, with a module Tap. options: of the
+    simulation. Raises IcarusError, ToolError.
+    """
+    program = folder / "host.hex"
+    program.write_text("\n".join(f"{word:03x}" for word in [*words, END]) + "\n")
+    texts = [f"`define TOP {top}\n{BENCH.read_text()}", *filter(None, [more])]
+    compile_program(folder / "host.vvp", sources, "host", texts, *(("Tap",) if more else ()))
+    said = run(["vvp", "-n", folder / "host.vvp", f"+program={program}", *options]).splitlines()
+    return [line for line in said if line and line[0] in "01xzte"]

@@ -1,0 +1,1 @@
+"""What `import talbot` offers, a module for each subject."""

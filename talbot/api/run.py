@@ -1,0 +1,105 @@
+"""One frame: its samples, its bytes, its figures, and what can be made of them."""
+
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from flow.frame import outputs, pictures
+from flow.frame.figures import summarize, summarize_golden
+from flow.frame.result import FrameResult, GoldenResult
+from models.parameters import ParameterError
+from models.pixel import depth_of
+from models.reconstruct import white_sum
+from models.scene import RADIANCE_MAX
+
+from .image import Image, embedded, png, table
+from .light_field import LightField
+
+WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field")} | {
+    "tof": ("image", "depth")
+}
+SHOWN = ("scene", "mode", "rows", "cols", "stream_bytes", "raw_bytes", "conversions_made", "conversions_left_out") + (
+    *("snr_db", "image_psnr_db", "light_field_psnr_db", "cycles", "frame_s_at_clock", "stream_mismatches"),
+)
+
+
+class Run:
+    """One frame that was read out, by the chip's Verilog or by the golden model.
+
+    result: everything that was computed on the way (flow/frame/result.py).
+    """
+
+    def __init__(self, result: GoldenResult) -> None:
+        self.result = result
+
+    @property
+    def samples(self) -> npt.NDArray[np.int16]:
+        """The decoded samples, int16 (rows, cols, samples of a pixel), 0 where nothing is read.
+
+        A pixel has 1 sample in edge mode (-128..127) and in image mode (0..255), 2 in raw mode (twice each diode), 4 in
+        tof mode, or phase and amplitude.
+        """
+        return self.result.decoded.samples
+
+    @property
+    def read(self) -> npt.NDArray[np.bool_]:
+        """Pixels that were read, bool (rows, cols)."""
+        return self.result.decoded.read
+
+    @property
+    def stream(self) -> bytes:
+        """The bytes that left the chip."""
+        return self.result.stream
+
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """The figures, as in summary.json of `make sim`; of the golden model without cycles and energy."""
+        result = self.result
+        return summarize(result) if isinstance(result, FrameResult) else summarize_golden(result)
+
+    def reconstruct(self, what: str = "image", *, disparity: npt.ArrayLike | None = None) -> Image | LightField:
+        """What the samples show.
+
+        image: 2-D, relative radiance, Image (rows, cols); in edge mode rebuilt from the differences, of mean 0.
+        edges (edge and raw mode): one image of differences a pixel type, in codes, Image (types, tile rows, tile cols).
+        light_field (raw mode): the linear estimate, LightField of linear radiance in as many views as the scene has.
+        depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
+
+        disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.
+        Raises ParameterError.
+        """
+        result, mode = self.result, self.result.request.frame.mode
+        if what not in WHAT[mode]:
+            raise ParameterError(f"what = {what!r}: must be one of {', '.join(WHAT[mode])} in {mode} mode")
+        if disparity is not None and (mode, what) != ("edge", "image"):
+            raise ParameterError("disparity = an array: must be left out, it is of an image from edges")
+        if what == "light_field":
+            white = white_sum(result.request.sensor, result.request.frame.timing)
+            values = np.clip(result.light_field / white, 0, RADIANCE_MAX)
+            return LightField(values, result.exposed.scene.disparity, f"{result.request.name}_estimate")
+        if what == "edges":
+            return Image.of(result.edges)
+        if what == "depth":
+            phase, strength = result.echo
+            far = depth_of(phase, result.request.sensor.electrical.f_mod)
+            return Image.of(np.where(self.read & (strength > 0), far, np.nan))
+        if disparity is not None:
+            scene = replace(result.exposed.scene, disparity=np.asarray(disparity, float))
+            result = replace(result, exposed=replace(result.exposed, scene=scene))
+        return Image.of(result.image)
+
+    def __repr__(self) -> str:
+        s = self.summary
+        by = "the chip's Verilog" if isinstance(self.result, FrameResult) else "the golden model"
+        return f"<Run of {s['scene']} in {s['mode']} mode by {by}: {s['rows']} x {s['cols']}, {len(self.stream)} bytes>"
+
+    def _repr_png_(self) -> bytes:
+        shown = outputs.shown(self.result, self.summary)
+        return png(pictures.overview([(picture.name, picture.image) for picture in shown]))
+
+    def _repr_html_(self) -> str:
+        figures = {name: self.summary[name] for name in SHOWN if name in self.summary}
+        return table(figures) + embedded(self._repr_png_())

@@ -1,0 +1,251 @@
+"""A sensor: its parameters by name, and frames through its Verilog and its golden model."""
+
+import inspect
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any, Self, TypedDict, Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from base.files import write
+from base.progress import Steps
+from flow.frame import job
+from flow.frame.chip_picture import chip_svg
+from flow.frame.request import CONVERTERS, FrameRequest, request
+from models.parameters import (
+    STANDARD,
+    AmpTiming,
+    ConverterParameters,
+    FrameParameters,
+    ParameterError,
+    PixelType,
+    SensorParameters,
+    TileParameters,
+    Window,
+    check_choice,
+    check_int,
+    read_sensor,
+    sensor_of,
+    sensor_text,
+)
+from models.parameters.sensor_file import keys, nearest
+from models.scene import LightField
+from models.scene import scenes as named_scenes
+
+from .run import Run
+
+scenes = tuple(named_scenes)
+
+Rows = Sequence[Sequence[PixelType]]
+Seen = str | Path | LightField | npt.NDArray[Any]
+
+
+class Settings(TypedDict, total=False):
+    """What `Sensor.simulate` says of them."""
+
+    seed: int
+    noise: float
+    views: int | None
+    depth: str | Path | None
+    types: int | Iterable[int]
+    window: tuple[int, int, int, int] | None
+    decimation: int
+    threshold: int
+    phase: bool
+    noise_floor: int
+    timing: Mapping[str, int]
+    overlap: bool
+    test_pattern: bool
+    frame_number: int
+
+
+OBJECTS = "tile", "converter"  # given whole: some of their fields have the names of others
+NAMES = {
+    name.rpartition(".")[2]: name
+    for name in keys()
+    if name.partition(".")[0] not in OBJECTS and name not in ("array", "optics", "optics.camera", "electrical", "chip")
+}
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Sensor:
+    """A sensor of angle-sensitive pixels, by default the thesis's: 384 x 384 pixels in tiles of 4 x 6, f/1.2, 8 lanes.
+
+    Sensor(rows=64, cols=96, m=0.5): any parameter by its name. `print(talbot.Sensor().text)` shows all, each with its
+    meaning, unit and range: of the array (rows, cols, pitch), optics (m, aperture_sigma, ...), the camera (f_number,
+    focal_length, focus, scale, exit_pupil), the photodiodes (white_current, full_well, ...) and the chip (lanes,
+    divider, f_clk, ...).
+
+    tile: rows of PixelType, 1..4 of 1..6 each, [[a, b], [c, d]]; or TileParameters. A PixelType has beta, gamma_deg,
+    alpha, perhaps an m of its own, or response=f: a function of the incidence angles theta_x and theta_y, arrays (n,)
+    in rad, that gives the response of both diodes, (2, n), 0 or more.
+    converter: 'typical', 'ideal', or a dict of inl, dnl, offset, noise, ktc (LSB) and seed.
+
+    Raises ParameterError for an unknown name or a value out of range.
+    """
+
+    parameters: SensorParameters
+
+    def __init__(
+        self,
+        *,
+        tile: TileParameters | Rows | None = None,
+        converter: str | Mapping[str, float] | ConverterParameters | None = None,
+        **parameters: Any,
+    ) -> None:
+        object.__setattr__(self, "parameters", _changed(STANDARD, tile, converter, parameters))
+
+    @classmethod
+    def of(cls, parameters: SensorParameters) -> Self:
+        """The sensor of these parameters."""
+        sensor = cls.__new__(cls)
+        object.__setattr__(sensor, "parameters", parameters)
+        return sensor
+
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """The sensor in a file, sensor.toml. Raises ParameterError."""
+        return cls.of(read_sensor(path))
+
+    def save(self, path: str | Path) -> None:
+        """Write it as a file for `load` and `make sim SENSOR=file`. Raises ParameterError, OSError."""
+        write(path, self.text)
+
+    @property
+    def text(self) -> str:
+        """All parameters as TOML. Raises ParameterError where a pixel type has a function for a response."""
+        return sensor_text(self.parameters)
+
+    def replace(
+        self,
+        *,
+        tile: TileParameters | Rows | None = None,
+        converter: str | Mapping[str, float] | ConverterParameters | None = None,
+        **parameters: Any,
+    ) -> "Sensor":
+        """This sensor with other values of some parameters. Raises ParameterError."""
+        return Sensor.of(_changed(self.parameters, tile, converter, parameters))
+
+    def simulate(self, scene: Seen = "motorcycle", mode: str = "edge", **settings: Unpack[Settings]) -> Run:
+        """One frame through the chip's Verilog, as `make sim` does it, and through the golden model beside it.
+
+        The simulator is compiled for each size of array and tile, then kept.
+
+        scene: one of `talbot.scenes`, an image, a light field's file or folder, or a light field or its array.
+        mode: edge (differences), image (sums), raw (both diodes) or tof (four taps). settings:
+
+        seed: of every random draw, 0..2**32-1 (1). noise: times the physical noise, 0..100 (1).
+        views: of the capture along the pupil's diameter, 1..31, or None for as many as it needs. depth: file of an
+        image's depth.
+        types: numbers of the pixel types to read, or a mask of them (all). window: tiles to read, (row0, row1, col0,
+        col1), both ends included (all). decimation: log2 of the tile step, 0..3 (0).
+        threshold: in edge mode, |code| below it is left out, 0..127 (10). phase: in tof mode, phase and amplitude from
+        the chip's divider (False); noise_floor: amplitude below which a phase is not valid, 0..255 (0).
+        timing: cycles of the amplifier's phases, {'t_int': 512, ...}: t_reset, t_int, t_cm, t_settle, t_read, t_guard,
+        1..65535, and n_cm, common-mode resets, 0..255. overlap: integrate a row while another converts (True).
+        test_pattern: digital, in place of the pixels (False). frame_number: 0..65535 (0).
+
+        Raises ParameterError, and ToolError where the simulator cannot be made.
+        """
+        with Steps(job.STEPS[:-1]) as steps:
+            return Run(job.simulate_frame(self._request(scene, mode, settings), steps.note))
+
+    def golden(self, scene: Seen = "motorcycle", mode: str = "edge", **settings: Unpack[Settings]) -> Run:
+        """The frame of `simulate` by the golden model alone: the same bytes, no cycles, no energy."""
+        with Steps(job.STEPS[:-1]) as steps:
+            return Run(job.golden_result(self._request(scene, mode, settings), steps.note))
+
+    def _request(self, scene: Seen, mode: str, settings: Settings) -> FrameRequest:
+        known = Settings.__annotations__
+        for name in settings.keys() - known.keys():
+            raise ParameterError(f"{name} = {settings[name]!r}: must be a setting of a frame{nearest(name, known)}")
+        given: dict[str, Any] = dict(settings)
+        types, window, timing = (given.pop(name, None) for name in ("types", "window", "timing"))
+        if types is not None:
+            given["mask"] = types if isinstance(types, int) else _mask(types)
+        if timing is not None:
+            _check_names("timing", timing, [item.name for item in fields(AmpTiming)])
+            given["timing"] = AmpTiming(**timing)
+        if window is not None:
+            if len(window) != 4:
+                raise ParameterError(f"window = {window!r}: must be (row0, row1, col0, col1) in tiles")
+            cut = Window(*window)
+            given["window"] = lambda full: cut
+        if isinstance(scene, str | Path):
+            scene = str(scene)
+        elif not isinstance(scene, LightField):
+            scene = LightField(np.asarray(scene))
+        return request(sensor=self.parameters, scene=scene, mode=mode, **given)
+
+    def __repr__(self) -> str:
+        """What is not the default, by name."""
+        own = {name: value for name, value in _values(self.parameters).items() if value != _values(STANDARD)[name]}
+        whole = {name: getattr(self.parameters, name) for name in OBJECTS}
+        own |= {name: value for name, value in whole.items() if value != getattr(STANDARD, name)}
+        return f"Sensor({', '.join(f'{name}={value!r}' for name, value in own.items())})"
+
+    def _repr_html_(self) -> str:
+        return chip_svg(self.parameters, FrameParameters(self.parameters.full_window))
+
+
+def _mask(types: Iterable[int]) -> int:
+    mask = 0
+    for kind in types:
+        check_int("types", kind, 0, 23)
+        mask |= 1 << int(kind)
+    return mask
+
+
+def _check_names(field: str, given: Mapping[str, Any], known: Sequence[str]) -> None:
+    for name in given:
+        if name not in known:
+            raise ParameterError(f"{field} = {dict(given)!r}: {name} must be one of its keys{nearest(name, known)}")
+
+
+def _values(parameters: SensorParameters) -> dict[str, Any]:
+    """Every parameter that has a name of its own."""
+    found = {}
+    for name, path in NAMES.items():
+        value: Any = parameters
+        for step in path.split("."):
+            value = getattr(value, step)
+        found[name] = value
+    return found
+
+
+def _changed(
+    base: SensorParameters,
+    tile: TileParameters | Rows | None,
+    converter: str | Mapping[str, float] | ConverterParameters | None,
+    named: Mapping[str, Any],
+) -> SensorParameters:
+    """``base`` with these in place of its own."""
+    tables: dict[str, Any] = {}
+    for name, value in named.items():
+        if name not in NAMES:
+            near = nearest(name, [*OBJECTS, *NAMES])
+            raise ParameterError(f"{name} = {value!r}: must be a parameter of a sensor{near}")
+        *path, last = NAMES[name].split(".")
+        inner = tables
+        for step in path:
+            inner = inner.setdefault(step, {})
+        inner[last] = value
+    if tile is not None:
+        tables["tile"] = tile if isinstance(tile, TileParameters) else TileParameters.of_rows(tile)
+    if isinstance(converter, str):
+        check_choice("converter", converter, CONVERTERS)
+        converter = CONVERTERS[converter]
+    if converter is not None:
+        tables["converter"] = converter
+    return sensor_of(tables, base)
+
+
+# A notebook completes the names and shows their defaults
+Sensor.__signature__ = inspect.Signature(  # pyright: ignore[reportAttributeAccessIssue]
+    [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value)
+        for name, value in (_values(STANDARD) | {"tile": None, "converter": "typical"}).items()
+    ]
+)

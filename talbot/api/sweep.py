@@ -1,0 +1,44 @@
+"""Error against run time and cost: the sweeps of `make tradeoff`, and sweeps of one's own."""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from base.charts import save
+from flow.tradeoff.sweeps import SWEEPS, measured
+from models.parameters import check_choice
+
+from .image import embedded, text
+
+
+@dataclass(frozen=True, eq=False)
+class Tradeoff:
+    """A table and its plot. text: what was varied and measured. rows: a dict for each point. figure: Matplotlib's."""
+
+    text: str
+    rows: Sequence[dict[str, Any]]
+    figure: Figure
+
+    def _repr_png_(self) -> bytes:
+        out = io.BytesIO()
+        save(self.figure, out)
+        return out.getvalue()
+
+    def _repr_html_(self) -> str:
+        head = "".join(f"<th>{name}</th>" for name in self.rows[0])
+        body = "".join(f"<tr>{''.join(f'<td>{text(v)}</td>' for v in row.values())}</tr>" for row in self.rows)
+        return f"<p>{self.text}</p>{embedded(self._repr_png_())}<table><tr>{head}</tr>{body}</table>"
+
+
+def tradeoff(name: str, *, quick: bool = False) -> Tradeoff:
+    """Measure one of the trade-offs of `make tradeoff`.
+
+    name: divider, threshold, views, pupil, precision or noise. quick: fewer points of a smaller array. Raises
+    ParameterError, ToolError.
+    """
+    check_choice("name", name, list(SWEEPS))
+    rows = measured(name, quick)
+    return Tradeoff(" ".join((SWEEPS[name].__doc__ or "").split()), rows, SWEEPS[name].plot(rows))

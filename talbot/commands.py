@@ -1,0 +1,78 @@
+"""The open design flow for angle-sensitive-pixel sensors.
+
+Exit status: 0 right, 1 a check fails (the chip and its golden model differ, a bound is missed, a stream is damaged),
+2 bad input or environment (one line on standard error: field, value and range), 130 Ctrl-C, 143 terminated.
+"""
+
+import argparse
+import importlib
+from collections.abc import Sequence
+from types import ModuleType
+
+from base.command import Parser, add_command, execute
+
+from .make import arguments
+
+# name -> (module, help). A module is imported when its command is chosen.
+COMMANDS = {
+    "sim": ("flow.frame.command", "a scene through the golden models and the chip's Verilog"),
+    "sensor": ("flow.sensor", "the standard sensor as a file to start from, or a file checked and completed"),
+    "decode": ("flow.decode", "a byte stream of the chip back to samples (.npz)"),
+    "tradeoff": ("flow.tradeoff.command", "error against run time: tables and plots"),
+    "stability": ("flow.stability", "stiff and extreme cases: bound against measured"),
+    "formats": ("flow.formats.command", "stream formats and scan orders compared"),
+    "sizes": ("flow.sizes.command", "cells and gate equivalents of every block"),
+    "divider": ("flow.simulate.divider.exhaustive", "every input of a divider through its Verilog"),
+    "layout": ("flow.layout.command", "a design's Verilog to a layout with all its checks"),
+    "layout-sweep": ("flow.layout.sweep.command", "layouts of variants, and of the placer's efforts"),
+    "layout-compare": ("flow.layout.report.compare", "finished layouts side by side"),
+    "openroad": ("flow.openroad.command", "a design by OpenROAD: scripts, and a run"),
+    "openroad-compare": ("flow.openroad.compare", "both back ends, design by design"),
+    "openroad-fit": ("flow.openroad.fit", "Tiny Tapeout projects against the room in their tiles"),
+    "verilog": ("rtl.export", "the chip and its blocks as Verilog, linted"),
+    "replay": ("rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),
+    "document": ("flow.host.document.command", "the documents for a host: register map, pins, tile, C header"),
+    "footprints": ("pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
+    "cells": ("cells.command", "a cell library characterized at one corner"),
+    "cells-report": ("cells.report.command", "the characterizer against a foundry's tables"),
+    "cells-stability": ("cells.stability", "stiff and extreme cases of the characterizer"),
+    "cells-compact": ("cells.compact.command", "the library Compact drawn and checked"),
+    "cells-compact-area": ("cells.compact.area", "our blocks on Compact and on sky130_fd_sc_hd"),
+    "cells-compact-search": ("cells.compact.search", "narrower cells of Compact by a longer search"),
+    "formal": ("verif.formal.command", "every property proven, and that each catches its broken twin"),
+    "coverage": ("verif.coverage.command", "line, toggle, branch, state machines and test plans"),
+    "mutate": ("verif.mutation.command", "bugs planted in the RTL, each of which a test must find"),
+    "fuzz": ("verif.fuzz.command", "a million inputs for the decoder and the host"),
+    "bench": ("verif.bench.command", "cocotb benches in Icarus and in Verilator"),
+    "stuck-at": ("verif.stuck_at.command", "stuck-at faults of the chip's gates that a test at its pins detects"),
+    "suite": ("verif.suite.command", "every test, counted by block and level"),
+    "verify": ("verif.report.command", "all of these six, and their report"),
+    "handoff": ("flow.handoff.command", "one archive of a finished layout"),
+}
+
+
+def parser(chosen: str = "") -> Parser:
+    """The parser of all commands, with the arguments of ``chosen`` alone."""
+    top = Parser(prog="talbot", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    for name, (_, text) in COMMANDS.items():
+        sub = commands.add_parser(name, help=text)
+        if name == chosen:
+            add_command(sub, command(name))
+    return top
+
+
+def command(name: str) -> ModuleType:
+    """The module of a command, imported now."""
+    return importlib.import_module(COMMANDS[name][0])
+
+
+def main(argv: Sequence[str]) -> int:
+    """Run the command of ``argv``; returns the exit status. '--make', from the Makefile, is for `talbot.make`."""
+    words = list(argv)
+    if words[:1] == ["--make"]:
+        _, given, name, *fixed = words
+        alone = Parser(prog=f"talbot {name}")
+        add_command(alone, command(name))
+        words = [name, *arguments(alone, given, fixed)]
+    return execute(parser(words[0] if words else ""), words)

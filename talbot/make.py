@@ -1,0 +1,65 @@
+"""Variables of make's command line as options of a command: `make sim SCENE=coins` is `talbot sim --scene=coins`.
+
+The Makefile names the target and the variables of its own (`--make 'sim PYTHON PDK_ROOT'`); every other one must be an
+argument of the command. Values come from MAKEFLAGS as they were typed: no shell and no make has expanded them.
+"""
+
+import argparse
+import os
+import re
+import sys
+from collections.abc import Mapping, Sequence
+
+from base.command import Parser
+from models.parameters.sensor_file import nearest
+
+YES, NO = ("1", "yes", "true", "on"), ("0", "no", "false", "off")
+
+
+def variables(flags: str) -> dict[str, str]:
+    """Name to value of the variables in ``flags``, the text of MAKEFLAGS: after ' -- ', with make's quoting."""
+    text = f" {flags}".partition(" -- ")[2]
+    found = {}
+    for word in re.findall(r"(?:\\.|[^ \t\\])+", text, re.DOTALL):
+        name, _, value = re.sub(r"\\(.)", r"\1", word, flags=re.DOTALL).partition("=")
+        found[name.rstrip(":")] = value.replace("$$", "$")
+    return found
+
+
+def arguments(
+    parser: Parser, given: str, fixed: Sequence[str], environment: Mapping[str, str] = os.environ
+) -> list[str]:
+    """The arguments for ``parser``, a command's own: ``fixed``, which the target passes itself, then the variables.
+
+    given: the target, then the variables that are not for the command. A variable that neither knows ends the program
+    with status 2 and the nearest name; in a make that another make started it may be that one's, and is left alone.
+    """
+    target, *own = given.split()
+    known = {action.dest.upper(): action for action in parser.actions if action.option_strings or not fixed}
+    typed = {name: v for name, v in variables(environment.get("MAKEFLAGS", "")).items() if name not in own}
+    for name in sorted(typed.keys() - known.keys()) if environment.get("MAKELEVEL") == "1" else ():
+        must = nearest(name.upper(), [*known, *own], 0.6)
+        parser.error(f"{name} = {typed[name]!r}: must be a variable of make {target}{must}")
+    for name in known.keys() & environment.keys() - typed.keys():
+        print(f"talbot: {name} of the environment is not used: make {target} {name}=...", file=sys.stderr)
+    words, last = [*fixed], ["--"]
+    for name, action in known.items():
+        if value := typed.get(name):
+            if action.nargs == 0:  # a flag, which the target may have set
+                words = [word for word in words if word not in action.option_strings]
+            where = words if action.option_strings else last
+            where += _words(parser, name, action, value)
+    return words + (last if len(last) > 1 else [])
+
+
+def _words(parser: Parser, name: str, action: argparse.Action, value: str) -> list[str]:
+    option = list(action.option_strings[-1:])
+    if action.nargs == 0:
+        if value.lower() not in YES + NO:
+            parser.error(f"{name} = {value!r}: must be 1 or 0")
+        return option if value.lower() in YES else []
+    if isinstance(action, argparse._AppendAction):
+        return [f"{option[0]}={word}" for word in value.split()]
+    if action.nargs in (None, "?"):
+        return [f"{option[0]}={value}" if option else value]
+    return [*option, *value.split()]

@@ -1,0 +1,140 @@
+"""The public API as a stranger uses it: README's example, and a sensor, a response and a light field of one's own."""
+
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import talbot
+from base.paths import ROOT
+from models.parameters import AmpTiming
+from talbot.commands import main
+
+
+def test_own_light_field_tile_and_response(tmp_path):
+    y, x = np.mgrid[:24, :36] / 36
+    steps = np.arange(-2, 3)
+    views = np.array([[0.5 + 0.4 * np.sin(30 * (x + 0.02 * (u + v))) for u in steps] for v in steps])
+    lf = talbot.LightField(views, disparity=np.full((24, 36), 0.02 * 36))
+
+    def grating(theta_x, theta_y):
+        wave = 0.6 * np.cos(15 * theta_x)
+        return [1 + wave, 1 - wave]
+
+    sine = talbot.PixelType(beta=18, gamma_deg=0, alpha=np.pi / 2)
+    own = talbot.PixelType(beta=15, gamma_deg=0, alpha=0, response=grating)
+    weak = talbot.PixelType(beta=18, gamma_deg=90, alpha=np.pi / 2, m=0.4)
+    sensor = talbot.Sensor(rows=24, cols=36, lanes=4, m=0.6, tile=[[sine, own], [weak, sine]])
+    run, golden = (how(lf, mode="raw", seed=3) for how in (sensor.simulate, sensor.golden))
+    assert run.stream == golden.stream and run.summary["stream_mismatches"] == 0
+    (frame,) = talbot.decode(run.stream, sensor)
+    np.testing.assert_array_equal(frame.samples, run.samples)
+    image, found = run.reconstruct("image"), run.reconstruct("light_field")
+    assert np.corrcoef(image.ravel(), views[2, 2].ravel())[0, 1] > 0.99
+    assert found.values.shape == views.shape
+    for shown in (run, lf, found, image, frame):
+        assert shown._repr_png_().startswith(b"\x89PNG")
+
+
+def test_the_same_bytes_as_the_command_line(tmp_path):
+    codes = np.random.default_rng(0).integers(0, 256, (3, 3, 13, 50, 3), np.uint8)
+    sensor = talbot.Sensor(rows=13, cols=50, lanes=4, f_number=2)
+    sensor.save(tmp_path / "sensor.toml")
+    for name in ("lf.npz", "lf"):
+        talbot.LightField(codes).save(tmp_path / name)
+        words = ["--scene", tmp_path / name, "--sensor", tmp_path / "sensor.toml", "--out", tmp_path / "out"]
+        assert main(["sim", "--threshold", "3", *map(str, words)]) == 0
+        run = talbot.Sensor.load(tmp_path / "sensor.toml").simulate(tmp_path / name, threshold=3)
+        assert (tmp_path / "out" / "stream.bin").read_bytes() == run.stream
+        assert talbot.Sensor.load(tmp_path / "out" / "sensor.toml") == sensor
+    (frame,) = talbot.decode(tmp_path / "out" / "stream.bin")
+    assert frame.complete and (frame.samples == run.samples).all()
+
+
+def test_the_example_of_the_readme(tmp_path):
+    (example,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    done = subprocess.run(
+        [sys.executable, "-c", example],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "sensor.toml").exists() and (tmp_path / "estimate").is_dir()
+
+
+def test_importing_it_loads_nothing():
+    code = "import talbot, sys; print([n for n in ('numpy', 'flow', 'models', 'matplotlib') if n in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True).stdout == "[]\n"
+
+
+def test_every_name_is_there_and_documented():
+    assert len(talbot.__all__) == 12 and dir(talbot) == sorted(talbot.__all__)
+    for name in talbot.__all__:
+        value = getattr(talbot, name)
+        assert name == "scenes" or value.__doc__
+    with pytest.raises(AttributeError, match="no attribute 'sensr'"):
+        talbot.sensr  # noqa: B018
+
+
+def test_a_light_field_is_replaced_whole(tmp_path):
+    codes = np.random.default_rng(0).integers(0, 256, (5, 5, 4, 6), np.uint8)
+    talbot.LightField(codes, np.ones((4, 6))).save(tmp_path / "lf")
+    talbot.LightField(codes[:3, :3]).save(tmp_path / "lf")
+    found = talbot.LightField.load(tmp_path / "lf")
+    np.testing.assert_array_equal(found.values, codes[:3, :3])
+    assert found.disparity is None and len(list((tmp_path / "lf").iterdir())) == 9
+
+
+def test_sensors():
+    sensor = talbot.Sensor(rows=24, cols=36, m=0.5, converter={"noise": 1.5})
+    assert repr(sensor).startswith("Sensor(rows=24, cols=36, m=0.5, converter=")
+    assert sensor.replace(m=0.7, converter="typical") == talbot.Sensor(rows=24, cols=36)
+    assert sensor.parameters.converter.noise == 1.5 and sensor.parameters.converter.inl == 0.5
+    assert "<svg" in sensor._repr_html_() and "m = 0.5\n" in sensor.text
+    edge = sensor.golden("coins", window=(1, 3, 0, 4), types=[0, 9], timing={"t_int": 300}, noise=0)
+    frame = edge.result.request.frame
+    assert frame.mask == 0x201 and frame.timing == AmpTiming(t_int=300) and edge.read.sum() == 3 * 5 * 2
+    assert edge.reconstruct("edges").shape == (24, 6, 6)
+    assert edge.reconstruct(disparity=np.ones((24, 36))).shape == (24, 36)
+
+
+@pytest.mark.parametrize(
+    "wrong, said",
+    [
+        (lambda: talbot.Sensor(rowz=3), r"rowz = 3: must be a parameter of a sensor; did you mean rows\?"),
+        (lambda: talbot.Sensor(m=2), r"optics.m = 2: must be a number in \[0, 1\] \(Modulation depth"),
+        (lambda: talbot.Sensor(converter="good"), "converter = 'good': must be one of typical, ideal"),
+        (lambda: talbot.Sensor(tile=[[]]), "tile cols = 0: must be an integer in 1..6"),
+        (lambda: talbot.Sensor().golden("coins", treshold=3), r"treshold = 3: must be .*; did you mean threshold\?"),
+        (lambda: talbot.Sensor().golden("coins", timing={"t_i": 3}), "t_i must be one of its keys"),
+        (lambda: talbot.Sensor().golden("coins", window=(1, 2)), "window = .* must be .row0, row1, col0, col1."),
+        (lambda: talbot.Sensor().golden("coins", types=[24]), "types = 24: must be an integer in 0..23"),
+        (lambda: talbot.Sensor().golden("none.npy"), "no such file"),
+        (lambda: talbot.Sensor().golden(np.zeros((2, 3))), "must be .views, views, height, width."),
+        (lambda: talbot.tradeoff("size"), "name = 'size': must be one of divider, threshold"),
+        (lambda: talbot.decode(b""), "0 bytes: the stream is empty"),
+    ],
+)
+def test_what_is_wrong_is_named_in_one_line(wrong, said):
+    with pytest.raises(talbot.ParameterError, match=said) as caught:
+        wrong()
+    assert "\n" not in str(caught.value)
+
+
+def test_modes_show_what_they_can():
+    run = talbot.Sensor(rows=24, cols=36, scale=1, focus=3).golden(mode="tof")
+    depth = run.reconstruct("depth")
+    assert 1 < np.nanmedian(depth) < 8 and run._repr_html_().startswith("<table>")
+    with pytest.raises(talbot.ParameterError, match="what = 'edges': must be one of image, depth in tof mode"):
+        run.reconstruct("edges")
+
+
+def test_a_tradeoff_is_a_table_and_a_plot():
+    found = talbot.tradeoff("views", quick=True)
+    assert len(found.rows) == 8 and found.rows[0]["views"] == 3
+    assert found._repr_png_().startswith(b"\x89PNG") and "<table>" in found._repr_html_()

@@ -1,0 +1,107 @@
+"""make's variables as a user types them, through the real Makefile: what reaches the program, and what is refused."""
+
+import os
+import re
+import subprocess
+
+import pytest
+
+from base.command import Parser, add_command
+from base.paths import ROOT
+from talbot.commands import command
+from talbot.make import arguments, variables
+
+READY = [word for name in ("ready", "tests-ready", "layout-ready", "lint-ready") for word in ("-o", f".venv/.{name}")]
+
+
+def make(*words, **environment):
+    """Run make here; what the tests' own make said does not count, and nothing is set up."""
+    own = {name: v for name, v in os.environ.items() if not name.startswith(("MAKE", "MFLAGS", "TALBOT"))}
+    words = ["make", *READY, "-o", "have-tools", *words]
+    return subprocess.run(words, cwd=ROOT, env=own | environment, capture_output=True, text=True)
+
+
+@pytest.mark.parametrize(
+    "words, said",
+    [
+        ("sim SCEEN=coins", "SCEEN = 'coins': must be a variable of make sim; did you mean SCENE?"),
+        ("sim scene=coins", "scene = 'coins': must be a variable of make sim; did you mean SCENE?"),
+        ("sim QWERTZ=7", "QWERTZ = '7': must be a variable of make sim: SCENE, DEPTH, "),
+        ("-j3 sim SCENES=coins", "did you mean SCENE?"),
+        ("sim SCENE=a$b.png", "scene = 'a$b.png': no such file"),
+        ("sim SCENE=$(touch)b#c'd.png", 'scene = "$(touch)b#c\'d.png": no such file'),
+        ("sim SCENE=a.png SCENE=b.png", "scene = 'b.png': no such file"),
+        ("sim WINDOW=-1:3,0:2", "window rows = '-1': must be an integer in 0..95"),
+        ("sim PHASE=maybe", "PHASE = 'maybe': must be 1 or 0"),
+        ("sim MODE=tof PHASE=0 ROWS=x", "rows = 'x'"),
+        ("sim PHASE=1", "phase = True: needs mode 'tof'"),
+        ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, OUT, PYTHON"),
+        ("mutate SEDE=2", "did you mean SEED?"),
+        ("layout DESIGN=none UNTIMED=1", "DESIGN = 'none': must be one of "),
+        ("layout DESIGN=amp_ctrl UTILISATION=0.8", "did you mean UTILIZATION?"),
+        ("layout BACKEND=openroad UNTIMED=1", "UNTIMED = '1': must be a variable of make layout: "),
+        ("layout-pareto LIBERTY=a.lib", "liberty = a.lib: no such file"),
+        ("handoff DESING=amp_ctrl", "did you mean DESIGN?"),
+        ("handoff DESIGN=none", "'none': must be one of "),
+        ("verilog TOP=Nothing", "invalid choice: 'Nothing'"),
+        ("cells LIBRARY=x", "LIBRARY = 'x': must be a variable of make cells"),
+    ],
+)
+def test_refused_by_the_command_in_one_line(words, said):
+    result = make(*words.split(" "))
+    lines = [line for line in result.stderr.splitlines() if not re.match(r"make: \*\*\*|talbot: \w+ of the env", line)]
+    assert result.returncode == 2 and len(lines) == 1, result.stderr
+    assert lines[0].startswith("talbot: error: ") and said in lines[0] and not result.stdout
+
+
+@pytest.mark.parametrize("words", ["test COMPLET=1", "clean SCENE=coins", "SCEEN=coins", "lint FIX=1", "tools A=$(x"])
+def test_refused_by_make_before_anything_runs(words):
+    result = make(*words.split(" "))
+    name, _, value = words.split()[-1].partition("=")
+    assert result.returncode == 2 and result.stderr.count("\n") == 1 and not result.stdout
+    assert f"{name} = '{value}': must be a variable of make " in result.stderr and "PDK_ROOT" in result.stderr
+
+
+def test_dry_runs_and_variables_of_an_outer_make_pass():
+    assert "talbot --make" in make("-n", "sim", "SCENE=coins").stdout
+    assert make("-n", "test", "COMPLETE=1").stdout.strip().endswith("--complete")
+    assert not make("-n", "test", "COMPLETE=0").stdout.strip().endswith("--complete")
+    inner = make("sim", "SCENE=nowhere.png", MAKELEVEL="1", MAKEFLAGS=" -- CC=gcc")
+    assert "scene = 'nowhere.png': no such file" in inner.stderr
+
+
+def test_a_variable_of_the_environment_is_named_not_taken():
+    result = make("sim", "ROWS=x", SCENE="coins", CI="1")
+    assert "talbot: SCENE of the environment is not used: make sim SCENE=...\n" in result.stderr
+    assert "CI" not in result.stderr and "rows = 'x'" in result.stderr
+
+
+def test_every_target_passes_its_variables_or_knows_that_it_has_none():
+    text = (ROOT / "Makefile").read_text()
+    (plain,) = re.findall(r"^PLAIN := (.*)$", text, re.M)
+    rules = re.findall(r"^([a-z-]+):.*##.*\n((?:\t.*\n)*)", text, re.M)
+    with_command = {name for name, recipe in rules if "$(talbot) " in recipe}
+    assert {name for name, _ in rules} == with_command | ({*plain.split()} - {"have-tools"})
+    assert not with_command & {*plain.split()}
+
+
+@pytest.mark.parametrize(
+    "name, fixed, flags, expected",
+    [
+        ("sim", [], " -- SCENE=a\\ b$$c PHASE=yes SEED=", ["--scene=a b$c", "--phase"]),
+        ("sim", [], "rR --jobserver-auth=3,4 -- PHASE=0", []),
+        ("layout", [], " -- LIBERTY=a.lib\\ b.lib DESIGN=-x", ["--liberty=a.lib", "--liberty=b.lib", "--", "-x"]),
+        ("verilog", ["--out", "o", "--check"], " -- CHECK=off N_FRAC=6", ["--out", "o", "--n-frac=6"]),
+        ("coverage", [], " -- ONLY=EdgeAdc\\ RegFile", ["--only", "EdgeAdc", "RegFile"]),
+        ("handoff", ["--design", "asp_chip"], " -- DESIGN=0", ["--design", "asp_chip", "--design=0"]),
+    ],
+)
+def test_variables_become_arguments(name, fixed, flags, expected):
+    parser = Parser()
+    add_command(parser, command(name))
+    assert arguments(parser, name, fixed, {"MAKEFLAGS": flags, "MAKELEVEL": "1"}) == expected
+
+
+def test_quoting_of_makeflags():
+    assert variables("n -- A=1\\\\2\\ 3\nx B:=$$(y) C=") == {"A": "1\\2 3\nx", "B": "$(y)", "C": ""}
+    assert variables("-n") == variables("") == {}

@@ -1,0 +1,75 @@
+"""Signals at moments all through a run, its set-up, compiler and report too: a clean end, and nothing half-written."""
+
+import os
+import random
+import signal
+import time
+
+import pytest
+
+from base.files import PART
+from base.paths import ROOT
+from base.test.supervise_test import running, started
+from talbot.commands import main
+
+SIZE = ("--rows", "17", "--cols", "26", "--lanes", "2")
+
+
+def sim(folder, *more):
+    """`python -m talbot sim` on its way."""
+    words = ["-m", "talbot", "sim", "--scene", "coins", *SIZE, "--out", str(folder / "out"), *more]
+    return started(folder, words)
+
+
+def end(child, sent, whole_group):
+    """Send the signal; status and standard error."""
+    if child.poll() is None:
+        (os.killpg if whole_group else os.kill)(child.pid, sent)
+    err = child.communicate(timeout=30)[1]
+    assert "Traceback" not in err and "Exception" not in err
+    return child.returncode, err.splitlines()
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """The names that a run writes, and its seconds with all simulators compiled."""
+    out = tmp_path_factory.mktemp("whole") / "out"
+    main(["sim", "--scene", "coins", *SIZE, "--out", str(out)])
+    begin = time.monotonic()
+    child = sim(out.parent)
+    child.communicate()
+    return {path.name for path in out.iterdir()}, time.monotonic() - begin
+
+
+@pytest.mark.parametrize("part", range(12))
+def test_at_a_random_moment(tmp_path, whole, part):
+    """In each twelfth of the run once; which signal, and whether the whole group gets it, is drawn."""
+    names, seconds = whole
+    child = sim(tmp_path)
+    time.sleep(max(0.1, (part + random.random()) / 12 * seconds))
+    sent = random.choice((signal.SIGINT, signal.SIGTERM))
+    status, err = end(child, sent, random.random() < 0.5)
+    out = tmp_path / "out"
+    assert status in (0, 128 + sent)
+    if status:
+        assert err[-1].startswith("talbot: error: ")
+    assert {path.name for path in tmp_path.iterdir()} <= {"out"} and not running(f"TEST_MARK={tmp_path}")
+    assert not out.exists() or {path.name for path in out.iterdir()} == names
+    assert status or out.exists()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_in_the_compiler(tmp_path, sent):
+    child = sim(tmp_path, "--waves", "0:1", "--rows", "18" if sent == signal.SIGINT else "19")
+    assert any("compiling" in line for line in child.stderr)
+    status, _ = end(child, sent, False)
+    assert status == 128 + sent and not list(tmp_path.iterdir()) and not running(f"TEST_MARK={tmp_path}")
+    for left in (ROOT / "build" / "simulator").glob(f"{PART}*"):  # other tests compile beside this one
+        os.kill(int(left.name.removeprefix(PART).partition("-")[0]), 0)
+
+
+def test_a_folder_with_a_results_name(tmp_path):
+    (tmp_path / "out" / "report.html").mkdir(parents=True)
+    status, err = end(sim(tmp_path), signal.SIGCONT, False)
+    assert status == 2 and "must not have a folder report.html" in err[-1] and len(err) == 1
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["report.html"]
