@@ -67,10 +67,10 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "slow: runs with --all only")
     if not config.getoption("netlist"):
         return
-    from models.parameters import ParameterError
-    from rtl.harness.netlists import Netlists, netlist, netlist_in_icarus
-    from rtl.harness.testbench import hooked
-    from verif.coverage.netlists import netlist_in_verilator
+    from talbot.models.parameters import ParameterError
+    from talbot.rtl.harness.netlists import Netlists, netlist, netlist_in_icarus
+    from talbot.rtl.harness.testbench import hooked
+    from talbot.verif.coverage.netlists import netlist_in_verilator
 
     simulate = netlist_in_verilator if config.getoption("netlist_in") == "verilator" else netlist_in_icarus
     try:
@@ -84,7 +84,7 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(config, items):
-    from rtl.harness.icarus import MISSING, installed
+    from talbot.rtl.harness.icarus import MISSING, installed
 
     in_icarus = [item for item in items if getattr(item.cls, "verilog", None) == "icarus"]
     if config.getoption("netlist"):

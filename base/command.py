@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Sequence
 from types import ModuleType
 from typing import Any, NoReturn
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .tools import ToolError
 

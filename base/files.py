@@ -8,7 +8,7 @@ import shutil
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .supervise import undisturbed, writing
 

@@ -15,7 +15,7 @@ from typing import Any
 import joblib
 from tqdm import tqdm
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .cache import digest
 from .files import write

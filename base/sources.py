@@ -1,8 +1,8 @@
 """The files of the repository that decide what a piece of code does, found in its text.
 
 From a module on, the closure of: what it imports (a re-export leads to the file that defines the name), modules that
-its strings name (``[sys.executable, "-m", "rtl.export"]``, ``import_module("a.b")``, f-strings as
-``f"platforms.{pdk}.layers"``; for "pytest" conftest.py), and data files that its strings name (``"bench.sv"``,
+its strings name (``[sys.executable, "-m", "talbot.rtl.export"]``, ``import_module("a.b")``, f-strings as
+``f"talbot.platforms.{pdk}.layers"``; for "pytest" conftest.py), and data files that its strings name (``"bench.sv"``,
 ``"*.tcl"``). No text is run.
 """
 

@@ -4,11 +4,11 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.paths import RESULTS
-from cells import sources
-from cells.characterize.conditions import Conditions
-from cells.corner import Corner
-from cells.library import characterize_library
+from talbot.base.paths import RESULTS
+from talbot.cells import sources
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.corner import Corner
+from talbot.cells.library import characterize_library
 
 
 def add_arguments(parser: ArgumentParser) -> None:

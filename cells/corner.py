@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Self
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 PROCESSES = ("tt", "ss", "ff", "sf", "fs")
 

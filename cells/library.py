@@ -10,19 +10,19 @@ from typing import Any
 
 from tqdm import tqdm
 
-from base import jobs
-from base.files import staged, write
-from base.liberty.group import Group
-from base.liberty.write import text
-from cells import sources
-from cells.characterize.conditions import Conditions
-from cells.characterize.job import cell_of, job
-from cells.characterize.measured import Measured
-from cells.liberty import accept, build, compare, reference
-from cells.liberty.check import problems
-from cells.netlist.function import Cell
-from cells.spice.circuit import circuit
-from models.parameters import ParameterError
+from talbot.base import jobs
+from talbot.base.files import staged, write
+from talbot.base.liberty.group import Group
+from talbot.base.liberty.write import text
+from talbot.cells import sources
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.job import cell_of, job
+from talbot.cells.characterize.measured import Measured
+from talbot.cells.liberty import accept, build, compare, reference
+from talbot.cells.liberty.check import problems
+from talbot.cells.netlist.function import Cell
+from talbot.cells.spice.circuit import circuit
+from talbot.models.parameters import ParameterError
 
 
 def characterize_library(

@@ -5,19 +5,19 @@ from collections.abc import Iterable
 from pathlib import Path
 from types import ModuleType
 
-from base.lef.write import library as lef_library
-from cells.characterize.job import Source
-from cells.compact.canvas import Canvas
-from cells.compact.catalogue import schematics
-from cells.compact.library import schematic_spice
-from cells.compact.write import written
-from cells.extract.subcircuit import extract
-from cells.liberty.build import Constant
-from cells.netlist import spice
-from models.parameters import ParameterError
-from platforms.extraction import extraction_platform
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130 import models as sky130
+from talbot.base.lef.write import library as lef_library
+from talbot.cells.characterize.job import Source
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.catalogue import schematics
+from talbot.cells.compact.library import schematic_spice
+from talbot.cells.compact.write import written
+from talbot.cells.extract.subcircuit import extract
+from talbot.cells.liberty.build import Constant
+from talbot.cells.netlist import spice
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130 import models as sky130
 
 LIBRARIES = ("sky130_hd", "compact")
 NETLISTS = ("extracted", "capacitances", "devices", "schematic")

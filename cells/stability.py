@@ -11,16 +11,16 @@ from itertools import product
 import numpy as np
 from tqdm import tqdm
 
-from cells import sources
-from cells.characterize import delay, tristate
-from cells.characterize.bench import Bench
-from cells.characterize.conditions import Conditions
-from cells.characterize.constraint import PATIENCE, Event, bisect, outcome
-from cells.characterize.job import cell_of
-from cells.characterize.scenario import Scenarios
-from cells.corner import PROCESSES, Corner
-from cells.netlist.function import Cell
-from models.stability import Case, table
+from talbot.cells import sources
+from talbot.cells.characterize import delay, tristate
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.constraint import PATIENCE, Event, bisect, outcome
+from talbot.cells.characterize.job import cell_of
+from talbot.cells.characterize.scenario import Scenarios
+from talbot.cells.corner import PROCESSES, Corner
+from talbot.cells.netlist.function import Cell
+from talbot.models.stability import Case, table
 
 PROCESS = sources.process("sky130_hd")
 TYPICAL = Conditions(Corner("tt", 25, 1.8), "fitted")

@@ -7,11 +7,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from base.gds import write_gds
-from cells.compact.library import library
-from cells.compact.write import BLOCKAGES, export_gds, exported
-from platforms.coriolis import coriolis_platform
-from platforms.processes import package
+from talbot.base.gds import write_gds
+from talbot.cells.compact.library import library
+from talbot.cells.compact.write import BLOCKAGES, export_gds, exported
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.processes import package
 
 COMPACT = ("sky130",)  # the processes that cells.compact draws for
 
@@ -34,6 +34,6 @@ def standard_cells(pdk: str, store: Path) -> StandardCells:
         made = library(store=store)
         return StandardCells(made, partial(export_gds, made), BLOCKAGES)
     tech = coriolis_platform(pdk)
-    made = import_module(f"platforms.{package(pdk)}.coriolis").library()
+    made = import_module(f"talbot.platforms.{package(pdk)}.coriolis").library()
     gds_layers = import_module(f"{tech.package}.pdkmaster").gds_layers
     return StandardCells(made, lambda path: write_gds(exported(made, gds_layers), path))

@@ -4,10 +4,10 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
 from pathlib import Path
 
-from base.files import atomic, check_folder
-from models.digital.stream import decode_file
-from models.digital.stream.frame import DecodedFrame
-from models.parameters import ParameterError, TileParameters, read_sensor
+from talbot.base.files import atomic, check_folder
+from talbot.models.digital.stream import decode_file
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.parameters import ParameterError, TileParameters, read_sensor
 
 
 def add_arguments(parser: ArgumentParser) -> None:

@@ -3,8 +3,8 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.files import write
-from models.parameters import STANDARD, read_sensor, sensor_text
+from talbot.base.files import write
+from talbot.models.parameters import STANDARD, read_sensor, sensor_text
 
 
 def add_arguments(parser: ArgumentParser) -> None:

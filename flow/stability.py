@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from base.files import check_folder, staged
-from flow.frame import job
-from flow.frame.figures import summarize
-from flow.frame.request import request
-from models.digital.divider import phase_error, quad_divide
-from models.stability import Case, optical_cases, table
+from talbot.base.files import check_folder, staged
+from talbot.flow.frame import job
+from talbot.flow.frame.figures import summarize
+from talbot.flow.frame.request import request
+from talbot.models.digital.divider import phase_error, quad_divide
+from talbot.models.stability import Case, optical_cases, table
 
 SINGLE_TYPE = 1 << 13
 # (name, arguments of `request`); few sizes, since each compiles a simulator

@@ -7,12 +7,12 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from models.afe import Converter, FrontEnd
-from models.digital.pattern import PatternEnd
-from models.digital.phase import phase_samples
-from models.digital.scan import Scan
-from models.digital.stream import StreamHeader, encode_frame
-from models.parameters import ConverterParameters, FrameParameters, SensorParameters
+from talbot.models.afe import Converter, FrontEnd
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.digital.phase import phase_samples
+from talbot.models.digital.scan import Scan
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.parameters import ConverterParameters, FrameParameters, SensorParameters
 
 
 @dataclass(frozen=True, eq=False)

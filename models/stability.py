@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from models.capture import CaptureOperator, Exposure, capture, expose
-from models.capture.operator import rounding
-from models.parameters import (
+from talbot.models.capture import CaptureOperator, Exposure, capture, expose
+from talbot.models.capture.operator import rounding
+from talbot.models.parameters import (
     AmpTiming,
     ArrayParameters,
     CameraParameters,
@@ -25,11 +25,11 @@ from models.parameters import (
     SensorParameters,
     TileParameters,
 )
-from models.pixel import Ripple, exact, gains, response
-from models.pixel.quadrature import sampled
-from models.plan import plan
-from models.reconstruct import EdgeOperator, image_from_edges
-from models.scene import Sampling, load
+from talbot.models.pixel import Ripple, exact, gains, response
+from talbot.models.pixel.quadrature import sampled
+from talbot.models.plan import plan
+from talbot.models.reconstruct import EdgeOperator, image_from_edges
+from talbot.models.scene import Sampling, load
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ columns and lanes continue edge to edge between blocks that touch.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from models.parameters import ArrayParameters, ChipParameters, ParameterError, check_real
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, check_real
 
 SUPPLIES = "vdda", "vssa"
 # Phases that the row driver gates with its row (rtl/amp_ctrl/README.md): each is a line of the row

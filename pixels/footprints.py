@@ -10,15 +10,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from base.command import main
-from base.files import staged
-from base.gds import write_gds
-from base.lef import write as lef_text
-from base.lef.read import Box
-from models.parameters import ArrayParameters, ChipParameters
-from platforms.coriolis import coriolis_platform
-from platforms.die import top_metal
-from platforms.layers import Layer
+from talbot.base.command import main
+from talbot.base.files import staged
+from talbot.base.gds import write_gds
+from talbot.base.lef import write as lef_text
+from talbot.base.lef.read import Box
+from talbot.models.parameters import ArrayParameters, ChipParameters
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.die import top_metal
+from talbot.platforms.layers import Layer
 
 from .blocks import DEEP_UM, AnalogSizes, Block, Pin, blocks
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .frame import Frame
 from .layers import GdsLayer, Layer, Via
@@ -89,4 +89,4 @@ class CoriolisPlatform:
 
 def coriolis_platform(pdk: str) -> CoriolisPlatform:
     """The process ``pdk`` for the layout flow. Raises ParameterError."""
-    return import_module(f"platforms.{package(pdk)}.coriolis").PLATFORM
+    return import_module(f"talbot.platforms.{package(pdk)}.coriolis").PLATFORM

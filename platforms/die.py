@@ -19,4 +19,4 @@ class TopMetal:
 
 def top_metal(pdk: str) -> TopMetal:
     """The top metal of ``pdk``. Raises ParameterError for a process without one."""
-    return import_module(f"platforms.{package(pdk, PROCESSES, ' for a whole die')}.layers").TOP
+    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' for a whole die')}.layers").TOP

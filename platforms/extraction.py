@@ -38,9 +38,9 @@ class ExtractionPlatform:
 
 def extraction_platform(pdk: str) -> ExtractionPlatform:
     """The process ``pdk`` for extraction. Raises ParameterError."""
-    return import_module(f"platforms.{package(pdk)}.extraction").PLATFORM
+    return import_module(f"talbot.platforms.{package(pdk)}.extraction").PLATFORM
 
 
 def device_models(pdk: str) -> ModuleType:
     """Module with the device models (POLARITY, SUPPLIES, ...) of ``pdk``, for `cells`. Raises ParameterError."""
-    return import_module(f"platforms.{package(pdk)}.models")
+    return import_module(f"talbot.platforms.{package(pdk)}.models")

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .processes import package
 
@@ -29,7 +29,7 @@ class FoundryChecks:
 
 def foundry_checks(pdk: str) -> FoundryChecks | None:
     """The foundry's checks of a process; None for one without."""
-    return import_module(f"platforms.{package(pdk)}.foundry").CHECKS if pdk in PROCESSES else None
+    return import_module(f"talbot.platforms.{package(pdk)}.foundry").CHECKS if pdk in PROCESSES else None
 
 
 def installed(pdk: str, environment: Mapping[str, str] = os.environ) -> dict[str, Path]:

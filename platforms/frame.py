@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from models.parameters import ParameterError, check_real
+from talbot.models.parameters import ParameterError, check_real
 
 
 @dataclass(frozen=True)

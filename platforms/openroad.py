@@ -104,4 +104,4 @@ class OpenRoadPlatform:
 
 def openroad_platform(pdk: str) -> OpenRoadPlatform:
     """The process ``pdk`` for OpenROAD. Raises ParameterError."""
-    return import_module(f"platforms.{package(pdk, PROCESSES, ' with BACKEND=openroad')}.openroad").PLATFORM
+    return import_module(f"talbot.platforms.{package(pdk, PROCESSES, ' with BACKEND=openroad')}.openroad").PLATFORM

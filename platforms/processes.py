@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 PROCESSES = "sky130", "ihp-sg13g2"
 

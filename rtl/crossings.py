@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
-from base.tools import run
-from models.parameters import ASYNCHRONOUS
+from talbot.base.tools import run
+from talbot.models.parameters import ASYNCHRONOUS
 
 # Gates by a raw pin, as documented in asp_chip/README.md: the pin -> the net that they drive
 GATES = {"csn": "miso_oe", "reset": "resets.chip"}

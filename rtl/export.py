@@ -6,10 +6,10 @@ from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-from base.command import main
-from base.files import write
-from base.paths import RESULTS
-from models.parameters import (
+from talbot.base.command import main
+from talbot.base.files import write
+from talbot.base.paths import RESULTS
+from talbot.models.parameters import (
     DIVIDERS,
     ArrayParameters,
     ChipParameters,
@@ -17,9 +17,9 @@ from models.parameters import (
     SensorParameters,
     TileParameters,
 )
-from rtl.harness.translate import translate_component
-from rtl.lint import lint
-from rtl.tops import PACKERS, PARTS, TOPS, WRAPPERS, build_top
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.lint import lint
+from talbot.rtl.tops import PACKERS, PARTS, TOPS, WRAPPERS, build_top
 
 WRAPPER = Path(__file__).parent / "tinytapeout"
 BUS = "tt_bytes.v"

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from base.tools import ToolError, finish
-from base.verilator import verilator_folder
-from rtl.crossings import crossings
+from talbot.base.tools import ToolError, finish
+from talbot.base.verilator import verilator_folder
+from talbot.rtl.crossings import crossings
 
 WAIVERS = Path(__file__).parent / "waivers.vlt"
 CHIP = "AspChip"  # whose pins may be asynchronous

@@ -6,8 +6,8 @@ A block is imported when it is built: the names come without PyMTL, and a block 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from models.parameters import ParameterError, SensorParameters
-from models.parameters.registers import register_map
+from talbot.models.parameters import ParameterError, SensorParameters
+from talbot.models.parameters.registers import register_map
 
 if TYPE_CHECKING:
     from pymtl3 import Component
@@ -23,28 +23,28 @@ def _array(sensor: SensorParameters) -> tuple[int, int, int, tuple[int, ...], in
 
 def amp_ctrl(sensor: SensorParameters) -> "Component":
     """The timing of the amplifiers."""
-    from rtl.amp_ctrl import AmpCtrl
+    from talbot.rtl.amp_ctrl import AmpCtrl
 
     return AmpCtrl()
 
 
 def readout_seq(sensor: SensorParameters) -> "Component":
     """The readout sequencer."""
-    from rtl.readout_seq import ReadoutSeq
+    from talbot.rtl.readout_seq import ReadoutSeq
 
     return ReadoutSeq(*_array(sensor))
 
 
 def edge_adc(sensor: SensorParameters) -> "Component":
     """One converter."""
-    from rtl.edge_adc import EdgeAdc
+    from talbot.rtl.edge_adc import EdgeAdc
 
     return EdgeAdc()
 
 
 def adc_bank(sensor: SensorParameters) -> "Component":
     """The converters of all lanes."""
-    from rtl.adc_bank import AdcBank
+    from talbot.rtl.adc_bank import AdcBank
 
     return AdcBank(sensor.chip.lanes)
 
@@ -53,7 +53,7 @@ def divider(variant: str) -> Build:
     """Return the function that builds one variant of the quadrature divider."""
 
     def build(sensor: SensorParameters) -> "Component":
-        from rtl.quad_divider import quad_divider
+        from talbot.rtl.quad_divider import quad_divider
 
         return quad_divider(variant, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
@@ -62,21 +62,21 @@ def divider(variant: str) -> Build:
 
 def phase_path(sensor: SensorParameters) -> "Component":
     """Phase and amplitude of a sample's taps."""
-    from rtl.phase_path import PhasePath
+    from talbot.rtl.phase_path import PhasePath
 
     return PhasePath(sensor.chip.lanes, sensor.chip.divider, sensor.chip.n_frac, sensor.chip.cordic_iterations)
 
 
 def run_length(sensor: SensorParameters) -> "Component":
     """The stream encoder."""
-    from rtl.run_length import RunLength
+    from talbot.rtl.run_length import RunLength
 
     return RunLength(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, sensor.tile.rows, sensor.tile.cols)
 
 
 def reg_file(sensor: SensorParameters) -> "Component":
     """The registers behind SPI."""
-    from rtl.reg_file import RegFile
+    from talbot.rtl.reg_file import RegFile
 
     array, tile, chip = sensor.array, sensor.tile, sensor.chip
     return RegFile(array.rows, array.cols, chip.lanes, tile.rows, tile.cols, chip.divider)
@@ -84,7 +84,7 @@ def reg_file(sensor: SensorParameters) -> "Component":
 
 def asp_chip(sensor: SensorParameters) -> "Component":
     """The whole chip."""
-    from rtl.asp_chip import AspChip
+    from talbot.rtl.asp_chip import AspChip
 
     chip = sensor.chip
     return AspChip(*_array(sensor), chip.divider, chip.n_frac, chip.cordic_iterations)
@@ -108,7 +108,7 @@ TOPS: dict[str, Build] = {
 
 def balance(sensor: SensorParameters) -> "Component":
     """The trim of the pixel at the pins."""
-    from rtl.asp_chip.balance_rtl import Balance
+    from talbot.rtl.asp_chip.balance_rtl import Balance
 
     trims = register_map().trims[0]
     tile = sensor.tile
@@ -117,7 +117,7 @@ def balance(sensor: SensorParameters) -> "Component":
 
 def pattern(sensor: SensorParameters) -> "Component":
     """The test pattern."""
-    from rtl.asp_chip.pattern_rtl import Pattern
+    from talbot.rtl.asp_chip.pattern_rtl import Pattern
 
     return Pattern(sensor.chip.lanes)
 
@@ -135,7 +135,7 @@ PACKERS = "BytePairPacker", "NibblePacker", "FixedRicePacker", "AdaptiveRicePack
 def build_top(name: str, sensor: SensorParameters) -> "Component":
     """The unelaborated component of top, part or packer ``name`` for ``sensor``. Raises ParameterError."""
     if name in PACKERS:
-        from rtl.run_length import candidates
+        from talbot.rtl.run_length import candidates
 
         return getattr(candidates, name)()
     if name not in TOPS | PARTS:

@@ -4,8 +4,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from base.paths import ROOT
-from base.tools import run
+from talbot.base.paths import ROOT
+from talbot.base.tools import run
 
 
 def export_verilog(folder: Path, tops: Sequence[str] = (), options: Sequence[object] = ()) -> list[Path]:
@@ -13,5 +13,5 @@ def export_verilog(folder: Path, tops: Sequence[str] = (), options: Sequence[obj
 
     options: of the sensor, see `rtl.export`. Raises ToolError.
     """
-    words = [sys.executable, "-m", "rtl.export", "--out", folder, *(f"--top={top}" for top in tops), *options]
+    words = [sys.executable, "-m", "talbot.rtl.export", "--out", folder, *(f"--top={top}" for top in tops), *options]
     return [Path(line) for line in run(words, cwd=ROOT).splitlines()]

@@ -12,8 +12,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from base.tools import ToolError
-    from models.parameters import ParameterError, PixelType
+    from talbot.base.tools import ToolError
+    from talbot.models.parameters import ParameterError, PixelType
 
     from .api.decode import DecodedFrame, decode
     from .api.image import Image
@@ -41,11 +41,11 @@ _MODULES = {
     "DecodedFrame": "talbot.api.decode",
     "Image": "talbot.api.image",
     "LightField": "talbot.api.light_field",
-    "ParameterError": "models.parameters",
-    "PixelType": "models.parameters",
+    "ParameterError": "talbot.models.parameters",
+    "PixelType": "talbot.models.parameters",
     "Run": "talbot.api.run",
     "Sensor": "talbot.api.sensor",
-    "ToolError": "base.tools",
+    "ToolError": "talbot.base.tools",
     "Tradeoff": "talbot.api.sweep",
     "decode": "talbot.api.decode",
     "scenes": "talbot.api.sensor",

@@ -7,7 +7,7 @@ signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGTERM, signal.
 
 import sys  # noqa: E402
 
-from base.supervise import supervised  # noqa: E402
+from talbot.base.supervise import supervised  # noqa: E402
 
 
 def main() -> int:

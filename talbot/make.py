@@ -10,8 +10,8 @@ import re
 import sys
 from collections.abc import Mapping, Sequence
 
-from base.command import Parser
-from models.parameters.sensor_file import nearest
+from talbot.base.command import Parser
+from talbot.models.parameters.sensor_file import nearest
 
 YES, NO = ("1", "yes", "true", "on"), ("0", "no", "false", "off")
 

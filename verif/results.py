@@ -5,8 +5,8 @@ from dataclasses import asdict, dataclass, field, fields
 from math import sqrt
 from pathlib import Path
 
-from base.files import staged
-from base.paths import RESULTS
+from talbot.base.files import staged
+from talbot.base.paths import RESULTS
 
 OUT = RESULTS / "verify"
 COVERAGE = "line", "branch", "expression", "toggle", "fsm", "functional"

@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top in um
 Shapes = tuple[tuple[str, Box], ...]  # (layer, box)

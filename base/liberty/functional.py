@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from base.liberty.group import Group, Value
+from talbot.base.liberty.group import Group, Value
 
 UNITS = {
     "time_unit": "1ns",

@@ -5,8 +5,8 @@ import re
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 
-from base.liberty.group import Group, Scalar, Table
-from models.parameters import ParameterError
+from talbot.base.liberty.group import Group, Scalar, Table
+from talbot.models.parameters import ParameterError
 
 _TOKEN = re.compile(r'/\*.*?\*/|//[^\n]*|\\\r?\n|"((?:[^"\\]|\\.)*)"|([{}();:,])|([^\s{}();:,"]+)', re.S)
 _LIBRARY = re.compile(r"(?:\s|/\*.*?\*/|//[^\n]*\n)*library\s*\(", re.S)

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from base.liberty.group import Group, Scalar, Value
+from talbot.base.liberty.group import Group, Scalar, Value
 
 # Attributes whose values are bare words in Liberty, not texts in quotes
 _WORDS = {

@@ -15,9 +15,9 @@ from typing import Any
 
 import joblib
 
-from base.cache import cached, digest
-from base.paths import ROOT
-from base.sources import code, modules
+from talbot.base.cache import cached, digest
+from talbot.base.paths import ROOT
+from talbot.base.sources import code, modules
 
 from .alone import alone
 from .step import Step, StepError

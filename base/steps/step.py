@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar, get_args
 
-from base.tools import ToolError
-from models.parameters import ParameterError
+from talbot.base.tools import ToolError
+from talbot.models.parameters import ParameterError
 
 
 class StepError(ToolError):

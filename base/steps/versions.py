@@ -5,7 +5,7 @@ import re
 import shutil
 from functools import cache
 
-from base.tools import ToolError, finish
+from talbot.base.tools import ToolError, finish
 
 # Command that prints the version, and the pattern of it in the output; 'python NAME' is the Python package NAME
 COMMANDS = {

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from base.cache import CONTENT, cached
-from base.files import PART
+from talbot.base.cache import CONTENT, cached
+from talbot.base.files import PART
 
 
 def test_it_is_made_once(tmp_path):
@@ -36,7 +36,7 @@ def test_nothing_is_left_of_what_fails(tmp_path):
 
 def test_what_a_killed_process_left_goes_and_what_is_being_made_stays(tmp_path):
     script = (
-        "import os, signal, sys; from base.cache import CONTENT, cached; "
+        "import os, signal, sys; from talbot.base.cache import CONTENT, cached; "
         "cached(sys.argv[1], lambda part: os.kill(os.getpid(), signal.SIGKILL))"
     )
     subprocess.run([sys.executable, "-c", script, tmp_path / "killed"], check=False)

@@ -1,7 +1,7 @@
 import pytest
 
-from base.files import _exchange, staged
-from models.parameters import ParameterError
+from talbot.base.files import _exchange, staged
+from talbot.models.parameters import ParameterError
 
 
 def test_files_appear_only_when_all_are_written(tmp_path):

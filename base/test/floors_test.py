@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from base.paths import ROOT
+from talbot.base.paths import ROOT
 
 FOLDERS = "models", "base", "rtl", "platforms", "cells", "pixels", "flow", "verif", "talbot"
 LINT = "import sys; from importlinter.cli import lint_imports_command; sys.exit(lint_imports_command())"
@@ -26,11 +26,11 @@ def test_every_import_keeps_the_floor_plan():
 @pytest.mark.parametrize(
     "file, line, contract",
     [
-        ("base/gds.py", "import platforms.foundry", "Floors"),
-        ("models/pixel/response.py", "from base.files import write", "Floors"),
-        ("cells/corner.py", "from flow.frame import request", "Floors"),
-        ("pixels/footprints.py", "import cells.corner", "Floors"),
-        ("flow/layout/geometry/boxes.py", "import flow.layout.chain", "cycles"),
+        ("base/gds.py", "import talbot.platforms.foundry", "Floors"),
+        ("models/pixel/response.py", "from talbot.base.files import write", "Floors"),
+        ("cells/corner.py", "from talbot.flow.frame import request", "Floors"),
+        ("pixels/footprints.py", "import talbot.cells.corner", "Floors"),
+        ("flow/layout/geometry/boxes.py", "import talbot.flow.layout.chain", "cycles"),
     ],
 )
 def test_an_import_against_it_is_found(tmp_path, file, line, contract):

@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from base.gds import write_gds
+from talbot.base.gds import write_gds
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

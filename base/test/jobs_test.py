@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from base.jobs import Job, run
-from models.parameters import ParameterError
+from talbot.base.jobs import Job, run
+from talbot.models.parameters import ParameterError
 
 
 def square(number, log):

@@ -1,4 +1,4 @@
-from base.paths import BUILD, RESULTS, ROOT, build, results
+from talbot.base.paths import BUILD, RESULTS, ROOT, build, results
 
 
 def test_a_checkout_keeps_what_it_builds():

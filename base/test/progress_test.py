@@ -2,7 +2,7 @@
 
 import pytest
 
-from base.progress import Steps
+from talbot.base.progress import Steps
 
 
 def test_lines_without_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:

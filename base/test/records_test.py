@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field
 
 import pytest
 
-from base.records import from_json
+from talbot.base.records import from_json
 
 
 @dataclass

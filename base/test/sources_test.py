@@ -2,15 +2,15 @@
 
 import pytest
 
-from base.sources import Tree, code
+from talbot.base.sources import Tree, code
 
 FILES = {
     "pkg/__init__.py": '"""Text."""\nfrom .near import used\nfrom .other import unused\n__all__ = ["unused", "used"]\n',
-    "pkg/near.py": "from models.deep import value\nused = value\n",
+    "pkg/near.py": "from talbot.models.deep import value\nused = value\n",
     "pkg/other.py": "unused = 1\n",
     "models/deep.py": "value = 1\n",
     "models/own.py": "class Own: ...\n",
-    "state/__init__.py": "import models.own\nready = True\n",
+    "state/__init__.py": "import talbot.models.own\nready = True\n",
     "state/part.py": "",
     "tool/__init__.py": "",
     "tool/__main__.py": "from tool.inner import main\n",
@@ -20,14 +20,14 @@ FILES = {
     "plain/x.py": "from pkg import used\n",
     "plain/process.py": 'import sys\ncommand = [sys.executable, "-m", "tool"]\n',
     "plain/program.py": 'PROGRAM = "import sys; from tool.inner import main; main()"\n',
-    "plain/chosen.py": 'def of(name):\n    return import_module(f"platforms.{name}.layers")\n',
+    "plain/chosen.py": 'def of(name):\n    return import_module(f"talbot.platforms.{name}.layers")\n',
     "plain/lazy.py": "def f():\n    from state import part\n    return part\n",
     "plain/tests.py": 'command = ["python", "-m", "pytest"]\n',
     "plain/tests_started.py": 'PROGRAM = "import sys, pytest; sys.exit(pytest.main())"\n',
     "plain/documented.py": '"""As tool.inner does; see page.html."""\n',
     "platforms/a/layers.py": "A = 1\n",
     "platforms/b/layers.py": "B = 1\n",
-    "conftest.py": "import models.own\n",
+    "conftest.py": "import talbot.models.own\n",
 }
 
 
@@ -65,7 +65,7 @@ def test_another_text_is_another_digest(root):
     (root / "models/deep.py").write_text("value = 2\n")
     code_now = Tree(root)
     assert root / "models/deep.py" in code_now.closure(["plain.x"])
-    from base import sources
+    from talbot.base import sources
 
     sources.forget()
     assert code("plain.x", root=root) != before and code("plain.process", root=root) == other

@@ -9,14 +9,14 @@ from pathlib import Path
 
 import pytest
 
-from base.files import PART
-from base.paths import ROOT
+from talbot.base.files import PART
+from talbot.base.paths import ROOT
 
 PROGRAM = """
 import os, signal, subprocess, sys, time
 from pathlib import Path
-from base.files import atomic, staged
-from base.supervise import supervised
+from talbot.base.files import atomic, staged
+from talbot.base.supervise import supervised
 out = Path(sys.argv[1])
 def tools():
     for _ in range(200):

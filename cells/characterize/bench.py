@@ -7,13 +7,13 @@ from typing import NamedTuple, Self, TypeVar
 
 import numpy as np
 
-from cells.characterize.conditions import Conditions
-from cells.netlist.function import Cell
-from cells.netlist.states import Change, State, Vector
-from cells.spice.circuit import circuit
-from cells.spice.engine import Points, SimulationError, Simulator
-from cells.spice.settings import Settings
-from cells.spice.wave import Wave
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.netlist.function import Cell
+from talbot.cells.netlist.states import Change, State, Vector
+from talbot.cells.spice.circuit import circuit
+from talbot.cells.spice.engine import Points, SimulationError, Simulator
+from talbot.cells.spice.settings import Settings
+from talbot.cells.spice.wave import Wave
 
 REST = 0.2e-9  # s before the edge that is measured, in which nothing moves
 QUICK = 0.05e-9  # s of the ramps that bring a cell into its state

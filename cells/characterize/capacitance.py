@@ -7,8 +7,8 @@ up to 50 % or 100 %, with other slews or loads, within 6 % to 20 %.
 
 import numpy as np
 
-from cells.characterize.bench import Bench, spread
-from cells.netlist.states import Change
+from talbot.cells.characterize.bench import Bench, spread
+from talbot.cells.netlist.states import Change
 
 END = 0.9  # of the ramp, up to which charge counts
 

@@ -7,17 +7,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from cells.characterize import delay, tristate
-from cells.characterize.bench import Bench
-from cells.characterize.capacitance import capacitance
-from cells.characterize.conditions import Conditions
-from cells.characterize.constraint import constraints
-from cells.characterize.grid import Axis, refined
-from cells.characterize.leakage import leakage
-from cells.characterize.measured import ArcTables, Measured, arc_tables
-from cells.characterize.power import quiet_energy
-from cells.characterize.tries import Tries
-from cells.netlist.function import Arc, Cell
+from talbot.cells.characterize import delay, tristate
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.characterize.capacitance import capacitance
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.constraint import constraints
+from talbot.cells.characterize.grid import Axis, refined
+from talbot.cells.characterize.leakage import leakage
+from talbot.cells.characterize.measured import ArcTables, Measured, arc_tables
+from talbot.cells.characterize.power import quiet_energy
+from talbot.cells.characterize.tries import Tries
+from talbot.cells.netlist.function import Arc, Cell
 
 LETS_GO = "three_state_disable"
 

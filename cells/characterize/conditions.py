@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from cells.corner import Corner
-from cells.spice.settings import Settings
-from models.parameters import ParameterError
+from talbot.cells.corner import Corner
+from talbot.cells.spice.settings import Settings
+from talbot.models.parameters import ParameterError
 
 LOW_SUPPLY = 1.7  # V, below which SkyWater's tables of the slow process run to 5 ns
 SLEWS = (

@@ -16,12 +16,12 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cells.characterize.bench import Bench
-from cells.characterize.measured import Constraint
-from cells.characterize.scenario import Scenario, Scenarios
-from cells.characterize.tries import Tries
-from cells.netlist.states import Output, State
-from cells.spice.engine import SimulationError
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.characterize.measured import Constraint
+from talbot.cells.characterize.scenario import Scenario, Scenarios
+from talbot.cells.characterize.tries import Tries
+from talbot.cells.netlist.states import Output, State
+from talbot.cells.spice.engine import SimulationError
 
 Floats = npt.NDArray[np.float64]
 RESOLUTION = 2e-12  # s, of a bisection

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from cells.characterize.bench import Bench, spread
-from cells.characterize.conditions import Conditions
-from cells.characterize.table import Table
-from cells.netlist.function import Arc
-from cells.netlist.states import Change
+from talbot.cells.characterize.bench import Bench, spread
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.table import Table
+from talbot.cells.netlist.function import Arc
+from talbot.cells.netlist.states import Change
 
 FIELDS = ("delay", "slew", "energy")
 MOST = 32  # states of an arc that are tried

@@ -10,8 +10,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from cells.characterize.bench import Bench, Edge
-from cells.netlist.states import Change
+from talbot.cells.characterize.bench import Bench, Edge
+from talbot.cells.netlist.states import Change
 
 FLOOR = 5e-12  # s; smaller delays are compared as if they were this long
 Axis = tuple[float, ...]

@@ -5,15 +5,15 @@ import json
 from dataclasses import asdict, dataclass
 from types import ModuleType
 
-from base.jobs import Job
-from base.sources import code
-from base.tools import finish
-from cells.characterize.cell import characterize
-from cells.characterize.conditions import Conditions
-from cells.characterize.measured import Measured
-from cells.netlist.check import check
-from cells.netlist.function import Cell, understand
-from cells.netlist.spice import parse
+from talbot.base.jobs import Job
+from talbot.base.sources import code
+from talbot.base.tools import finish
+from talbot.cells.characterize.cell import characterize
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.measured import Measured
+from talbot.cells.netlist.check import check
+from talbot.cells.netlist.function import Cell, understand
+from talbot.cells.netlist.spice import parse
 
 
 @dataclass(frozen=True)

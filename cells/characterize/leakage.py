@@ -1,7 +1,7 @@
 """Leakage power in every state."""
 
-from cells.characterize.bench import Bench
-from cells.netlist.states import Output
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.netlist.states import Output
 
 HOLD = 50e-6  # s, in which floating nodes between stacked transistors find their level
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Any, NotRequired, TypedDict
 
-from cells.netlist.function import Arc
-from cells.netlist.states import Output, State
+from talbot.cells.netlist.function import Arc
+from talbot.cells.netlist.states import Output, State
 
 Rows = list[list[float]]
 

@@ -1,7 +1,7 @@
 """Energy of an input's edge that moves no output."""
 
-from cells.characterize.bench import REST, Bench, spread
-from cells.netlist.states import Change
+from talbot.cells.characterize.bench import REST, Bench, spread
+from talbot.cells.netlist.states import Change
 
 MOST = 8  # states that are tried
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from cells.netlist.function import Cell
-from cells.netlist.states import Output, State
+from talbot.cells.netlist.function import Cell
+from talbot.cells.netlist.states import Output, State
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from cells.characterize.measured import Failure
-from cells.spice.engine import SimulationError
+from talbot.cells.characterize.measured import Failure
+from talbot.cells.spice.engine import SimulationError
 
 P = ParamSpec("P")
 T = TypeVar("T")

@@ -11,14 +11,14 @@ from typing import Self
 
 import numpy as np
 
-from cells.characterize.bench import DOUBLINGS, REST, Bench
-from cells.characterize.capacitance import END
-from cells.characterize.measured import ArcTables, arc_tables
-from cells.netlist.function import Arc
-from cells.netlist.states import Change, Vector
-from cells.spice.circuit import circuit
-from cells.spice.engine import Points, SimulationError, Simulator
-from cells.spice.wave import Wave
+from talbot.cells.characterize.bench import DOUBLINGS, REST, Bench
+from talbot.cells.characterize.capacitance import END
+from talbot.cells.characterize.measured import ArcTables, arc_tables
+from talbot.cells.netlist.function import Arc
+from talbot.cells.netlist.states import Change, Vector
+from talbot.cells.spice.circuit import circuit
+from talbot.cells.spice.engine import Points, SimulationError, Simulator
+from talbot.cells.spice.wave import Wave
 
 LEFT = 0.1  # of the current that the output drives at half the supply
 HELD = 0.5  # of the supply, at which the output is held

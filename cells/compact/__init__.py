@@ -1,6 +1,6 @@
 """The compact cells: drawn from transistor lists, on c4m-pdk-sky130's rules."""
 
-from cells.compact.canvas import Canvas
-from cells.compact.library import library
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.library import library
 
 __all__ = ["Canvas", "library"]

@@ -12,10 +12,10 @@ from itertools import product
 from pathlib import Path
 from typing import TypedDict
 
-from base import jobs, tools
-from base.files import insert
-from base.liberty.read import areas
-from models.parameters import ParameterError
+from talbot.base import jobs, tools
+from talbot.base.files import insert
+from talbot.base.liberty.read import areas
+from talbot.models.parameters import ParameterError
 
 BLOCKS = ("QuadDividerRadix2", "EdgeAdc", "AmpCtrl", "RunLength", "RegFile")
 LIMIT = 1.6  # of the areas' ratio, ours by theirs
@@ -70,7 +70,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the areas of both; 1 where ours is larger than the limit allows."""
-    from platforms.sky130.functions import liberty
+    from talbot.platforms.sky130.functions import liberty
 
     if not (ours := options.liberty).exists():
         raise ParameterError(f"liberty = {ours}: must be a file (talbot cells-compact)")

@@ -4,10 +4,10 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from cells.compact.canvas import Canvas
-from cells.compact.grid import Vertex
-from cells.compact.place import Column, breaks
-from cells.compact.route import Task
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.grid import Vertex
+from talbot.cells.compact.place import Column, breaks
+from talbot.cells.compact.route import Task
 
 
 @dataclass

@@ -7,8 +7,8 @@ diffusions is (n + b + 1) sites wide. Taps run under both rails.
 from dataclasses import dataclass
 from itertools import pairwise
 
-from models.parameters import ParameterError
-from platforms.sky130.coriolis import PLATFORM
+from talbot.models.parameters import ParameterError
+from talbot.platforms.sky130.coriolis import PLATFORM
 
 
 @dataclass(frozen=True)

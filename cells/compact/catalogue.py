@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from cells.compact.transistors import Function, Schematic, Switch
+from talbot.cells.compact.transistors import Function, Schematic, Switch
 
 INPUTS = ("i0", "i1", "i2", "i3", "i4")
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from base.gds import write_gds
-from base.jobs import Job, run
-from base.tools import ToolError, finish
+from talbot.base.gds import write_gds
+from talbot.base.jobs import Job, run
+from talbot.base.tools import ToolError, finish
 
 
 class Checked(NamedTuple):

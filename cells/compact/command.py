@@ -4,10 +4,10 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.command import failures
-from base.files import check_folder
-from cells.compact.make import NoLayout
-from cells.compact.write import written
+from talbot.base.command import failures
+from talbot.base.files import check_folder
+from talbot.cells.compact.make import NoLayout
+from talbot.cells.compact.write import written
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -18,7 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Draw the library and print what its checks find; 1 where a cell has no layout or fails."""
-    from cells.compact.check import check
+    from talbot.cells.compact.check import check
 
     check_folder("out", options.out)
     try:

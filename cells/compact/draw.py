@@ -6,10 +6,10 @@ from typing import NamedTuple, NotRequired, TypedDict
 
 import klayout.db as db
 
-from cells.compact.assemble import Assembly
-from cells.compact.canvas import Canvas
-from cells.compact.grid import Vertex
-from cells.compact.route import Wiring
+from talbot.cells.compact.assemble import Assembly
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.grid import Vertex
+from talbot.cells.compact.route import Wiring
 
 CUT, WIRE = 0.17, 0.17  # um: licon and mcon; li
 PAD = (0.27, 0.33)  # um: poly around its contact

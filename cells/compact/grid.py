@@ -14,7 +14,7 @@ to each other for different nets. Besides:
 import numpy as np
 import numpy.typing as npt
 
-from cells.compact.canvas import Canvas
+from talbot.cells.compact.canvas import Canvas
 
 Vertex = tuple[str, int, int] | tuple[str, int, int, int]
 Neighbours = dict[Vertex, set[Vertex]]

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 
-from base.liberty import functional
-from base.liberty.write import text
-from cells.compact.transistors import Schematic
+from talbot.base.liberty import functional
+from talbot.base.liberty.write import text
+from talbot.cells.compact.transistors import Schematic
 
 
 def liberty(cells: Iterable[Schematic], areas: Mapping[str, float]) -> str:

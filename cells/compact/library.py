@@ -3,13 +3,13 @@
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from base.jobs import Job, run
-from cells.compact.canvas import Canvas
-from cells.compact.catalogue import schematics
-from cells.compact.draw import Drawn
-from cells.compact.make import make, recipe
-from cells.compact.ties import diode, ties
-from cells.compact.transistors import Schematic
+from talbot.base.jobs import Job, run
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.catalogue import schematics
+from talbot.cells.compact.draw import Drawn
+from talbot.cells.compact.make import make, recipe
+from talbot.cells.compact.ties import diode, ties
+from talbot.cells.compact.transistors import Schematic
 
 if TYPE_CHECKING:
     from pdkmaster.design.library import RoutingGaugeLibrary
@@ -35,7 +35,7 @@ def library(canvas: Canvas | None = None, store: Path = FOLDER / "drawn", worker
 
     workers: see `drawn`; 1 in a process that should end by itself (joblib's workers keep it waiting for minutes).
     """
-    from cells.compact.pdk import to_pdkmaster
+    from talbot.cells.compact.pdk import to_pdkmaster
 
     canvas = canvas or Canvas()
     return to_pdkmaster(NAME, canvas, drawn(canvas, store, workers))

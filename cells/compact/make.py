@@ -9,13 +9,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
 
-from cells.compact.assemble import assemble, task
-from cells.compact.canvas import Canvas
-from cells.compact.draw import Drawing, Drawn
-from cells.compact.place import Column, breaks, place
-from cells.compact.route import route
-from cells.compact.rules import broken
-from cells.compact.transistors import Schematic
+from talbot.cells.compact.assemble import assemble, task
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.draw import Drawing, Drawn
+from talbot.cells.compact.place import Column, breaks, place
+from talbot.cells.compact.route import route
+from talbot.cells.compact.rules import broken
+from talbot.cells.compact.transistors import Schematic
 
 RECIPES = Path(__file__).with_name("recipes.json")
 SEEDS = 24  # placements tried when there is no recipe

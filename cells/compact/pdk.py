@@ -9,9 +9,9 @@ from pdkmaster.design.library import RoutingGaugeLibrary
 from pdkmaster.design.routinggauge import RoutingGauge
 from pdkmaster.technology import geometry
 
-from cells.compact.canvas import Canvas
-from cells.compact.draw import Drawn, Shape
-from cells.compact.transistors import Schematic
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.draw import Drawn, Shape
+from talbot.cells.compact.transistors import Schematic
 
 PRIMITIVES: Any = tech.primitives  # PDKMaster's types do not tell metals from other primitives
 

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 from numba import njit
 
-from cells.compact.grid import Flags, Ints
-from cells.compact.transistors import Schematic, Switch
+from talbot.cells.compact.grid import Flags, Ints
+from talbot.cells.compact.transistors import Schematic, Switch
 
 BREAK = 10.0  # cost of a break of the diffusions; that of a net is the columns that it spans
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import klayout.db as db
 
-from cells.compact.draw import Drawing, Shape, regions
+from talbot.cells.compact.draw import Drawing, Shape, regions
 
 SPACES = {"li": 170, "poly": 210, "m1": 140, "difftap": 270, "licon": 170, "mcon": 190}  # nm
 WIDTHS = {"li": 170, "poly": 150, "m1": 140, "difftap": 150}

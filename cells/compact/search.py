@@ -8,12 +8,12 @@ import re
 from argparse import ArgumentParser, Namespace
 from dataclasses import astuple
 
-from base import jobs
-from base.files import write
-from cells.compact.canvas import Canvas
-from cells.compact.catalogue import schematics
-from cells.compact.make import RECIPES, choose, recipe
-from models.parameters import ParameterError
+from talbot.base import jobs
+from talbot.base.files import write
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.catalogue import schematics
+from talbot.cells.compact.make import RECIPES, choose, recipe
+from talbot.models.parameters import ParameterError
 
 
 def best(name: str, first: int, last: int, narrower: bool) -> list[object] | None:

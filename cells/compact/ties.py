@@ -1,8 +1,8 @@
 """Cells without routes: taps that fill a row, and the diode against antenna charge."""
 
-from cells.compact.canvas import Canvas
-from cells.compact.draw import CUT, WIRE, Drawn, Pen, frame
-from cells.compact.transistors import Schematic
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.draw import CUT, WIRE, Drawn, Pen, frame
+from talbot.cells.compact.transistors import Schematic
 
 WIDTHS = (1, 2, 4, 8)  # sites
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from cells.compact.transistors import Schematic
+from talbot.cells.compact.transistors import Schematic
 
 CONSTANTS = {"0": "1'b0", "1": "1'b1"}
 

@@ -4,20 +4,20 @@ import json
 from pathlib import Path
 from typing import Any
 
-from base.cache import digest
-from base.files import staged
-from base.gds import write_gds
-from base.lef.write import library as lef_library
-from base.sources import code
-from cells.compact.canvas import Canvas
-from cells.compact.liberty import liberty
-from cells.compact.library import FOLDER, NAME, library
-from cells.compact.rules import SPACES
-from cells.compact.transistors import Schematic
-from cells.compact.verilog import verilog
-from cells.lef.abstract import PinKind, abstract
-from platforms.extraction import extraction_platform
-from platforms.sky130.coriolis import PLATFORM
+from talbot.base.cache import digest
+from talbot.base.files import staged
+from talbot.base.gds import write_gds
+from talbot.base.lef.write import library as lef_library
+from talbot.base.sources import code
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.liberty import liberty
+from talbot.cells.compact.library import FOLDER, NAME, library
+from talbot.cells.compact.rules import SPACES
+from talbot.cells.compact.transistors import Schematic
+from talbot.cells.compact.verilog import verilog
+from talbot.cells.lef.abstract import PinKind, abstract
+from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.sky130.coriolis import PLATFORM
 
 # Loaded by PDKMaster's exported library: Coriolis's router goes round shapes of nets of the type BLOCKAGE alone.
 BLOCKAGES = f'''"""What the router must go round inside the cells: their own met1, and the least space around it."""

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import klayout.db as db
 
-from platforms.extraction import ExtractionPlatform
-from platforms.layers import DIFFUSION, Layer
+from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layers import DIFFUSION, Layer
 
 from .devices import CellLayout
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import klayout.db as db
 
-from models.parameters import ParameterError
-from platforms.extraction import ExtractionPlatform
-from platforms.layers import DIFFUSION, GdsLayer
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layers import DIFFUSION, GdsLayer
 
 MARKS = ("hvtp", "lvtn", "library")
 REACH = 1000  # dbu around a cell in which there is substrate

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 import klayout.db as db
 import klayout.pex
 
-from models.parameters import ParameterError
-from platforms.extraction import ExtractionPlatform
-from platforms.layers import DIFFUSION
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layers import DIFFUSION
 
 from .devices import CellLayout, Device
 

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from cells.extract.capacitance import capacitances
-from cells.extract.devices import find
-from cells.extract.resistance import Resistances, resistances
-from models.parameters import ParameterError
-from platforms.extraction import ExtractionPlatform
+from talbot.cells.extract.capacitance import capacitances
+from talbot.cells.extract.devices import find
+from talbot.cells.extract.resistance import Resistances, resistances
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import ExtractionPlatform
 
 SMALLEST = 1e-4  # fF; less is left out
 

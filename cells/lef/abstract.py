@@ -10,12 +10,12 @@ from pathlib import Path
 
 import klayout.db as db
 
-from base.lef import write
-from base.lef.write import Rectangles
-from cells.extract.devices import CellLayout, find, read_cell
-from models.parameters import ParameterError, check_choice
-from platforms.extraction import ExtractionPlatform
-from platforms.layers import DIFFUSION
+from talbot.base.lef import write
+from talbot.base.lef.write import Rectangles
+from talbot.cells.extract.devices import CellLayout, find, read_cell
+from talbot.models.parameters import ParameterError, check_choice
+from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layers import DIFFUSION
 
 DIRECTIONS = ("INPUT", "OUTPUT", "INOUT")
 USES = ("SIGNAL", "CLOCK", "POWER", "GROUND")

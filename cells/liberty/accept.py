@@ -4,7 +4,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from base.tools import finish
+from talbot.base.tools import finish
 
 SILENT, MISSING = "without a warning", "not installed"
 GOOD = (SILENT, MISSING)

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from base.liberty.group import Group, Value
-from cells.characterize.conditions import Conditions
-from cells.characterize.measured import ArcTables, Constraint, Measured
-from cells.netlist.function import Cell, PinLevel, Storage
-from cells.netlist.states import Machine, Output
+from talbot.base.liberty.group import Group, Value
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.measured import ArcTables, Constraint, Measured
+from talbot.cells.netlist.function import Cell, PinLevel, Storage
+from talbot.cells.netlist.states import Machine, Output
 
 Floats = npt.NDArray[np.float64]
 NS, PF, PJ, NW = 1e9, 1e12, 1e12, 1e9

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from base.liberty.group import Group
+from talbot.base.liberty.group import Group
 
 SLACK = 1e-3  # ns, or relative, by which a table may fall where it should rise: the solver's noise
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base.liberty.group import Group
-from cells.characterize.table import bilinear
+from talbot.base.liberty.group import Group
+from talbot.cells.characterize.table import bilinear
 
 KINDS = {f"cell_{edge}": "delay" for edge in ("rise", "fall")}
 KINDS |= {f"{edge}_transition": "slew" for edge in ("rise", "fall")}

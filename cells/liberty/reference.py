@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import Any
 
-from base.liberty.group import Group
-from models.parameters import ParameterError
+from talbot.base.liberty.group import Group
+from talbot.models.parameters import ParameterError
 
 
 def files(path: str | Path, corner: str) -> dict[str, Path]:

@@ -3,8 +3,8 @@
 from collections.abc import Container, Mapping
 from typing import NoReturn
 
-from cells.netlist.spice import Netlist
-from models.parameters import ParameterError
+from talbot.cells.netlist.spice import Netlist
+from talbot.models.parameters import ParameterError
 
 
 def check(netlist: Netlist, models: Container[str], rails: Mapping[str, int]) -> None:

@@ -5,10 +5,10 @@ from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, NoReturn
 
-from cells.netlist.boolean import expression
-from cells.netlist.spice import Netlist
-from cells.netlist.states import Change, Machine, Output, State
-from models.parameters import ParameterError
+from talbot.cells.netlist.boolean import expression
+from talbot.cells.netlist.spice import Netlist
+from talbot.cells.netlist.states import Change, Machine, Output, State
+from talbot.models.parameters import ParameterError
 
 EDGES = "fall", "rise"  # to level 0, to level 1
 TypeOf = Callable[[str, str, Output, Output], str | None]  # (pin, its edge, output before, after) -> timing_type

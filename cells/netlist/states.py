@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from itertools import product
 from typing import Literal
 
-from cells.netlist.spice import Netlist
-from cells.netlist.switch import Levels, Switches, floating, joined
-from models.parameters import ParameterError
+from talbot.cells.netlist.spice import Netlist
+from talbot.cells.netlist.switch import Levels, Switches, floating, joined
+from talbot.models.parameters import ParameterError
 
 Vector = tuple[int, ...]  # levels of the inputs
 Output = int | Literal["Z"]

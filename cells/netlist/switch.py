@@ -9,7 +9,7 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from cells.netlist.spice import Netlist
+from talbot.cells.netlist.spice import Netlist
 
 Levels = dict[str, int | None]  # node -> 0, 1, or None for unknown
 FIGHT = 2.5  # ratio of resistances from which a path wins

@@ -5,17 +5,17 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from base.files import staged
-from base.liberty.read import read
-from base.page import render
-from base.paths import RESULTS
-from cells import sources
-from cells.characterize.conditions import Conditions
-from cells.corner import Corner
-from cells.liberty import compare, reference
-from cells.library import characterize_library
-from cells.report import curve, pictures, separate
-from models.parameters import ParameterError
+from talbot.base.files import staged
+from talbot.base.liberty.read import read
+from talbot.base.page import render
+from talbot.base.paths import RESULTS
+from talbot.cells import sources
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.corner import Corner
+from talbot.cells.liberty import compare, reference
+from talbot.cells.library import characterize_library
+from talbot.cells.report import curve, pictures, separate
+from talbot.models.parameters import ParameterError
 
 # per cent, constraints in ps: median and 95th percentile that are asked of cells that are not in the fit, at any corner
 BOUNDS = {"delay": (2, 8), "slew": (2, 8), "capacitance": (5, None), "leakage": (25, None), "energy": (20, None)}

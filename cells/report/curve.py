@@ -9,14 +9,14 @@ from typing import TypedDict
 
 import numpy as np
 
-from base import jobs
-from cells import sources
-from cells.characterize import delay
-from cells.characterize.bench import Bench
-from cells.characterize.cell import axes_of, cpu_seconds
-from cells.characterize.conditions import Conditions
-from cells.characterize.job import cell_of, job
-from cells.spice.settings import Settings
+from talbot.base import jobs
+from talbot.cells import sources
+from talbot.cells.characterize import delay
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.characterize.cell import axes_of, cpu_seconds
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.job import cell_of, job
+from talbot.cells.spice.settings import Settings
 
 CELLS = ("inv_1", "nand2_1", "buf_2")
 SLOW = ("inv_8", "nor2_4", "xor2_1", "dfxtp_1")  # with the default setting only

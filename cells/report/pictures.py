@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from cells.liberty.compare import Difference
-from cells.report.curve import Setting
+from talbot.cells.liberty.compare import Difference
+from talbot.cells.report.curve import Setting
 
 SCALE = 15  # per cent at the ends of the colours
 

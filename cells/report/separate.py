@@ -8,14 +8,14 @@ from typing import TypedDict
 
 import numpy as np
 
-from base import jobs
-from cells import sources
-from cells.characterize import delay
-from cells.characterize.bench import Bench
-from cells.characterize.conditions import Conditions
-from cells.characterize.job import cell_of, job
-from cells.liberty import reference
-from cells.report.curve import spread
+from talbot.base import jobs
+from talbot.cells import sources
+from talbot.cells.characterize import delay
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.job import cell_of, job
+from talbot.cells.liberty import reference
+from talbot.cells.report.curve import spread
 
 POINTS = slice(0, None, 2)  # of the reference's axes: every other
 Variant = tuple[str, str, int, float, float]  # models, netlist, entries, median and 95th percentile of the error, %

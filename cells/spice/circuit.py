@@ -2,8 +2,8 @@
 
 from types import ModuleType
 
-from cells.corner import Corner
-from cells.netlist.spice import Netlist
+from talbot.cells.corner import Corner
+from talbot.cells.netlist.spice import Netlist
 
 
 def circuit(netlist: Netlist, process: ModuleType, models: str, corner: Corner, leakage: bool = False) -> list[str]:

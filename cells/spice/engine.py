@@ -21,9 +21,9 @@ from typing import Self
 
 import numpy as np
 
-from base.tools import ToolError
-from cells.spice.settings import Settings
-from cells.spice.wave import Wave
+from talbot.base.tools import ToolError
+from talbot.cells.spice.settings import Settings
+from talbot.cells.spice.wave import Wave
 
 STALLED = 50  # times its timeout, by the clock, after which a child that uses no CPU is given up
 Points = Sequence[tuple[float, float]]  # (s, V) of a piecewise linear source

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 
 @dataclass(frozen=True)

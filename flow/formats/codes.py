@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from flow.frame import job
-from flow.frame.request import request
-from models.chip import golden_frame
-from models.parameters import ParameterError
+from talbot.flow.frame import job
+from talbot.flow.frame.request import request
+from talbot.models.chip import golden_frame
+from talbot.models.parameters import ParameterError
 
 Codes = npt.NDArray[np.int16]
 

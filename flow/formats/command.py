@@ -8,13 +8,13 @@ from typing import Any
 
 from tqdm import tqdm
 
-from base.charts import save
-from base.files import insert, staged
-from base.paths import RESULTS
-from base.table import write_csv
-from flow.sizes.measure import YOSYS_MISSING, yosys_installed
-from flow.sizes.measure import measure as size_of
-from rtl.verilog import export_verilog
+from talbot.base.charts import save
+from talbot.base.files import insert, staged
+from talbot.base.paths import RESULTS
+from talbot.base.table import write_csv
+from talbot.flow.sizes.measure import YOSYS_MISSING, yosys_installed
+from talbot.flow.sizes.measure import measure as size_of
+from talbot.rtl.verilog import export_verilog
 
 from . import company
 from .codes import codes_of, load_codes

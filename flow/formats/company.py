@@ -10,9 +10,9 @@ import pillow_jpls  # noqa: F401  (gives Pillow its JPEG-LS)
 import zstandard
 from PIL import Image
 
-from models.digital.stream import StreamHeader, encode_frame
-from models.parameters import FrameParameters, TileParameters, Window
-from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.parameters import FrameParameters, TileParameters, Window
+from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 from .codes import Codes, entropy_bytes, thresholded
 from .orders import CHIP, segments_of

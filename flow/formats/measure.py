@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.stream.payload import base_of
-from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
-from models.reconstruct.psnr import psnr_db
+from talbot.models.digital.stream.payload import base_of
+from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from talbot.models.reconstruct.psnr import psnr_db
 
 from .codes import Codes, entropy_bytes, thresholded
 from .company import stream_bytes

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.scan import Scan
-from models.parameters import FrameParameters, TileParameters, Window
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import FrameParameters, TileParameters, Window
 
 MARK_BYTES = 2
 Indices = npt.NDArray[np.integer]

@@ -5,7 +5,7 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import curves
+from talbot.base.charts import curves
 
 from .orders import CHIP, ORDERS
 from .tokens import CHOSEN, FORMATS

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from models.digital.stream.payload import encode_segment
+from talbot.models.digital.stream.payload import encode_segment
 
 from .codes import Codes
 

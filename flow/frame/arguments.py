@@ -1,6 +1,6 @@
 """Validated values from text of the command line. Every error names the field, the value and the range."""
 
-from models.parameters import ALL_TYPES, ParameterError, Window
+from talbot.models.parameters import ALL_TYPES, ParameterError, Window
 
 BETAS = {"low": 0x0000FF, "mid": 0x00FF00, "high": 0xFF0000}
 TYPE_GROUPS = {"all": ALL_TYPES, **BETAS, "cosine": 0x555555, "sine": 0xAAAAAA}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from models.parameters import FrameParameters, SensorParameters
+from talbot.models.parameters import FrameParameters, SensorParameters
 
 DIE = 5e-3  # m, side of the thesis's die [Jayasuriya2017, Sec. 3.5.1]
 BETA_COLOURS = {12.0: "#7fb3d5", 18.0: "#f5b971", 24.0: "#c39bd3"}

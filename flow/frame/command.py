@@ -8,9 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from base.cache import digest
-from base.progress import Steps
-from models.parameters import LANES, MODES, STANDARD, CameraParameters, read_sensor
+from talbot.base.cache import digest
+from talbot.base.progress import Steps
+from talbot.models.parameters import LANES, MODES, STANDARD, CameraParameters, read_sensor
 
 from . import arguments as text
 
@@ -71,7 +71,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Simulate one frame and print its figures; 1 where the chip and the golden model differ."""
-    from models.scene import scenes
+    from talbot.models.scene import scenes
 
     from .job import STEPS, run
 

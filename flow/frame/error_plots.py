@@ -8,8 +8,8 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from models.chip import golden_frame
+from talbot.base.charts import curves
+from talbot.models.chip import golden_frame
 
 from . import hardware
 from .quality import decoding_error, snr

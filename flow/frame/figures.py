@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base.verilator import verilator_version
-from models.afe.trim import TRIM_MAX, TRIM_MIN
-from models.parameters import EnergyParameters, LightParameters
-from models.parameters.energy import DECISIONS, WINDOW, Events
-from models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
+from talbot.base.verilator import verilator_version
+from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
+from talbot.models.parameters import EnergyParameters, LightParameters
+from talbot.models.parameters.energy import DECISIONS, WINDOW, Events
+from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
 from .result import FrameResult, GoldenResult

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flow.simulate.build import Build
-from flow.simulate.frame import FrameRun, Waves, host_script, run_frame
-from flow.simulate.verilator import bench_program
-from models.afe import FrontEnd, write_converter, write_samples
-from models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
-from models.parameters import FrameParameters, SensorParameters
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.frame import FrameRun, Waves, host_script, run_frame
+from talbot.flow.simulate.verilator import bench_program
+from talbot.models.afe import FrontEnd, write_converter, write_samples
+from talbot.models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
+from talbot.models.parameters import FrameParameters, SensorParameters
 
 
 @dataclass(frozen=True)

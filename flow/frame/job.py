@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base.files import check_folder, staged
-from flow.simulate.frame import Waves
-from models.afe import trim_codes, trim_gain
-from models.capture import Exposure, Region, choose_views, currents, exposed, integrate
-from models.capture import expose as expose_pair
-from models.chip import front_end_of, golden_frame
-from models.digital.stream import decode_stream
-from models.pixel import measured_gains
-from models.plan import Plan, plan
-from models.scene import Sampling, Scene, load
+from talbot.base.files import check_folder, staged
+from talbot.flow.simulate.frame import Waves
+from talbot.models.afe import trim_codes, trim_gain
+from talbot.models.capture import Exposure, Region, choose_views, currents, exposed, integrate
+from talbot.models.capture import expose as expose_pair
+from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.stream import decode_stream
+from talbot.models.pixel import measured_gains
+from talbot.models.plan import Plan, plan
+from talbot.models.scene import Sampling, Scene, load
 
 from . import hardware
 from .figures import summarize

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base.charts import bars, svg
-from models.parameters import EnergyParameters, LightParameters, sensor_text, sources
+from talbot.base.charts import bars, svg
+from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg

@@ -8,7 +8,7 @@ from PIL import Image as pillow
 from PIL import ImageDraw, ImageFont
 from PIL.Image import Image, Resampling
 
-from models.parameters import TileParameters
+from talbot.models.parameters import TileParameters
 
 Values = npt.NDArray[np.floating]
 

@@ -11,11 +11,11 @@ import numpy.typing as npt
 from PIL import Image
 from skimage.metrics import structural_similarity
 
-from models.capture import cells
-from models.chip import golden_frame
-from models.parameters import FrameParameters
-from models.pixel import depth_of
-from models.reconstruct import psnr_db, psnr_without_mean_db, sum_image, white_sum
+from talbot.models.capture import cells
+from talbot.models.chip import golden_frame
+from talbot.models.parameters import FrameParameters
+from talbot.models.pixel import depth_of
+from talbot.models.reconstruct import psnr_db, psnr_without_mean_db, sum_image, white_sum
 
 from .result import GoldenResult
 

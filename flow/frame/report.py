@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 from PIL.Image import Image
 
-from base import page
+from talbot.base import page
 
 from .figures import camera_line, energy_line, trims_line
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from models import parameters
-from models.parameters import (
+from talbot.models import parameters
+from talbot.models.parameters import (
     ALL_TYPES,
     STANDARD,
     TYPICAL_CONVERTER,
@@ -16,7 +16,7 @@ from models.parameters import (
     SensorParameters,
     Window,
 )
-from models.scene import LightField
+from talbot.models.scene import LightField
 
 CONVERTERS = {"typical": TYPICAL_CONVERTER, "ideal": parameters.ConverterParameters()}
 Cut = Callable[[Window], Window]  # of the full window

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from models.afe import FrontEnd
-from models.capture import CaptureOperator, Views
-from models.chip import GoldenFrame
-from models.digital.stream.frame import DecodedFrame
-from models.parameters import SensorParameters
-from models.pixel.time_of_flight import quadrature
-from models.plan import Plan
-from models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image
-from models.reconstruct.rebuild import Rebuilt
-from models.scene import Scene
+from talbot.models.afe import FrontEnd
+from talbot.models.capture import CaptureOperator, Views
+from talbot.models.chip import GoldenFrame
+from talbot.models.digital.stream.frame import DecodedFrame
+from talbot.models.parameters import SensorParameters
+from talbot.models.pixel.time_of_flight import quadrature
+from talbot.models.plan import Plan
+from talbot.models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image
+from talbot.models.reconstruct.rebuild import Rebuilt
+from talbot.models.scene import Scene
 
 from .hardware import HardwareFrame
 from .request import FrameRequest

@@ -3,12 +3,12 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.command import failures
-from base.files import check_folder, staged
-from base.paths import RESULTS
-from flow.layout.design import DESIGNS, design, folder_name
-from models.parameters import check_choice
-from platforms.processes import PROCESSES
+from talbot.base.command import failures
+from talbot.base.files import check_folder, staged
+from talbot.base.paths import RESULTS
+from talbot.flow.layout.design import DESIGNS, design, folder_name
+from talbot.models.parameters import check_choice
+from talbot.platforms.processes import PROCESSES
 
 from .archive import archive, sha256
 from .contents import Broken, contents, manifest, waived

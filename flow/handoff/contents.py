@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-from flow.layout.design import Design
-from flow.layout.netlist.netlist import SUPPLIES
-from flow.layout.report.metrics import broken
-from flow.openroad.tinytapeout import PROJECTS, project_files
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.netlist.netlist import SUPPLIES
+from talbot.flow.layout.report.metrics import broken
+from talbot.flow.openroad.tinytapeout import PROJECTS, project_files
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
 
 from .archive import sha256
 from .pages import datasheet, pinout

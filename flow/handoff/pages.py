@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from base.lef.read import read_macro
-from flow.layout.design import Design
+from talbot.base.lef.read import read_macro
+from talbot.flow.layout.design import Design
 
 WATCHED = {"frame": "a real frame", "tests": "the block's own tests", "host": "an example behind its host"}
 

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 HEADER = re.compile(r"(?m)^(module\s+\S+\s*)\((.*?)\);")
 INSTANCE = re.compile(r"(?m)^(\s+\w+\s+(?:\\\S+\s+|\w+\s*)\()(\..*)\);$")

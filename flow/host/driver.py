@@ -4,8 +4,8 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from enum import IntEnum
 
-from models.digital.host import command, decode_status, read_transfer, status_transfers, write_transfers
-from models.parameters.registers import Field, array_resets, register_map
+from talbot.models.digital.host import command, decode_status, read_transfer, status_transfers, write_transfers
+from talbot.models.parameters.registers import Field, array_resets, register_map
 
 
 class Code(IntEnum):

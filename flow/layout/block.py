@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from base.files import staged
-from base.steps import Runner, StepError
-from platforms.coriolis import coriolis_platform
-from platforms.wires import wire_corner
+from talbot.base.files import staged
+from talbot.base.steps import Runner, StepError
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.wires import wire_corner
 
 from .chain import input_files
 from .design import Design, folder_name, macro_designs

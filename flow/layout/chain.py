@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from base.steps import Step
-from platforms.coriolis import coriolis_platform
-from platforms.wires import wire_corner
-from rtl.verilog import export_verilog
+from talbot.base.steps import Step
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.wires import wire_corner
+from talbot.rtl.verilog import export_verilog
 
 from .design import DESIGNS, Design, macro_modules
 from .options import LEAST_UTILIZATION, Options

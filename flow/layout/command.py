@@ -3,12 +3,12 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.command import failures
-from base.paths import RESULTS
-from base.progress import Steps
-from models.parameters import ParameterError, check_choice
-from platforms.foundry import installed
-from platforms.processes import PROCESSES
+from talbot.base.command import failures
+from talbot.base.paths import RESULTS
+from talbot.base.progress import Steps
+from talbot.models.parameters import ParameterError, check_choice
+from talbot.platforms.foundry import installed
+from talbot.platforms.processes import PROCESSES
 
 from .block import lay_out
 from .chain import all_steps

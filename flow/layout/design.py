@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from functools import partial
 
-from models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, check_real
-from platforms.processes import PROCESSES
+from talbot.models.parameters import ASYNCHRONOUS, SPI_INPUTS, ParameterError, check_real
+from talbot.platforms.processes import PROCESSES
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from base.steps import Runner, StepError
+from talbot.base.steps import Runner, StepError
 
 from .design import Design, macro_designs
 from .netlist.verilog import modules

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.liberty.read import is_library
-from models.parameters import ParameterError, check_int, check_real
-from platforms.coriolis import coriolis_platform
+from talbot.base.liberty.read import is_library
+from talbot.models.parameters import ParameterError, check_int, check_real
+from talbot.platforms.coriolis import coriolis_platform
 
 LEAST_UTILIZATION = 0.20  # of the search's last attempt
 

@@ -6,10 +6,10 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from base.steps import StepError
-from cells.standard import StandardCells
-from platforms.coriolis import CoriolisPlatform
-from platforms.layers import Layer
+from talbot.base.steps import StepError
+from talbot.cells.standard import StandardCells
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layers import Layer
 
 from .netlist.netlist import OUTPUT_PINS
 

@@ -1,9 +1,9 @@
 """The search for the smallest area whose layout keeps all design rules."""
 
-from base.steps import Runner
-from base.steps.versions import version
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import Runner
+from talbot.base.steps.versions import version
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
 
 from .chain import Signoff, all_steps, attempts, routing_steps, signoff_steps, synthesis_steps
 from .design import Design

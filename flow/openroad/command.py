@@ -5,13 +5,13 @@ import shutil
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.command import failures
-from base.files import check_folder, staged
-from base.paths import RESULTS
-from base.progress import Steps
-from base.tools import ToolError
-from flow.layout.design import DESIGNS, flat_design
-from platforms.openroad import openroad_platform
+from talbot.base.command import failures
+from talbot.base.files import check_folder, staged
+from talbot.base.paths import RESULTS
+from talbot.base.progress import Steps
+from talbot.base.tools import ToolError
+from talbot.flow.layout.design import DESIGNS, flat_design
+from talbot.platforms.openroad import openroad_platform
 
 from .merge import merge
 from .results import broken, summarize

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from base.files import insert
-from base.paths import RESULTS
-from flow.layout.design import design
-from flow.layout.report.metrics import broken as broken_of_layout
+from talbot.base.files import insert
+from talbot.base.paths import RESULTS
+from talbot.flow.layout.design import design
+from talbot.flow.layout.report.metrics import broken as broken_of_layout
 
 from .results import broken
 

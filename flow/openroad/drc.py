@@ -4,9 +4,9 @@ import json
 import re
 from typing import Any
 
-from base.steps import Files
-from flow.layout.steps import drc
-from platforms.openroad import openroad_platform
+from talbot.base.steps import Files
+from talbot.flow.layout.steps import drc
+from talbot.platforms.openroad import openroad_platform
 
 
 class Drc(drc.Drc):

@@ -10,13 +10,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base import tools
-from base.command import failures
-from base.files import insert
-from flow.layout.design import design
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130 import functions
-from platforms.sky130.tinytapeout import FRAME, FULL, core_um2
+from talbot.base import tools
+from talbot.base.command import failures
+from talbot.base.files import insert
+from talbot.flow.layout.design import design
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130 import functions
+from talbot.platforms.sky130.tinytapeout import FRAME, FULL, core_um2
 
 from .stat import counted
 from .tinytapeout import PROJECTS

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from base.steps import Files, StepError
-from base.tools import finish
-from flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
-from flow.layout.steps.corner import CornerStep
+from talbot.base.steps import Files, StepError
+from talbot.base.tools import finish
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist
+from talbot.flow.layout.steps.corner import CornerStep
 
 SCRIPT = """
 read_liberty {liberty}

@@ -1,8 +1,8 @@
 """A design for LibreLane: config.yaml, constraints, Verilog. Run: librelane config.yaml."""
 
-from flow.layout.design import Design
-from flow.layout.timing.constraints import sdc
-from platforms.openroad import OpenRoadPlatform
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.platforms.openroad import OpenRoadPlatform
 
 # LibreLane reads the constraints in every step and sets this variable in those before the clock has its tree
 PROPAGATE = """if {[info exists ::env(OPENLANE_SDC_IDEAL_CLOCKS)] && $::env(OPENLANE_SDC_IDEAL_CLOCKS)} {

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from base.steps import Files, Step, StepError
-from flow.layout.geometry.decks import run_deck
-from flow.layout.netlist.netlist import Instance, Netlist
-from flow.layout.steps.parameters import PdkParameters
-from platforms.openroad import openroad_platform
+from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.geometry.decks import run_deck
+from talbot.flow.layout.netlist.netlist import Instance, Netlist
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.platforms.openroad import openroad_platform
 
 from .netlists import routed_netlist
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from base.gds import write_gds
-from models.parameters import ParameterError
-from platforms.openroad import OpenRoadPlatform
+from talbot.base.gds import write_gds
+from talbot.models.parameters import ParameterError
+from talbot.platforms.openroad import OpenRoadPlatform
 
 ROUTED = "NET,SPNET,VIA,PIN,LEFPIN,FILL"
 

@@ -5,10 +5,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from base.steps import StepError
-from base.tools import run
-from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port, named_bits, register_names
-from platforms.openroad import OpenRoadPlatform
+from talbot.base.steps import StepError
+from talbot.base.tools import run
+from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port, named_bits, register_names
+from talbot.platforms.openroad import OpenRoadPlatform
 
 
 def write_synthesized(folder: Path, top: str, tech: OpenRoadPlatform) -> None:

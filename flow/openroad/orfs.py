@@ -2,9 +2,9 @@
 
 import json
 
-from flow.layout.design import Design
-from flow.layout.timing.constraints import sdc
-from platforms.openroad import OpenRoadPlatform
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.platforms.openroad import OpenRoadPlatform
 
 # Metrics of flow-scripts' own rules-base.json that a signed-off design must keep, whatever its size
 RULES = {

@@ -5,18 +5,18 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from base.liberty.read import areas
-from base.steps import Runner
-from base.steps.versions import version
-from flow.layout.design import Design
-from flow.layout.netlist.netlist import Netlist, is_register
-from flow.layout.options import Options
-from flow.layout.report.metrics import RULES as LAYOUT_RULES
-from flow.layout.report.metrics import Attempt
-from flow.layout.report.metrics import broken as breaks
-from flow.layout.report.metrics import summarize as of_steps
-from flow.layout.steps.power import wire_pf
-from platforms.openroad import WIRES, OpenRoadPlatform
+from talbot.base.liberty.read import areas
+from talbot.base.steps import Runner
+from talbot.base.steps.versions import version
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.netlist.netlist import Netlist, is_register
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.report.metrics import RULES as LAYOUT_RULES
+from talbot.flow.layout.report.metrics import Attempt
+from talbot.flow.layout.report.metrics import broken as breaks
+from talbot.flow.layout.report.metrics import summarize as of_steps
+from talbot.flow.layout.steps.power import wire_pf
+from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 
 ROUTE = re.compile(r"(?:\+ ROUTED|NEW) ([^+;]*?)(?=\bNEW\b|[+;])")
 RULES = LAYOUT_RULES | {

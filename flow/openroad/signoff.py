@@ -4,25 +4,25 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
-from base.liberty.functional import with_latches
-from base.liberty.read import only, read
-from base.liberty.write import text
-from base.steps import Runner, Step
-from base.tools import run
-from flow.layout.chain import netlist_tests, timing_steps
-from flow.layout.design import Design
-from flow.layout.options import Options
-from flow.layout.steps.antenna import Antenna
-from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
-from flow.layout.steps.fill import Fill
-from flow.layout.steps.ir_drop import IrDrop as MeshDrop
-from flow.layout.steps.library import Library
-from flow.layout.steps.parameters import PdkParameters
-from flow.layout.steps.power import Power
-from flow.layout.steps.sta import Sta
-from flow.layout.timing.constraints import sdc
-from platforms.openroad import WIRES, OpenRoadPlatform
-from platforms.wires import CORNERS
+from talbot.base.liberty.functional import with_latches
+from talbot.base.liberty.read import only, read
+from talbot.base.liberty.write import text
+from talbot.base.steps import Runner, Step
+from talbot.base.tools import run
+from talbot.flow.layout.chain import netlist_tests, timing_steps
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.steps.antenna import Antenna
+from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from talbot.flow.layout.steps.fill import Fill
+from talbot.flow.layout.steps.ir_drop import IrDrop as MeshDrop
+from talbot.flow.layout.steps.library import Library
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.power import Power
+from talbot.flow.layout.steps.sta import Sta
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.platforms.openroad import WIRES, OpenRoadPlatform
+from talbot.platforms.wires import CORNERS
 
 from .drc import Drc
 from .ir_drop import IrDrop, IrDropParameters

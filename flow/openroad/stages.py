@@ -8,11 +8,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.liberty.read import without
-from base.steps.alone import alone
-from base.tools import ToolError, finish
-from models.parameters import ParameterError
-from platforms.openroad import WIRES, OpenRoadPlatform
+from talbot.base.liberty.read import without
+from talbot.base.steps.alone import alone
+from talbot.base.tools import ToolError, finish
+from talbot.models.parameters import ParameterError
+from talbot.platforms.openroad import WIRES, OpenRoadPlatform
 
 from .netlists import write_synthesized
 

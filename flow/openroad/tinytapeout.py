@@ -4,9 +4,9 @@ import json
 import re
 from dataclasses import dataclass
 
-from flow.layout.design import Design
-from models.parameters import ParameterError
-from platforms.sky130.tinytapeout import CONFIG, FRAME
+from talbot.flow.layout.design import Design
+from talbot.models.parameters import ParameterError
+from talbot.platforms.sky130.tinytapeout import CONFIG, FRAME
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The file design.tcl: all that the stages' Tcl reads of a design and of its process."""
 
-from flow.layout.design import Design
-from platforms.openroad import OpenRoadPlatform
+from talbot.flow.layout.design import Design
+from talbot.platforms.openroad import OpenRoadPlatform
 
 CORE_SPACE_UM = 10.0  # from core to die: pins and their way in
 

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from base.files import staged
-from flow.layout.design import DESIGNS, Design
-from flow.layout.netlist.gating import ClockGate
-from flow.layout.timing.constraints import sdc
-from platforms.openroad import OpenRoadPlatform
-from platforms.sky130.tinytapeout import FRAME
-from rtl.verilog import export_verilog
+from talbot.base.files import staged
+from talbot.flow.layout.design import DESIGNS, Design
+from talbot.flow.layout.netlist.gating import ClockGate
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.platforms.openroad import OpenRoadPlatform
+from talbot.platforms.sky130.tinytapeout import FRAME
+from talbot.rtl.verilog import export_verilog
 
 from .librelane import librelane
 from .orfs import orfs

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from models.parameters import SensorParameters
-from rtl.verilog import export_verilog
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.verilog import export_verilog
 
 
 @dataclass(frozen=True)

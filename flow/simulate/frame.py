@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-from base.tools import ToolError, finish
+from talbot.base.tools import ToolError, finish
 
 WAIT, TRANSFER, STOP = b"\x01", b"\x02", b"\x00"
 NO_FRAME_END = 4  # exit status of the bench

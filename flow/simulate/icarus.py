@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from base.paths import ROOT
-from base.tools import run
+from talbot.base.paths import ROOT
+from talbot.base.tools import run
 
 from .build import Build
 from .verilator import FRAME

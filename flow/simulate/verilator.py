@@ -3,10 +3,10 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from base.cache import cached, digest
-from base.paths import BUILD, ROOT
-from base.sources import code
-from base.verilator import FAST, compile_program, runtime, verilate, verilator_version
+from talbot.base.cache import cached, digest
+from talbot.base.paths import BUILD, ROOT
+from talbot.base.sources import code
+from talbot.base.verilator import FAST, compile_program, runtime, verilate, verilator_version
 
 from .build import Build
 

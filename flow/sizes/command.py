@@ -6,9 +6,9 @@ from argparse import ArgumentParser, Namespace
 from dataclasses import asdict
 from pathlib import Path
 
-from base.files import insert, staged
-from base.paths import RESULTS
-from rtl.verilog import export_verilog
+from talbot.base.files import insert, staged
+from talbot.base.paths import RESULTS
+from talbot.rtl.verilog import export_verilog
 
 from .measure import measure
 from .table import markdown, readme_table

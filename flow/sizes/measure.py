@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from base.paths import ROOT
-from base.tools import ToolError, finish
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError, finish
 
 LIBRARY = ROOT / "cells" / "gates.lib"
 TIES = "hilomap -hicell TIE1 Y -locell TIE0 Y -singleton"

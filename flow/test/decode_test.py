@@ -4,10 +4,10 @@ import re
 import numpy as np
 import pytest
 
-from base.command import main
-from flow import decode
-from models.digital.stream import encode_frame
-from models.digital.stream.test.frames import header_of, samples_of
+from talbot.base.command import main
+from talbot.flow import decode
+from talbot.models.digital.stream import encode_frame
+from talbot.models.digital.stream.test.frames import header_of, samples_of
 
 
 @pytest.fixture

@@ -1,8 +1,8 @@
 import numpy as np
 
-from flow.stability import FRAMES, divider_cases, frame_case
-from models.digital.divider import phase_error, quad_divide
-from models.stability import Case, table
+from talbot.flow.stability import FRAMES, divider_cases, frame_case
+from talbot.models.digital.divider import phase_error, quad_divide
+from talbot.models.stability import Case, table
 
 
 def test_divider_cases_hold():

@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.files import check_folder
+from talbot.base.files import check_folder
 
 from .sweeps import SWEEPS, run_sweeps
 

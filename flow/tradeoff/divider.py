@@ -6,9 +6,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from flow.simulate.divider import exhaustive
-from models.parameters import DIVIDERS, SensorParameters
+from talbot.base.charts import curves
+from talbot.flow.simulate.divider import exhaustive
+from talbot.models.parameters import DIVIDERS, SensorParameters
 
 
 def points(quick: bool) -> list[tuple[str, int]]:

@@ -6,10 +6,10 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from flow.frame import job
-from flow.frame.figures import summarize
-from flow.frame.request import request
+from talbot.base.charts import curves
+from talbot.flow.frame import job
+from talbot.flow.frame.figures import summarize
+from talbot.flow.frame.request import request
 
 from .threshold import costs
 

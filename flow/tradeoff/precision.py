@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from models.afe import FrontEnd, trim_codes
-from models.capture import CaptureOperator
-from models.parameters import ArrayParameters, CameraParameters, OpticsParameters, SensorParameters
-from models.pixel import optical_gains
-from models.scene import Sampling, Scene, load
+from talbot.base.charts import curves
+from talbot.models.afe import FrontEnd, trim_codes
+from talbot.models.capture import CaptureOperator
+from talbot.models.parameters import ArrayParameters, CameraParameters, OpticsParameters, SensorParameters
+from talbot.models.pixel import optical_gains
+from talbot.models.scene import Sampling, Scene, load
 
 REPEATS = 9
 FOCAL_LENGTH = CameraParameters.focal_length  # a longer one for larger arrays: the pair must fill them

@@ -10,14 +10,14 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from models.capture import Region, integrate
-from models.capture.pupil import add_view, cells
-from models.parameters import AmpTiming, ArrayParameters, SensorParameters
-from models.pixel import optical_gains
-from models.pixel.weights import field_weights
-from models.plan import codes_per_unit
-from models.scene import Sampling, Scene, load
+from talbot.base.charts import curves
+from talbot.models.capture import Region, integrate
+from talbot.models.capture.pupil import add_view, cells
+from talbot.models.parameters import AmpTiming, ArrayParameters, SensorParameters
+from talbot.models.pixel import optical_gains
+from talbot.models.pixel.weights import field_weights
+from talbot.models.plan import codes_per_unit
+from talbot.models.scene import Sampling, Scene, load
 
 VIEWS = (1, 3, 5, 7, 9, 11, 13, 15, 17, 21, 25, 31)
 

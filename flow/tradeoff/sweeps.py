@@ -8,11 +8,11 @@ from typing import Any, Protocol
 from matplotlib.figure import Figure
 from tqdm import tqdm
 
-from base.charts import save
-from base.files import staged
-from base.page import render
-from base.table import write_csv
-from models.parameters import check_choice
+from talbot.base.charts import save
+from talbot.base.files import staged
+from talbot.base.page import render
+from talbot.base.table import write_csv
+from talbot.models.parameters import check_choice
 
 from . import divider, noise, precision, pupil, threshold, views
 

@@ -9,11 +9,11 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from flow.frame import hardware, job
-from flow.frame.figures import summarize
-from flow.frame.request import FrameRequest, request
-from flow.frame.result import Exposed, FrameResult
+from talbot.base.charts import curves
+from talbot.flow.frame import hardware, job
+from talbot.flow.frame.figures import summarize
+from talbot.flow.frame.request import FrameRequest, request
+from talbot.flow.frame.result import Exposed, FrameResult
 
 THRESHOLDS = (0, 1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32, 48, 64, 96, 127)
 

@@ -8,9 +8,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import curves
-from models.parameters import SensorParameters
-from models.pixel import Ripple, exact, sampling_error
+from talbot.base.charts import curves
+from talbot.models.parameters import SensorParameters
+from talbot.models.pixel import Ripple, exact, sampling_error
 
 VIEWS = (1, 3, 5, 7, 9, 15)
 NODES = (1, 2, 3, 4, 6, 8, 12)

@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ConverterParameters, check_int
+from talbot.models.parameters import ConverterParameters, check_int
 
 from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
 

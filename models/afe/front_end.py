@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.sar import Conversion, convert
-from models.parameters import MODES, ParameterError, TileParameters, check_choice, check_int, check_real
+from talbot.models.digital.sar import Conversion, convert
+from talbot.models.parameters import MODES, ParameterError, TileParameters, check_choice, check_int, check_real
 
 from .converter import Converter
 from .trim import trim_gain

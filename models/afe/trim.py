@@ -10,7 +10,7 @@ eleventh bit would bring nothing.
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 TRIM_BITS = 10
 TRIM_UNITY = 512  # steps of the register in a ratio of 1

@@ -6,7 +6,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, ParameterError, check_int, check_real
+from talbot.models.parameters import (
+    ELEMENTARY_CHARGE,
+    AmpTiming,
+    ElectricalParameters,
+    ParameterError,
+    check_int,
+    check_real,
+)
 
 from .shot import photon_count
 

@@ -5,12 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, SensorParameters
-from models.pixel.polarization import transmission
-from models.pixel.time_of_flight import TAPS, phase_of
-from models.plan import Plan
-from models.scene import Scene
-from models.scene.depth_field import depth_of_surface
+from talbot.models.parameters import ParameterError, SensorParameters
+from talbot.models.pixel.polarization import transmission
+from talbot.models.pixel.time_of_flight import TAPS, phase_of
+from talbot.models.plan import Plan
+from talbot.models.scene import Scene
+from talbot.models.scene.depth_field import depth_of_surface
 
 from .expose import Exposure, expose
 from .pupil import Region, integrate

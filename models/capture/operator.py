@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from models.parameters import ParameterError, SensorParameters, check_choice
-from models.pixel.weights import view_weights
+from talbot.models.parameters import ParameterError, SensorParameters, check_choice
+from talbot.models.pixel.weights import view_weights
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]

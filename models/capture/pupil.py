@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from models.parameters import SensorParameters
-from models.pixel.weights import FieldWeights, field_weights
-from models.scene import Scene
+from talbot.models.parameters import SensorParameters
+from talbot.models.pixel.weights import FieldWeights, field_weights
+from talbot.models.scene import Scene
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]

@@ -5,7 +5,7 @@ from time import perf_counter
 
 import numpy as np
 
-from models.parameters import SensorParameters
+from talbot.models.parameters import SensorParameters
 
 from .operator import CaptureOperator
 

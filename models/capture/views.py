@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import AmpTiming, ParameterError, SensorParameters, check_int, check_real
-from models.pixel.trim import optical_gains
-from models.plan import LeftOut, codes_per_unit
-from models.scene import Scene
+from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters, check_int, check_real
+from talbot.models.pixel.trim import optical_gains
+from talbot.models.plan import LeftOut, codes_per_unit
+from talbot.models.scene import Scene
 
 from .pupil import Region, cells, integrate
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import AmpTiming
+from talbot.models.parameters import AmpTiming
 
 TAPS = 4
 

@@ -16,8 +16,8 @@ to even.
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import check_int
-from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
+from talbot.models.parameters import check_int
+from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
 
 from .divider import QuadResult, fold, operands, unfold
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, check_int
-from models.parameters.divider import (
+from talbot.models.parameters import ParameterError, check_int
+from talbot.models.parameters.divider import (
     AMP_MAX,
     N_FRAC_MAX,
     N_FRAC_MIN,

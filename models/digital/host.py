@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Sequence
 
-from models.parameters import MODES, FrameParameters, ParameterError, check_int
-from models.parameters.registers import register_map, trim_range
+from talbot.models.parameters import MODES, FrameParameters, ParameterError, check_int
+from talbot.models.parameters.registers import register_map, trim_range
 
 WRITE = 0x80  # bit 7 of the command byte; the rest is the address
 TRANSFER_MAX = 255  # bytes of one transfer

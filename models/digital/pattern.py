@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.sar import BIPOLAR, Conversion, convert
-from models.parameters import SAMPLES_PER_PIXEL, TileParameters
+from talbot.models.digital.sar import BIPOLAR, Conversion, convert
+from talbot.models.parameters import SAMPLES_PER_PIXEL, TileParameters
 
 
 def pattern_value(

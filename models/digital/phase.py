@@ -3,9 +3,9 @@
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.cordic import cordic
-from models.digital.divider import QuadResult, quad_divide
-from models.parameters import ChipParameters
+from talbot.models.digital.cordic import cordic
+from talbot.models.digital.divider import QuadResult, quad_divide
+from talbot.models.parameters import ChipParameters
 
 
 def divide(

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from models.parameters.registers import register_map
+from talbot.models.parameters.registers import register_map
 
 ADDRESS_MAX = 127  # the address stops counting up here
 

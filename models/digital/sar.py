@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, check_int
+from talbot.models.parameters import ParameterError, check_int
 
 BITS = 8
 BIPOLAR = 128  # offset binary: DAC code = code + 128

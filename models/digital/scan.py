@@ -6,7 +6,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import SAMPLES_PER_PIXEL, FrameParameters, ParameterError, TileParameters
+from talbot.models.parameters import SAMPLES_PER_PIXEL, FrameParameters, ParameterError, TileParameters
 
 
 @dataclass(frozen=True)

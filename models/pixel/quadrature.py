@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.integrate import cubature
 
-from models.parameters import OpticsParameters, PixelType
+from talbot.models.parameters import OpticsParameters, PixelType
 
 from .weights import density, raw_weights
 

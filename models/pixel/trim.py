@@ -7,7 +7,7 @@ because the lens cuts the response off at a fraction of its period; g = (1 + k) 
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import OpticsParameters, ParameterError, TileParameters
+from talbot.models.parameters import OpticsParameters, ParameterError, TileParameters
 
 from .weights import view_weights
 

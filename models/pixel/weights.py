@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.polynomial.legendre import leggauss
 
-from models.parameters import OpticsParameters, ParameterError, PixelType, SensorParameters, TileParameters
+from talbot.models.parameters import OpticsParameters, ParameterError, PixelType, SensorParameters, TileParameters
 
 from .response import response, vignetting
 

@@ -1,6 +1,6 @@
 """From photocurrents to codes."""
 
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
 
 
 def codes_per_unit(sensor: SensorParameters, timing: AmpTiming) -> float:

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.scan import Scan
-from models.parameters import ALL_TYPES, FrameParameters, SensorParameters
-from models.scene import Scene
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import ALL_TYPES, FrameParameters, SensorParameters
+from talbot.models.scene import Scene
 
 
 class LeftOut(NamedTuple):

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import TileParameters
+from talbot.models.parameters import TileParameters
 
 
 def edge_images(

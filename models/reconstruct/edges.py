@@ -19,8 +19,8 @@ import numpy.typing as npt
 from numba import njit
 from scipy.fft import dctn, idctn
 
-from models.parameters import ParameterError, SensorParameters, check_int, check_real
-from models.pixel.weights import view_weights
+from talbot.models.parameters import ParameterError, SensorParameters, check_int, check_real
+from talbot.models.pixel.weights import view_weights
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

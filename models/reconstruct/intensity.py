@@ -6,8 +6,8 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
-from models.pixel.weights import view_weights
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
+from talbot.models.pixel.weights import view_weights
 
 FULL = 255.0  # LSB: both wells of a pair full
 

@@ -3,8 +3,8 @@
 import numpy as np
 import numpy.typing as npt
 
-from models.capture import CaptureOperator
-from models.parameters import ParameterError
+from talbot.models.capture import CaptureOperator
+from talbot.models.parameters import ParameterError
 
 from .demosaic import demosaic
 

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 
 def psnr_db(found: npt.ArrayLike, truth: npt.ArrayLike, peak: float = 1.0) -> float | None:

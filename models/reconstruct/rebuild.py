@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from models.afe import trim_gain
-from models.parameters import AmpTiming, SensorParameters
-from models.plan.codes import codes_per_unit
-from models.scene import Scene
+from talbot.models.afe import trim_gain
+from talbot.models.parameters import AmpTiming, SensorParameters
+from talbot.models.plan.codes import codes_per_unit
+from talbot.models.scene import Scene
 
 from .edges import EdgeOperator, Solver, image_from_edges
 from .psnr import psnr_without_mean_db

@@ -6,7 +6,7 @@ A scene's own metres are divided by the camera's scale: everything here and in a
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import FOCUS_MAX, CameraParameters
+from talbot.models.parameters import FOCUS_MAX, CameraParameters
 
 from .sampling import Sampling
 

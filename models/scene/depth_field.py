@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import FOCUS_MAX
+from talbot.models.parameters import FOCUS_MAX
 
 Floats = npt.NDArray[np.floating]
 

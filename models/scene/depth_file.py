@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from . import camera, resample
 from .picture_file import read_codes

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, check_int
+from talbot.models.parameters import ParameterError, check_int
 
 from . import resample
 from .picture_file import decode16

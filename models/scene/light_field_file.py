@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from models.parameters import ParameterError, check_int
+from talbot.models.parameters import ParameterError, check_int
 
 from .light_field import LightField
 from .picture_file import FLOAT_MAX, encode16, read_picture

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from skimage.data import stereo_motorcycle
 
-from models.parameters import check_real
+from talbot.models.parameters import check_real
 
 from . import camera, resample, warp
 from .sampling import Sampling

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageOps, UnidentifiedImageError
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .resample import linear
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from . import targets
 from .light_field import LightField

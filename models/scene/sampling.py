@@ -6,7 +6,14 @@ from typing import Self
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ArrayParameters, CameraParameters, SensorParameters, check_choice, check_int, check_real
+from talbot.models.parameters import (
+    ArrayParameters,
+    CameraParameters,
+    SensorParameters,
+    check_choice,
+    check_int,
+    check_real,
+)
 
 DTYPES = ("float32", "float64")
 

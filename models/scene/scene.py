@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int
+from talbot.models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int
 
 from .sampling import DTYPES
 

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from models.stability import optical_cases
+from talbot.models.stability import optical_cases
 
 
 @pytest.fixture(scope="module")

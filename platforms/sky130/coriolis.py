@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from platforms.coriolis import CoriolisPlatform, Fill
+from talbot.platforms.coriolis import CoriolisPlatform, Fill
 
 from . import layers, wires
 from .tinytapeout import FRAMES

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 
-from platforms.extraction import ExtractionPlatform
+from talbot.platforms.extraction import ExtractionPlatform
 
 from . import layers
 

@@ -1,6 +1,6 @@
 """SKY130 as open_pdks installs it: SkyWater's manufacturing rules for KLayout, Magic's technology."""
 
-from platforms.foundry import FoundryChecks
+from talbot.platforms.foundry import FoundryChecks
 
 CHECKS = FoundryChecks(
     klayout="sky130A/libs.tech/klayout/drc/sky130A_mr.drc",

@@ -6,10 +6,10 @@ Enough to count cells and area where no PDK with SkyWater's own Liberty files is
 import re
 from collections.abc import Iterator, Sequence
 
-from base.liberty.functional import add_cell, library
-from base.liberty.group import Group
-from base.liberty.write import text
-from platforms.sky130.cells import LIBRARY, area, file, folder
+from talbot.base.liberty.functional import add_cell, library
+from talbot.base.liberty.group import Group
+from talbot.base.liberty.write import text
+from talbot.platforms.sky130.cells import LIBRARY, area, file, folder
 
 # Beginnings of the names of cells that are not combinational, or have no use in synthesis
 LEFT_OUT = ("lpflow", "d", "edf", "sd", "sedf", "clkdly", "probe", "tap", "fill", "macro", "conb", "einv", "ebuf")

@@ -11,8 +11,8 @@ SkyWater's periphery rules m1.7, m2.7.
 
 from functools import partial
 
-from platforms.die import TopMetal
-from platforms.layers import DIFFUSION, Crossing, Layer, Via
+from talbot.platforms.die import TopMetal
+from talbot.platforms.layers import DIFFUSION, Crossing, Layer, Via
 
 LABEL, PIN = 5, 16  # GDS datatypes
 PRBOUNDARY = 235, 4

@@ -30,8 +30,8 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 
-from base.tools import ToolError
-from models.parameters import ParameterError
+from talbot.base.tools import ToolError
+from talbot.models.parameters import ParameterError
 
 SETS = ("binned", "continuous", "fitted")
 FIT = {"n": "0.975", "p": "{w < 0.5 ? 0.967 : 1.02}"}

@@ -10,7 +10,7 @@ capacitance and are not read. End caps and clock buffers: open_pdks' configurati
 from itertools import chain, zip_longest
 from pathlib import Path
 
-from platforms.openroad import WIRES, OpenRoadPlatform, Strap
+from talbot.platforms.openroad import WIRES, OpenRoadPlatform, Strap
 
 from . import layers
 from .cells import LIBRARY, SITE

@@ -4,7 +4,7 @@ From tt-support-tools (tile_sizes.yaml; rows and pins of def/tt_block_1x1_pg.def
 the edge for every number of tiles; precheck/pin_check.py) and src/config.json of its template.
 """
 
-from platforms.frame import Frame
+from talbot.platforms.frame import Frame
 
 from . import layers
 from .cells import SITE

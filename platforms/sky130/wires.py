@@ -10,8 +10,8 @@ a line over a plane then gives [SakuraiTamaru1983]; poly and diffusion in propor
 Resistance: Magic's sky130.tech, styles ngspice(), (lrlc), (hrhc).
 """
 
-from platforms.layers import Crossing
-from platforms.wires import CORNERS, Wires, rows
+from talbot.platforms.layers import Crossing
+from talbot.platforms.wires import CORNERS, Wires, rows
 
 RATE, SCREENING, NORM = 0.025, 1 / 3, 2.0
 # Upper and lower layer | aF/um2 of their overlap: typ, min, max | aF/um of an edge of the upper one to the lower

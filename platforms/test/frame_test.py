@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
-from platforms.frame import Frame
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.frame import Frame
 
 FRAME = Frame(20.0, 15.0, (1.0, 2.0), (("a", 3.0), ("b", 5.0)), (0.3, 1.0), "met4", ("VPWR", "VGND"))
 

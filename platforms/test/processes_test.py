@@ -5,12 +5,12 @@ import re
 
 import pytest
 
-from base.paths import ROOT
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
-from platforms.extraction import extraction_platform
-from platforms.patience import patience
-from platforms.processes import PROCESSES
+from talbot.base.paths import ROOT
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.patience import patience
+from talbot.platforms.processes import PROCESSES
 
 # "sky130" in quotes: a default
 OF_A_PROCESS = re.compile(r'sky130(?!")|ihp|sg13|[np]fet|\bmet\d|\(\d+, (?:20|16|5|44)\)')

@@ -2,8 +2,8 @@
 
 from pymtl3 import Component, update, update_ff
 
-from rtl.edge_adc.edge_adc_cl import LaneCycles
-from rtl.messages import FRAME, SAMPLE, ScanMsg
+from talbot.rtl.edge_adc.edge_adc_cl import LaneCycles
+from talbot.rtl.messages import FRAME, SAMPLE, ScanMsg
 
 from .ports import declare_ports
 

@@ -4,8 +4,8 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from models.digital.sar import decisions
-from rtl.messages import FRAME, SAMPLE, ScanMsg
+from talbot.models.digital.sar import decisions
+from talbot.rtl.messages import FRAME, SAMPLE, ScanMsg
 
 from .ports import declare_ports
 

@@ -6,8 +6,8 @@ sent while the next step converts.
 
 from pymtl3 import Bits1, Bits2, Bits8, Bits10, Component, InPort, OutPort, Wire, concat, mk_bits, update, update_ff
 
-from rtl.edge_adc import EdgeAdc
-from rtl.messages import FRAME, SAMPLE
+from talbot.rtl.edge_adc import EdgeAdc
+from talbot.rtl.messages import FRAME, SAMPLE
 
 from .ports import declare_ports
 

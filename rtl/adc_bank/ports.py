@@ -3,7 +3,7 @@
 from pymtl3 import Bits2, Bits3, Bits7, Bits8, Bits10, Bits32, InPort, OutPort, mk_bits
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from rtl.messages import ScanMsg, step_msg
+from talbot.rtl.messages import ScanMsg, step_msg
 
 
 def declare_ports(s, lanes: int) -> None:

@@ -2,8 +2,8 @@
 
 from pymtl3 import Component, update_ff
 
-from models.digital.amp_ctrl import AmpPins, row_waveform
-from models.parameters import AmpTiming
+from talbot.models.digital.amp_ctrl import AmpPins, row_waveform
+from talbot.models.parameters import AmpTiming
 
 from .ports import DURATIONS, declare_ports
 

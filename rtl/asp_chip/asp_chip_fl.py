@@ -5,7 +5,7 @@ from typing import Any
 
 from pymtl3 import Component, Wire, connect, update, update_ff
 
-from models.parameters import (
+from talbot.models.parameters import (
     MODES,
     AmpTiming,
     ArrayParameters,
@@ -16,8 +16,8 @@ from models.parameters import (
     TileParameters,
     Window,
 )
-from models.parameters.registers import register_map
-from rtl.reg_file import RegFileFL, chip_status
+from talbot.models.parameters.registers import register_map
+from talbot.rtl.reg_file import RegFileFL, chip_status
 
 from .golden_run import GoldenRun, idle_pins
 from .pins import declare_pins

@@ -2,13 +2,13 @@
 
 from pymtl3 import Component, Wire, connect, update
 
-from models.parameters.registers import register_map
-from rtl.adc_bank import AdcBank
-from rtl.amp_ctrl import AmpCtrl
-from rtl.phase_path import PhasePath
-from rtl.readout_seq import ReadoutSeq
-from rtl.reg_file import RegFile
-from rtl.run_length import RunLength
+from talbot.models.parameters.registers import register_map
+from talbot.rtl.adc_bank import AdcBank
+from talbot.rtl.amp_ctrl import AmpCtrl
+from talbot.rtl.phase_path import PhasePath
+from talbot.rtl.readout_seq import ReadoutSeq
+from talbot.rtl.reg_file import RegFile
+from talbot.rtl.run_length import RunLength
 
 from .balance_rtl import Balance
 from .gate_rtl import Gate

@@ -6,12 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.pattern import pattern_value
-from models.digital.phase import phase_samples
-from models.digital.sar import decisions
-from models.digital.scan import Scan, Step
-from models.digital.stream import StreamHeader, encode_frame
-from models.parameters import FrameParameters, SensorParameters
+from talbot.models.digital.pattern import pattern_value
+from talbot.models.digital.phase import phase_samples
+from talbot.models.digital.sar import decisions
+from talbot.models.digital.scan import Scan, Step
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.parameters import FrameParameters, SensorParameters
 
 
 def idle_pins() -> dict[str, int]:

@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits1, Bits2, Bits3, Bits8, Bits10, InPort, OutPort, mk_bits
 
-from models.parameters.registers import register_map
+from talbot.models.parameters.registers import register_map
 
 INPUTS = ("sclk", "csn", "mosi", "link_rdy")
 ORDER = "sclk", "csn", "mosi", "miso", "miso_oe", "link_data", "link_val", "link_rdy", "frame_sync", "busy"

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from pymtl3 import Component, InPort, OutPort, update
 
-from rtl.reg_file import Synchronizer
+from talbot.rtl.reg_file import Synchronizer
 
 
 class Resets(Component):

@@ -2,8 +2,8 @@
 
 from pymtl3 import Bits2, Bits3, Component, InPort, OutPort, concat, update
 
-from rtl.amp_ctrl.amp_ctrl_rtl import CM_RESET, GUARD, IDLE, INTEGRATE, REFERENCE, RESET, SIGNAL
-from rtl.reg_file import chip_state
+from talbot.rtl.amp_ctrl.amp_ctrl_rtl import CM_RESET, GUARD, IDLE, INTEGRATE, REFERENCE, RESET, SIGNAL
+from talbot.rtl.reg_file import chip_state
 
 
 class State(Component):

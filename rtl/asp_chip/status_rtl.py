@@ -2,7 +2,7 @@
 
 from pymtl3 import Component, InPort, OutPort, Wire, update, update_ff
 
-from rtl.reg_file import chip_status
+from talbot.rtl.reg_file import chip_status
 
 
 class Status(Component):

@@ -2,7 +2,7 @@
 
 from pymtl3 import Component, update_ff
 
-from models.digital.sar import BITS, decisions
+from talbot.models.digital.sar import BITS, decisions
 
 from .ports import declare_ports
 

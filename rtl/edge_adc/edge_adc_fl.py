@@ -4,7 +4,7 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from models.digital.sar import decisions
+from talbot.models.digital.sar import decisions
 
 from .ports import declare_ports
 

@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 from pymtl3 import Component, InPort, OutPort, mk_bits, update, update_ff
 
-from models.afe import Converter, FrontEnd
-from models.parameters import MODES
+from talbot.models.afe import Converter, FrontEnd
+from talbot.models.parameters import MODES
 
 
 class AfeFL(Component):

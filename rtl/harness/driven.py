@@ -10,7 +10,7 @@ from typing import Any
 
 from pymtl3 import Component, InPort, Interface, OutPort, mk_bits, update, update_ff
 
-from base.tools import ToolError
+from talbot.base.tools import ToolError
 
 from .ports import Port, places, port_signals, ports_of, split
 

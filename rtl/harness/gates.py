@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 from pymtl3 import Component
 
-from base.cache import cached, digest
-from base.paths import BUILD
-from base.sources import code
-from base.tools import located, run
-from base.verilator import CXX
+from talbot.base.cache import cached, digest
+from talbot.base.paths import BUILD
+from talbot.base.sources import code
+from talbot.base.tools import located, run
+from talbot.base.verilator import CXX
 
 from .ports import ports_of, split
 from .translate import translate_component

@@ -8,10 +8,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from base.cache import digest
-from base.files import atomic
-from base.paths import BUILD
-from base.tools import finish
+from talbot.base.cache import digest
+from talbot.base.files import atomic
+from talbot.base.paths import BUILD
+from talbot.base.tools import finish
 
 from .driven import Driven, SimulationError
 from .ports import Port, places, split, total_width

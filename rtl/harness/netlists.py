@@ -8,7 +8,7 @@ from typing import Any
 
 from pymtl3 import Component
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 from .driven import Driven
 from .icarus import IcarusError, in_icarus

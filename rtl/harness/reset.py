@@ -6,7 +6,7 @@ from typing import Any
 
 from pymtl3 import mk_bits
 
-from rtl.harness.ports import ports_of, split, validity
+from talbot.rtl.harness.ports import ports_of, split, validity
 
 CYCLES = 4  # compared after the reset
 BEFORE = 60  # with random inputs, ahead of it

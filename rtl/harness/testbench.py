@@ -20,8 +20,8 @@ from pymtl3.passes.backends.verilog import (
     VerilogVerilatorImportPass,
 )
 
-from base.paths import BUILD
-from base.verilator import RUNTIME, runtime, verilator_folder
+from talbot.base.paths import BUILD
+from talbot.base.verilator import RUNTIME, runtime, verilator_folder
 
 from .driven import Driven, driven_level
 from .icarus import in_icarus

@@ -13,7 +13,7 @@ from pathlib import Path
 from pymtl3 import Component, InPort, Interface, OutPort
 from pymtl3.passes.backends.verilog import VerilogTranslationPass
 
-from base.paths import ROOT
+from talbot.base.paths import ROOT
 
 COLUMNS = "200"  # PyMTL folds lines at the terminal's width
 KEPT = {"Synchronizer": "stages"}  # module -> the register that synthesis may neither merge nor move

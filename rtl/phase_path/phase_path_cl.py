@@ -3,8 +3,8 @@
 from pymtl3 import Bits8, Component, InPort, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from rtl.messages import SAMPLE, DivReq, ScanMsg
-from rtl.quad_divider import QuadDividerCL
+from talbot.rtl.messages import SAMPLE, DivReq, ScanMsg
+from talbot.rtl.quad_divider import QuadDividerCL
 
 
 class PhasePathCL(Component):

@@ -5,9 +5,9 @@ from collections import deque
 from pymtl3 import Bits8, Component, InPort, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from models.digital.phase import phase_samples
-from models.parameters import ChipParameters
-from rtl.messages import SAMPLE, ScanMsg
+from talbot.models.digital.phase import phase_samples
+from talbot.models.parameters import ChipParameters
+from talbot.rtl.messages import SAMPLE, ScanMsg
 
 
 class PhasePathFL(Component):

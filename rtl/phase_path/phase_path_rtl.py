@@ -19,8 +19,8 @@ from pymtl3 import (
 )
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from rtl.messages import SAMPLE, ScanMsg
-from rtl.quad_divider import quad_divider
+from talbot.rtl.messages import SAMPLE, ScanMsg
+from talbot.rtl.quad_divider import quad_divider
 
 IN_FLIGHT_MAX = 63  # more than any divider holds
 

@@ -2,8 +2,8 @@
 
 from pymtl3 import Bits5, Bits8, Bits9, Component, InPort, OutPort, Wire, clog2, concat, mk_bits, sext, update, zext
 
-from models.parameters.divider import phase_thresholds
-from rtl.messages import DivReq, div_resp
+from talbot.models.parameters.divider import phase_thresholds
+from talbot.rtl.messages import DivReq, div_resp
 
 
 class Fold(Component):

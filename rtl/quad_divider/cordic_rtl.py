@@ -2,9 +2,9 @@
 
 from pymtl3 import Bits4, Component, InPort, OutPort, Wire, clog2, concat, mk_bits, sext, trunc, update, update_ff, zext
 
-from models.parameters import check_int
-from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
-from rtl.messages import DivReq, div_resp
+from talbot.models.parameters import check_int
+from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, cordic_angles
+from talbot.rtl.messages import DivReq, div_resp
 
 from .angle_rtl import Fold, Unfold
 from .iterative_rtl import IterativeDivider

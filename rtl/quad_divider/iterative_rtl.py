@@ -3,7 +3,7 @@
 from pymtl3 import Component, InPort, OutPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from rtl.messages import DivReq, div_resp
+from talbot.rtl.messages import DivReq, div_resp
 
 
 class IterativeControl(Component):

@@ -3,7 +3,7 @@
 from pymtl3 import Component, InPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from rtl.messages import DivReq, div_resp
+from talbot.rtl.messages import DivReq, div_resp
 
 from .quad_divider_fl import response
 from .variants import ratio_bits, timing

@@ -5,8 +5,8 @@ from typing import Any
 from pymtl3 import Component, InPort, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from models.digital.phase import divide
-from rtl.messages import DivReq, div_resp
+from talbot.models.digital.phase import divide
+from talbot.rtl.messages import DivReq, div_resp
 
 from .variants import check_variant, ratio_bits
 

@@ -3,9 +3,9 @@
 from pymtl3 import Bits4, Component, InPort, OutPort, Wire, mk_bits, update, update_ff, zext
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from models.parameters import check_int
-from models.parameters.divider import N_FRAC_MAX, N_FRAC_MIN
-from rtl.messages import DivReq, div_resp
+from talbot.models.parameters import check_int
+from talbot.models.parameters.divider import N_FRAC_MAX, N_FRAC_MIN
+from talbot.rtl.messages import DivReq, div_resp
 
 from .angle_rtl import Fold, PhaseIndex, Unfold
 from .digit_rtl import Radix2Digit, Radix4Digit, div_state

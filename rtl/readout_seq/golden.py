@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from models.digital.scan import Scan
-from models.parameters import MODES, FrameParameters, TileParameters, Window
-from rtl.messages import SAMPLE, step_msg
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import MODES, FrameParameters, TileParameters, Window
+from talbot.rtl.messages import SAMPLE, step_msg
 
 from .ports import WINDOW
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 from pymtl3 import InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-from models.parameters import COLS_MAX, LANES, ROWS_MAX, ParameterError, TileParameters, check_choice, check_int
-from rtl.messages import step_msg
+from talbot.models.parameters import COLS_MAX, LANES, ROWS_MAX, ParameterError, TileParameters, check_choice, check_int
+from talbot.rtl.messages import step_msg
 
 WINDOW = ("row0", "row1", "col0", "col1")
 

@@ -4,8 +4,8 @@ from collections import deque
 
 from pymtl3 import Component, update, update_ff
 
-from models.parameters import MODES, ParameterError
-from rtl.messages import END, FRAME, ROW
+from talbot.models.parameters import MODES, ParameterError
+from talbot.rtl.messages import END, FRAME, ROW
 
 from .golden import configured_scan, mark, row_steps, tile_of
 from .ports import declare_ports, edges

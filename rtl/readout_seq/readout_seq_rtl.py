@@ -2,7 +2,7 @@
 
 from pymtl3 import Component, Wire, concat, update, update_ff, zext
 
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 from .ports import declare_ports, edges
 from .row_walk_rtl import RowWalk

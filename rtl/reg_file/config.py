@@ -4,7 +4,7 @@ from functools import cache
 
 from pymtl3 import Bits1, mk_bits, mk_bitstruct
 
-from models.parameters.registers import register_map
+from talbot.models.parameters.registers import register_map
 
 
 @cache

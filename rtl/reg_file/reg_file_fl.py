@@ -3,8 +3,8 @@
 from pymtl3 import Bits8, Component, InPort, OutPort, update_ff
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-from models.digital.registers import ADDRESS_MAX, RegisterBank
-from models.parameters.registers import array_resets, register_map
+from talbot.models.digital.registers import ADDRESS_MAX, RegisterBank
+from talbot.models.parameters.registers import array_resets, register_map
 
 from .config import chip_config, chip_state, chip_status
 

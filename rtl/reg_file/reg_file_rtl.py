@@ -20,7 +20,7 @@ from pymtl3 import (
 )
 from pymtl3.stdlib.stream.ifcs import SendIfcRTL
 
-from models.parameters.registers import array_resets, register_map
+from talbot.models.parameters.registers import array_resets, register_map
 
 from .config import chip_config, chip_state, chip_status
 from .spi_slave_rtl import SpiSlave

@@ -4,9 +4,9 @@ import argparse
 import sys
 from pathlib import Path
 
-from base.command import main
-from models.parameters import ParameterError
-from rtl.tops import TOPS
+from talbot.base.command import main
+from talbot.models.parameters import ParameterError
+from talbot.rtl.tops import TOPS
 
 from .record import record
 from .replay import replay_files

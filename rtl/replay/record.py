@@ -3,10 +3,10 @@
 import sys
 from pathlib import Path
 
-from base.paths import ROOT
-from base.tools import ToolError, finish
-from models.parameters import SensorParameters
-from rtl.tops import build_top
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError, finish
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.tops import build_top
 
 VERILOG_ONLY = "AspChip"  # a frame of the chip takes too long in PyMTL: only the Verilog level runs all tests
 
@@ -36,7 +36,7 @@ def record(block: str, folder: Path | str, level: str | None = None) -> list[Pat
     folder.mkdir(parents=True, exist_ok=True)
     level = level or whole_level(block)
     program = (
-        "import sys, pytest; from rtl.replay.recorder import Plugin; "
+        "import sys, pytest; from talbot.rtl.replay.recorder import Plugin; "
         "sys.exit(pytest.main(sys.argv[4:], [Plugin(*sys.argv[1:4])]))"
     )
     # PyMTL is a pytest plugin, which the program imports before pytest starts. A seed: the same traces every time.

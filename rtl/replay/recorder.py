@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from rtl.harness.ports import packed, ports_of, split
-from rtl.harness.testbench import Level, hooked
+from talbot.rtl.harness.ports import packed, ports_of, split
+from talbot.rtl.harness.testbench import Level, hooked
 
 from .trace import Trace
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from base.tools import ToolTimeout, finish
-from rtl.harness.icarus import TIMESCALE, IcarusError, compile_program, instance
-from rtl.harness.ports import Port, places, split, total_width, validity
+from talbot.base.tools import ToolTimeout, finish
+from talbot.rtl.harness.icarus import TIMESCALE, IcarusError, compile_program, instance
+from talbot.rtl.harness.ports import Port, places, split, total_width, validity
 
 from .trace import Trace, load
 

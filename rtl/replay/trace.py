@@ -8,10 +8,10 @@ from typing import Any
 
 from pymtl3 import Component
 
-from base.cache import digest
-from base.files import write
-from rtl.harness.ports import Port, places, split
-from rtl.harness.translate import translate_component
+from talbot.base.cache import digest
+from talbot.base.files import write
+from talbot.rtl.harness.ports import Port, places, split
+from talbot.rtl.harness.translate import translate_component
 
 
 @dataclass

@@ -2,8 +2,8 @@
 
 from pymtl3 import Bits2, Bits3, Bits5, Bits8, Component, InPort, OutPort, Wire, update, update_ff
 
-from models.parameters.stream_format import COUNT_BYTES, COUNTED_BYTES, FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.models.parameters.stream_format import COUNT_BYTES, COUNTED_BYTES, FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 IDLE, HEADER, ROWS, MARK, TRAILER, DRAIN = range(6)
 HEADER_FIELDS, COUNTS, COUNTED = FIELD_BYTES, COUNT_BYTES, COUNTED_BYTES  # names in the Verilog

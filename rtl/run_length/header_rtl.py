@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits1, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update
 
-from models.parameters.stream_format import MAGIC, VERSION
+from talbot.models.parameters.stream_format import MAGIC, VERSION
 
 from .ports import declare_header_ports
 

@@ -3,7 +3,7 @@
 from pymtl3 import Bits2, Bits7, Bits8, Bits16, Bits24, Bits32, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from rtl.messages import ScanMsg
+from talbot.rtl.messages import ScanMsg
 
 HEADER_PORTS = {
     "mode": Bits2,

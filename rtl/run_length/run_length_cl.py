@@ -4,9 +4,9 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from models.digital.stream.payload import START, base_of, code_sample
-from models.digital.stream.trailer import row_mark, trailer
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.models.digital.stream.payload import START, base_of, code_sample
+from talbot.models.digital.stream.trailer import row_mark, trailer
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 from .control_rtl import DRAIN, HEADER, IDLE, MARK, ROWS, TRAILER
 from .ports import declare_ports

@@ -4,10 +4,10 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from models.digital.stream import StreamHeader, encode_marked, whole_bytes
-from models.digital.stream.trailer import trailer
-from models.parameters import MODES, Window
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.models.digital.stream import StreamHeader, encode_marked, whole_bytes
+from talbot.models.digital.stream.trailer import trailer
+from talbot.models.parameters import MODES, Window
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 from .ports import declare_ports
 

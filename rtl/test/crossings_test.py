@@ -4,9 +4,9 @@ import shutil
 
 import pytest
 
-from models.parameters import ASYNCHRONOUS, ArrayParameters, ChipParameters, SensorParameters
-from rtl.crossings import crossings
-from rtl.export import translate
+from talbot.models.parameters import ASYNCHRONOUS, ArrayParameters, ChipParameters, SensorParameters
+from talbot.rtl.crossings import crossings
+from talbot.rtl.export import translate
 
 pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="no Yosys: make tools installs it")
 

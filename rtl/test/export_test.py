@@ -8,16 +8,16 @@ import sys
 
 import pytest
 
-from base.command import main
-from base.paths import ROOT
-from base.tools import finish
-from base.verilator import verilator_folder
-from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
-from rtl import export
-from rtl.export import translate
-from rtl.harness.translate import tidy
-from rtl.lint import LintError, lint
-from rtl.tops import TOPS
+from talbot.base.command import main
+from talbot.base.paths import ROOT
+from talbot.base.tools import finish
+from talbot.base.verilator import verilator_folder
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters
+from talbot.rtl import export
+from talbot.rtl.export import translate
+from talbot.rtl.harness.translate import tidy
+from talbot.rtl.lint import LintError, lint
+from talbot.rtl.tops import TOPS
 
 SMALL = SensorParameters(array=ArrayParameters(9, 20), chip=ChipParameters(lanes=2))
 
@@ -27,7 +27,7 @@ def exported(tmp_path_factory):
     """Every top of the default sensor in one folder, from its own process with another hash seed and width."""
     out = tmp_path_factory.mktemp("exported")
     subprocess.run(
-        [sys.executable, "-m", "rtl.export", "--out", out],
+        [sys.executable, "-m", "talbot.rtl.export", "--out", out],
         cwd=ROOT,
         check=True,
         capture_output=True,

@@ -3,9 +3,9 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from base.tools import run
-from models.parameters import AmpTiming
-from rtl.harness.icarus import compile_program
+from talbot.base.tools import run
+from talbot.models.parameters import AmpTiming
+from talbot.rtl.harness.icarus import compile_program
 
 BENCH = Path(__file__).with_name("host.v")
 ADDRESS, WAIT, SHOW, ROW, END = 0x100, 0x300, 0x400, 0x500, 0x600

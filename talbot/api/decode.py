@@ -4,11 +4,11 @@ from pathlib import Path
 
 import numpy as np
 
-from flow.decode import describe
-from flow.frame import pictures
-from models.digital import stream
-from models.digital.stream.frame import DecodedFrame as Decoded
-from models.parameters import TileParameters
+from talbot.flow.decode import describe
+from talbot.flow.frame import pictures
+from talbot.models.digital import stream
+from talbot.models.digital.stream.frame import DecodedFrame as Decoded
+from talbot.models.parameters import TileParameters
 
 from .image import png
 from .sensor import Sensor

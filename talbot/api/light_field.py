@@ -6,9 +6,9 @@ from typing import Self
 
 import numpy as np
 
-from base.files import atomic, staged
-from flow.frame import pictures
-from models import scene
+from talbot.base.files import atomic, staged
+from talbot.flow.frame import pictures
+from talbot.models import scene
 
 from .image import png
 

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from flow.frame import outputs, pictures
-from flow.frame.figures import summarize, summarize_golden
-from flow.frame.result import FrameResult, GoldenResult
-from models.parameters import ParameterError
-from models.pixel import depth_of
-from models.reconstruct import white_sum
-from models.scene import RADIANCE_MAX
+from talbot.flow.frame import outputs, pictures
+from talbot.flow.frame.figures import summarize, summarize_golden
+from talbot.flow.frame.result import FrameResult, GoldenResult
+from talbot.models.parameters import ParameterError
+from talbot.models.pixel import depth_of
+from talbot.models.reconstruct import white_sum
+from talbot.models.scene import RADIANCE_MAX
 
 from .image import Image, embedded, png, table
 from .light_field import LightField

@@ -9,12 +9,12 @@ from typing import Any, Self, TypedDict, Unpack
 import numpy as np
 import numpy.typing as npt
 
-from base.files import write
-from base.progress import Steps
-from flow.frame import job
-from flow.frame.chip_picture import chip_svg
-from flow.frame.request import CONVERTERS, FrameRequest, request
-from models.parameters import (
+from talbot.base.files import write
+from talbot.base.progress import Steps
+from talbot.flow.frame import job
+from talbot.flow.frame.chip_picture import chip_svg
+from talbot.flow.frame.request import CONVERTERS, FrameRequest, request
+from talbot.models.parameters import (
     STANDARD,
     AmpTiming,
     ConverterParameters,
@@ -30,9 +30,9 @@ from models.parameters import (
     sensor_of,
     sensor_text,
 )
-from models.parameters.sensor_file import keys, nearest
-from models.scene import LightField
-from models.scene import scenes as named_scenes
+from talbot.models.parameters.sensor_file import keys, nearest
+from talbot.models.scene import LightField
+from talbot.models.scene import scenes as named_scenes
 
 from .run import Run
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
-from base.charts import save
-from flow.tradeoff.sweeps import SWEEPS, measured
-from models.parameters import check_choice
+from talbot.base.charts import save
+from talbot.flow.tradeoff.sweeps import SWEEPS, measured
+from talbot.models.parameters import check_choice
 
 from .image import embedded, text
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import talbot
-from base.paths import ROOT
-from models.parameters import AmpTiming
+from talbot.base.paths import ROOT
 from talbot.commands import main
+from talbot.models.parameters import AmpTiming
 
 
 def test_own_light_field_tile_and_response(tmp_path):

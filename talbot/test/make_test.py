@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 
-from base.command import Parser, add_command
-from base.paths import ROOT
+from talbot.base.command import Parser, add_command
+from talbot.base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments, variables
 

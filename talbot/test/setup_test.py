@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from base.paths import ROOT
+from talbot.base.paths import ROOT
 
 SCRIPT = ROOT / "requirements" / "venv.sh"
 

@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from base.files import PART
-from base.paths import ROOT
-from base.test.supervise_test import running, started
+from talbot.base.files import PART
+from talbot.base.paths import ROOT
+from talbot.base.test.supervise_test import running, started
 from talbot.commands import main
 
 SIZE = ("--rows", "17", "--cols", "26", "--lanes", "2")

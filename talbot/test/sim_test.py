@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from base.paths import ROOT
-from flow.frame.command import NAME_MAX, _name
-from flow.frame.outputs import NAMES
+from talbot.base.paths import ROOT
 from talbot.commands import main
+from talbot.flow.frame.command import NAME_MAX, _name
+from talbot.flow.frame.outputs import NAMES
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
 KEYS = {

@@ -5,9 +5,9 @@ import random
 import cocotb
 import numpy as np
 
-from models.digital.sar import convert
-from models.parameters import MODES
-from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
+from talbot.models.digital.sar import convert
+from talbot.models.parameters import MODES
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
 
 from .agents import Bench, Driver, Monitor, Stream, check, known
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import cocotb
 
-from models.chip import golden_frame
-from models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
-from models.digital.pattern import PatternEnd
-from models.parameters.registers import register_map
+from talbot.models.chip import golden_frame
+from talbot.models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.parameters.registers import register_map
 
 from .agents import Bench, Monitor, Spi, Stopped, Stream, check, known
 from .exposure import FRAMES, FRONT_END, SENSOR, TRIMS, samples

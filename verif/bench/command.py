@@ -8,11 +8,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.records import from_json
-from rtl.harness.icarus import MISSING, installed
-from verif.results import OUT, SEED, BlockResults, Tests, write_step
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.records import from_json
+from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.verif.results import OUT, SEED, BlockResults, Tests, write_step
 
 from .cross import ARRAYS, Crossed, crossed, every
 from .exposure import FRAMES

@@ -13,14 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from base.tools import ToolError
-from flow.simulate.build import Build
-from flow.simulate.frame import STOP, host_script, run_frame
-from flow.simulate.verilator import bench_program
-from models.afe import write_converter, write_samples
-from models.chip import front_end_of, golden_frame
-from models.digital.host import command, frame_writes, write_transfers
-from models.parameters import MODES, ArrayParameters, ChipParameters, FrameParameters, SensorParameters, Window
+from talbot.base.tools import ToolError
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.frame import STOP, host_script, run_frame
+from talbot.flow.simulate.verilator import bench_program
+from talbot.models.afe import write_converter, write_samples
+from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.host import command, frame_writes, write_transfers
+from talbot.models.parameters import MODES, ArrayParameters, ChipParameters, FrameParameters, SensorParameters, Window
 
 from .exposure import FAST, TAPS, TRIMS
 from .exposure import SENSOR as SMALL

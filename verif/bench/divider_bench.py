@@ -5,8 +5,8 @@ import random
 
 import cocotb
 
-from rtl.messages import DivReq
-from rtl.quad_divider.quad_divider_fl import response
+from talbot.rtl.messages import DivReq
+from talbot.rtl.quad_divider.quad_divider_fl import response
 
 from .agents import Bench, Driver, Monitor, Stream, check
 

@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from models.afe import write_converter, write_samples
-from models.chip import front_end_of
-from models.parameters import (
+from talbot.models.afe import write_converter, write_samples
+from talbot.models.chip import front_end_of
+from talbot.models.parameters import (
     AmpTiming,
     ArrayParameters,
     ChipParameters,

@@ -5,9 +5,9 @@ import random
 import cocotb
 import numpy as np
 
-from models.digital.phase import phase_samples
-from models.parameters import ChipParameters
-from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
+from talbot.models.digital.phase import phase_samples
+from talbot.models.parameters import ChipParameters
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
 
 from .agents import Bench, Driver, Monitor, Stream, check
 

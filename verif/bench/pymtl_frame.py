@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from models.digital.host import frame_writes
-from models.parameters import FrameParameters
-from rtl.asp_chip.test.chip_bench import ChipBench
-from rtl.harness.testbench import build
-from rtl.tops import build_top
+from talbot.models.digital.host import frame_writes
+from talbot.models.parameters import FrameParameters
+from talbot.rtl.asp_chip.test.chip_bench import ChipBench
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.tops import build_top
 
 from .exposure import FRONT_END, SENSOR, TRIMS, samples
 

@@ -4,10 +4,10 @@ import random
 
 import cocotb
 
-from models.digital.stream import StreamHeader, encode_frame
-from models.digital.stream.test.frames import samples_of
-from models.parameters import MODES, FrameParameters, Window
-from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.digital.stream.test.frames import samples_of
+from talbot.models.parameters import MODES, FrameParameters, Window
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
 
 from .agents import Bench, Driver, Monitor, Stream, check
 

@@ -9,15 +9,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
-from base.cache import digest
-from base.paths import BUILD, ROOT
-from base.tools import ToolError
-from base.verilator import verilator_folder
-from models.parameters import ArrayParameters, ChipParameters, SensorParameters
-from rtl.export import translate
-from rtl.harness.icarus import MISSING, installed
-from rtl.harness.ports import ports_of
-from rtl.tops import build_top
+from talbot.base.cache import digest
+from talbot.base.paths import BUILD, ROOT
+from talbot.base.tools import ToolError
+from talbot.base.verilator import verilator_folder
+from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters
+from talbot.rtl.export import translate
+from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.rtl.harness.ports import ports_of
+from talbot.rtl.tops import build_top
 
 from . import exposure
 
@@ -55,7 +55,7 @@ class BenchTest:
 
 
 def _divider(block: str, variant: str) -> Design:
-    return Design(block, "verif.bench.divider_bench", environment={"BENCH_VARIANT": variant})
+    return Design(block, "talbot.verif.bench.divider_bench", environment={"BENCH_VARIANT": variant})
 
 
 DESIGNS = {
@@ -63,16 +63,16 @@ DESIGNS = {
     for design in (
         Design(
             "RunLength",
-            "verif.bench.run_length_bench",
+            "talbot.verif.bench.run_length_bench",
             SensorParameters(array=ArrayParameters(12, 36), chip=ChipParameters(lanes=4)),
         ),
-        Design("PhasePath", "verif.bench.phase_path_bench"),
-        Design("AdcBank", "verif.bench.adc_bank_bench"),
+        Design("PhasePath", "talbot.verif.bench.phase_path_bench"),
+        Design("AdcBank", "talbot.verif.bench.adc_bank_bench"),
         _divider("QuadDividerRadix2", "radix2"),
         _divider("QuadDividerRadix4", "radix4"),
         _divider("QuadDividerPipelined", "pipelined"),
         _divider("Cordic", "cordic"),
-        Design("AspChip", "verif.bench.asp_chip_bench", exposure.SENSOR, afe=True),
+        Design("AspChip", "talbot.verif.bench.asp_chip_bench", exposure.SENSOR, afe=True),
     )
 }
 
@@ -142,7 +142,7 @@ def simulate(
     command = [
         sys.executable,
         "-m",
-        "verif.bench.cocotb_process",
+        "talbot.verif.bench.cocotb_process",
         simulator,
         design.module,
         folder,

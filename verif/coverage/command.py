@@ -6,13 +6,13 @@ A block's own tests are recorded and replayed into its exported Verilog. Exit st
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.records import from_json
-from models.parameters import ParameterError
-from rtl.replay import load
-from rtl.tops import TOPS
-from verif.results import OUT, BlockResults, write_step
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.records import from_json
+from talbot.models.parameters import ParameterError
+from talbot.rtl.replay import load
+from talbot.rtl.tops import TOPS
+from talbot.verif.results import OUT, BlockResults, write_step
 
 from .constants import constants
 from .measure import Measurement, measure

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from base.tools import ToolError
-from rtl.replay import load
+from talbot.base.tools import ToolError
+from talbot.rtl.replay import load
 
 from .points import POINTS
 from .ports import Recorded

@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from rtl.harness.driven import Driven
-from rtl.harness.netlists import Netlist
-from rtl.harness.ports import ports_of
+from talbot.rtl.harness.driven import Driven
+from talbot.rtl.harness.netlists import Netlist
+from talbot.rtl.harness.ports import ports_of
 
 from .program import compile_program
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from rtl.harness.ports import places, port_signals, split
-from rtl.replay import Trace
+from talbot.rtl.harness.ports import places, port_signals, split
+from talbot.rtl.replay import Trace
 
 Values = npt.NDArray[Any]  # int64, one per cycle; Python integers for ports of more than 63 bits
 Mask = npt.NDArray[np.bool_]  # one per cycle

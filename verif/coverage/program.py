@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.cache import cached, digest
-from base.paths import BUILD
-from base.sources import code
-from base.tools import run
-from base.verilator import CXX, compile_runtime, verilator_folder
-from rtl.harness.ports import Port, places, split, total_width, validity
+from talbot.base.cache import cached, digest
+from talbot.base.paths import BUILD
+from talbot.base.sources import code
+from talbot.base.tools import run
+from talbot.base.verilator import CXX, compile_runtime, verilator_folder
+from talbot.rtl.harness.ports import Port, places, split, total_width, validity
 
 CACHE = BUILD / "replay"
 MAIN = Path(__file__).parent / "main.cpp"

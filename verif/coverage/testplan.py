@@ -9,10 +9,10 @@ from typing import Any
 
 import yaml
 
-from base.paths import ROOT
-from models.parameters import ParameterError, SensorParameters
-from rtl.tops import TOPS, build_top
-from verif.formal import manifest
+from talbot.base.paths import ROOT
+from talbot.models.parameters import ParameterError, SensorParameters
+from talbot.rtl.tops import TOPS, build_top
+from talbot.verif.formal import manifest
 
 from .points import POINTS
 from .program import Registers

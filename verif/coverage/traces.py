@@ -4,14 +4,14 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-from base.cache import digest
-from base.jobs import Job, run
-from base.paths import ROOT
-from base.sources import code
-from models.parameters import SensorParameters
-from rtl.replay import load, record, tests_of
-from rtl.tops import build_top
-from verif.results import OUT
+from talbot.base.cache import digest
+from talbot.base.jobs import Job, run
+from talbot.base.paths import ROOT
+from talbot.base.sources import code
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.replay import load, record, tests_of
+from talbot.rtl.tops import build_top
+from talbot.verif.results import OUT
 
 STORE = OUT / "traces"
 

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from base.tools import ToolError, finish
-from flow.simulate.build import Build
-from flow.simulate.verilator import bare_program
-from models.chip import GoldenFrame, golden_frame
-from models.digital.host import command, frame_writes, write_transfers
-from models.digital.pattern import PatternEnd
-from models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
-from models.parameters.registers import register_map
-from rtl.export import translate
-from rtl.harness.icarus import kept_program
+from talbot.base.tools import ToolError, finish
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.verilator import bare_program
+from talbot.models.chip import GoldenFrame, golden_frame
+from talbot.models.digital.host import command, frame_writes, write_transfers
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.parameters import AmpTiming, ArrayParameters, ChipParameters, FrameParameters, SensorParameters
+from talbot.models.parameters.registers import register_map
+from talbot.rtl.export import translate
+from talbot.rtl.harness.icarus import kept_program
 
 from .waveform import BUSY, Trace, Wave, reset, rest, transfer, transfers
 

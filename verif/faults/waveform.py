@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.host import decode_status, status_transfers
+from talbot.models.digital.host import decode_status, status_transfers
 
 SCLK, CSN, MOSI, RDY, RESET, PULSE_LOW, PULSE_HIGH = (1 << bit for bit in range(7))
 REST = np.uint8(CSN | RDY)  # no transfer, the link takes every byte

@@ -10,13 +10,13 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from base.command import failures
-from base.jobs import run as run_jobs
-from base.records import from_json
-from base.tools import located
-from models.parameters import ParameterError
-from rtl.tops import TOPS
-from verif.results import OUT, PROVEN, BlockResults, Property, write_step
+from talbot.base.command import failures
+from talbot.base.jobs import run as run_jobs
+from talbot.base.records import from_json
+from talbot.base.tools import located
+from talbot.models.parameters import ParameterError
+from talbot.rtl.tops import TOPS
+from talbot.verif.results import OUT, PROVEN, BlockResults, Property, write_step
 
 from . import manifest
 from .engine import UNKNOWN, version

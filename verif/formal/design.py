@@ -3,8 +3,8 @@
 import re
 from functools import cache
 
-from models.parameters import ParameterError, SensorParameters
-from rtl.export import translate
+from talbot.models.parameters import ParameterError, SensorParameters
+from talbot.rtl.export import translate
 
 from . import tables
 from .proof import Proof

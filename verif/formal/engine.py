@@ -12,7 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
-from base.tools import ToolError, located
+from talbot.base.tools import ToolError, located
 
 from .netlist import Netlist
 

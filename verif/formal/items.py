@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from base.jobs import run
-from base.records import from_json
-from verif.results import OUT, PROVEN
+from talbot.base.jobs import run
+from talbot.base.records import from_json
+from talbot.verif.results import OUT, PROVEN
 
 from . import manifest
 from .engine import FormalError, tool

@@ -7,9 +7,9 @@ from typing import Any
 
 import yaml
 
-from base.paths import ROOT
-from models.parameters import ParameterError
-from rtl.tops import TOPS
+from talbot.base.paths import ROOT
+from talbot.models.parameters import ParameterError
+from talbot.rtl.tops import TOPS
 
 from .proof import ENGINES, RESET, Proof, Twin, labels
 

@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from verif.results import PROVEN
+from talbot.verif.results import PROVEN
 
 from .engine import Workplace
 from .netlist import Conjunct, Netlist

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from models.parameters import ParameterError
+from talbot.models.parameters import ParameterError
 
 Bit = int | str  # a net, or the constant '0', '1' or 'x'
 Place = tuple[str, str]  # a cell and its port

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from base.jobs import Job
+from talbot.base.jobs import Job
 
 from . import design
 from .engine import version

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters, TileParameters
+from talbot.models.parameters import ArrayParameters, ChipParameters, ParameterError, SensorParameters, TileParameters
 
 METHODS = ("induction", "bounded")
 ENGINES = ("boolector", "z3")

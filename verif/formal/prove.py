@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from verif.results import PROVEN
+from talbot.verif.results import PROVEN
 
 from .engine import FAILED, PASSED, UNKNOWN, Workplace
 from .netlist import Netlist

@@ -4,10 +4,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from models.digital.divider import quad_divide
-from models.parameters.divider import cordic_angles
-from models.parameters.registers import array_resets, register_map
-from rtl.quad_divider import timing
+from talbot.models.digital.divider import quad_divide
+from talbot.models.parameters.divider import cordic_angles
+from talbot.models.parameters.registers import array_resets, register_map
+from talbot.rtl.quad_divider import timing
 
 from .proof import Proof
 

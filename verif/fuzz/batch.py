@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from models.digital.stream import decode_stream
+from talbot.models.digital.stream import decode_stream
 
 from .checks import check_file, check_stream
 from .host import TARGETS

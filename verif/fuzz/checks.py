@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from base.command import main
-from flow import decode
-from models.digital.stream import DecodedFrame, StreamError, decode_stream
-from models.parameters import TileParameters
+from talbot.base.command import main
+from talbot.flow import decode
+from talbot.models.digital.stream import DecodedFrame, StreamError, decode_stream
+from talbot.models.parameters import TileParameters
 
 from .streams import Case, Sent
 

@@ -12,12 +12,12 @@ from pathlib import Path
 
 from joblib.externals.loky.process_executor import TerminatedWorkerError
 
-from base.command import failures
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.records import from_json
-from models.parameters import check_int
-from verif.results import OUT, SEED, BlockResults, Fuzz, Resync, Sweep, write_step
+from talbot.base.command import failures
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.records import from_json
+from talbot.models.parameters import check_int
+from talbot.verif.results import OUT, SEED, BlockResults, Fuzz, Resync, Sweep, write_step
 
 from .batch import BATCH, Batch, make_input, run_batch, try_input
 from .resync import AROUND, FRAMES, sweep

@@ -5,10 +5,10 @@ Each target raises Broken, or what the tried function raises, where a result is 
 
 import numpy as np
 
-from models.digital.host import decode_status, frame_writes, read_transfer, status_transfers, write_transfers
-from models.digital.registers import ADDRESS_MAX, RegisterBank
-from models.parameters import MODES, AmpTiming, FrameParameters, ParameterError, Window
-from models.parameters.registers import register_map, trim_range
+from talbot.models.digital.host import decode_status, frame_writes, read_transfer, status_transfers, write_transfers
+from talbot.models.digital.registers import ADDRESS_MAX, RegisterBank
+from talbot.models.parameters import MODES, AmpTiming, FrameParameters, ParameterError, Window
+from talbot.models.parameters.registers import register_map, trim_range
 
 from .checks import demand
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from flow.frame import job
-from flow.frame.request import request
-from models.chip import golden_frame
-from models.digital.stream import decode_stream, segments
-from models.parameters import MODES
-from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
-from verif.results import Sweep
+from talbot.flow.frame import job
+from talbot.flow.frame.request import request
+from talbot.models.chip import golden_frame
+from talbot.models.digital.stream import decode_stream, segments
+from talbot.models.parameters import MODES
+from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from talbot.verif.results import Sweep
 
 FRAMES = {**{mode: (mode, False) for mode in MODES}, "phase": ("tof", True)}
 SIZES = {"edge": (96, 144)}  # rows, cols of the array that sees the default scene

@@ -9,9 +9,9 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.stream import StreamHeader, encode_frame
-from models.parameters import LANES, MODES, FrameParameters, ParameterError, TileParameters, Window
-from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, MAGIC
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.parameters import LANES, MODES, FrameParameters, ParameterError, TileParameters, Window
+from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, MAGIC
 
 SMALL_TILE = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))
 TILES = TileParameters(), SMALL_TILE

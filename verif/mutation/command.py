@@ -12,18 +12,18 @@ from dataclasses import asdict, dataclass
 from itertools import islice
 from pathlib import Path
 
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.paths import ROOT
-from base.records import from_json
-from base.sources import code
-from models.parameters import ParameterError
-from rtl.replay import load
-from rtl.tops import TOPS
-from verif.coverage.program import compile_program
-from verif.coverage.testplan import folder_of
-from verif.coverage.traces import recorded
-from verif.results import OUT, SEED, BlockResults, Mutants, write_step
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.paths import ROOT
+from talbot.base.records import from_json
+from talbot.base.sources import code
+from talbot.models.parameters import ParameterError
+from talbot.rtl.replay import load
+from talbot.rtl.tops import TOPS
+from talbot.verif.coverage.program import compile_program
+from talbot.verif.coverage.testplan import folder_of
+from talbot.verif.coverage.traces import recorded
+from talbot.verif.results import OUT, SEED, BlockResults, Mutants, write_step
 
 from .judge import EQUIVALENT, KILLED, SURVIVED, Judgement, judge, proofs_of, try_original, try_tests
 from .mutants import Mutant, generate, with_mutants

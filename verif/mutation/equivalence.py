@@ -5,10 +5,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from base.paths import ROOT
-from base.tools import ToolTimeout
-from rtl.harness.ports import Port, split, validity
-from verif.coverage.program import tool
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolTimeout
+from talbot.rtl.harness.ports import Port, split, validity
+from talbot.verif.coverage.program import tool
 
 from .mutants import BITS, yosys
 

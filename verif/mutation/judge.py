@@ -5,17 +5,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.paths import ROOT
-from base.tools import ToolError
-from flow.layout.netlist.verilog import modules
-from flow.simulate.divider import exhaustive, simulator
-from models.parameters import SensorParameters
-from rtl.replay import Trace, load
-from verif.coverage.program import compile_program
-from verif.formal import design, manifest
-from verif.formal.proof import Proof
-from verif.formal.prove import prove
-from verif.results import PROVEN
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError
+from talbot.flow.layout.netlist.verilog import modules
+from talbot.flow.simulate.divider import exhaustive, simulator
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.replay import Trace, load
+from talbot.verif.coverage.program import compile_program
+from talbot.verif.formal import design, manifest
+from talbot.verif.formal.proof import Proof
+from talbot.verif.formal.prove import prove
+from talbot.verif.results import PROVEN
 
 from .equivalence import DIFFERENT, EQUIVALENT, UNKNOWN, compare, the_same
 from .mutants import Mutant, yosys

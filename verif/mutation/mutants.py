@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from verif.coverage.measure import sources_of
-from verif.coverage.program import tool
+from talbot.verif.coverage.measure import sources_of
+from talbot.verif.coverage.program import tool
 
 PREPARE = "read_verilog -sv dut.v; hierarchy -check -top {top}; proc; opt_expr; opt_muxtree; opt_clean"
 BITS = 16  # of the input `mutant`

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from flow.layout.netlist.verilog import modules
-from verif.coverage.measure import sources_of
+from talbot.flow.layout.netlist.verilog import modules
+from talbot.verif.coverage.measure import sources_of
 
 from .mutants import BITS, PREPARE, Mutant, own_modules, yosys
 

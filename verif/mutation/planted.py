@@ -10,12 +10,12 @@ from pathlib import Path
 import pytest
 import yaml
 
-from base.jobs import Job
-from base.paths import ROOT
-from base.sources import code
-from base.tools import ToolError, finish
-from models.parameters import ParameterError
-from rtl.tops import TOPS
+from talbot.base.jobs import Job
+from talbot.base.paths import ROOT
+from talbot.base.sources import code
+from talbot.base.tools import ToolError, finish
+from talbot.models.parameters import ParameterError
+from talbot.rtl.tops import TOPS
 
 FILE = Path(__file__).parent / "planted.yaml"
 LEFT_OUT = shutil.ignore_patterns("build", ".*", "__pycache__")

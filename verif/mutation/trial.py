@@ -10,15 +10,15 @@ from typing import Any
 import pytest
 from hypothesis import Phase, settings
 
-from base.paths import ROOT
-from flow.layout.netlist.verilog import modules
-from rtl.harness.driven import Driven
-from rtl.harness.ports import Port, ports_of
-from rtl.harness.testbench import hooked
-from rtl.harness.translate import translate_component
-from rtl.replay import Trace, whole_level
-from rtl.replay.recorder import OneLevel
-from verif.coverage.program import compile_program
+from talbot.base.paths import ROOT
+from talbot.flow.layout.netlist.verilog import modules
+from talbot.rtl.harness.driven import Driven
+from talbot.rtl.harness.ports import Port, ports_of
+from talbot.rtl.harness.testbench import hooked
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.replay import Trace, whole_level
+from talbot.rtl.replay.recorder import OneLevel
+from talbot.verif.coverage.program import compile_program
 
 from .mutants import Mutant
 

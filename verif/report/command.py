@@ -12,9 +12,9 @@ from dataclasses import asdict
 from pathlib import Path
 from time import perf_counter
 
-from base.command import failures
-from base.files import staged
-from verif.results import OUT, SEED, BlockResults
+from talbot.base.command import failures
+from talbot.base.files import staged
+from talbot.verif.results import OUT, SEED, BlockResults
 
 from . import limits
 from .merge import summarize

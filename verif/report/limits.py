@@ -8,8 +8,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from models.parameters import ParameterError
-from verif.results import BlockResults
+from talbot.models.parameters import ParameterError
+from talbot.verif.results import BlockResults
 
 from .merge import figures, is_rtl, totals
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Mapping
 
-from rtl.tops import TOPS
-from verif.results import COVERAGE, PROVEN, BlockResults
-from verif.suite.blocks import BLOCKS
+from talbot.rtl.tops import TOPS
+from talbot.verif.results import COVERAGE, PROVEN, BlockResults
+from talbot.verif.suite.blocks import BLOCKS
 
 MUTANTS = "made", "equivalent", "killed", "survived"
 

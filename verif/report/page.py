@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
-from base import page
-from verif.results import COVERAGE, BlockResults, Property
+from talbot.base import page
+from talbot.verif.results import COVERAGE, BlockResults, Property
 
 from .limits import Limits, check, limit_text, of_block
 from .merge import figures

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
 
-from base.paths import ROOT
-from base.records import from_json
-from verif.results import SEED, BlockResults
+from talbot.base.paths import ROOT
+from talbot.base.records import from_json
+from talbot.verif.results import SEED, BlockResults
 
 TALBOT = [sys.executable, "-m", "talbot"]
 

@@ -10,16 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
-from base.command import failures
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.records import from_json
-from models.chip import golden_frame
-from models.digital.pattern import PatternEnd
-from models.parameters import ArrayParameters, ChipParameters, SensorParameters
-from rtl.export import translate
-from verif.formal.engine import version
-from verif.results import OUT, SEED, BlockResults, StuckAt, write_step
+from talbot.base.command import failures
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.records import from_json
+from talbot.models.chip import golden_frame
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters
+from talbot.rtl.export import translate
+from talbot.verif.formal.engine import version
+from talbot.verif.results import OUT, SEED, BlockResults, StuckAt, write_step
 
 from .faults import OUTPUT, collapsed
 from .netlist import OPERATORS, synthesize

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from base.tools import run
+from talbot.base.tools import run
 
 # Mapped module by module, so that a gate's name begins with its block
 SCRIPT = """read_verilog -sv {path}; hierarchy -check -top {top}; proc; opt; fsm_map; memory_map; opt; techmap; opt;

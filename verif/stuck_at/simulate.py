@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from base.tools import run
+from talbot.base.tools import run
 
 from .faults import OUTPUT, Fault
 from .netlist import ONE, Gates

@@ -3,9 +3,9 @@
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.host import command, frame_writes, read_transfer, write_transfers
-from models.parameters import MODES, SHORT_TIMING, FrameParameters, SensorParameters
-from models.parameters.registers import register_map
+from talbot.models.digital.host import command, frame_writes, read_transfer, write_transfers
+from talbot.models.parameters import MODES, SHORT_TIMING, FrameParameters, SensorParameters
+from talbot.models.parameters.registers import register_map
 
 HALF_BIT = 4  # cycles, at the fastest clock of SPI
 RESET = 8

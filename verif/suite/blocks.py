@@ -1,6 +1,6 @@
 """Which block a test counts for, and which level it runs."""
 
-from rtl.tops import TOPS
+from talbot.rtl.tops import TOPS
 
 DIVIDERS = {
     "radix2": "QuadDividerRadix2",

@@ -11,14 +11,14 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from base.command import failures
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.paths import ROOT
-from base.records import from_json
-from base.sources import code
-from models.parameters import ParameterError
-from verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
+from talbot.base.command import failures
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.paths import ROOT
+from talbot.base.records import from_json
+from talbot.base.sources import code
+from talbot.models.parameters import ParameterError
+from talbot.verif.results import OUT, SEED, BlockResults, Fault, Tests, write_step
 
 from .blocks import blocks_of, level_of
 from .pytest_folder import Case, FolderRun, folders, run_folder

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from xml.etree import ElementTree
 
-from base.paths import ROOT
-from base.tools import ToolTimeout, finish
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolTimeout, finish
 
 TESTED = "models", "base", "rtl", "pixels", "flow", "verif", "talbot"
 # Layouts have an environment of their own, in which `make test` runs these

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from base.liberty.group import Group
-from base.liberty.read import is_library, parse, without
-from base.liberty.write import text
-from models.parameters import ParameterError
+from talbot.base.liberty.group import Group
+from talbot.base.liberty.read import is_library, parse, without
+from talbot.base.liberty.write import text
+from talbot.models.parameters import ParameterError
 
 
 def tree():

@@ -2,8 +2,8 @@
 
 import pytest
 
-from base.jobs import Job, run
-from base.steps.alone import alone
+from talbot.base.jobs import Job, run
+from talbot.base.steps.alone import alone
 
 
 def wide(folder):

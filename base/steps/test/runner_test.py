@@ -10,8 +10,8 @@ from pathlib import Path
 import joblib
 import pytest
 
-from base.steps import Runner, Step, StepError
-from models.parameters import ParameterError
+from talbot.base.steps import Runner, Step, StepError
+from talbot.models.parameters import ParameterError
 
 
 @dataclass(frozen=True)
@@ -205,7 +205,7 @@ class Tool(Repeat):
     name = "tool"
 
     def run(self, inputs, outputs):
-        from base.tools import run
+        from talbot.base.tools import run
 
         run(["sh", "-c", f"echo $$ > {inputs['text']}; exec sleep 60"])
         return {"length": 0}
@@ -214,7 +214,7 @@ class Tool(Repeat):
 # Ctrl-C counts also where the tests run behind a shell that ignores it
 RUN_TOOL = (
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler); "
-    "from base.steps.test.runner_test import *; from pathlib import Path; "
+    "from talbot.base.steps.test.runner_test import *; from pathlib import Path; "
     "Runner(Path({folder!r}), {{'text': Path({text!r})}}).{call}"
 )
 

@@ -6,15 +6,15 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells.characterize.bench import REST, Bench
-from cells.characterize.conditions import Conditions
-from cells.compact.canvas import Canvas
-from cells.compact.catalogue import schematics
-from cells.compact.library import schematic_spice
-from cells.corner import Corner
-from cells.netlist.function import understand
-from cells.netlist.spice import parse
-from platforms.extraction import device_models
+from talbot.cells.characterize.bench import REST, Bench
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.catalogue import schematics
+from talbot.cells.compact.library import schematic_spice
+from talbot.cells.corner import Corner
+from talbot.cells.netlist.function import understand
+from talbot.cells.netlist.spice import parse
+from talbot.platforms.extraction import device_models
 
 
 @pytest.mark.skipif(not shutil.which("ngspice"), reason="ngspice: not found; install it with: make tools")

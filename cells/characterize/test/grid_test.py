@@ -5,15 +5,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from cells.characterize.cell import _without_pin
-from cells.characterize.conditions import Conditions
-from cells.characterize.constraint import RESOLUTION, bisect, margin
-from cells.characterize.delay import chosen
-from cells.characterize.grid import _refine
-from cells.characterize.table import bilinear
-from cells.corner import Corner
-from cells.spice.engine import SimulationError
-from models.parameters import ParameterError
+from talbot.cells.characterize.cell import _without_pin
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.constraint import RESOLUTION, bisect, margin
+from talbot.cells.characterize.delay import chosen
+from talbot.cells.characterize.grid import _refine
+from talbot.cells.characterize.table import bilinear
+from talbot.cells.corner import Corner
+from talbot.cells.spice.engine import SimulationError
+from talbot.models.parameters import ParameterError
 
 
 def line(function):

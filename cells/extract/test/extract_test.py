@@ -10,15 +10,15 @@ pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
 import klayout.db as db
 
-from cells.extract.capacitance import capacitances
-from cells.extract.devices import find
-from cells.extract.resistance import resistances
-from cells.extract.subcircuit import extract
-from cells.extract.test.compare import differences
-from cells.netlist import spice
-from models.parameters import ParameterError
-from platforms.extraction import extraction_platform
-from platforms.sky130 import cells
+from talbot.cells.extract.capacitance import capacitances
+from talbot.cells.extract.devices import find
+from talbot.cells.extract.resistance import resistances
+from talbot.cells.extract.subcircuit import extract
+from talbot.cells.extract.test.compare import differences
+from talbot.cells.netlist import spice
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.sky130 import cells
 
 TECH = extraction_platform("sky130")
 CELLS = (
@@ -155,8 +155,8 @@ def test_conductors_connect_what_the_schematic_connects(cell):
 def test_the_same_layout_has_the_same_netlist_in_every_process():
     """KLayout orders a network's nodes by where they lie in memory; results are kept by the netlist's text."""
     code = (
-        "from cells.extract.subcircuit import extract; from platforms.extraction import extraction_platform; "
-        "from platforms.sky130 import cells; "
+        "from talbot.cells.extract.subcircuit import extract; from talbot.platforms.extraction import extraction_platform; "
+        "from talbot.platforms.sky130 import cells; "
         "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', extraction_platform('sky130'), "
         "capacitors=False))"
     )

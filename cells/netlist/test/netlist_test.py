@@ -2,11 +2,11 @@
 
 import pytest
 
-from cells.netlist.boolean import expression
-from cells.netlist.check import check
-from cells.netlist.function import understand
-from cells.netlist.spice import number, parse
-from models.parameters import ParameterError
+from talbot.cells.netlist.boolean import expression
+from talbot.cells.netlist.check import check
+from talbot.cells.netlist.function import understand
+from talbot.cells.netlist.spice import number, parse
+from talbot.models.parameters import ParameterError
 
 POLARITY, RAILS = {"n": "n", "p": "p"}, {"VDD": 1, "VSS": 0}
 

@@ -7,10 +7,10 @@ import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from base.page import render
-from cells import report
-from cells.liberty.compare import Difference, summary
-from cells.report import curve, pictures
+from talbot.base.page import render
+from talbot.cells import report
+from talbot.cells.liberty.compare import Difference, summary
+from talbot.cells.report import curve, pictures
 
 ERRORS = [
     {"name": curve.DEFAULT, "cell": "inv_1", "seconds": 2.0, "error": [1.0, -3.0, 2.0]},
@@ -36,8 +36,8 @@ def test_the_default_is_reported_cell_by_cell():
 
 
 def test_the_default_setting_is_one_of_those_compared():
-    from cells.characterize.conditions import Conditions
-    from cells.corner import Corner
+    from talbot.cells.characterize.conditions import Conditions
+    from talbot.cells.corner import Corner
 
     base = Conditions(Corner("tt", 25, 1.8))
     assert curve.settings(base)[curve.DEFAULT] == base

@@ -8,10 +8,10 @@ import threading
 import numpy as np
 import pytest
 
-from cells.spice.engine import SimulationError, Simulator
-from cells.spice.settings import Settings
-from cells.spice.wave import Wave
-from models.parameters import ParameterError
+from talbot.cells.spice.engine import SimulationError, Simulator
+from talbot.cells.spice.settings import Settings
+from talbot.cells.spice.wave import Wave
+from talbot.models.parameters import ParameterError
 
 RC = [".subckt rc A Y", "R1 A Y 1k", ".ends", "Xcell A Y rc"]
 ngspice = pytest.mark.skipif(not shutil.which("ngspice"), reason="needs ngspice (make tools)")

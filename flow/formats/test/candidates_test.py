@@ -7,11 +7,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from flow.formats.tokens import FORMATS
-from models.digital.stream import encode_payload
-from models.digital.stream.payload import base_of
-from rtl.harness.testbench import build
-from rtl.run_length import candidates
+from talbot.flow.formats.tokens import FORMATS
+from talbot.models.digital.stream import encode_payload
+from talbot.models.digital.stream.payload import base_of
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.run_length import candidates
 
 PACKERS = {name: getattr(candidates, packer) for name, (_, packer) in FORMATS.items()}
 CODES = st.lists(st.one_of(st.just(0), st.just(0), st.integers(-128, 127), st.integers(-9, 9)), max_size=60)

@@ -6,14 +6,14 @@ import shutil
 import numpy as np
 import pytest
 
-from base.command import main
-from flow.formats import command, company
-from flow.formats.codes import entropy_bytes, load_codes, thresholded
-from flow.formats.measure import frame_bytes, growth, measure
-from flow.formats.orders import CHIP, ORDERS, segments_of
-from flow.formats.tokens import CHOSEN, FORMATS
-from models.digital.stream import StreamHeader, encode_frame
-from models.parameters import FrameParameters, ParameterError, Window
+from talbot.base.command import main
+from talbot.flow.formats import command, company
+from talbot.flow.formats.codes import entropy_bytes, load_codes, thresholded
+from talbot.flow.formats.measure import frame_bytes, growth, measure
+from talbot.flow.formats.orders import CHIP, ORDERS, segments_of
+from talbot.flow.formats.tokens import CHOSEN, FORMATS
+from talbot.models.digital.stream import StreamHeader, encode_frame
+from talbot.models.parameters import FrameParameters, ParameterError, Window
 
 
 @pytest.fixture

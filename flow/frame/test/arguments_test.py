@@ -1,7 +1,7 @@
 import pytest
 
-from flow.frame.arguments import pixel_types, span, window
-from models.parameters import ALL_TYPES, ParameterError, Window
+from talbot.flow.frame.arguments import pixel_types, span, window
+from talbot.models.parameters import ALL_TYPES, ParameterError, Window
 
 FULL = Window(0, 95, 0, 63)
 

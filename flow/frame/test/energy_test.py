@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from models.parameters import (
+from talbot.models.parameters import (
     CameraParameters,
     ConverterParameters,
     ElectricalParameters,
@@ -11,8 +11,8 @@ from models.parameters import (
     LightParameters,
     sources,
 )
-from models.parameters.energy import Events
-from models.pixel.response import vignetting
+from talbot.models.parameters.energy import Events
+from talbot.models.pixel.response import vignetting
 
 FULL = Events(147456, 147456, 1 / 30, 8 * 147456, 0)
 

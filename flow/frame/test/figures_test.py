@@ -3,12 +3,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flow.frame.figures import depth_line, energy_line, mismatches, psnr, trims_at_end, trims_line
-from flow.frame.job import expose, flat_field, see, simulate_frame
-from flow.frame.quality import coded, decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
-from flow.frame.report import against
-from flow.frame.request import request
-from models.parameters import CameraParameters, ElectricalParameters, FrameParameters, Window
+from talbot.flow.frame.figures import depth_line, energy_line, mismatches, psnr, trims_at_end, trims_line
+from talbot.flow.frame.job import expose, flat_field, see, simulate_frame
+from talbot.flow.frame.quality import coded, decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
+from talbot.flow.frame.report import against
+from talbot.flow.frame.request import request
+from talbot.models.parameters import CameraParameters, ElectricalParameters, FrameParameters, Window
 
 ONE = Window(0, 0, 0, 0)
 

@@ -3,13 +3,13 @@
 import json
 import subprocess
 
-from flow.frame import hardware, job
-from flow.frame.request import request
-from flow.simulate.build import Build
-from flow.simulate.frame import host_script
-from flow.simulate.verilator import bare_program
-from models.digital.host import command, frame_writes, write_transfers
-from models.parameters import FrameParameters
+from talbot.flow.frame import hardware, job
+from talbot.flow.frame.request import request
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.frame import host_script
+from talbot.flow.simulate.verilator import bare_program
+from talbot.models.digital.host import command, frame_writes, write_transfers
+from talbot.models.parameters import FrameParameters
 
 ROUNDS = 7
 

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flow.frame import hardware
-from flow.frame.request import request
-from flow.simulate.build import Build
-from flow.simulate.icarus import icarus_program
-from models.chip import front_end_of, golden_frame
-from models.digital.stream import decode_stream
-from models.parameters import MODES, ConverterParameters, SensorParameters, Window
+from talbot.flow.frame import hardware
+from talbot.flow.frame.request import request
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.icarus import icarus_program
+from talbot.models.chip import front_end_of, golden_frame
+from talbot.models.digital.stream import decode_stream
+from talbot.models.parameters import MODES, ConverterParameters, SensorParameters, Window
 
 SIZES = {"odd": (13, 50, 4), "row": (1, 37, 8), "tile": (4, 6, 1)}  # rows, cols, lanes
 TAPS = 4

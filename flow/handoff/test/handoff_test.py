@@ -8,13 +8,13 @@ import time
 
 import pytest
 
-from base.command import main
-from base.lef.read import read_macro
-from flow.handoff import command, contents
-from flow.handoff.power import powered
-from flow.layout.design import design
-from flow.layout.report.metrics import RULES
-from models.parameters import ParameterError
+from talbot.base.command import main
+from talbot.base.lef.read import read_macro
+from talbot.flow.handoff import command, contents
+from talbot.flow.handoff.power import powered
+from talbot.flow.layout.design import design
+from talbot.flow.layout.report.metrics import RULES
+from talbot.models.parameters import ParameterError
 
 NAME, TOP, TILE = "quad_divider", "QuadDividerRadix4", "tt_quad_divider"
 LEF = f"""VERSION 5.8 ;

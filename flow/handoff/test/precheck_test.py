@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from base.command import main
-from base.paths import BUILD
-from base.tools import finish
-from flow.handoff import command
-from flow.layout.design import design
-from flow.openroad.tinytapeout import PROJECTS
+from talbot.base.command import main
+from talbot.base.paths import BUILD
+from talbot.base.tools import finish
+from talbot.flow.handoff import command
+from talbot.flow.layout.design import design
+from talbot.flow.openroad.tinytapeout import PROJECTS
 
 TOOLS = Path(os.environ.get("TT_TOOLS", "/nowhere"))
 PDK = Path(os.environ.get("PDK_ROOT", "/nowhere")) / "sky130A" / "libs.tech"

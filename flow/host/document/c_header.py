@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-from models.digital.host import WRITE
-from models.digital.registers import ADDRESS_MAX
-from models.parameters.registers import Field, RegisterMap
+from talbot.models.digital.host import WRITE
+from talbot.models.digital.registers import ADDRESS_MAX
+from talbot.models.parameters.registers import Field, RegisterMap
 
 HEAD = """\
 /* Registers of AspChip. Generated from models/parameters/registers/asp_chip.rdl by `talbot document`.

@@ -6,9 +6,9 @@ For other tools, by PeakRDL: build/registers/ with a site (html/index.html), IP-
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from base.files import insert, write
-from base.paths import RESULTS, ROOT
-from models.parameters.registers import register_map
+from talbot.base.files import insert, write
+from talbot.base.paths import RESULTS, ROOT
+from talbot.models.parameters.registers import register_map
 
 from . import exports, registers, tables
 from .c_header import c_header

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from base.files import staged
-from models.parameters.registers.map import compiled
+from talbot.base.files import staged
+from talbot.models.parameters.registers.map import compiled
 
 HTML, IPXACT, HEADER = "html", "asp_chip.xml", "asp_chip_peakrdl.h"
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from rtl.asp_chip.pins import pins
+from talbot.rtl.asp_chip.pins import pins
 
 from .markdown import table
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.page import render
-from models.parameters.registers import Field, RegisterMap
+from talbot.base.page import render
+from talbot.models.parameters.registers import Field, RegisterMap
 
 from .markdown import table
 

@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from models.chip import golden_frame
-from models.digital.host import command, frame_values, read_transfer, write_transfers
-from models.digital.pattern import PatternEnd, pattern_value
-from models.digital.phase import phase_samples
-from models.parameters import AmpTiming, FrameParameters, SensorParameters, Window
-from models.parameters.registers import register_map
+from talbot.models.chip import golden_frame
+from talbot.models.digital.host import command, frame_values, read_transfer, write_transfers
+from talbot.models.digital.pattern import PatternEnd, pattern_value
+from talbot.models.digital.phase import phase_samples
+from talbot.models.parameters import AmpTiming, FrameParameters, SensorParameters, Window
+from talbot.models.parameters.registers import register_map
 
 from .markdown import table
 from .pins import analog_pins, host_pins

@@ -3,8 +3,8 @@
 import ctypes
 from pathlib import Path
 
-from flow.simulate.build import Build
-from flow.simulate.verilator import bare_program
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.verilator import bare_program
 
 MAIN = Path(__file__).with_name("bench.cpp")
 NEVER = 256  # of 256 cycles

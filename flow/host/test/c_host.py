@@ -7,8 +7,8 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from flow.host.driver import Code, Host, HostError
-from models.parameters.registers import register_map
+from talbot.flow.host.driver import Code, Host, HostError
+from talbot.models.parameters.registers import register_map
 
 FOLDER = Path(__file__).parents[1]
 CHIP = register_map()

@@ -3,14 +3,14 @@
 import re
 from xml.etree import ElementTree
 
-from base.paths import ROOT
-from base.tools import run
-from flow.host.document.command import HEADER
-from flow.host.document.exports import HEADER as HEADER_OF_STRUCTS
-from flow.host.document.exports import IPXACT, export
-from flow.host.document.tables import TABLES
-from models.parameters.registers import register_map
+from talbot.base.paths import ROOT
+from talbot.base.tools import run
 from talbot.commands import main
+from talbot.flow.host.document.command import HEADER
+from talbot.flow.host.document.exports import HEADER as HEADER_OF_STRUCTS
+from talbot.flow.host.document.exports import IPXACT, export
+from talbot.flow.host.document.tables import TABLES
+from talbot.models.parameters.registers import register_map
 
 TABLED = "host.md", "chip.md", "stream.md"
 WRITTEN = "registers.md", "registers.html", *TABLED

@@ -5,13 +5,13 @@ import re
 import numpy as np
 import pytest
 
-from flow.host.driver import Code, Host, HostError
-from models.chip import golden_frame
-from models.digital.amp_ctrl import TAPS
-from models.digital.host import command, frame_values
-from models.digital.pattern import PatternEnd
-from models.digital.scan import Scan
-from models.parameters import (
+from talbot.flow.host.driver import Code, Host, HostError
+from talbot.models.chip import golden_frame
+from talbot.models.digital.amp_ctrl import TAPS
+from talbot.models.digital.host import command, frame_values
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import (
     SHORT_TIMING,
     AmpTiming,
     ArrayParameters,
@@ -20,7 +20,7 @@ from models.parameters import (
     SensorParameters,
     Window,
 )
-from models.parameters.registers import register_map
+from talbot.models.parameters.registers import register_map
 
 from .bench import NEVER, Bench
 from .c_host import FOLDER, OUT_OF_ROOM, TRANSFER, CHost

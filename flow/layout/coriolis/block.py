@@ -9,7 +9,7 @@ from coriolis.Hurricane import Box
 from coriolis.plugins.block.block import Block
 from coriolis.plugins.block.configuration import BlockConf, IoPin
 
-from flow.layout.netlist.names import CLOCK
+from talbot.flow.layout.netlist.names import CLOCK
 
 from .leaves import balance
 from .macros import fix_macros

@@ -4,7 +4,7 @@ import re
 import sys
 from typing import Any
 
-from flow.layout.netlist.names import CLOCK
+from talbot.flow.layout.netlist.names import CLOCK
 
 
 def configure(request: dict[str, Any]) -> None:

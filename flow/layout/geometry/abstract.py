@@ -5,14 +5,14 @@ from collections.abc import Iterator, Mapping, Sequence, Set
 from pathlib import Path
 from typing import NamedTuple
 
-from base.gds import db, read_gds
-from base.lef import write
-from base.lef.write import Rectangles
-from flow.layout.geometry.antenna import connected
-from flow.layout.netlist.netlist import SUPPLIES
-from models.parameters import ParameterError
-from platforms.coriolis import CoriolisPlatform
-from platforms.layers import Layer
+from talbot.base.gds import db, read_gds
+from talbot.base.lef import write
+from talbot.base.lef.write import Rectangles
+from talbot.flow.layout.geometry.antenna import connected
+from talbot.flow.layout.netlist.netlist import SUPPLIES
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layers import Layer
 
 EDGE_UM = 0.3  # how far from the edge a pin is taken for one
 USES = "POWER", "GROUND"  # of supply and ground

@@ -7,8 +7,8 @@ net, by the area of the net's gates, must stay below the process's ratio; a diff
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
-from base.gds import db
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from .boxes import Box, corners
 

@@ -6,8 +6,8 @@ too small. It grows along one side, or both, where nothing of its layer is near.
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from base.gds import db
-from platforms.layers import Layer
+from talbot.base.gds import db
+from talbot.platforms.layers import Layer
 
 GRID_NM = 5
 

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from base.gds import db
+from talbot.base.gds import db
 
 GRID_NM = 5  # manufacturing grid of every process here
 Box = tuple[int, int, int, int]  # left, bottom, right, top in database units

@@ -7,9 +7,9 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from base.steps import StepError
-from base.tools import ToolError, finish
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.steps import StepError
+from talbot.base.tools import ToolError, finish
+from talbot.platforms.coriolis import CoriolisPlatform
 
 
 def run_deck(deck: Path, report: Path, variables: Mapping[str, object], **environment: object) -> tuple[int, str]:

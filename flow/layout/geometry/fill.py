@@ -3,9 +3,9 @@
 import numpy as np
 import numpy.typing as npt
 
-from base.gds import db
-from platforms.coriolis import Fill
-from platforms.layers import Layer
+from talbot.base.gds import db
+from talbot.platforms.coriolis import Fill
+from talbot.platforms.layers import Layer
 
 from .boxes import Box, Boxes, boxes
 

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from itertools import combinations, pairwise, product
 from typing import Any
 
-from models.parameters import ParameterError
-from platforms.coriolis import CoriolisPlatform
-from platforms.frame import Frame
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.frame import Frame
 
 from ..netlist.netlist import Netlist
 from .macro import Macro

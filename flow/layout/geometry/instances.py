@@ -1,6 +1,6 @@
 """Instances of cells in a layout, by the places of a placement."""
 
-from base.gds import db
+from talbot.base.gds import db
 
 from ..netlist.placed import TURNS
 

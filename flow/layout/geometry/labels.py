@@ -2,9 +2,9 @@
 
 from collections.abc import Collection, Iterable, Sequence
 
-from base.gds import db
-from base.steps import StepError
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db
+from talbot.base.steps import StepError
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..netlist.netlist import SUPPLIES
 

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Sequence
 
-from base.steps import StepError
-from platforms.layers import GdsLayer
+from talbot.base.steps import StepError
+from talbot.platforms.layers import GdsLayer
 
 from ..netlist.netlist import SUPPLIES, Netlist
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from base.lef.read import Box, read_macro
-from flow.layout.netlist.netlist import SUPPLIES
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.lef.read import Box, read_macro
+from talbot.flow.layout.netlist.netlist import SUPPLIES
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from .abstract import EDGE_UM
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from base.gds import db, read_gds, write_gds
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db, read_gds, write_gds
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..netlist.names import MACRO
 

@@ -6,8 +6,8 @@ What fills a slit joins nothing that was not one shape before.
 
 from collections.abc import Iterable, Mapping
 
-from base.gds import db
-from platforms.layers import Layer
+from talbot.base.gds import db
+from talbot.platforms.layers import Layer
 
 from .boxes import on_grid
 

@@ -7,8 +7,8 @@ is taken from either side; DRC and LVS check the result.
 
 from collections.abc import Iterable, Mapping
 
-from base.gds import db
-from platforms.layers import Layer
+from talbot.base.gds import db
+from talbot.platforms.layers import Layer
 
 GRID_NM = 5
 MOST_NM = 25  # that an end may lose: what pads have over the least enclosure of a via

@@ -8,7 +8,7 @@ the enable is 1, and keeps what it has else.
 
 from typing import Any
 
-from base.steps import StepError
+from talbot.base.steps import StepError
 
 REGISTER, LATCHES = "$_DFF_P_", {"$_DLATCH_P_": True, "$_DLATCH_N_": False}  # open at 1, at 0
 COPIES = {"$_BUF_": False, "$_NOT_": True}  # whether inverting

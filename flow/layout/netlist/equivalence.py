@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from base.steps import StepError
-from base.tools import run
+from talbot.base.steps import StepError
+from talbot.base.tools import run
 
 from .netlist import REGISTER, Netlist, is_register
 from .registers import Bit, Cut, active_low

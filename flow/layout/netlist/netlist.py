@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from base.steps import StepError
+from talbot.base.steps import StepError
 
 SUPPLIES = ("vdd", "vss")
 # Of the cells of PDKMaster, and of SkyWater

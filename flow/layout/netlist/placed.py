@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from base.steps import StepError
+from talbot.base.steps import StepError
 
 from .netlist import SUPPLIES, Instance, MacroNames, Netlist
 

@@ -12,7 +12,7 @@ from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 from typing import Any
 
-from base.steps import StepError
+from talbot.base.steps import StepError
 
 from .enables import LATCHES, REGISTER, pins_of, with_enables
 from .netlist import named_bits

@@ -22,8 +22,8 @@ import numpy.typing as npt
 from numba import njit, types
 from numba.typed import Dict
 
-from platforms.layers import Crossing
-from platforms.wires import Wires
+from talbot.platforms.layers import Crossing
+from talbot.platforms.wires import Wires
 
 from .bins import Bins, Ints
 from .shapes import METAL_LEVEL, POLY_LEVEL, Shapes

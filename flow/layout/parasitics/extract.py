@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from base.gds import db
-from platforms.coriolis import CoriolisPlatform
-from platforms.extraction import ExtractionPlatform
-from platforms.wires import Wires
+from talbot.base.gds import db
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.wires import Wires
 
 from ..netlist.netlist import OUTPUT_PINS, Netlist
 from ..timing.spef import Tree

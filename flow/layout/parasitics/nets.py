@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.gds import db
-from base.steps import StepError
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db
+from talbot.base.steps import StepError
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..geometry.instances import transformation
 from ..netlist.netlist import Netlist

@@ -7,11 +7,11 @@ from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from base.gds import db
-from platforms.coriolis import CoriolisPlatform
-from platforms.extraction import ExtractionPlatform
-from platforms.layers import DIFFUSION
-from platforms.wires import SUBSTRATE
+from talbot.base.gds import db
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.extraction import ExtractionPlatform
+from talbot.platforms.layers import DIFFUSION
+from talbot.platforms.wires import SUBSTRATE
 
 from .bins import Bins, Ints, at, binned
 

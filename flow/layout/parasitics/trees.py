@@ -15,7 +15,7 @@ from numba import njit
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import dijkstra
 
-from platforms.wires import Wires
+from talbot.platforms.wires import Wires
 
 from .capacitance import Floats, Numbers
 from .shapes import Shapes

@@ -11,9 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
-from base.liberty.group import Group
-from base.steps import StepError
-from flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
+from talbot.base.liberty.group import Group
+from talbot.base.steps import StepError
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Instance, Netlist, is_register
 
 CLOCK = re.compile("clk|ck|CLK")  # pins
 SLEW_NS = 0.1  # of a pin that OpenSTA has no slew for: constants

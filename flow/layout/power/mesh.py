@@ -9,7 +9,7 @@ import numpy.typing as npt
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from platforms.coriolis import CoriolisPlatform
+from talbot.platforms.coriolis import CoriolisPlatform
 
 Box = tuple[float, float, float, float]  # left, bottom, right, top, um
 

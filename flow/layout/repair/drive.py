@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from base.liberty.group import Group
+from talbot.base.liberty.group import Group
 
 SIZE = re.compile(r"(\w+_x)(\d+)")  # a cell's name: what it does, and its size
 

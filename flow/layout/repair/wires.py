@@ -1,7 +1,7 @@
 """The capacitance of a wire before it is routed."""
 
-from platforms.coriolis import CoriolisPlatform
-from platforms.wires import SUBSTRATE
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.wires import SUBSTRATE
 
 SPACE_UM = 0.6  # from a wire to the next one on either side, as a mean over layouts
 

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from base.files import staged
-from base.page import render
-from base.paths import RESULTS
-from flow.layout.design import DESIGNS, design, macro_designs
-from models.parameters import ParameterError
+from talbot.base.files import staged
+from talbot.base.page import render
+from talbot.base.paths import RESULTS
+from talbot.flow.layout.design import DESIGNS, design, macro_designs
+from talbot.models.parameters import ParameterError
 
 from .metrics import broken
 from .text import as_text

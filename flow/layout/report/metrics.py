@@ -6,10 +6,10 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from base.steps import Runner
-from flow.layout.design import Design
-from flow.layout.options import Options
-from models.parameters import ChipParameters, EnergyParameters
+from talbot.base.steps import Runner
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.options import Options
+from talbot.models.parameters import ChipParameters, EnergyParameters
 
 CHIP = "AspChip"
 BOUNDS = {"is": "", "least": "at least", "most": "at most"}  # of a rule, as words

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from base.page import render
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.page import render
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from .history import history, table
 from .picture import PALETTE

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-from flow.layout.netlist.netlist import Netlist
-from flow.layout.netlist.placed import MIRRORED
-from platforms.coriolis import CoriolisPlatform
+from talbot.flow.layout.netlist.netlist import Netlist
+from talbot.flow.layout.netlist.placed import MIRRORED
+from talbot.platforms.coriolis import CoriolisPlatform
 
 PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
 BACKGROUND = "#101014"

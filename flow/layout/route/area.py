@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from base.gds import db
+from talbot.base.gds import db
 
 from ..geometry.boxes import Box, corners, on_grid
 from .route import Route

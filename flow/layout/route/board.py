@@ -6,7 +6,7 @@ from typing import Any, TypedDict, TypeVar
 
 import numpy as np
 
-from base.gds import db
+from talbot.base.gds import db
 
 from ..geometry.boxes import Box, boxes, corners
 from .grid import Grid

@@ -4,8 +4,8 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from base.gds import db
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..geometry.boxes import Box
 from ..geometry.instances import insert, transformation

@@ -12,9 +12,9 @@ from typing import Any
 
 import joblib
 
-from base.gds import write_gds
-from base.progress import line
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import write_gds
+from talbot.base.progress import line
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from .board import GROWTH, PRESENT, Board
 from .diodes import Diodes

@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from base.gds import db
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..geometry.boxes import Box
 from .rules import RoutingRules

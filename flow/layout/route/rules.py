@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from platforms.coriolis import CoriolisPlatform
-from platforms.layers import Via as PlatformVia
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.layers import Via as PlatformVia
 
 
 @dataclass(frozen=True)

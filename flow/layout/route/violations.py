@@ -4,8 +4,8 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from base.gds import db, read_gds
-from platforms.coriolis import CoriolisPlatform
+from talbot.base.gds import db, read_gds
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..geometry.antenna import charged
 from ..geometry.boxes import Box, corners

@@ -4,10 +4,10 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
-from base.lef.read import read_macro
-from base.paths import ROOT
-from base.tools import run
-from models.parameters import ParameterError
+from talbot.base.lef.read import read_macro
+from talbot.base.paths import ROOT
+from talbot.base.tools import run
+from talbot.models.parameters import ParameterError
 
 from .plan import BLOCKS
 
@@ -28,7 +28,7 @@ def files(folder: Path, pdk: str, analog: Path | None = None) -> AnalogFiles:
     A pin that a black box does not have, a reference or a bias, leads to a pin of the die. Raises ParameterError.
     """
     circuits = _circuits(analog) if analog else []
-    run([sys.executable, "-m", "pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
+    run([sys.executable, "-m", "talbot.pixels.footprints", "--pdk", pdk, "--out", folder], cwd=ROOT)
     found = {f"{block}.{kind}": folder / f"{block}.{kind}" for block in BLOCKS for kind in KINDS}
     extra: dict[str, None] = {}
     for block in circuits:

@@ -6,7 +6,7 @@ constraints between trunks: any order of the tracks is a routing.
 
 from collections.abc import Collection, Mapping
 
-from base.steps import StepError
+from talbot.base.steps import StepError
 
 
 def left_edge(trunks: Mapping[str, tuple[int, int]], gap: int) -> dict[str, int]:

@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from platforms.coriolis import CoriolisPlatform
-from platforms.die import TopMetal
+from talbot.platforms.coriolis import CoriolisPlatform
+from talbot.platforms.die import TopMetal
 
 from .plan import Terminal
 

@@ -6,20 +6,20 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from base.files import staged
-from base.steps import Runner, Step, StepError
-from flow.layout.block import lay_out
-from flow.layout.design import Design
-from flow.layout.options import Options
-from flow.layout.report.metrics import broken
-from flow.layout.report.page import Picture, write_report
-from flow.layout.report.picture import render
-from flow.layout.steps.drc import Drc
-from flow.layout.steps.parameters import PdkParameters
-from flow.layout.steps.sta import StaParameters
-from platforms.coriolis import coriolis_platform
-from platforms.die import top_metal
-from platforms.wires import CORNERS
+from talbot.base.files import staged
+from talbot.base.steps import Runner, Step, StepError
+from talbot.flow.layout.block import lay_out
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.report.metrics import broken
+from talbot.flow.layout.report.page import Picture, write_report
+from talbot.flow.layout.report.picture import render
+from talbot.flow.layout.steps.drc import Drc
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.steps.sta import StaParameters
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.die import top_metal
+from talbot.platforms.wires import CORNERS
 
 from .analog import files
 from .metrics import RULES, summarize

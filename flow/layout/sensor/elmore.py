@@ -3,8 +3,8 @@
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from flow.layout.timing.parasitics import parasitics
-from platforms.coriolis import CoriolisPlatform
+from talbot.flow.layout.timing.parasitics import parasitics
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from .plan import CORE, Terminal
 from .routing import BRANCH, STUB, TRUNK

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from base.steps import Runner
-from flow.layout.options import Options
-from flow.layout.report.metrics import timing_basis
+from talbot.base.steps import Runner
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.report.metrics import timing_basis
 
 from .plan import BLOCKS
 from .steps.die_sta import DieSta

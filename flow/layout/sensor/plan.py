@@ -4,9 +4,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
-from base.lef.read import read_macro
-from base.steps import StepError
-from models.parameters import ParameterError, check_real
+from talbot.base.lef.read import read_macro
+from talbot.base.steps import StepError
+from talbot.models.parameters import ParameterError, check_real
 
 CORE = "core"
 BLOCKS = "pixel_array", "row_driver", "column_amplifiers", "adc_lanes"

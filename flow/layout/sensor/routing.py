@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from base.steps import StepError
-from flow.layout.route.rules import RoutingRules
+from talbot.base.steps import StepError
+from talbot.flow.layout.route.rules import RoutingRules
 
 from .channel import check_apart, free, left_edge
 from .plan import CORE, SIGNALS, SUPPLIES, Block, Box, DieParameters, Terminal, check_way, nm, touching

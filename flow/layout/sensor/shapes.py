@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from flow.layout.route.rules import Layer, RoutingRules, Via
-from platforms import layers
+from talbot.flow.layout.route.rules import Layer, RoutingRules, Via
+from talbot.platforms import layers
 
 from .plan import CORE, Box, DieParameters, nm
 from .routing import BRANCH, STUB, TRUNK, Branch, Tracks

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from base.steps import StepError
-from flow.layout.route.rules import Layer, RoutingRules
-from platforms.die import TopMetal
+from talbot.base.steps import StepError
+from talbot.flow.layout.route.rules import Layer, RoutingRules
+from talbot.platforms.die import TopMetal
 
 from . import shapes
 from .arrange import Arranged

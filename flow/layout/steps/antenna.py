@@ -3,9 +3,9 @@
 import json
 from typing import Any
 
-from base.gds import read_gds
-from base.steps import Files, Step
-from platforms.coriolis import CoriolisPlatform, coriolis_platform
+from talbot.base.gds import read_gds
+from talbot.base.steps import Files, Step
+from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..geometry.antenna import violations
 from .parameters import PdkParameters

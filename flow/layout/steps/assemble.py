@@ -4,8 +4,8 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.steps import Files, Step
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import Files, Step
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.macro_cells import insert_macros
 from ..netlist.flatten import flattened, merged_placement

@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from base.liberty.group import Group
-from base.liberty.read import read
-from base.liberty.write import text
-from base.steps import Files, StepError
-from base.tools import run
+from talbot.base.liberty.group import Group
+from talbot.base.liberty.read import read
+from talbot.base.liberty.write import text
+from talbot.base.steps import Files, StepError
+from talbot.base.tools import run
 
 from ..netlist.netlist import SUPPLIES, Netlist, supplies
 from ..power.energy import Cells

@@ -1,7 +1,7 @@
 """Steps that run once a corner."""
 
-from base.steps.step import P, Step
-from platforms.wires import wire_corner
+from talbot.base.steps.step import P, Step
+from talbot.platforms.wires import wire_corner
 
 
 class CornerStep(Step[P]):

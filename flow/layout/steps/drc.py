@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from base.steps import Files, Step, StepError
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import Files, Step, StepError
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.decks import hole_rules, run_exported, via_rules, violations, with_flat_spaces
 from .parameters import PdkParameters

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from base.steps import Files, Step
-from base.tools import run
+from talbot.base.steps import Files, Step
+from talbot.base.tools import run
 
 from ..netlist.equivalence import Pair, match
 from ..netlist.netlist import Netlist

@@ -3,10 +3,10 @@
 import json
 from typing import Any
 
-from base.gds import db, read_gds
-from base.steps import Files, Step
-from platforms.coriolis import coriolis_platform
-from platforms.extraction import extraction_platform
+from talbot.base.gds import db, read_gds
+from talbot.base.steps import Files, Step
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.extraction import extraction_platform
 
 from ..netlist.netlist import Netlist
 from ..parasitics.extract import extract

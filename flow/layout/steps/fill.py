@@ -3,9 +3,9 @@
 import json
 from typing import Any
 
-from base.gds import read_gds, write_gds
-from base.steps import Files, Step
-from platforms.coriolis import coriolis_platform
+from talbot.base.gds import read_gds, write_gds
+from talbot.base.steps import Files, Step
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.fill import fill, peak_density
 from .parameters import PdkParameters

@@ -5,9 +5,9 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from base.steps import Files, Step, StepError
-from models.parameters import ParameterError, check_real
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import Files, Step, StepError
+from talbot.models.parameters import ParameterError, check_real
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.floorplan import framed, halo_area, largest_free, place_macros
 from ..geometry.macro import Macro

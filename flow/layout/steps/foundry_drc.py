@@ -6,9 +6,9 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from base.steps import Files, Step, StepError
-from base.tools import finish
-from platforms.foundry import FoundryChecks, foundry_checks
+from talbot.base.steps import Files, Step, StepError
+from talbot.base.tools import finish
+from talbot.platforms.foundry import FoundryChecks, foundry_checks
 
 from ..geometry.decks import run_deck, violations
 

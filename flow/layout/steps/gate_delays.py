@@ -4,8 +4,8 @@ import json
 from dataclasses import dataclass, field
 from typing import Any
 
-from base.steps import Files, StepError
-from models.parameters import check_real
+from talbot.base.steps import Files, StepError
+from talbot.models.parameters import check_real
 
 from ..netlist.netlist import Netlist
 from ..timing.delays import read

@@ -4,16 +4,16 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from base.steps import Files, Step
-from base.steps.step import NoParameters
-from flow.simulate.build import Build
-from flow.simulate.icarus import icarus_program
+from talbot.base.steps import Files, Step
+from talbot.base.steps.step import NoParameters
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.icarus import icarus_program
 
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from models.parameters import SensorParameters
+    from talbot.models.parameters import SensorParameters
 
 MODES = (("edge", False), ("image", False), ("tof", True))  # mode, whether the chip computes phases
 SEED, TAPS = 1, 4
@@ -29,9 +29,9 @@ class GateFrames(Step[NoParameters]):
     tools = ("iverilog",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        from flow.frame.hardware import simulate
-        from models.chip import front_end_of, golden_frame
-        from models.parameters import FrameParameters, SensorParameters, Window
+        from talbot.flow.frame.hardware import simulate
+        from talbot.models.chip import front_end_of, golden_frame
+        from talbot.models.parameters import FrameParameters, SensorParameters, Window
 
         sensor = SensorParameters()
         front_end, samples = front_end_of(sensor, [7] * 24), exposure(sensor)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from base.paths import ROOT
-from base.steps import Files, Step, StepError
-from base.tools import finish
-from models.parameters import check_choice
+from talbot.base.paths import ROOT
+from talbot.base.steps import Files, Step, StepError
+from talbot.base.tools import finish
+from talbot.models.parameters import check_choice
 
 NETLISTS = {"final": "stream_out.verilog", "synthesized": "synthesis.verilog"}
 

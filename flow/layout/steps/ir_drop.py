@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from base.steps import Files
-from platforms.coriolis import CoriolisPlatform, coriolis_platform
+from talbot.base.steps import Files
+from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..netlist.placed import MIRRORED

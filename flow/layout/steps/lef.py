@@ -3,8 +3,8 @@
 import json
 from typing import Any
 
-from base.steps import Files, Step, StepError
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import Files, Step, StepError
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.abstract import abstract, ports, read_back
 from ..netlist.netlist import supplies

@@ -4,11 +4,11 @@ import importlib
 import json
 from typing import Any
 
-from base.steps import Files, Step
-from base.tools import run
-from cells.standard import standard_cells
-from platforms.coriolis import coriolis_platform
-from platforms.extraction import device_models, extraction_platform
+from talbot.base.steps import Files, Step
+from talbot.base.tools import run
+from talbot.cells.standard import standard_cells
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.extraction import device_models, extraction_platform
 
 from .. import pdkmaster
 from ..netlist.netlist import SUPPLIES

@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from base.gds import read_gds, write_gds
-from base.paths import ROOT
-from base.steps import Files, Step
-from base.tools import finish
-from models.parameters import check_int, check_real
-from platforms.coriolis import coriolis_platform
+from talbot.base.gds import read_gds, write_gds
+from talbot.base.paths import ROOT
+from talbot.base.steps import Files, Step
+from talbot.base.tools import finish
+from talbot.models.parameters import check_int, check_real
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..geometry.macro import Macro
 from ..geometry.macro_cells import OVER_UM, make_solid
@@ -129,7 +129,7 @@ class Place(Step[PlaceParameters]):
         """Run it in the folder ``work``; returns its result, {"stopped": its last message} if it gave up."""
         (work / f"{MODEL}.blif").write_text(blif)
         (work / "request.json").write_text(json.dumps(request))
-        command = [sys.executable, "-m", "flow.layout.coriolis", "request.json"]
+        command = [sys.executable, "-m", "talbot.flow.layout.coriolis", "request.json"]
         done = finish(command, {"PYTHONPATH": str(ROOT)}, work)
         outputs["log"].write_text(done.stdout + done.stderr)
         if done.returncode or not (work / "result.json").exists():

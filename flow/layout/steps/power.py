@@ -5,9 +5,9 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from base.liberty.read import read
-from base.steps import Files
-from models.parameters import check_real
+from talbot.base.liberty.read import read
+from talbot.base.steps import Files
+from talbot.models.parameters import check_real
 
 from ..netlist.netlist import Netlist
 from ..power.energy import Cells, blocks, powers

@@ -5,12 +5,12 @@ from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from base.gds import db, read_gds, write_gds
-from base.liberty.read import read
-from base.steps import Files, Step
-from models.parameters import check_real
-from platforms.coriolis import CoriolisPlatform, coriolis_platform
-from platforms.wires import wire_corner
+from talbot.base.gds import db, read_gds, write_gds
+from talbot.base.liberty.read import read
+from talbot.base.steps import Files, Step
+from talbot.models.parameters import check_real
+from talbot.platforms.coriolis import CoriolisPlatform, coriolis_platform
+from talbot.platforms.wires import wire_corner
 
 from ..geometry.instances import insert
 from ..geometry.rows import free_rows

@@ -4,9 +4,9 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from base.gds import read_gds, write_gds
-from base.steps import Files, Step
-from platforms.coriolis import coriolis_platform
+from talbot.base.gds import read_gds, write_gds
+from talbot.base.steps import Files, Step
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..netlist.netlist import Netlist
 from ..netlist.placed import pin_boxes

@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from base.steps import Files
+from talbot.base.steps import Files
 
 from ..timing.opensta import TIMED, opensta, worst_slack
 from .corner import CornerStep

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from base.steps import Files
+from talbot.base.steps import Files
 
 from ..netlist.netlist import Netlist
 from ..timing.opensta import opensta, worst_slack

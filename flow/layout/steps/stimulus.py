@@ -12,20 +12,20 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from base.paths import ROOT
-from base.steps import Files, Step, StepError
-from base.tools import ToolError, finish, run
-from flow.simulate.build import Build
-from flow.simulate.icarus import icarus_program
-from rtl.tinytapeout.host import EXAMPLES
-from rtl.tinytapeout.host import simulate as simulate_host
-from rtl.verilog import export_verilog
+from talbot.base.paths import ROOT
+from talbot.base.steps import Files, Step, StepError
+from talbot.base.tools import ToolError, finish, run
+from talbot.flow.simulate.build import Build
+from talbot.flow.simulate.icarus import icarus_program
+from talbot.rtl.tinytapeout.host import EXAMPLES
+from talbot.rtl.tinytapeout.host import simulate as simulate_host
+from talbot.rtl.verilog import export_verilog
 
 from ..netlist.verilog import modules
 from .gate_frames import TAPS
 
 if TYPE_CHECKING:
-    from models.parameters import Window
+    from talbot.models.parameters import Window
 
 CHIP = "AspChip"
 TAP = """module Tap;
@@ -42,7 +42,7 @@ TAP = """module Tap;
   end
 endmodule
 """
-OF_A_TRACE = "import sys; from rtl.replay import load; print(load(sys.argv[1]).verilog())"
+OF_A_TRACE = "import sys; from talbot.rtl.replay import load; print(load(sys.argv[1]).verilog())"
 SCENE, SIZE = "motorcycle", (12, 18)  # of `make sim`'s own scene; pixels of the chip's array
 
 
@@ -102,10 +102,10 @@ class Stimulus(Step[StimulusParameters]):
 
 def in_frame(parameters: StimulusParameters, folder: Path, trace: Path) -> dict[str, Any]:
     """Record the block's first instance in the chip in ``folder`` through a frame, to the file ``trace``; the head."""
-    from flow.frame.hardware import simulate
-    from flow.frame.job import expose, see
-    from flow.frame.request import request
-    from models.chip import golden_frame
+    from talbot.flow.frame.hardware import simulate
+    from talbot.flow.frame.job import expose, see
+    from talbot.flow.frame.request import request
+    from talbot.models.chip import golden_frame
 
     design = folder / "hierarchy.json"
     run(["yosys", "-q", "-p", f"read_verilog -sv {folder / CHIP}.sv; hierarchy -top {CHIP}; proc; write_json {design}"])
@@ -204,7 +204,9 @@ def instance_of(tree: Mapping[str, Any], module: str, wanted: str) -> tuple[str,
 
 def in_tests(top: str, own: str, folder: Path, trace: Path) -> dict[str, Any]:
     """Record the tests of the block, that with the Verilog ``own`` to the file ``trace``; the head."""
-    done = finish([sys.executable, "-m", "rtl.replay.command", "record", top, "--out", folder / "traces"], cwd=ROOT)
+    done = finish(
+        [sys.executable, "-m", "talbot.rtl.replay.command", "record", top, "--out", folder / "traces"], cwd=ROOT
+    )
     if done.returncode:
         raise ToolError(done.stderr.strip().splitlines()[-1])
     heads = sorted((folder / "traces").glob("*.json"), key=lambda path: -path.with_suffix(".trace").stat().st_size)

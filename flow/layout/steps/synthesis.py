@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from base.liberty.read import areas
-from base.steps import Files, Step
-from base.tools import run
-from models.parameters import check_int, check_real
+from talbot.base.liberty.read import areas
+from talbot.base.steps import Files, Step
+from talbot.base.tools import run
+from talbot.models.parameters import check_int, check_real
 
 from ..netlist.buffering import buffer_fan_out, buffer_outputs
 from ..netlist.gating import GATES, ClockCells, ClockGate, drive_registers

@@ -4,14 +4,14 @@ import json
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from base import jobs
-from base.liberty.read import read
-from base.liberty.write import text
-from base.steps import Files, Step, StepError
-from platforms.extraction import ExtractionPlatform, device_models, extraction_platform
+from talbot.base import jobs
+from talbot.base.liberty.read import read
+from talbot.base.liberty.write import text
+from talbot.base.steps import Files, Step, StepError
+from talbot.platforms.extraction import ExtractionPlatform, device_models, extraction_platform
 
 if TYPE_CHECKING:
-    from cells.characterize.job import Source
+    from talbot.cells.characterize.job import Source
 
 NS = 1e-9
 
@@ -45,10 +45,10 @@ class Timing(Step[TimingParameters]):
         self.outputs = {corner: f"{corner}.lib" for corner in parameters.corners}
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
-        from cells.characterize.conditions import Conditions
-        from cells.characterize.job import cell_of, job
-        from cells.corner import Corner
-        from cells.liberty import build
+        from talbot.cells.characterize.conditions import Conditions
+        from talbot.cells.characterize.job import cell_of, job
+        from talbot.cells.corner import Corner
+        from talbot.cells.liberty import build
 
         p = self.parameters
         models, sources = device_models(p.pdk), sources_of(inputs, extraction_platform(p.pdk))
@@ -79,8 +79,8 @@ class Timing(Step[TimingParameters]):
 
 def sources_of(inputs: Files, tech: ExtractionPlatform) -> "list[Source]":
     """The cells with an input, as the library's functions name them, with their parasitics."""
-    from cells.characterize.job import Source
-    from cells.extract.subcircuit import extract
+    from talbot.cells.characterize.job import Source
+    from talbot.cells.extract.subcircuit import extract
 
     areas = json.loads(inputs["areas"].read_text())
     cells = read(inputs["functions"]).all("cell")

@@ -6,13 +6,13 @@ from dataclasses import asdict
 from itertools import product
 from pathlib import Path
 
-from base.charts import save
-from base.files import check_folder, staged
-from base.jobs import Job
-from base.jobs import run as run_jobs
-from base.paths import RESULTS
-from flow.layout.design import flat_design
-from models.parameters import ParameterError
+from talbot.base.charts import save
+from talbot.base.files import check_folder, staged
+from talbot.base.jobs import Job
+from talbot.base.jobs import run as run_jobs
+from talbot.base.paths import RESULTS
+from talbot.flow.layout.design import flat_design
+from talbot.models.parameters import ParameterError
 
 from .plots import effort_plot, pareto_plot
 from .points import candidates, effort_point, variant_point

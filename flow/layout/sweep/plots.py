@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogFormatter
 
-from base.charts import COLOURS
+from talbot.base.charts import COLOURS
 
 QUALITY = ("area_um2", "area, um2"), ("wire_um", "wire length, um"), ("wns_ns", "worst setup slack, ns")
 MARKS = {1: "o", 2: "s", 3: "^"}  # of an effort

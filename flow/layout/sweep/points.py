@@ -5,13 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from base.steps import Runner, Step
-from flow.layout.chain import attempts, input_files, routing_steps, synthesis_steps, timing_steps
-from flow.layout.design import Design, divider
-from flow.layout.options import Options
-from flow.layout.search import lay_out_smallest
-from flow.layout.steps.extraction import Extraction
-from flow.layout.steps.parameters import PdkParameters
+from talbot.base.steps import Runner, Step
+from talbot.flow.layout.chain import attempts, input_files, routing_steps, synthesis_steps, timing_steps
+from talbot.flow.layout.design import Design, divider
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.search import lay_out_smallest
+from talbot.flow.layout.steps.extraction import Extraction
+from talbot.flow.layout.steps.parameters import PdkParameters
 
 VARIANTS = ("radix2", "radix4", "pipelined", "cordic")
 WIDTHS = 4, 8, 12  # fraction bits; CORDIC has none

@@ -8,14 +8,14 @@ from importlib.util import find_spec
 
 import pytest
 
-from base.command import main, one_line
-from base.steps import StepError, versions
-from flow.layout import command, search
-from flow.layout.netlist.netlist import Instance
-from flow.layout.netlist.test import shift_register as small
-from flow.layout.options import Options
-from flow.layout.steps.floorplan import Floorplan, FloorplanParameters
-from models.parameters import ParameterError
+from talbot.base.command import main, one_line
+from talbot.base.steps import StepError, versions
+from talbot.flow.layout import command, search
+from talbot.flow.layout.netlist.netlist import Instance
+from talbot.flow.layout.netlist.test import shift_register as small
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.steps.floorplan import Floorplan, FloorplanParameters
+from talbot.models.parameters import ParameterError
 
 
 def reported(capsys, arguments):

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from flow.layout.chain import all_steps, signoff_steps
-from flow.layout.design import DESIGNS, design
-from flow.layout.options import Options
-from flow.layout.sensor.die import CHIP, die_steps
+from talbot.flow.layout.chain import all_steps, signoff_steps
+from talbot.flow.layout.design import DESIGNS, design
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.sensor.die import CHIP, die_steps
 
 FOLDER = Path(__file__).parents[1]
 DECKS = (("klayout", Path("deck")), ("magic", Path("deck")))
@@ -34,7 +34,7 @@ def test_the_readme_lists_every_step_with_its_file_and_its_test(steps):
     rows = {name: (file, tests) for name, file, tests in ROW.findall((FOLDER / "README.md").read_text())}
     assert sorted(rows) == sorted(steps)
     for name, (file, tests) in rows.items():
-        module = ".".join(("flow.layout", *Path(file).with_suffix("").parts))
+        module = ".".join(("talbot.flow.layout", *Path(file).with_suffix("").parts))
         assert type(steps[name]).__module__ == module, name
         links = re.findall(r"\]\(([\w/.]+)\)", tests)
         assert links and all((FOLDER / link).is_file() for link in links), name

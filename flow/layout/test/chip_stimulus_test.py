@@ -4,10 +4,10 @@ import shutil
 
 import pytest
 
-from flow.layout.chain import CHIP_FRAME, input_files
-from flow.layout.design import DESIGNS
-from flow.layout.options import Options
-from flow.layout.steps.stimulus import Stimulus, StimulusParameters
+from talbot.flow.layout.chain import CHIP_FRAME, input_files
+from talbot.flow.layout.design import DESIGNS
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.steps.stimulus import Stimulus, StimulusParameters
 
 
 @pytest.mark.skipif(

@@ -3,7 +3,7 @@
 import importlib.util
 import shutil
 
-from flow.layout.timing.constraints import sdc
+from talbot.flow.layout.timing.constraints import sdc
 
 LACKING = [tool for tool in ("yosys", "klayout") if not shutil.which(tool)]
 LACKING += [

@@ -2,13 +2,13 @@
 
 import pytest
 
-from base.steps import Runner
-from flow.layout.chain import attempts, routing_steps, synthesis_steps
-from flow.layout.design import Design
-from flow.layout.options import Options
-from flow.layout.steps.drc import Drc
-from flow.layout.steps.lvs import Lvs
-from flow.layout.steps.parameters import PdkParameters
+from talbot.base.steps import Runner
+from talbot.flow.layout.chain import attempts, routing_steps, synthesis_steps
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.steps.drc import Drc
+from talbot.flow.layout.steps.lvs import Lvs
+from talbot.flow.layout.steps.parameters import PdkParameters
 
 from . import counter
 

@@ -2,18 +2,18 @@
 
 import pytest
 
-from base.steps import Runner, StepError
-from flow.layout.chain import ASSEMBLED
-from flow.layout.design import DESIGNS, Design, MacroPlacement
-from flow.layout.macros import check_same, macro_files
-from flow.layout.options import Options
-from flow.layout.search import lay_out_smallest
-from flow.layout.steps.drc import Drc
-from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
-from flow.layout.steps.extraction import Extraction, ExtractionBlocks
-from flow.layout.steps.lef import Lef
-from flow.layout.steps.lvs import Lvs
-from flow.layout.steps.parameters import PdkParameters
+from talbot.base.steps import Runner, StepError
+from talbot.flow.layout.chain import ASSEMBLED
+from talbot.flow.layout.design import DESIGNS, Design, MacroPlacement
+from talbot.flow.layout.macros import check_same, macro_files
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.search import lay_out_smallest
+from talbot.flow.layout.steps.drc import Drc
+from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from talbot.flow.layout.steps.extraction import Extraction, ExtractionBlocks
+from talbot.flow.layout.steps.lef import Lef
+from talbot.flow.layout.steps.lvs import Lvs
+from talbot.flow.layout.steps.parameters import PdkParameters
 
 from . import counter
 

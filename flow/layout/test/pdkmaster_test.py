@@ -1,6 +1,6 @@
 """Exports of the cells for other tools."""
 
-from flow.layout.pdkmaster import with_transistors
+from talbot.flow.layout.pdkmaster import with_transistors
 
 SPICE = """.subckt inv_x1 vdd vss i nq
 Xnmos vss i nq vss sg13_lv_nmos l=1.3e-07 w=7.8e-07

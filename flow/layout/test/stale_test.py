@@ -4,12 +4,12 @@ import shutil
 
 import pytest
 
-from base import sources
-from base.paths import ROOT
-from base.steps.runner import source_of
-from flow.layout import chain
-from flow.layout.design import design
-from flow.layout.options import Options
+from talbot.base import sources
+from talbot.base.paths import ROOT
+from talbot.base.steps.runner import source_of
+from talbot.flow.layout import chain
+from talbot.flow.layout.design import design
+from talbot.flow.layout.options import Options
 
 OPTIONS = Options()
 FOLDERS = "models", "base", "rtl", "platforms", "cells", "pixels", "flow", "verif", "talbot"
@@ -110,14 +110,14 @@ def test_these_steps_run_again_and_those_do_not(step_keys, tree, file, some, oth
 
 # What the keys of the other caches are made of: modules, and tests of a block, whose code decides a kept result
 CACHES = {
-    "simulator": ("flow.simulate.verilator",),
-    "divider": ("flow.simulate.divider.simulator",),
-    "cell": ("cells.characterize.job",),
-    "proof": ("verif.formal.prove",),
-    "mutant": ("verif.mutation.judge", "rtl/edge_adc/test"),
-    "coverage": ("verif.coverage.measure",),
-    "trace": ("verif.coverage.traces", "rtl/edge_adc/test"),
-    "fuzz": ("verif.fuzz.batch",),
+    "simulator": ("talbot.flow.simulate.verilator",),
+    "divider": ("talbot.flow.simulate.divider.simulator",),
+    "cell": ("talbot.cells.characterize.job",),
+    "proof": ("talbot.verif.formal.prove",),
+    "mutant": ("talbot.verif.mutation.judge", "rtl/edge_adc/test"),
+    "coverage": ("talbot.verif.coverage.measure",),
+    "trace": ("talbot.verif.coverage.traces", "rtl/edge_adc/test"),
+    "fuzz": ("talbot.verif.fuzz.batch",),
 }
 
 

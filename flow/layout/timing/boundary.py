@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from flow.layout.netlist.netlist import OUTPUT_PINS, Netlist, is_register
+from talbot.flow.layout.netlist.netlist import OUTPUT_PINS, Netlist, is_register
 
 from .opensta import LINK, opensta
 

@@ -1,6 +1,6 @@
 """Clock, I/O delays, slews and loads of a design as SDC: one text for synthesis, STA and OpenROAD."""
 
-from flow.layout.design import Design
+from talbot.flow.layout.design import Design
 
 
 def sdc(design: Design, propagated: bool = True) -> str:

@@ -9,12 +9,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, NamedTuple
 
-from base.liberty.functional import add_cell, library
-from base.liberty.write import text
+from talbot.base.liberty.functional import add_cell, library
+from talbot.base.liberty.write import text
 
 if TYPE_CHECKING:
-    from cells.netlist.function import Storage
-    from platforms.extraction import ExtractionPlatform
+    from talbot.cells.netlist.function import Storage
+    from talbot.platforms.extraction import ExtractionPlatform
 
 CONSTANTS = {"zero": "0", "one": "1"}
 
@@ -28,9 +28,9 @@ class Function(NamedTuple):
 
 def functions(gds: Path, names: Iterable[str], models: ModuleType, tech: "ExtractionPlatform") -> dict[str, Function]:
     """Functions of the cells ``names`` in ``gds``; cells without an output are left out. models: `device_models`."""
-    from cells.extract.subcircuit import extract
-    from cells.netlist.function import understand
-    from cells.netlist.spice import parse
+    from talbot.cells.extract.subcircuit import extract
+    from talbot.cells.netlist.function import understand
+    from talbot.cells.netlist.spice import parse
 
     found = {}
     for name in names:
@@ -47,7 +47,7 @@ def functions(gds: Path, names: Iterable[str], models: ModuleType, tech: "Extrac
 
 def liberty(cells: Mapping[str, Function], ports: Mapping[str, Iterable[str]], areas: Mapping[str, float]) -> str:
     """Text of the Liberty file of ``cells`` without latches. ports: pins without supplies; areas: um2."""
-    from cells.liberty.build import gating, storage_attributes
+    from talbot.cells.liberty.build import gating, storage_attributes
 
     made = library("cells")
     for name, (outputs, storage) in cells.items():

@@ -3,8 +3,8 @@
 import re
 from pathlib import Path
 
-from base.steps import StepError
-from base.tools import ToolError, finish
+from talbot.base.steps import StepError
+from talbot.base.tools import ToolError, finish
 
 LINK = """
 read_liberty {liberty}

@@ -7,7 +7,7 @@ resistance; there is no coupling. `flow.layout.parasitics` extracts a finished l
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from platforms.coriolis import CoriolisPlatform
+from talbot.platforms.coriolis import CoriolisPlatform
 
 
 class Parasitics(NamedTuple):

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from base.steps import StepError
-from base.tools import ToolError, finish, run
-from flow.layout.netlist.names import plain_names
-from flow.layout.netlist.netlist import Instance, Netlist
+from talbot.base.steps import StepError
+from talbot.base.tools import ToolError, finish, run
+from talbot.flow.layout.netlist.names import plain_names
+from talbot.flow.layout.netlist.netlist import Instance, Netlist
 
 from .delays import Delays, constrained, icarus, specified
 

@@ -7,26 +7,26 @@ from dataclasses import replace
 
 import pytest
 
-from base.command import main
-from base.steps import Runner
-from base.tools import ToolError, finish
-from flow.layout.design import DESIGNS, design
-from flow.layout.steps.library import Library
-from flow.layout.steps.parameters import PdkParameters
-from flow.layout.timing.constraints import sdc
-from flow.openroad import command
-from flow.openroad.netlists import write_synthesized
-from flow.openroad.signoff import checks, given
-from flow.openroad.stages import SCRIPTS, pdk_root, run, stages
-from flow.openroad.test import stub
-from flow.openroad.test.commands import COMMANDS, OLDER
-from flow.openroad.test.librelane_pdk import with_delays
-from flow.openroad.variables import variables
-from flow.openroad.write import write
-from models.parameters import ParameterError
-from platforms.openroad import WIRES, openroad_platform
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130 import functions
+from talbot.base.command import main
+from talbot.base.steps import Runner
+from talbot.base.tools import ToolError, finish
+from talbot.flow.layout.design import DESIGNS, design
+from talbot.flow.layout.steps.library import Library
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.openroad import command
+from talbot.flow.openroad.netlists import write_synthesized
+from talbot.flow.openroad.signoff import checks, given
+from talbot.flow.openroad.stages import SCRIPTS, pdk_root, run, stages
+from talbot.flow.openroad.test import stub
+from talbot.flow.openroad.test.commands import COMMANDS, OLDER
+from talbot.flow.openroad.test.librelane_pdk import with_delays
+from talbot.flow.openroad.variables import variables
+from talbot.flow.openroad.write import write
+from talbot.models.parameters import ParameterError
+from talbot.platforms.openroad import WIRES, openroad_platform
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130 import functions
 
 KNOWN = openroad_platform("sky130")
 CORNERS = KNOWN.corners
@@ -164,7 +164,9 @@ def test_older_releases_get_the_options_that_they_want(commands, called, other, 
     chosen = design("quad_divider")
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr("flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])  # without Yosys's
+    monkeypatch.setattr(
+        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
+    )  # without Yosys's
     assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["router_drc_violations"] == 0
     calls = (tmp_path / "calls.txt").read_text()
     assert called in calls and other not in calls and all(f"{pdk}/{path}" in calls for path in RULES)
@@ -187,7 +189,9 @@ def test_routes_are_made_anew_while_diodes_help_then_fillers(
     chosen = design("quad_divider")
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
-    monkeypatch.setattr("flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])  # without Yosys's
+    monkeypatch.setattr(
+        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
+    )  # without Yosys's
     assert run(tmp_path, chosen.top, KNOWN, pdk, lambda text: None)["router_antennas"] == float(violations)
     called = [line.split()[0] for line in (tmp_path / "calls.txt").read_text().splitlines()]
     assert called.count("detailed_route") == routed
@@ -201,7 +205,9 @@ def test_a_stage_that_fails_is_named(pdk, openroad, tmp_path, monkeypatch):
     write(chosen, KNOWN, tmp_path)
     (tmp_path / "netlist.v").write_text("")
     (tmp_path / "cts.tcl").write_text("clock_tree\n")
-    monkeypatch.setattr("flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:])  # without Yosys's
+    monkeypatch.setattr(
+        "talbot.flow.openroad.stages.stages", lambda tech, wires: stages(tech, wires)[1:]
+    )  # without Yosys's
     seen = []
     with pytest.raises(ToolError, match='openroad cts: status 1, cts.odb not written:\ninvalid command name "clock_tr'):
         run(tmp_path, chosen.top, KNOWN, pdk, seen.append)

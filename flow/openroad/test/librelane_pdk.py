@@ -9,12 +9,12 @@ import re
 import shutil
 from pathlib import Path
 
-from base.liberty.group import Group
-from base.liberty.read import parse
-from base.liberty.write import text
-from platforms.openroad import openroad_platform
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130 import functions
+from talbot.base.liberty.group import Group
+from talbot.base.liberty.read import parse
+from talbot.base.liberty.write import text
+from talbot.platforms.openroad import openroad_platform
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130 import functions
 
 KNOWN = openroad_platform("sky130")
 AXES = {"index_1": [0.01, 0.5], "index_2": [0.001, 0.05, 0.1]}  # abc takes the slope between all loads but the last

@@ -6,15 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from base.command import main
-from base.paths import ROOT
-from base.tools import ToolError, finish
-from flow.layout.design import design
-from flow.openroad import command
-from flow.openroad.test import librelane_pdk
-from flow.openroad.tinytapeout import PROJECTS
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130.tinytapeout import FRAME, SIZES_UM
+from talbot.base.command import main
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError, finish
+from talbot.flow.layout.design import design
+from talbot.flow.openroad import command
+from talbot.flow.openroad.test import librelane_pdk
+from talbot.flow.openroad.tinytapeout import PROJECTS
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130.tinytapeout import FRAME, SIZES_UM
 
 PYTHON = ROOT / "build" / "librelane" / "bin" / "python"
 RUN = Path(__file__).parent / "librelane_run.py"

@@ -4,12 +4,12 @@ import shutil
 
 import pytest
 
-from base.tools import ToolError
-from flow.openroad.lvs import Lvs, spice, subcircuits
-from flow.openroad.netlists import routed_netlist
-from platforms.openroad import openroad_platform
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130 import layers
+from talbot.base.tools import ToolError
+from talbot.flow.openroad.lvs import Lvs, spice, subcircuits
+from talbot.flow.openroad.netlists import routed_netlist
+from talbot.platforms.openroad import openroad_platform
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130 import layers
 
 LIBRARY = openroad_platform("sky130").library
 

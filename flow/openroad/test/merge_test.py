@@ -2,11 +2,11 @@
 
 import pytest
 
-from base.tools import ToolError
-from flow.openroad.merge import merge
-from models.parameters import ParameterError
-from platforms.openroad import openroad_platform
-from platforms.sky130 import cells as sky130_hd
+from talbot.base.tools import ToolError
+from talbot.flow.openroad.merge import merge
+from talbot.models.parameters import ParameterError
+from talbot.platforms.openroad import openroad_platform
+from talbot.platforms.sky130 import cells as sky130_hd
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 KNOWN = openroad_platform("sky130")

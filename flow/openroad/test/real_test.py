@@ -6,8 +6,8 @@ import shutil
 
 import pytest
 
-from base.command import main
-from flow.openroad import command
+from talbot.base.command import main
+from talbot.flow.openroad import command
 
 pytestmark = [
     pytest.mark.skipif(not shutil.which("openroad"), reason="openroad is not installed: not run"),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from flow.openroad.results import wire_um
+from talbot.flow.openroad.results import wire_um
 
 DEF = """VERSION 5.8 ;
 UNITS DISTANCE MICRONS 1000 ;

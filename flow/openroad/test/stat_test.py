@@ -1,6 +1,6 @@
 """What stat says, in the form of Yosys 0.23 (Debian's) and of 0.70."""
 
-from flow.openroad.stat import counted
+from talbot.flow.openroad.stat import counted
 
 OLD = """=== top ===
 

@@ -4,7 +4,7 @@ does not have, is an error; what was called goes to calls.txt, and files are wri
 import os
 from pathlib import Path
 
-from flow.openroad.test.commands import COMMANDS
+from talbot.flow.openroad.test.commands import COMMANDS
 
 PROCEDURE = """
 set def {VERSION 5.8 ;

@@ -8,15 +8,15 @@ from functools import cache
 
 import pytest
 
-from base.paths import ROOT
-from base.tools import ToolError, finish, run
-from flow.layout.design import design
-from flow.openroad.fit import fit
-from flow.openroad.tinytapeout import PROJECTS, Project, project_files
-from flow.openroad.write import rtl
-from models.parameters import ParameterError
-from platforms.sky130 import cells as sky130_hd
-from platforms.sky130.tinytapeout import FULL, SIZES_UM, core_um2
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError, finish, run
+from talbot.flow.layout.design import design
+from talbot.flow.openroad.fit import fit
+from talbot.flow.openroad.tinytapeout import PROJECTS, Project, project_files
+from talbot.flow.openroad.write import rtl
+from talbot.models.parameters import ParameterError
+from talbot.platforms.sky130 import cells as sky130_hd
+from talbot.platforms.sky130.tinytapeout import FULL, SIZES_UM, core_um2
 
 TOPS = ROOT / "rtl" / "tinytapeout"
 

@@ -14,12 +14,19 @@ import numpy as np
 import numpy.typing as npt
 from tqdm import tqdm
 
-from models.digital.divider import QuadResult, phase_error
-from models.digital.phase import divide
-from models.parameters import DIVIDERS, ChipParameters, SensorParameters, check_int
-from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN, SAMPLE_MAX, SAMPLE_MIN
-from rtl.export import translate
-from rtl.quad_divider import quad_divider, ratio_bits, timing
+from talbot.models.digital.divider import QuadResult, phase_error
+from talbot.models.digital.phase import divide
+from talbot.models.parameters import DIVIDERS, ChipParameters, SensorParameters, check_int
+from talbot.models.parameters.divider import (
+    ITERATIONS_MAX,
+    ITERATIONS_MIN,
+    N_FRAC_MAX,
+    N_FRAC_MIN,
+    SAMPLE_MAX,
+    SAMPLE_MIN,
+)
+from talbot.rtl.export import translate
+from talbot.rtl.quad_divider import quad_divider, ratio_bits, timing
 
 from .simulator import DividerRun, program, simulate
 

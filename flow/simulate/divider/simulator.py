@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from base.cache import cached, digest
-from base.paths import BUILD
-from base.sources import code
-from base.tools import run
-from base.verilator import FAST, compile_program, runtime, verilate, verilator_version
+from talbot.base.cache import cached, digest
+from talbot.base.paths import BUILD
+from talbot.base.sources import code
+from talbot.base.tools import run
+from talbot.base.verilator import FAST, compile_program, runtime, verilate, verilator_version
 
 CACHE = BUILD / "divider"
 MAIN = Path(__file__).parent / "main.cpp"

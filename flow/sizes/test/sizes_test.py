@@ -5,10 +5,10 @@ import shutil
 
 import pytest
 
-from base.command import main
-from base.tools import ToolError
-from flow.sizes import command
-from flow.sizes.measure import areas, measure
+from talbot.base.command import main
+from talbot.base.tools import ToolError
+from talbot.flow.sizes import command
+from talbot.flow.sizes.measure import areas, measure
 
 needs_yosys = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys is not installed (make tools)")
 

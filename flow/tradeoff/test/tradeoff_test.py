@@ -2,8 +2,8 @@ import csv
 
 import pytest
 
-from flow.tradeoff.sweeps import SWEEPS, run_sweeps
-from models.parameters import ParameterError
+from talbot.flow.tradeoff.sweeps import SWEEPS, run_sweeps
+from talbot.models.parameters import ParameterError
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.afe import Converter
-from models.parameters import ConverterParameters, ParameterError
+from talbot.models.afe import Converter
+from talbot.models.parameters import ConverterParameters, ParameterError
 
 
 def test_ideal_levels_are_half_a_code_under_the_code():

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from models.afe import Converter, FrontEnd, trim_codes, trim_gain
-from models.afe.trim import TRIM_BITS, TRIM_MAX, TRIM_MIN
-from models.parameters import ConverterParameters, ParameterError, TileParameters
-from models.parameters.registers import register_map, trim_range
+from talbot.models.afe import Converter, FrontEnd, trim_codes, trim_gain
+from talbot.models.afe.trim import TRIM_BITS, TRIM_MAX, TRIM_MIN
+from talbot.models.parameters import ConverterParameters, ParameterError, TileParameters
+from talbot.models.parameters.registers import register_map, trim_range
 
 TRIM = tuple(range(-480, 480, 40))
 RNG = np.random.default_rng(3)

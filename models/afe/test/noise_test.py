@@ -1,6 +1,6 @@
 import numpy as np
 
-from models.afe import KTC_DECISION, NOISE_SCALE, noise_counts
+from talbot.models.afe import KTC_DECISION, NOISE_SCALE, noise_counts
 
 
 def test_known_words():

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.afe import Converter
-from models.digital.sar import convert, decisions
-from models.parameters import ConverterParameters, ParameterError
+from talbot.models.afe import Converter
+from talbot.models.digital.sar import convert, decisions
+from talbot.models.parameters import ConverterParameters, ParameterError
 
 ROUGH = Converter.draw(ConverterParameters(inl=2, dnl=0.5, offset=2, noise=1.5, ktc=1, seed=7), 4)
 

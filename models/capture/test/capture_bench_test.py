@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models.capture import CaptureOperator
-from models.parameters import SensorParameters
+from talbot.models.capture import CaptureOperator
+from talbot.models.parameters import SensorParameters
 
 SENSOR = SensorParameters()
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.capture import Region, integrate
-from models.parameters import ArrayParameters, CameraParameters, OpticsParameters, SensorParameters
-from models.scene import Sampling, load
+from talbot.models.capture import Region, integrate
+from talbot.models.parameters import ArrayParameters, CameraParameters, OpticsParameters, SensorParameters
+from talbot.models.scene import Sampling, load
 
 ROWS, COLS, PITCH = 36, 48, 10e-6
 ACROSS, DOWN = 0.011, 0.007  # radiance a pixel

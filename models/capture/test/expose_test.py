@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import poisson
 
-from models.capture import Exposure, expose
-from models.capture.shot import photon_count
-from models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, ParameterError
+from talbot.models.capture import Exposure, expose
+from talbot.models.capture.shot import photon_count
+from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, ElectricalParameters, ParameterError
 
 NO_COLUMNS = {"column_fpn": 0, "flicker_noise": 0}
 QUIET = ElectricalParameters(dark_current=0, read_noise=0, gain_fpn=0, offset_fpn=0, **NO_COLUMNS)

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.capture import Exposure, capture
-from models.capture.operator import rounding
-from models.parameters import ArrayParameters, FrameParameters, SensorParameters, Window
-from models.pixel import demodulate, depth_of, phase_of
-from models.plan import plan
-from models.scene import Sampling, Scene, load
-from models.scene.test.focused import focused
+from talbot.models.capture import Exposure, capture
+from talbot.models.capture.operator import rounding
+from talbot.models.parameters import ArrayParameters, FrameParameters, SensorParameters, Window
+from talbot.models.pixel import demodulate, depth_of, phase_of
+from talbot.models.plan import plan
+from talbot.models.scene import Sampling, Scene, load
+from talbot.models.scene.test.focused import focused
 
 ROWS, COLS = 38, 62
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS))

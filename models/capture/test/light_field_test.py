@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from models.capture import choose_views
-from models.parameters import AmpTiming, ArrayParameters, ParameterError, SensorParameters
-from models.scene import LightField, Sampling
+from talbot.models.capture import choose_views
+from talbot.models.parameters import AmpTiming, ArrayParameters, ParameterError, SensorParameters
+from talbot.models.scene import LightField, Sampling
 
 
 def test_a_light_field_has_its_own_views():

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.capture import CaptureOperator
-from models.capture.operator import rounding
-from models.parameters import ArrayParameters, OpticsParameters, ParameterError, SensorParameters
-from models.pixel import view_weights
+from talbot.models.capture import CaptureOperator
+from talbot.models.capture.operator import rounding
+from talbot.models.parameters import ArrayParameters, OpticsParameters, ParameterError, SensorParameters
+from talbot.models.pixel import view_weights
 
 
 def _sensor(rows, cols, views=3):

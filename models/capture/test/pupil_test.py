@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.afe import FrontEnd, trim_codes
-from models.capture import CaptureOperator, Exposure, Region, capture, choose_views, integrate
-from models.capture.pupil import cells
-from models.parameters import (
+from talbot.models.afe import FrontEnd, trim_codes
+from talbot.models.capture import CaptureOperator, Exposure, Region, capture, choose_views, integrate
+from talbot.models.capture.pupil import cells
+from talbot.models.parameters import (
     ArrayParameters,
     CameraParameters,
     FrameParameters,
@@ -17,10 +17,10 @@ from models.parameters import (
     ParameterError,
     SensorParameters,
 )
-from models.pixel import measured_gains, optical_gains
-from models.pixel.weights import raw_weights
-from models.plan import codes_per_unit, plan
-from models.scene import Sampling, load
+from talbot.models.pixel import measured_gains, optical_gains
+from talbot.models.pixel.weights import raw_weights
+from talbot.models.plan import codes_per_unit, plan
+from talbot.models.scene import Sampling, load
 
 ROWS, COLS = 24, 36
 LENSES = {"default": (1.2, 0.207), "slower": (2.0, 0.18), "farther": (2.8, 0.26)}  # f-number, focus
@@ -175,7 +175,7 @@ def test_some_tile_rows_have_the_error_of_all(monkeypatch, name):
     sensor, timing = SensorParameters(), FrameParameters(SensorParameters().full_window).timing
     scene = load(name, Sampling.of(sensor))
     few = choose_views(scene, sensor, timing, 7).error
-    monkeypatch.setattr("models.capture.views.PROBE", sensor.tile_rows)
+    monkeypatch.setattr("talbot.models.capture.views.PROBE", sensor.tile_rows)
     whole = choose_views(scene, sensor, timing, 7).error
     assert few != whole and few == pytest.approx(whole, rel=0.05)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BYTES
+from talbot.models.parameters.stream_format import CRC, HEADER_BYTES, TRAILER_BYTES
 
 from .frame import DecodedFrame
 from .payload import base_of, decode_rows, one_byte_changes

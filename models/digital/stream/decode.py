@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from models.parameters import ParameterError, TileParameters
-from models.parameters.stream_format import COUNTED_BYTES, HEADER_BYTES, MAGIC, TRAILER_BYTES
+from talbot.models.parameters import ParameterError, TileParameters
+from talbot.models.parameters.stream_format import COUNTED_BYTES, HEADER_BYTES, MAGIC, TRAILER_BYTES
 
 from .body import Body
 from .frame import DecodedFrame

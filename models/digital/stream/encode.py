@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from models.parameters import ParameterError, TileParameters
+from talbot.models.parameters import ParameterError, TileParameters
 
 from .header import StreamHeader
 from .payload import base_of, encode_rows, encode_segment, row_bytes_max

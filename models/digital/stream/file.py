@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from models.parameters import TileParameters
+from talbot.models.parameters import TileParameters
 
 from .decode import decode_stream
 from .frame import DecodedFrame

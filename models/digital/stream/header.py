@@ -8,8 +8,8 @@ from typing import NamedTuple, Self
 import numpy as np
 import numpy.typing as npt
 
-from models.digital.scan import Scan
-from models.parameters import (
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import (
     COLS_MAX,
     LANES,
     MODES,
@@ -23,7 +23,15 @@ from models.parameters import (
     check_choice,
     check_int,
 )
-from models.parameters.stream_format import CRC, FIELD_BYTES, HEADER_BYTES, HEADER_FIELDS, MAGIC, SEGMENT_BYTES, VERSION
+from talbot.models.parameters.stream_format import (
+    CRC,
+    FIELD_BYTES,
+    HEADER_BYTES,
+    HEADER_FIELDS,
+    MAGIC,
+    SEGMENT_BYTES,
+    VERSION,
+)
 
 from .crc import one_byte_errors
 

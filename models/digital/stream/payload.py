@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC, TRAILER_BYTES, TRAILER_ROW
+from talbot.models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC, TRAILER_BYTES, TRAILER_ROW
 
 from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 

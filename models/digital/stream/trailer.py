@@ -3,8 +3,16 @@
 import zlib
 from typing import NamedTuple
 
-from models.parameters import check_int
-from models.parameters.stream_format import COUNTED_BYTES, COUNTS, CRC, FIELD_BYTES, MARK, TRAILER_BYTES, TRAILER_ROW
+from talbot.models.parameters import check_int
+from talbot.models.parameters.stream_format import (
+    COUNTED_BYTES,
+    COUNTS,
+    CRC,
+    FIELD_BYTES,
+    MARK,
+    TRAILER_BYTES,
+    TRAILER_ROW,
+)
 
 from .crc import crc16
 

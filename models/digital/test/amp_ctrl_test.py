@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.amp_ctrl import PIN_NAMES, row_cycles, waveform
-from models.parameters import AmpTiming
+from talbot.models.digital.amp_ctrl import PIN_NAMES, row_cycles, waveform
+from talbot.models.parameters import AmpTiming
 
 PHASES = ("pixel_reset", "integrate", "cm_reset", "read")
 timings = st.builds(AmpTiming, *[st.integers(1, 9)] * 6, n_cm=st.integers(0, 4))

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.cordic import cordic, nearest_even, rotate
-from models.digital.divider import QuadResult, fold, phase_error, quad_divide
-from models.parameters import ParameterError
-from models.parameters.divider import cordic_angles, phase_thresholds
+from talbot.models.digital.cordic import cordic, nearest_even, rotate
+from talbot.models.digital.divider import QuadResult, fold, phase_error, quad_divide
+from talbot.models.parameters import ParameterError
+from talbot.models.parameters.divider import cordic_angles, phase_thresholds
 
 SAMPLES = np.arange(-256, 256)
 X, Y = np.meshgrid(SAMPLES, SAMPLES)

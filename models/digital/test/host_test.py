@@ -4,10 +4,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.host import command, decode_status, frame_writes, read_transfer, status_transfers, write_transfers
-from models.digital.registers import RegisterBank
-from models.parameters import FrameParameters, ParameterError, SensorParameters, TileParameters
-from models.parameters.registers import register_map, trim_range
+from talbot.models.digital.host import (
+    command,
+    decode_status,
+    frame_writes,
+    read_transfer,
+    status_transfers,
+    write_transfers,
+)
+from talbot.models.digital.registers import RegisterBank
+from talbot.models.parameters import FrameParameters, ParameterError, SensorParameters, TileParameters
+from talbot.models.parameters.registers import register_map, trim_range
 
 CHIP = register_map()
 FULL = SensorParameters().full_window

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from models.digital.phase import phase_samples
-from models.parameters import ChipParameters
+from talbot.models.digital.phase import phase_samples
+from talbot.models.parameters import ChipParameters
 
 CHIPS = [ChipParameters(), ChipParameters(divider="cordic")]
 

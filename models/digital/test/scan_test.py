@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.scan import Scan
-from models.parameters import FrameParameters, ParameterError, TileParameters, Window
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import FrameParameters, ParameterError, TileParameters, Window
 
 
 def frame_of(rows, cols, **kw):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.parameters import (
+from talbot.models.parameters import (
     STANDARD,
     ArrayParameters,
     ChipParameters,
@@ -18,7 +18,7 @@ from models.parameters import (
     sensor_of,
     sensor_text,
 )
-from models.parameters.sensor_file import keys
+from talbot.models.parameters.sensor_file import keys
 
 OWN = SensorParameters(
     tile=TileParameters(

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.parameters import (
+from talbot.models.parameters import (
     ArrayParameters,
     OpticsParameters,
     ParameterError,
@@ -13,8 +13,8 @@ from models.parameters import (
     SensorParameters,
     TileParameters,
 )
-from models.pixel import response, view_weights
-from models.pixel.weights import density, field_weights
+from talbot.models.pixel import response, view_weights
+from talbot.models.pixel.weights import density, field_weights
 
 OPTICS = OpticsParameters()
 

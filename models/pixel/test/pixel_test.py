@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models.parameters import OpticsParameters, ParameterError, PixelType, TileParameters
-from models.pixel import (
+from talbot.models.parameters import OpticsParameters, ParameterError, PixelType, TileParameters
+from talbot.models.pixel import (
     Ripple,
     exact,
     gains,
@@ -16,8 +16,8 @@ from models.pixel import (
     view_weights,
     vignetting,
 )
-from models.pixel.quadrature import sampled
-from models.pixel.weights import cell_nodes, raw_weights
+from talbot.models.pixel.quadrature import sampled
+from talbot.models.pixel.weights import cell_nodes, raw_weights
 
 TYPES = TileParameters().types
 GRAZING = np.deg2rad([-90, -89.9, -45, 0, 30, 89.9, 90])

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.pixel.polarization import angle, stokes, transmission
+from talbot.models.pixel.polarization import angle, stokes, transmission
 
 FOUR = np.deg2rad([0.0, 45.0, 90.0, 135.0])
 psis = st.floats(-np.pi / 2 + 1e-6, np.pi / 2)

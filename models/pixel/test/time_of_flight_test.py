@@ -5,7 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.pixel.time_of_flight import SPEED_OF_LIGHT, TAPS, demodulate, depth_of, phase_of, quadrature, tap_gains
+from talbot.models.pixel.time_of_flight import (
+    SPEED_OF_LIGHT,
+    TAPS,
+    demodulate,
+    depth_of,
+    phase_of,
+    quadrature,
+    tap_gains,
+)
 
 F_MOD = 20e6
 

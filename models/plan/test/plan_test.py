@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from models.parameters import ArrayParameters, FrameParameters, ParameterError, SensorParameters, Window
-from models.plan import plan
-from models.scene import Sampling, load
+from talbot.models.parameters import ArrayParameters, FrameParameters, ParameterError, SensorParameters, Window
+from talbot.models.plan import plan
+from talbot.models.scene import Sampling, load
 
 ROWS, COLS = 38, 62
 SENSOR = SensorParameters(array=ArrayParameters(ROWS, COLS))

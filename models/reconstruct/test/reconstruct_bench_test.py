@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from models.capture import CaptureOperator
-from models.parameters import SensorParameters
-from models.pixel import optical_gains
-from models.reconstruct import EdgeOperator, demosaic, image_from_edges, light_field_estimate
-from models.scene import Sampling, load
+from talbot.models.capture import CaptureOperator
+from talbot.models.parameters import SensorParameters
+from talbot.models.pixel import optical_gains
+from talbot.models.reconstruct import EdgeOperator, demosaic, image_from_edges, light_field_estimate
+from talbot.models.scene import Sampling, load
 
 SENSOR = SensorParameters()
 

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.afe import trim_codes, trim_gain
-from models.capture import CaptureOperator, cells
-from models.parameters import (
+from talbot.models.afe import trim_codes, trim_gain
+from talbot.models.capture import CaptureOperator, cells
+from talbot.models.parameters import (
     AmpTiming,
     ArrayParameters,
     OpticsParameters,
@@ -17,9 +17,9 @@ from models.parameters import (
     SensorParameters,
     TileParameters,
 )
-from models.pixel import optical_gains, view_weights
-from models.plan import codes_per_unit
-from models.reconstruct import (
+from talbot.models.pixel import optical_gains, view_weights
+from talbot.models.plan import codes_per_unit
+from talbot.models.reconstruct import (
     EdgeOperator,
     Solver,
     demosaic,
@@ -32,9 +32,9 @@ from models.reconstruct import (
     sum_image,
     white_sum,
 )
-from models.reconstruct.edges import laplacian
-from models.scene import Sampling, load
-from models.scene.test.focused import focused
+from talbot.models.reconstruct.edges import laplacian
+from talbot.models.scene import Sampling, load
+from talbot.models.scene.test.focused import focused
 
 TILE = TileParameters()
 

@@ -5,8 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from models.parameters import ArrayParameters, CameraParameters, OpticsParameters, ParameterError, SensorParameters
-from models.scene import Sampling, camera
+from talbot.models.parameters import (
+    ArrayParameters,
+    CameraParameters,
+    OpticsParameters,
+    ParameterError,
+    SensorParameters,
+)
+from talbot.models.scene import Sampling, camera
 
 CAMERAS = [
     CameraParameters(),

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from models.scene import Sampling, camera
+from talbot.models.scene import Sampling, camera
 
 
 def focused(sampling: Sampling, disparity: float) -> Sampling:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.parameters import ParameterError
-from models.scene import LightField, Sampling, load, read_light_field, write_light_field
-from models.scene.resample import linear
+from talbot.models.parameters import ParameterError
+from talbot.models.scene import LightField, Sampling, load, read_light_field, write_light_field
+from talbot.models.scene.resample import linear
 
 SMALL = Sampling(rows=16, cols=24)
 RNG = np.random.default_rng(0)

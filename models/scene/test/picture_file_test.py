@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from models.parameters import CameraParameters, ParameterError
-from models.scene import Sampling, load
+from talbot.models.parameters import CameraParameters, ParameterError
+from talbot.models.scene import Sampling, load
 
 from .focused import focused
 

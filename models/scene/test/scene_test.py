@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models.parameters import CameraParameters, ParameterError
-from models.scene import Sampling, Scene, load, scenes
+from talbot.models.parameters import CameraParameters, ParameterError
+from talbot.models.scene import Sampling, Scene, load, scenes
 
 from .focused import focused
 

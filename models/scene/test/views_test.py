@@ -3,8 +3,8 @@
 import numpy as np
 from skimage.data import stereo_motorcycle
 
-from models.scene import Sampling, load, resample, warp
-from models.scene.views import Pictured, Second, view
+from talbot.models.scene import Sampling, load, resample, warp
+from talbot.models.scene.views import Pictured, Second, view
 
 
 def _ramp(rows, cols):

@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from base.tools import ToolError
-from platforms.sky130 import cells, functions
+from talbot.base.tools import ToolError
+from talbot.platforms.sky130 import cells, functions
 
 try:
     CELLS = [

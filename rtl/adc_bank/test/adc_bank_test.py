@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 from pymtl3 import Bits2, Bits7, Component, InPort, OutPort, connect
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from models.afe import Converter, FrontEnd
-from models.digital.scan import Scan
-from models.parameters import MODES, ConverterParameters, FrameParameters, Window
-from rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
-from rtl.harness.afe_fl import AfeFL
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
-from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
+from talbot.models.afe import Converter, FrontEnd
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import MODES, ConverterParameters, FrameParameters, Window
+from talbot.rtl.adc_bank import AdcBank, AdcBankCL, AdcBankFL
+from talbot.rtl.harness.afe_fl import AfeFL
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg, step_msg
 
 ROWS, COLS, LANES = 3, 104, 8  # three groups, the last one partial
 RNG = np.random.default_rng(5)

@@ -6,10 +6,10 @@ The comparators answer at random, so that each lane has its own codes; the steps
 import numpy as np
 import pytest
 
-from rtl.adc_bank import AdcBank
-from rtl.edge_adc.test.many_lanes import ManyLanes
-from rtl.harness.gates import WIDE, Gates, packed
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.adc_bank import AdcBank
+from talbot.rtl.edge_adc.test.many_lanes import ManyLanes
+from talbot.rtl.harness.gates import WIDE, Gates, packed
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 FIELDS = {"kind": 2, "row": 10, "group": 8, "k": 3, "sub": 2}  # of a StepMsg, then `en`
 

@@ -6,12 +6,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
-from models.parameters import AmpTiming
-from rtl.amp_ctrl import AmpCtrl, AmpCtrlFL
-from rtl.amp_ctrl.ports import DURATIONS
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
+from talbot.models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
+from talbot.models.parameters import AmpTiming
+from talbot.rtl.amp_ctrl import AmpCtrl, AmpCtrlFL
+from talbot.rtl.amp_ctrl.ports import DURATIONS
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
 
 # A test that several levels inherit runs on each of them, as intended.
 SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])

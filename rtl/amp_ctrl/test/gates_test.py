@@ -5,11 +5,11 @@ from itertools import product
 import numpy as np
 import pytest
 
-from models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_waveform
-from models.parameters import AmpTiming
-from rtl.amp_ctrl import AmpCtrl
-from rtl.amp_ctrl.ports import DURATIONS
-from rtl.harness.gates import WIDE, Gates, packed, unpacked
+from talbot.models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_waveform
+from talbot.models.parameters import AmpTiming
+from talbot.rtl.amp_ctrl import AmpCtrl
+from talbot.rtl.amp_ctrl.ports import DURATIONS
+from talbot.rtl.harness.gates import WIDE, Gates, packed, unpacked
 
 WIDTHS = dict.fromkeys(DURATIONS, 16) | {"n_cm": 8} | dict.fromkeys(("four_tap", "hold_free", "start", "reset"), 1)
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.parameters import TileParameters
-from models.parameters.array import ROWS_MAX
-from rtl.asp_chip.balance_rtl import Balance
-from rtl.harness.testbench import build
+from talbot.models.parameters import TileParameters
+from talbot.models.parameters.array import ROWS_MAX
+from talbot.rtl.asp_chip.balance_rtl import Balance
+from talbot.rtl.harness.testbench import build
 
 TILES = {f"{rows}x{cols}": TileParameters.small(rows, cols) for rows, cols in ((4, 6), (3, 5), (2, 4), (3, 1), (1, 1))}
 TILES["shuffled"] = TileParameters(3, 2, TileParameters().types[:6], (5, 0, 3, 1, 4, 2))

@@ -4,9 +4,9 @@ import random
 
 import numpy as np
 
-from models.digital.host import command, decode_status, status_transfers, write_transfers
-from models.parameters.registers import register_map
-from rtl.reg_file.test.spi_host import SpiHost
+from talbot.models.digital.host import command, decode_status, status_transfers, write_transfers
+from talbot.models.parameters.registers import register_map
+from talbot.rtl.reg_file.test.spi_host import SpiHost
 
 CHIP = register_map()
 MAX_CYCLES = 60_000

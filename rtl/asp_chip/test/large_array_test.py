@@ -1,9 +1,9 @@
 """AspChip with the largest arrays: the bytes of some tiles, so that every bit of an address counts."""
 
-from models.chip import golden_frame
-from models.digital.host import frame_writes
-from models.digital.pattern import PatternEnd
-from models.parameters import (
+from talbot.models.chip import golden_frame
+from talbot.models.digital.host import frame_writes
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.parameters import (
     SHORT_TIMING,
     ArrayParameters,
     ChipParameters,
@@ -12,8 +12,8 @@ from models.parameters import (
     TileParameters,
     Window,
 )
-from rtl.asp_chip import AspChip
-from rtl.harness.testbench import build
+from talbot.rtl.asp_chip import AspChip
+from talbot.rtl.harness.testbench import build
 
 from .chip_bench import ChipBench
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from models.digital.pattern import PatternEnd, pattern_value
-from rtl.asp_chip.pattern_rtl import Pattern
-from rtl.harness.testbench import build
+from talbot.models.digital.pattern import PatternEnd, pattern_value
+from talbot.rtl.asp_chip.pattern_rtl import Pattern
+from talbot.rtl.harness.testbench import build
 
 
 def test_pattern_makes_every_code_and_runs_of_zeros():

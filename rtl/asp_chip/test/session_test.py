@@ -4,10 +4,10 @@ import random
 
 import pytest
 
-from models.chip import golden_frame
-from models.digital.host import command, frame_writes, read_transfer
-from models.digital.pattern import PatternEnd
-from models.parameters import (
+from talbot.models.chip import golden_frame
+from talbot.models.digital.host import command, frame_writes, read_transfer
+from talbot.models.digital.pattern import PatternEnd
+from talbot.models.parameters import (
     MODES,
     AmpTiming,
     ArrayParameters,
@@ -18,9 +18,9 @@ from models.parameters import (
     TileParameters,
     Window,
 )
-from models.parameters.registers import array_resets, register_map
-from rtl.asp_chip import AspChip
-from rtl.harness.testbench import build
+from talbot.models.parameters.registers import array_resets, register_map
+from talbot.rtl.asp_chip import AspChip
+from talbot.rtl.harness.testbench import build
 
 from .chip_bench import ChipBench
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from models.parameters import TileParameters
-from rtl.asp_chip import AspChip
+from talbot.models.parameters import TileParameters
+from talbot.rtl.asp_chip import AspChip
 
 SIZES = {  # array, lanes, tile; divider, n_frac, iterations
     "small": (8, 13, 2, 4, 6, "radix4", 8, 10),

@@ -7,12 +7,12 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.afe import Converter
-from models.digital.sar import convert
-from models.parameters import ConverterParameters
-from rtl.edge_adc import EdgeAdc, EdgeAdcCL, EdgeAdcFL
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
+from talbot.models.afe import Converter
+from talbot.models.digital.sar import convert
+from talbot.models.parameters import ConverterParameters
+from talbot.rtl.edge_adc import EdgeAdc, EdgeAdcCL, EdgeAdcFL
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
 
 ROUGH = Converter.draw(ConverterParameters(inl=2, dnl=0.5, offset=2, noise=1.5, ktc=1, seed=3), 1)
 IDEAL = Converter.ideal(1)

@@ -5,10 +5,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from models.digital.sar import convert
-from rtl.edge_adc import EdgeAdc
-from rtl.edge_adc.edge_adc_cl import LaneCycles
-from rtl.harness.gates import Gates, packed, unpacked
+from talbot.models.digital.sar import convert
+from talbot.rtl.edge_adc import EdgeAdc
+from talbot.rtl.edge_adc.edge_adc_cl import LaneCycles
+from talbot.rtl.harness.gates import Gates, packed, unpacked
 
 from .many_lanes import ManyLanes
 

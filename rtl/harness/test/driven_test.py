@@ -3,10 +3,10 @@
 import pytest
 from pymtl3 import Component, InPort, OutPort, connect, update, update_ff
 
-from rtl.harness.driven import SimulationError
-from rtl.harness.icarus import MISSING, installed
-from rtl.harness.netlists import Netlists, netlist
-from rtl.harness.testbench import build, hooked
+from talbot.rtl.harness.driven import SimulationError
+from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.rtl.harness.netlists import Netlists, netlist
+from talbot.rtl.harness.testbench import build, hooked
 
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
 LEVELS = False, "icarus"

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rtl.harness.gates import WIDE, Gates, packed, unpacked
-from rtl.harness.testbench import build
+from talbot.rtl.harness.gates import WIDE, Gates, packed, unpacked
+from talbot.rtl.harness.testbench import build
 
 from .driven_test import Counter
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.phase import phase_samples
-from models.parameters import ChipParameters
-from rtl.harness.gates import WIDE, Gates, packed, unpacked
-from rtl.messages import END, FRAME, ROW, SAMPLE
-from rtl.phase_path import PhasePath
+from talbot.models.digital.phase import phase_samples
+from talbot.models.parameters import ChipParameters
+from talbot.rtl.harness.gates import WIDE, Gates, packed, unpacked
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.phase_path import PhasePath
 
 CHIPS = [
     ChipParameters(8, "radix4", 8),

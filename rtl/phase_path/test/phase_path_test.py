@@ -8,12 +8,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.phase import phase_samples
-from models.parameters import ChipParameters
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
-from rtl.messages import END, FRAME, ROW, SAMPLE
-from rtl.phase_path import PhasePath, PhasePathCL, PhasePathFL
+from talbot.models.digital.phase import phase_samples
+from talbot.models.parameters import ChipParameters
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.phase_path import PhasePath, PhasePathCL, PhasePathFL
 
 LANES = 8
 SETTINGS = settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.differing_executors])

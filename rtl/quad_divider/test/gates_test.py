@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 from pymtl3 import Component, InPort, Wire, update, update_ff
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
-from models.digital.phase import divide
-from models.parameters import DIVIDERS
-from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
-from rtl.harness.gates import Gates, packed, unpacked
-from rtl.messages import DivReq, div_resp
-from rtl.quad_divider import quad_divider, ratio_bits, timing
+from talbot.models.digital.phase import divide
+from talbot.models.parameters import DIVIDERS
+from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN
+from talbot.rtl.harness.gates import Gates, packed, unpacked
+from talbot.rtl.messages import DivReq, div_resp
+from talbot.rtl.quad_divider import quad_divider, ratio_bits, timing
 
 DEFAULTS = [(variant, 8, 10) for variant in DIVIDERS]
 SIZES = [

@@ -10,13 +10,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.parameters import DIVIDERS, ParameterError
-from models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN, phase_thresholds
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
-from rtl.messages import DivReq
-from rtl.quad_divider import QuadDividerCL, QuadDividerFL, quad_divider, timing
-from rtl.quad_divider.quad_divider_fl import response
+from talbot.models.parameters import DIVIDERS, ParameterError
+from talbot.models.parameters.divider import ITERATIONS_MAX, ITERATIONS_MIN, N_FRAC_MAX, N_FRAC_MIN, phase_thresholds
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.messages import DivReq
+from talbot.rtl.quad_divider import QuadDividerCL, QuadDividerFL, quad_divider, timing
+from talbot.rtl.quad_divider.quad_divider_fl import response
 
 SETTINGS = settings(
     max_examples=20, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.differing_executors]

@@ -4,11 +4,11 @@ import random
 from dataclasses import dataclass, field
 from functools import cache
 
-from models.digital.scan import Scan
-from models.parameters import MODES, FrameParameters, ParameterError, TileParameters, Window
-from rtl.amp_ctrl import AmpCtrl
-from rtl.harness.testbench import build
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.models.digital.scan import Scan
+from talbot.models.parameters import MODES, FrameParameters, ParameterError, TileParameters, Window
+from talbot.rtl.amp_ctrl import AmpCtrl
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 CONFIGURATION = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap")
 QUIET = dict(start=0, amp_done=0, amp_err=0, bank_idle=1)

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.amp_ctrl import row_cycles
-from models.parameters import AmpTiming, ParameterError
-from rtl.harness.reset import outputs_after_reset
-from rtl.messages import END, FRAME, ROW, SAMPLE
-from rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
+from talbot.models.digital.amp_ctrl import row_cycles
+from talbot.models.parameters import AmpTiming, ParameterError
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.readout_seq import ReadoutSeq, ReadoutSeqCL, ReadoutSeqFL
 
 from .bench import (
     AFTER_RESET,

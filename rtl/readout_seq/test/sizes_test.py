@@ -9,8 +9,8 @@ from itertools import product
 
 import pytest
 
-from models.parameters import LANES, TileParameters
-from rtl.readout_seq import ReadoutSeq
+from talbot.models.parameters import LANES, TileParameters
+from talbot.rtl.readout_seq import ReadoutSeq
 
 from .bench import AFTER_RESET, Bench, Record, Size, check, check_given_up, messages, randomly, simulator
 

@@ -6,13 +6,20 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.host import command, decode_status, frame_writes, read_transfer, status_transfers, write_transfers
-from models.digital.registers import ADDRESS_MAX, RegisterBank
-from models.parameters import DIVIDERS, MODES, AmpTiming, FrameParameters, Window
-from models.parameters.registers import array_resets, register_map
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
-from rtl.reg_file import RegFile, RegFileFL, chip_config
+from talbot.models.digital.host import (
+    command,
+    decode_status,
+    frame_writes,
+    read_transfer,
+    status_transfers,
+    write_transfers,
+)
+from talbot.models.digital.registers import ADDRESS_MAX, RegisterBank
+from talbot.models.parameters import DIVIDERS, MODES, AmpTiming, FrameParameters, Window
+from talbot.models.parameters.registers import array_resets, register_map
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.reg_file import RegFile, RegFileFL, chip_config
 
 from .spi_host import SpiHost
 
@@ -540,7 +547,7 @@ class TestVerilog(TestRTL):
 
 def test_the_bank_resets_to_the_default_frame():
     """The map's resets are the defaults of models.parameters for the default sensor."""
-    from models.parameters import SensorParameters
+    from talbot.models.parameters import SensorParameters
 
     frame = FrameParameters(SensorParameters().full_window)
     assert dict(frame_writes(frame)) == CHIP.image(CHIP.configuration)

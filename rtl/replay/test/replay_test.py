@@ -6,11 +6,11 @@ import sys
 
 import pytest
 
-from base.command import main
-from base.paths import ROOT
-from rtl.harness.icarus import MISSING, installed
-from rtl.harness.testbench import build, hooked
-from rtl.replay import command, load, record, replay, replay_files
+from talbot.base.command import main
+from talbot.base.paths import ROOT
+from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.rtl.harness.testbench import build, hooked
+from talbot.rtl.replay import command, load, record, replay, replay_files
 
 LIBRARY = ROOT / "cells" / "gates.lib"
 pytestmark = pytest.mark.skipif(not installed(), reason=MISSING)
@@ -127,8 +127,8 @@ def test_the_tests_themselves_run_on_gates(gates, folder, simulator):
 
 
 def test_traces_of_several_simulators_are_joined():
-    from rtl.edge_adc import EdgeAdc
-    from rtl.replay.recorder import Recorder
+    from talbot.rtl.edge_adc import EdgeAdc
+    from talbot.rtl.replay.recorder import Recorder
 
     recorder = Recorder("EdgeAdc")
     with hooked(observe=recorder.observe):

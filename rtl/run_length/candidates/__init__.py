@@ -3,7 +3,7 @@
 All have the ports of PayloadPacker; their bytes equal those of the encoders of flow.formats.tokens.
 """
 
-from rtl.run_length.packer_rtl import PayloadPacker
+from talbot.rtl.run_length.packer_rtl import PayloadPacker
 
 from .byte_pair_rtl import BytePairPacker
 from .nibble_rtl import NibblePacker

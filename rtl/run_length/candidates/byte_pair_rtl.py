@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits2, Bits8, Bits16, Component, Wire, concat, update, update_ff, zext
 
-from rtl.run_length.packer_rtl import declare_packer_ports
+from talbot.rtl.run_length.packer_rtl import declare_packer_ports
 
 
 class BytePairPacker(Component):

@@ -2,7 +2,7 @@
 
 from pymtl3 import Bits3, Bits4, Bits7, Bits8, Bits9, Bits12, Bits20, Component, Wire, concat, update, update_ff, zext
 
-from rtl.run_length.packer_rtl import declare_packer_ports
+from talbot.rtl.run_length.packer_rtl import declare_packer_ports
 
 
 class NibblePacker(Component):

@@ -19,7 +19,7 @@ from pymtl3 import (
     zext,
 )
 
-from rtl.run_length.packer_rtl import PayloadPacker
+from talbot.rtl.run_length.packer_rtl import PayloadPacker
 
 
 class RiceCoder(Component):

@@ -11,17 +11,17 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked, segments
-from models.digital.stream.test.frames import samples_of
-from models.digital.stream.trailer import trailer
-from models.parameters import LANES as LANE_COUNTS
-from models.parameters import MODES, AmpTiming, FrameParameters, Window
-from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
-from rtl.harness.reset import outputs_after_reset
-from rtl.harness.testbench import build
-from rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
-from rtl.run_length import RunLength, RunLengthCL, RunLengthFL
-from rtl.run_length.header_rtl import HeaderBytes
+from talbot.models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked, segments
+from talbot.models.digital.stream.test.frames import samples_of
+from talbot.models.digital.stream.trailer import trailer
+from talbot.models.parameters import LANES as LANE_COUNTS
+from talbot.models.parameters import MODES, AmpTiming, FrameParameters, Window
+from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
+from talbot.rtl.harness.reset import outputs_after_reset
+from talbot.rtl.harness.testbench import build
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
+from talbot.rtl.run_length import RunLength, RunLengthCL, RunLengthFL
+from talbot.rtl.run_length.header_rtl import HeaderBytes
 
 ROWS, COLS, LANES = 12, 36, 4
 CHIP = ROWS, COLS, LANES, 4, 6

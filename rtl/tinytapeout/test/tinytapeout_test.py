@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from models.digital.amp_ctrl import waveform
-from models.digital.divider import quad_divide
-from models.parameters import AmpTiming, SensorParameters
-from rtl.export import translate
-from rtl.tinytapeout.host import ADDRESS, EXAMPLES, SHOW, WAIT, divisions, row, simulate
+from talbot.models.digital.amp_ctrl import waveform
+from talbot.models.digital.divider import quad_divide
+from talbot.models.parameters import AmpTiming, SensorParameters
+from talbot.rtl.export import translate
+from talbot.rtl.tinytapeout.host import ADDRESS, EXAMPLES, SHOW, WAIT, divisions, row, simulate
 
 DIVIDER, AMP_CTRL = EXAMPLES
 PINS = ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "busy")

@@ -5,15 +5,15 @@ from importlib.util import find_spec
 
 import pytest
 
-from base.command import main
-from base.records import from_json
-from models.chip import golden_frame
-from rtl.harness.icarus import MISSING, installed
-from verif.bench import command, simulation
-from verif.bench.command import CHIP, SAME, BenchRun, summary
-from verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
-from verif.bench.pymtl_frame import pymtl_stream
-from verif.results import BlockResults, Tests
+from talbot.base.command import main
+from talbot.base.records import from_json
+from talbot.models.chip import golden_frame
+from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.verif.bench import command, simulation
+from talbot.verif.bench.command import CHIP, SAME, BenchRun, summary
+from talbot.verif.bench.exposure import FRAMES, FRONT_END, SENSOR, samples
+from talbot.verif.bench.pymtl_frame import pymtl_stream
+from talbot.verif.results import BlockResults, Tests
 
 needs_icarus = pytest.mark.skipif(not installed(), reason=MISSING)
 SMALL = "raw, a window"

@@ -2,8 +2,8 @@
 
 import pytest
 
-from models.parameters import MODES
-from verif.bench import cross
+from talbot.models.parameters import MODES
+from talbot.verif.bench import cross
 
 
 @pytest.mark.parametrize("seed", range(5))

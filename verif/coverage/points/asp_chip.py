@@ -1,6 +1,6 @@
 """Cover points of AspChip."""
 
-from models.parameters.registers import register_map
+from talbot.models.parameters.registers import register_map
 
 from ..ports import Mask, Points, Recorded
 from ..spi import transfers, where

@@ -1,6 +1,6 @@
 """Cover points of PhasePath."""
 
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 from ..ports import Mask, Points, Recorded
 

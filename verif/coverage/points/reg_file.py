@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from models.parameters.registers import register_map
+from talbot.models.parameters.registers import register_map
 
 from ..ports import Mask, Points, Recorded
 from ..spi import transfers, where

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from rtl.messages import END, FRAME, ROW, SAMPLE
+from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 from ..ports import Mask, Points, Recorded, Values
 

@@ -8,20 +8,20 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from base.tools import ToolError
-from models.parameters import ParameterError
-from rtl.edge_adc import EdgeAdc
-from rtl.harness.ports import Port
-from rtl.harness.testbench import build, hooked
-from rtl.replay.recorder import Recorder
-from rtl.tops import TOPS
-from verif.coverage.constants import constant_bits
-from verif.coverage.measure import Point, Transition, measure, sources_of
-from verif.coverage.ports import Recorded
-from verif.coverage.program import compile_program
-from verif.coverage.spi import transfers
-from verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
-from verif.coverage.verdict import judge, matches, ranges
+from talbot.base.tools import ToolError
+from talbot.models.parameters import ParameterError
+from talbot.rtl.edge_adc import EdgeAdc
+from talbot.rtl.harness.ports import Port
+from talbot.rtl.harness.testbench import build, hooked
+from talbot.rtl.replay.recorder import Recorder
+from talbot.rtl.tops import TOPS
+from talbot.verif.coverage.constants import constant_bits
+from talbot.verif.coverage.measure import Point, Transition, measure, sources_of
+from talbot.verif.coverage.ports import Recorded
+from talbot.verif.coverage.program import compile_program
+from talbot.verif.coverage.spi import transfers
+from talbot.verif.coverage.testplan import Exclusion, Machine, TestPlan, folder_of, load_plan, plan_file
+from talbot.verif.coverage.verdict import judge, matches, ranges
 
 CYCLES = [(1, 1, 0)] * 3 + [(1, 0, 1)] * 30 + [(0, 0, 1)] * 30  # go, reset, comparator
 

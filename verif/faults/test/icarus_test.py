@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.digital.host import command
-from rtl.harness.icarus import MISSING, installed
-from verif.faults.chip import configured, quiet, run, start
-from verif.faults.waveform import PULSE_HIGH, PULSE_LOW, RDY, RESET, rest, transfer
+from talbot.models.digital.host import command
+from talbot.rtl.harness.icarus import MISSING, installed
+from talbot.verif.faults.chip import configured, quiet, run, start
+from talbot.verif.faults.waveform import PULSE_HIGH, PULSE_LOW, RDY, RESET, rest, transfer
 
 pytestmark = [pytest.mark.skipif(not installed(), reason=MISSING), pytest.mark.slow]
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.digital.host import command, read_transfer
-from models.parameters.registers import register_map
-from verif.faults.chip import FRAMES, configured, golden, quiet, run, start
-from verif.faults.waveform import BUSY, RDY, VAL, reset, rest, status_wave, transfer
+from talbot.models.digital.host import command, read_transfer
+from talbot.models.parameters.registers import register_map
+from talbot.verif.faults.chip import FRAMES, configured, golden, quiet, run, start
+from talbot.verif.faults.waveform import BUSY, RDY, VAL, reset, rest, status_wave, transfer
 
 CHIP = register_map()
 STUCK = 150

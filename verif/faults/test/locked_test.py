@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.digital.host import frame_writes, read_transfer
-from models.parameters.registers import register_map
-from verif.faults.chip import FRAMES, frame_of, golden, quiet, run, start
-from verif.faults.waveform import BUSY, rest, status_wave, transfer
+from talbot.models.digital.host import frame_writes, read_transfer
+from talbot.models.parameters.registers import register_map
+from talbot.verif.faults.chip import FRAMES, frame_of, golden, quiet, run, start
+from talbot.verif.faults.waveform import BUSY, rest, status_wave, transfer
 
 CHIP = register_map()
 WRITABLE = CHIP.writable()

@@ -3,11 +3,23 @@
 import numpy as np
 import pytest
 
-from models.digital.host import command, read_transfer
-from models.digital.stream import decode_stream
-from models.parameters.registers import register_map
-from verif.faults.chip import FRAMES, configured, golden, quiet, resets, run, start
-from verif.faults.waveform import BUSY, HOLD, MISO, PULSE_HIGH, PULSE_LOW, RESET, SYNC, VAL, rest, status_wave, transfer
+from talbot.models.digital.host import command, read_transfer
+from talbot.models.digital.stream import decode_stream
+from talbot.models.parameters.registers import register_map
+from talbot.verif.faults.chip import FRAMES, configured, golden, quiet, resets, run, start
+from talbot.verif.faults.waveform import (
+    BUSY,
+    HOLD,
+    MISO,
+    PULSE_HIGH,
+    PULSE_LOW,
+    RESET,
+    SYNC,
+    VAL,
+    rest,
+    status_wave,
+    transfer,
+)
 
 CHIP = register_map()
 HELD = resets()

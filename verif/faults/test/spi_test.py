@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from models.digital.host import command, read_transfer
-from models.parameters.registers import register_map
-from verif.faults.chip import golden, quiet, resets, run
-from verif.faults.waveform import BUSY, CSN, RDY, SCLK, reset, rest, status_wave, transfer
+from talbot.models.digital.host import command, read_transfer
+from talbot.models.parameters.registers import register_map
+from talbot.verif.faults.chip import golden, quiet, resets, run
+from talbot.verif.faults.waveform import BUSY, CSN, RDY, SCLK, reset, rest, status_wave, transfer
 
 CHIP = register_map()
 FIRST = CHIP["t_reset"].byte

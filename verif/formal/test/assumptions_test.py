@@ -4,13 +4,13 @@ import dataclasses
 
 import pytest
 
-from models.parameters import ParameterError
-from verif.formal import command, design, manifest
-from verif.formal.engine import FormalError, tool
-from verif.formal.freedom import FreedomResult, freedom
-from verif.formal.necessity import NecessityResult, necessity
-from verif.formal.proof import labels
-from verif.formal.prove import CoverResult
+from talbot.models.parameters import ParameterError
+from talbot.verif.formal import command, design, manifest
+from talbot.verif.formal.engine import FormalError, tool
+from talbot.verif.formal.freedom import FreedomResult, freedom
+from talbot.verif.formal.necessity import NecessityResult, necessity
+from talbot.verif.formal.proof import labels
+from talbot.verif.formal.prove import CoverResult
 
 try:
     for name in ("yosys", "yosys-smtbmc", "boolector"):

@@ -8,15 +8,15 @@ from argparse import Namespace
 
 import pytest
 
-from base.command import main
-from base.paths import ROOT
-from models.parameters import ParameterError
-from verif.formal import command, design, manifest
-from verif.formal.engine import FormalError, tool
-from verif.formal.items import ProofsFile, failure
-from verif.formal.plan import pieces
-from verif.formal.proof import Twin, labels
-from verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
+from talbot.base.command import main
+from talbot.base.paths import ROOT
+from talbot.models.parameters import ParameterError
+from talbot.verif.formal import command, design, manifest
+from talbot.verif.formal.engine import FormalError, tool
+from talbot.verif.formal.items import ProofsFile, failure
+from talbot.verif.formal.plan import pieces
+from talbot.verif.formal.proof import Twin, labels
+from talbot.verif.formal.prove import CoverResult, ProofResult, TwinResult, cover, prove, twin
 
 try:
     for name in ("yosys", "yosys-smtbmc", "boolector"):

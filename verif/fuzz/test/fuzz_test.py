@@ -5,10 +5,10 @@ import time
 
 import pytest
 
-from base.command import main
-from models.digital.stream import decode_stream
-from verif.fuzz import batch, checks, command, host, resync
-from verif.fuzz.streams import KINDS
+from talbot.base.command import main
+from talbot.models.digital.stream import decode_stream
+from talbot.verif.fuzz import batch, checks, command, host, resync
+from talbot.verif.fuzz.streams import KINDS
 
 SEED = 20
 

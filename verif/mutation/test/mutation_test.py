@@ -5,22 +5,22 @@ import subprocess
 
 import pytest
 
-from base.command import main
-from base.paths import ROOT
-from models.parameters import SensorParameters
-from rtl.asp_chip.balance_rtl import Balance
-from rtl.harness.ports import Port, ports_of
-from rtl.harness.translate import translate_component
-from rtl.tops import build_top
-from verif.coverage.program import compile_program
-from verif.coverage.test.coverage_test import recorded, recorded_cycles
-from verif.coverage.testplan import folder_of
-from verif.mutation import command
-from verif.mutation.command import summary
-from verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, promises
-from verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, own_tests
-from verif.mutation.mutants import Mutant, generate, shares, with_mutants
-from verif.mutation.trial import attempt
+from talbot.base.command import main
+from talbot.base.paths import ROOT
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.asp_chip.balance_rtl import Balance
+from talbot.rtl.harness.ports import Port, ports_of
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.tops import build_top
+from talbot.verif.coverage.program import compile_program
+from talbot.verif.coverage.test.coverage_test import recorded, recorded_cycles
+from talbot.verif.coverage.testplan import folder_of
+from talbot.verif.mutation import command
+from talbot.verif.mutation.command import summary
+from talbot.verif.mutation.equivalence import DIFFERENT, ENGINES, EQUIVALENT, compare, promises
+from talbot.verif.mutation.judge import SURVIVED, judge, mutated, one_mutant, own_tests
+from talbot.verif.mutation.mutants import Mutant, generate, shares, with_mutants
+from talbot.verif.mutation.trial import attempt
 
 pytestmark = pytest.mark.skipif(
     not (shutil.which("yosys") and shutil.which("yosys-abc")), reason="needs Yosys: make tools"
@@ -102,12 +102,12 @@ def planted(trace, folder, of, number):
 
 
 BLIND = """
-from models.parameters import SensorParameters
-from rtl.asp_chip.balance_rtl import Balance
-from rtl.harness.translate import translate_component
-from rtl.harness.ports import Port, ports_of
-from rtl.tops import build_top
-from rtl.harness.testbench import build
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.asp_chip.balance_rtl import Balance
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.harness.ports import Port, ports_of
+from talbot.rtl.tops import build_top
+from talbot.rtl.harness.testbench import build
 
 def test_looks_at_nothing():
     sim = build(Balance((1, 0, 3, 2), 2, 2, 2, 4))

@@ -5,13 +5,22 @@ import shutil
 
 import pytest
 
-from models.parameters import SensorParameters
-from rtl.harness.translate import translate_component
-from rtl.tops import build_top
-from verif.coverage.program import compile_program
-from verif.coverage.test.coverage_test import recorded_cycles
-from verif.mutation.equivalence import DIFFERENT, compare
-from verif.mutation.operators import Line, Module, conditions, constants, operators, registers, rewritten, triggered
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.harness.translate import translate_component
+from talbot.rtl.tops import build_top
+from talbot.verif.coverage.program import compile_program
+from talbot.verif.coverage.test.coverage_test import recorded_cycles
+from talbot.verif.mutation.equivalence import DIFFERENT, compare
+from talbot.verif.mutation.operators import (
+    Line,
+    Module,
+    conditions,
+    constants,
+    operators,
+    registers,
+    rewritten,
+    triggered,
+)
 
 PART = Module(True, {"a": 4, "b": 4, "c": 1, "q": 4}, ["a", "b", "q"], {"__const__X": 9})
 

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
-from base.paths import ROOT
-from base.tools import ToolError, finish
-from models.parameters import ParameterError
-from verif.mutation.planted import Planted, is_caught, jobs, read
+from talbot.base.paths import ROOT
+from talbot.base.tools import ToolError, finish
+from talbot.models.parameters import ParameterError
+from talbot.verif.mutation.planted import Planted, is_caught, jobs, read
 
 LIST = "    if origin in (list, tuple):\n"
 BUG = Planted(

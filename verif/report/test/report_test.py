@@ -7,15 +7,15 @@ from dataclasses import is_dataclass, replace
 
 import pytest
 
-from base.command import main
-from models.parameters import ParameterError
-from rtl.tops import TOPS
-from verif.report import command, limits, steps
-from verif.report.merge import figures, summarize, totals
-from verif.report.page import render
-from verif.report.steps import Outcome, Step, run_step
-from verif.results import COVERAGE, BlockResults, Fuzz, Mutants, Property, Resync, StuckAt, Tests
-from verif.suite.blocks import BLOCKS
+from talbot.base.command import main
+from talbot.models.parameters import ParameterError
+from talbot.rtl.tops import TOPS
+from talbot.verif.report import command, limits, steps
+from talbot.verif.report.merge import figures, summarize, totals
+from talbot.verif.report.page import render
+from talbot.verif.report.steps import Outcome, Step, run_step
+from talbot.verif.results import COVERAGE, BlockResults, Fuzz, Mutants, Property, Resync, StuckAt, Tests
+from talbot.verif.suite.blocks import BLOCKS
 
 PROOF = Property("a.one", "boolector (3.2)", "unbounded", "proven", True, 1.5)
 GOOD = BlockResults(

@@ -5,9 +5,9 @@ import shutil
 import numpy as np
 import pytest
 
-from verif.stuck_at.faults import OUTPUT, collapsed
-from verif.stuck_at.netlist import FF, synthesize
-from verif.stuck_at.simulate import Simulator
+from talbot.verif.stuck_at.faults import OUTPUT, collapsed
+from talbot.verif.stuck_at.netlist import FF, synthesize
+from talbot.verif.stuck_at.simulate import Simulator
 
 pytestmark = pytest.mark.skipif(
     not (shutil.which("yosys") and shutil.which("gcc")), reason="no Yosys or no gcc: make tools installs them"

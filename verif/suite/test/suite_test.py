@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from base.command import main
-from base.paths import ROOT
-from rtl.tops import TOPS
-from verif.suite import command
-from verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
-from verif.suite.command import forget, jobs, options_of, summarize
-from verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
+from talbot.base.command import main
+from talbot.base.paths import ROOT
+from talbot.rtl.tops import TOPS
+from talbot.verif.suite import command
+from talbot.verif.suite.blocks import BLOCKS, FOLDERS, blocks_of, level_of
+from talbot.verif.suite.command import forget, jobs, options_of, summarize
+from talbot.verif.suite.pytest_folder import Case, FolderRun, folders, run_folder
 
 FILE = """
 import pytest

@@ -3,7 +3,7 @@
 from collections import Counter
 from itertools import product
 
-from flow.layout.coriolis.leaves import assigned
+from talbot.flow.layout.coriolis.leaves import assigned
 
 LEAVES = [(0, 0), (100, 0), (0, 100), (100, 100)]
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from base.lef.read import read_macro
-from flow.layout.geometry.abstract import abstract, ports, read_back
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
+from talbot.base.lef.read import read_macro
+from talbot.flow.layout.geometry.abstract import abstract, ports, read_back
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 NETLIST = "module Two (a, q);\n  input a;\n  output [1:0] q;\nendmodule\n"

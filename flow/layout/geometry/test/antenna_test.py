@@ -2,9 +2,9 @@
 
 import pytest
 
-from flow.layout.geometry.antenna import violations
-from flow.layout.geometry.test.gate import gate
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.geometry.antenna import violations
+from talbot.flow.layout.geometry.test.gate import gate
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

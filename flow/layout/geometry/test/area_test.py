@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.layout.geometry.area import grow
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.geometry.area import grow
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 RULES = {"area": 0.144, "space": 0.21}

@@ -4,11 +4,11 @@ import shutil
 
 import pytest
 
-from base.gds import db, write_gds
-from base.steps import StepError
-from flow.layout.geometry.decks import run_deck, via_rules, violations, with_flat_spaces
-from flow.layout.geometry.lvs_deck import hierarchical
-from platforms.coriolis import coriolis_platform
+from talbot.base.gds import db, write_gds
+from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.decks import run_deck, via_rules, violations, with_flat_spaces
+from talbot.flow.layout.geometry.lvs_deck import hierarchical
+from talbot.platforms.coriolis import coriolis_platform
 
 DRC = """deep
 nwm = input(64, 20)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.layout.geometry.fill import fill, peak_density
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.geometry.fill import fill, peak_density
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

@@ -2,15 +2,15 @@
 
 import pytest
 
-from base.lef.read import read_macro
-from base.steps import StepError
-from flow.layout.geometry.abstract import abstract, read_back
-from flow.layout.geometry.floorplan import framed
-from flow.layout.geometry.frame import into_frame, mark_straps
-from flow.layout.netlist.netlist import Netlist, Port, supplies
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
-from platforms.frame import Frame
+from talbot.base.lef.read import read_macro
+from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.abstract import abstract, read_back
+from talbot.flow.layout.geometry.floorplan import framed
+from talbot.flow.layout.geometry.frame import into_frame, mark_straps
+from talbot.flow.layout.netlist.netlist import Netlist, Port, supplies
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.frame import Frame
 
 db = pytest.importorskip("klayout.db", reason="klayout is not installed (make layout)")
 FRAME = Frame(12.0, 10.0, (1.0, 1.5), (("a", 3.0), ("q", 8.0)), (0.3, 1.0), "met4", ("VPWR", "VGND"))

@@ -2,9 +2,9 @@
 
 import pytest
 
-from base.steps import StepError
-from flow.layout.geometry.labels import relabel
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.labels import relabel
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

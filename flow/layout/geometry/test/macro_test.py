@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from flow.layout.geometry.floorplan import largest_free, place_macros
-from flow.layout.geometry.macro import Macro
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.geometry.floorplan import largest_free, place_macros
+from talbot.flow.layout.geometry.macro import Macro
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
 
 LEF = """VERSION 5.8 ;
 MACRO Block

@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.layout.geometry import notch
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.geometry import notch
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 METAL = coriolis_platform("sky130").metals[1]

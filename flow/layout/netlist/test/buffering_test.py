@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flow.layout.netlist.buffering import buffer_fan_out, buffer_outputs, clusters, estimated
-from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
+from talbot.flow.layout.netlist.buffering import buffer_fan_out, buffer_outputs, clusters, estimated
+from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
 
 BUFFER = Buffer("buf_x1", "i", "q")
 

@@ -4,8 +4,8 @@ from collections import Counter
 
 import pytest
 
-from flow.layout.netlist.gating import ClockCells, ClockGate, drive_registers
-from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
+from talbot.flow.layout.netlist.gating import ClockCells, ClockGate, drive_registers
+from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
 
 SIZES = [ClockCells(ClockGate(f"cg_{x}", "i", "clk", "q"), Buffer(f"buf_{x}", "i", "q")) for x in ("x1", "x2")]
 PORTS = Port("clk", "input", 1), Port("d", "input", 1), Port("e", "input", 2)

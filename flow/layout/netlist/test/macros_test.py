@@ -1,10 +1,10 @@
 """Macros in a netlist: flattened, behind buffers, and by plain names in the router."""
 
-from flow.layout.netlist.flatten import flattened, merged_placement
-from flow.layout.netlist.names import plain_macros
-from flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
-from flow.layout.netlist.placed import placed_netlist
-from flow.layout.netlist.test.shift_register import shift
+from talbot.flow.layout.netlist.flatten import flattened, merged_placement
+from talbot.flow.layout.netlist.names import plain_macros
+from talbot.flow.layout.netlist.netlist import Buffer, Instance, Netlist, Port
+from talbot.flow.layout.netlist.placed import placed_netlist
+from talbot.flow.layout.netlist.test.shift_register import shift
 
 
 def top():

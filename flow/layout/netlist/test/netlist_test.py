@@ -1,6 +1,6 @@
 """What the reference of the comparison with the layout lists: connected ports, diodes, fill as it is drawn."""
 
-from flow.layout.netlist.netlist import Instance, Netlist, Port, with_diodes
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port, with_diodes
 
 PORTS = Port("a", "input", 2), Port("b", "input", 1), Port("q", "output", 1)
 NETLIST = Netlist(

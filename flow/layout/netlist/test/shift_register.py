@@ -1,6 +1,6 @@
 """A library of three cells with round figures and a shift register of them, for tests of timing and power."""
 
-from flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 
 AXES = 'index_1 ("0.01, 1.0"); index_2 ("0.001, 1.0");'
 

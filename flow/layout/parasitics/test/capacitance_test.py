@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from flow.layout.parasitics.capacitance import capacitances
-from flow.layout.parasitics.extract import floating, with_fill_floating
+from talbot.flow.layout.parasitics.capacitance import capacitances
+from talbot.flow.layout.parasitics.extract import floating, with_fill_floating
 
 from .planted import M1, M2, M3, TECH, VIA, net, planted
 

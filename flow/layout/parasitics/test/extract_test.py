@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from base.gds import db
-from base.steps import StepError
-from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.parasitics.capacitance import capacitances
-from flow.layout.parasitics.extract import extract
-from flow.layout.parasitics.shapes import shapes
-from flow.layout.timing.spef import spef
+from talbot.base.gds import db
+from talbot.base.steps import StepError
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.parasitics.capacitance import capacitances
+from talbot.flow.layout.parasitics.extract import extract
+from talbot.flow.layout.parasitics.shapes import shapes
+from talbot.flow.layout.timing.spef import spef
 
 from .planted import CONTACT, DEVICES, LI, M1, M2, POLY, TECH, VIA, draw, net
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from base.gds import write_gds
-from base.tools import finish
-from flow.layout.parasitics.capacitance import capacitances
-from flow.layout.parasitics.shapes import shapes
+from talbot.base.gds import write_gds
+from talbot.base.tools import finish
+from talbot.flow.layout.parasitics.capacitance import capacitances
+from talbot.flow.layout.parasitics.shapes import shapes
 
 from .planted import DEVICES, M1, M2, M3, TECH, layout
 

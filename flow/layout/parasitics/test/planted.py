@@ -1,9 +1,9 @@
 """Layouts of a few rectangles, um."""
 
-from base.gds import db
-from flow.layout.parasitics.shapes import Shapes, shapes
-from platforms.coriolis import coriolis_platform
-from platforms.extraction import extraction_platform
+from talbot.base.gds import db
+from talbot.flow.layout.parasitics.shapes import Shapes, shapes
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.extraction import extraction_platform
 
 TECH, DEVICES = coriolis_platform("sky130"), extraction_platform("sky130")
 LI, M1, M2, M3 = (metal.gds for metal in TECH.metals[:4])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from flow.layout.parasitics.trees import LEAST_OHM, trees
+from talbot.flow.layout.parasitics.trees import LEAST_OHM, trees
 
 from .planted import DEVICES, M1, M2, M3, TECH, VIA, VIA2, planted
 
@@ -64,7 +64,7 @@ def test_merging_keeps_the_delays_of_all_pins(monkeypatch):
     found = planted(*boxes, (M2, 12.2, -6, 13, -5.8))
     pins = [("met2", 0, 0.1), ("met2", 9, 7.9), ("met2", 20, 0.1), ("met2", 13, -5.9)]
     merged = made(found, 3.0, pins)
-    monkeypatch.setattr("flow.layout.parasitics.trees._merge", lambda order, parents, *_: parents > -2)
+    monkeypatch.setattr("talbot.flow.layout.parasitics.trees._merge", lambda order, parents, *_: parents > -2)
     whole = made(found, 3.0, pins)
     assert elmore(merged) == pytest.approx(elmore(whole), rel=1e-9)
     assert merged.femtofarad.sum() == pytest.approx(whole.femtofarad.sum())

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from flow.layout.power.mesh import Gap, Metal, Tap, drops, metal
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.power.mesh import Gap, Metal, Tap, drops, metal
+from talbot.platforms.coriolis import coriolis_platform
 
 METAL = Metal(rail=2.0, strap=0.5, stack=3.0)
 

@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from base.liberty.read import read
-from flow.layout.geometry.rows import Rows, free_rows
-from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.repair.drive import Drives
-from flow.layout.repair.repair import OWN, Plan, clock_nets, connected, length, repaired, swap
-from flow.layout.timing.constraints import sdc
-from flow.layout.timing.estimate import setup_slack, setup_slacks
+from talbot.base.liberty.read import read
+from talbot.flow.layout.geometry.rows import Rows, free_rows
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.repair.drive import Drives
+from talbot.flow.layout.repair.repair import OWN, Plan, clock_nets, connected, length, repaired, swap
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.layout.timing.estimate import setup_slack, setup_slacks
 
 SITE, ROW = 0.5, 3.0
 WIDTHS = {"inv_x1": 1.0, "inv_x4": 2.0, "buf_x1": 1.5, "buf_x4": 3.0, "dff_x1": 9.0, "tie": 0.5, "tie_w4": 2.0}
@@ -202,7 +202,7 @@ def test_length_of_a_net():
 
 @pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 def test_slacks_are_those_of_the_tables(tmp_path):
-    from flow.layout.design import Clock, Design
+    from talbot.flow.layout.design import Clock, Design
 
     ports = Port("clk", "input", 1), Port("a", "input", 1), Port("z[0]", "output", 1)
     cells = Instance("one[3]", "inv_x1", {"i": "a", "nq": "n"}), Instance("two", "inv_x1", {"i": "n", "nq": "z[0]"})

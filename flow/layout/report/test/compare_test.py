@@ -4,9 +4,9 @@ import json
 
 import pytest
 
-from base.command import main
-from flow.layout.report import compare
-from flow.layout.report.metrics import table_6_1
+from talbot.base.command import main
+from talbot.flow.layout.report import compare
+from talbot.flow.layout.report.metrics import table_6_1
 
 SUMMARY = {
     "area_um2": 1000.0,

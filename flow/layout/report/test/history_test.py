@@ -2,7 +2,7 @@
 
 import json
 
-from flow.layout.report.history import Run, history, table
+from talbot.flow.layout.report.history import Run, history, table
 
 SUMMARY = {
     "area_um2": 10.0,

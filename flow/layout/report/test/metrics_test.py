@@ -2,7 +2,7 @@
 
 import pytest
 
-from flow.layout.report.metrics import broken
+from talbot.flow.layout.report.metrics import broken
 
 GOOD = {
     "design": "a",

@@ -7,19 +7,19 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from flow.layout.geometry.boxes import corners
-from flow.layout.geometry.instances import insert
-from flow.layout.geometry.test.gate import gate
-from flow.layout.netlist.netlist import Instance, Netlist, with_diodes
-from flow.layout.route.board import Board
-from flow.layout.route.diodes import Diodes
-from flow.layout.route.negotiate import negotiate, route
-from flow.layout.route.nets import clear_of, route_net
-from flow.layout.route.route import Route
-from flow.layout.route.rules import RoutingRules
-from flow.layout.route.view import NetView
-from flow.layout.route.violations import Violations, find, split_levels
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.geometry.boxes import corners
+from talbot.flow.layout.geometry.instances import insert
+from talbot.flow.layout.geometry.test.gate import gate
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, with_diodes
+from talbot.flow.layout.route.board import Board
+from talbot.flow.layout.route.diodes import Diodes
+from talbot.flow.layout.route.negotiate import negotiate, route
+from talbot.flow.layout.route.nets import clear_of, route_net
+from talbot.flow.layout.route.route import Route
+from talbot.flow.layout.route.rules import RoutingRules
+from talbot.flow.layout.route.view import NetView
+from talbot.flow.layout.route.violations import Violations, find, split_levels
+from talbot.platforms.coriolis import coriolis_platform
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

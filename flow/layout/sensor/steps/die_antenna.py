@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from flow.layout.steps.antenna import Antenna
-from platforms.coriolis import CoriolisPlatform
+from talbot.flow.layout.steps.antenna import Antenna
+from talbot.platforms.coriolis import CoriolisPlatform
 
 from ..routing import BRANCH
 

@@ -3,10 +3,10 @@
 import json
 from typing import Any
 
-from base.steps import Files, Step
-from flow.layout.steps.parameters import PdkParameters
-from platforms.coriolis import coriolis_platform
-from platforms.die import top_metal
+from talbot.base.steps import Files, Step
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.die import top_metal
 
 from .. import connectivity
 

@@ -4,10 +4,10 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from base.gds import write_gds
-from base.steps import Files, Step, StepError
-from flow.layout.steps.parameters import PdkParameters
-from platforms.coriolis import coriolis_platform
+from talbot.base.gds import write_gds
+from talbot.base.steps import Files, Step, StepError
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.platforms.coriolis import coriolis_platform
 
 from ..plan import BLOCKS, CORE, ORIENTATIONS
 from .die_plan import TOP

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from base.steps import Files, Step
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import Files, Step
+from talbot.platforms.coriolis import coriolis_platform
 
 from .. import elmore
 from ..plan import CORE

@@ -5,10 +5,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from base.steps import Files, Step
-from flow.layout.route.rules import RoutingRules
-from platforms.coriolis import coriolis_platform
-from platforms.die import top_metal
+from talbot.base.steps import Files, Step
+from talbot.flow.layout.route.rules import RoutingRules
+from talbot.platforms.coriolis import coriolis_platform
+from talbot.platforms.die import top_metal
 
 from .. import arrange, routing, supplies, verilog
 from ..arrange import Arranged

@@ -3,8 +3,8 @@
 import re
 from typing import Any
 
-from base.steps import Files
-from flow.layout.steps.sta import Sta
+from talbot.base.steps import Files
+from talbot.flow.layout.steps.sta import Sta
 
 
 class DieSta(Sta):

@@ -5,11 +5,11 @@ import shutil
 
 import pytest
 
-from base.steps import StepError
-from flow.layout.sensor.analog import check, files
-from flow.layout.sensor.plan import BLOCKS
-from models.parameters import ParameterError
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import StepError
+from talbot.flow.layout.sensor.analog import check, files
+from talbot.flow.layout.sensor.plan import BLOCKS
+from talbot.models.parameters import ParameterError
+from talbot.platforms.coriolis import coriolis_platform
 
 from . import small
 

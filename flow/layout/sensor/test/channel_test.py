@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from base.steps import StepError
-from flow.layout.route.rules import RoutingRules
-from flow.layout.sensor.channel import check_apart, free, left_edge
-from flow.layout.sensor.routing import Branch, Tracks, trunks
-from flow.layout.sensor.shapes import signal
-from platforms.coriolis import coriolis_platform
+from talbot.base.steps import StepError
+from talbot.flow.layout.route.rules import RoutingRules
+from talbot.flow.layout.sensor.channel import check_apart, free, left_edge
+from talbot.flow.layout.sensor.routing import Branch, Tracks, trunks
+from talbot.flow.layout.sensor.shapes import signal
+from talbot.platforms.coriolis import coriolis_platform
 
 from . import small
 

@@ -8,13 +8,13 @@ import sys
 
 import pytest
 
-from base.paths import ROOT
-from base.steps import StepError
-from flow.layout.geometry.abstract import ports
-from flow.layout.sensor import arrange
-from flow.layout.sensor.plan import CORE, ORIENTATIONS, DieParameters
-from models.parameters import ParameterError
-from pixels.blocks import blocks
+from talbot.base.paths import ROOT
+from talbot.base.steps import StepError
+from talbot.flow.layout.geometry.abstract import ports
+from talbot.flow.layout.sensor import arrange
+from talbot.flow.layout.sensor.plan import CORE, ORIENTATIONS, DieParameters
+from talbot.models.parameters import ParameterError
+from talbot.pixels.blocks import blocks
 
 from . import small
 
@@ -182,7 +182,7 @@ def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
         [
             sys.executable,
             "-m",
-            "rtl.export",
+            "talbot.rtl.export",
             "--top",
             "AspChip",
             "--out",

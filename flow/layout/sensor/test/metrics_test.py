@@ -5,15 +5,15 @@ from importlib.util import find_spec
 
 import pytest
 
-from base.steps import Runner
-from flow.layout.design import DESIGNS
-from flow.layout.options import Options
-from flow.layout.report.metrics import broken
-from flow.layout.sensor.die import lay_out_die
-from flow.layout.sensor.metrics import RULES
-from flow.layout.sensor.plan import BLOCKS
-from flow.layout.steps.library import Library
-from platforms.wires import CORNERS
+from talbot.base.steps import Runner
+from talbot.flow.layout.design import DESIGNS
+from talbot.flow.layout.options import Options
+from talbot.flow.layout.report.metrics import broken
+from talbot.flow.layout.sensor.die import lay_out_die
+from talbot.flow.layout.sensor.metrics import RULES
+from talbot.flow.layout.sensor.plan import BLOCKS
+from talbot.flow.layout.steps.library import Library
+from talbot.platforms.wires import CORNERS
 
 from . import small
 

@@ -5,12 +5,12 @@ import re
 
 import pytest
 
-from flow.layout.sensor.elmore import delays
-from flow.layout.sensor.steps.die_antenna import DieAntenna
-from flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
-from flow.layout.sensor.steps.die_sta import over
-from flow.layout.steps.parameters import PdkParameters
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.sensor.elmore import delays
+from talbot.flow.layout.sensor.steps.die_antenna import DieAntenna
+from talbot.flow.layout.sensor.steps.die_parasitics import DieParasitics, DieParasiticsParameters
+from talbot.flow.layout.sensor.steps.die_sta import over
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.platforms.coriolis import coriolis_platform
 
 from . import small
 

@@ -2,14 +2,14 @@
 
 import json
 
-from flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
-from flow.layout.sensor.steps.die_connectivity import DieConnectivity
-from flow.layout.sensor.steps.die_gds import DieGds
-from flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
-from flow.layout.steps.parameters import PdkParameters
-from models.parameters import ArrayParameters, ChipParameters
-from pixels.blocks import AnalogSizes, blocks
-from pixels.footprints import write
+from talbot.flow.layout.sensor.plan import BLOCKS, CORE, SIGNALS, DieParameters
+from talbot.flow.layout.sensor.steps.die_connectivity import DieConnectivity
+from talbot.flow.layout.sensor.steps.die_gds import DieGds
+from talbot.flow.layout.sensor.steps.die_plan import DiePlan, DiePlanParameters
+from talbot.flow.layout.steps.parameters import PdkParameters
+from talbot.models.parameters import ArrayParameters, ChipParameters
+from talbot.pixels.blocks import AnalogSizes, blocks
+from talbot.pixels.footprints import write
 
 DIE = DieParameters(1700.0, 1300.0, pad_um=20.0)
 RULES = {

@@ -5,11 +5,11 @@ import shutil
 
 import pytest
 
-from base.steps import StepError
-from flow.layout.netlist.test import shift_register as small
-from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from flow.layout.timing.boundary import Sources, measure, reach
-from flow.layout.timing.spef import spef
+from talbot.base.steps import StepError
+from talbot.flow.layout.netlist.test import shift_register as small
+from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
+from talbot.flow.layout.timing.boundary import Sources, measure, reach
+from talbot.flow.layout.timing.spef import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from base.steps import StepError
-from cells.netlist.function import Storage
-from flow.layout.netlist.netlist import Instance, Netlist
-from flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
-from flow.layout.steps.synthesis import Synthesis, SynthesisParameters
-from flow.layout.timing import liberty
+from talbot.base.steps import StepError
+from talbot.cells.netlist.function import Storage
+from talbot.flow.layout.netlist.netlist import Instance, Netlist
+from talbot.flow.layout.steps.equivalence import Equivalence, EquivalenceParameters
+from talbot.flow.layout.steps.synthesis import Synthesis, SynthesisParameters
+from talbot.flow.layout.timing import liberty
 
 pytestmark = pytest.mark.skipif(not shutil.which("yosys"), reason="yosys: not found; install it with: make tools")
 

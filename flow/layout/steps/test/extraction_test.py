@@ -2,10 +2,10 @@
 
 import pytest
 
-from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.timing.parasitics import parasitics
-from flow.layout.timing.spef import spef
-from platforms.coriolis import coriolis_platform
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.timing.parasitics import parasitics
+from talbot.flow.layout.timing.spef import spef
+from talbot.platforms.coriolis import coriolis_platform
 
 
 def test_a_wire_counts_with_its_area_both_edges_and_its_squares():

@@ -2,9 +2,9 @@
 
 import pytest
 
-from flow.layout.steps.floorplan import FloorplanParameters
-from flow.layout.steps.ir_drop import breaks
-from models.parameters import ParameterError
+from talbot.flow.layout.steps.floorplan import FloorplanParameters
+from talbot.flow.layout.steps.ir_drop import breaks
+from talbot.models.parameters import ParameterError
 
 
 def test_a_macro_outside_the_core_is_refused():

@@ -4,10 +4,10 @@ import shutil
 
 import pytest
 
-from base.steps import StepError
-from flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
-from models.parameters import ParameterError
-from platforms.foundry import foundry_checks, installed
+from talbot.base.steps import StepError
+from talbot.flow.layout.steps.foundry_drc import FoundryDrc, FoundryDrcParameters, MagicDrc
+from talbot.models.parameters import ParameterError
+from talbot.platforms.foundry import foundry_checks, installed
 
 db = pytest.importorskip("klayout.db", reason="klayout: not installed; make layout installs it")
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from flow.layout.netlist.netlist import Instance, Netlist
-from flow.layout.steps.place import LEAF_SINKS, Place, PlaceParameters
+from talbot.flow.layout.netlist.netlist import Instance, Netlist
+from talbot.flow.layout.steps.place import LEAF_SINKS, Place, PlaceParameters
 
 
 @pytest.mark.parametrize("width, height", ((200.0, 200.0), (150.0, 220.0), (220.0, 150.0)))

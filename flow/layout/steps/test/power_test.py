@@ -5,12 +5,12 @@ import shutil
 
 import pytest
 
-from flow.layout.netlist.test import shift_register as small
-from flow.layout.power.energy import Cells, powers
-from flow.layout.power.test.energy_test import ACTIVITY
-from flow.layout.steps.ir_drop import IrDrop, IrDropParameters
-from flow.layout.steps.power import Power, PowerParameters, wire_pf
-from flow.layout.timing.spef import spef
+from talbot.flow.layout.netlist.test import shift_register as small
+from talbot.flow.layout.power.energy import Cells, powers
+from talbot.flow.layout.power.test.energy_test import ACTIVITY
+from talbot.flow.layout.steps.ir_drop import IrDrop, IrDropParameters
+from talbot.flow.layout.steps.power import Power, PowerParameters, wire_pf
+from talbot.flow.layout.timing.spef import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 
@@ -36,7 +36,7 @@ def measured(inputs, folder):
 
 
 def test_the_total_is_that_of_the_cells(inputs, tmp_path):
-    from base.liberty.read import parse
+    from talbot.base.liberty.read import parse
 
     found = measured(inputs, tmp_path)
     wires = wire_pf(inputs["spef"].read_text())

@@ -5,15 +5,15 @@ import shutil
 
 import pytest
 
-from flow.layout.design import Design
-from flow.layout.netlist.flatten import flattened
-from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.netlist.test import shift_register as small
-from flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
-from flow.layout.steps.sta import Sta, StaParameters
-from flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
-from flow.layout.timing.constraints import sdc
-from flow.layout.timing.spef import spef
+from talbot.flow.layout.design import Design
+from talbot.flow.layout.netlist.flatten import flattened
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.netlist.test import shift_register as small
+from talbot.flow.layout.steps.block_liberty import BlockLiberty, BlockLibertyParameters
+from talbot.flow.layout.steps.sta import Sta, StaParameters
+from talbot.flow.layout.steps.sta_blocks import StaBlocks, StaBlocksParameters
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.layout.timing.spef import spef
 
 TOOLS = [tool for tool in ("sta", "yosys") if not shutil.which(tool)]
 pytestmark = pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)}: not found; install it with: make tools")

@@ -6,14 +6,14 @@ import shutil
 
 import pytest
 
-from base.steps import StepError
-from base.tools import run
-from flow.layout.design import DESIGNS
-from flow.layout.netlist.test import shift_register as small
-from flow.layout.steps import power, sta
-from flow.layout.timing import boundary
-from flow.layout.timing.constraints import sdc
-from flow.layout.timing.spef import spef
+from talbot.base.steps import StepError
+from talbot.base.tools import run
+from talbot.flow.layout.design import DESIGNS
+from talbot.flow.layout.netlist.test import shift_register as small
+from talbot.flow.layout.steps import power, sta
+from talbot.flow.layout.timing import boundary
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.layout.timing.spef import spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 SCRIPTS = {

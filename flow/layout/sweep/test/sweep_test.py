@@ -1,10 +1,10 @@
 """The front of a set of points, plots of points that did not close, names that are not there."""
 
-from base.charts import save
-from base.command import main
-from flow.layout.sweep import command
-from flow.layout.sweep.plots import effort_plot, front, pareto_plot
-from flow.layout.sweep.points import candidates
+from talbot.base.charts import save
+from talbot.base.command import main
+from talbot.flow.layout.sweep import command
+from talbot.flow.layout.sweep.plots import effort_plot, front, pareto_plot
+from talbot.flow.layout.sweep.points import candidates
 
 
 def test_the_front_is_what_nothing_beats():

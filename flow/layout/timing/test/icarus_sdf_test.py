@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from base.tools import finish, run
+from talbot.base.tools import finish, run
 
 pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
 VERILOG = """`timescale 1ns/1ps

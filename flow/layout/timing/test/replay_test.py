@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from flow.layout.netlist.netlist import Instance
-from flow.layout.netlist.test import shift_register as small
-from flow.layout.timing import delays
-from flow.layout.timing.replay import SETTLED, Timing, replay
+from talbot.flow.layout.netlist.netlist import Instance
+from talbot.flow.layout.netlist.test import shift_register as small
+from talbot.flow.layout.timing import delays
+from talbot.flow.layout.timing.replay import SETTLED, Timing, replay
 
 pytestmark = pytest.mark.skipif(not shutil.which("iverilog"), reason="iverilog: not found; install it with: make tools")
 SDF = """(DELAYFILE (SDFVERSION "3.0")

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from base.command import main
-from base.tools import ToolError
-from flow.simulate.divider import exhaustive
-from flow.simulate.divider.exhaustive import Divider, compare, every_input, measure, pack, row, unpack
-from flow.simulate.divider.simulator import program, simulate
-from models.digital.divider import QuadResult, quad_divide
-from models.parameters import DIVIDERS
-from rtl.messages import DivReq, div_resp
-from rtl.quad_divider import timing
+from talbot.base.command import main
+from talbot.base.tools import ToolError
+from talbot.flow.simulate.divider import exhaustive
+from talbot.flow.simulate.divider.exhaustive import Divider, compare, every_input, measure, pack, row, unpack
+from talbot.flow.simulate.divider.simulator import program, simulate
+from talbot.models.digital.divider import QuadResult, quad_divide
+from talbot.models.parameters import DIVIDERS
+from talbot.rtl.messages import DivReq, div_resp
+from talbot.rtl.quad_divider import timing
 
 X, Y = every_input()
 

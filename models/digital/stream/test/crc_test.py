@@ -3,10 +3,10 @@ import zlib
 import numpy as np
 import pytest
 
-from models.digital.stream.crc import crc16, one_byte_errors
-from models.digital.stream.payload import crc16_span
-from models.digital.stream.trailer import COUNTED_BYTES
-from models.parameters.stream_format import FIELD_BYTES
+from talbot.models.digital.stream.crc import crc16, one_byte_errors
+from talbot.models.digital.stream.payload import crc16_span
+from talbot.models.digital.stream.trailer import COUNTED_BYTES
+from talbot.models.parameters.stream_format import FIELD_BYTES
 
 
 def test_check_values_of_the_catalogue():

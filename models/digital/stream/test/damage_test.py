@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked, segments
-from models.digital.stream.payload import check_segment
-from models.digital.stream.test.frames import header_of, headers, samples_of
-from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
+from talbot.models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked, segments
+from talbot.models.digital.stream.payload import check_segment
+from talbot.models.digital.stream.test.frames import header_of, headers, samples_of
+from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
 FRAMES = {
     "edge": header_of(12, 30, threshold=4, resync=0),

@@ -2,9 +2,9 @@ from pathlib import Path
 
 import pytest
 
-from models.digital.stream import decode_stream
-from models.digital.stream.test.examples import EXAMPLES, small_frame
-from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
+from talbot.models.digital.stream import decode_stream
+from talbot.models.digital.stream.test.examples import EXAMPLES, small_frame
+from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
 DOCUMENT = (Path(__file__).parents[4] / "docs" / "stream.md").read_text()
 

@@ -1,11 +1,11 @@
-"""The worked examples of docs/stream.md, written by the encoder: `python -m models.digital.stream.test.examples`."""
+"""The worked examples of docs/stream.md, written by the encoder: `python -m talbot.models.digital.stream.test.examples`."""
 
 import numpy as np
 
-from models.digital.stream import StreamHeader, encode_frame, encode_marked
-from models.digital.stream.payload import START, base_of, code_sample
-from models.parameters import FrameParameters, Window
-from models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES
+from talbot.models.digital.stream import StreamHeader, encode_frame, encode_marked
+from talbot.models.digital.stream.payload import START, base_of, code_sample
+from talbot.models.parameters import FrameParameters, Window
+from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES
 
 FIELDS = (
     ("magic", 4),

@@ -3,8 +3,8 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from models.digital.stream import StreamHeader
-from models.parameters import LANES, MODES, AmpTiming, FrameParameters, ParameterError, Window
+from talbot.models.digital.stream import StreamHeader
+from talbot.models.parameters import LANES, MODES, AmpTiming, FrameParameters, ParameterError, Window
 
 
 def header_of(rows, cols, lanes=8, **frame):

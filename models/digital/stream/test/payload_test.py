@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.stream import encode_payload
-from models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_segment, row_bytes_max
+from talbot.models.digital.stream import encode_payload
+from talbot.models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_segment, row_bytes_max
 
 CODES = st.lists(st.one_of(st.just(0), st.integers(-128, 127), st.integers(-3, 3)), max_size=300)
 

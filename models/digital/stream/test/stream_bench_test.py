@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from models.digital.stream import decode_stream, encode_frame
-from models.digital.stream.test.frames import header_of, samples_of
+from talbot.models.digital.stream import decode_stream, encode_frame
+from talbot.models.digital.stream.test.frames import header_of, samples_of
 
 CASES = {
     "noise": ("edge", 0, 1),

@@ -3,11 +3,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from models.digital.stream import StreamError, StreamHeader, decode, decode_stream, encode_frame, iterate_frames
-from models.digital.stream.header import read_header
-from models.digital.stream.test.frames import header_of, headers, samples_of
-from models.parameters import FrameParameters, ParameterError, PixelType, TileParameters, Window
-from models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from talbot.models.digital.stream import StreamError, StreamHeader, decode, decode_stream, encode_frame, iterate_frames
+from talbot.models.digital.stream.header import read_header
+from talbot.models.digital.stream.test.frames import header_of, headers, samples_of
+from talbot.models.parameters import FrameParameters, ParameterError, PixelType, TileParameters, Window
+from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 
 @settings(max_examples=150, deadline=None)

@@ -1,7 +1,7 @@
 """The register map: its source and its document agree."""
 
-from models.parameters import MODES
-from models.parameters.registers import register_map
+from talbot.models.parameters import MODES
+from talbot.models.parameters.registers import register_map
 
 CHIP = register_map()
 
