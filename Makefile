@@ -105,6 +105,10 @@ verify: $(TESTS_READY) $(LAYOUT_READY)  ## all of the verification: build/verify
 	@bash requirements/tools.sh --missing iverilog yosys z3
 	@$(talbot) verify
 
+.PHONY: index
+index: $(READY)  ## build/index.html: all results that are there (every target brings it up to date, too)
+	@$(talbot) index
+
 .PHONY: verilog
 verilog: $(READY)  ## build/verilog/<top>.sv, linted, and <top>.core for FuseSoC
 	@$(talbot) verilog --out build/verilog --core --check
@@ -124,6 +128,10 @@ formats: $(TESTS_READY)  ## stream formats, scan orders and general coders compa
 .PHONY: document
 document: $(TESTS_READY)  ## the documents for a host: docs/registers.*, docs/host.md's tables, C header; HTML, IP-XACT: build/registers/
 	@$(talbot) document
+
+.PHONY: site
+site: $(TESTS_READY)  ## the documents site from READMEs, docs/, docstrings, RTL and test plans: build/site/index.html
+	@$(talbot) site
 
 .PHONY: sizes
 sizes: $(READY)  ## cells and gate equivalents of every block (needs Yosys: make tools)

@@ -6,6 +6,7 @@ whatever --hypothesis-seed says, but with --hypothesis-profile=seeded.
 """
 
 import importlib.util
+import os
 import re
 from collections import Counter
 from pathlib import Path
@@ -19,7 +20,8 @@ settings.register_profile("smallest", phases=list(Phase))
 settings.load_profile("first")
 
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
-LAYOUTS = "cells/extract", "cells/compact", "cells/lef", "cells/test"
+LAYOUTS = "talbot/cells/extract", "talbot/cells/compact", "talbot/cells/lef", "talbot/cells/test"
+PACKAGE = Path(__file__).parent / "talbot"
 NETLISTS = pytest.StashKey()  # rtl.harness.netlists.Netlists of --netlist
 SLOW = "slow: make verify, or pytest --all"
 # What neither Debian nor PyPI has, or a machine cannot do: skipped with --complete, too
@@ -65,6 +67,7 @@ def pytest_addoption(parser):
 
 def pytest_configure(config):
     config.addinivalue_line("markers", "slow: runs with --all only")
+    config.args[:] = [in_package(argument, config.invocation_params.dir) for argument in config.args]
     if not config.getoption("netlist"):
         return
     from talbot.models.parameters import ParameterError
@@ -81,6 +84,14 @@ def pytest_configure(config):
     substitutes = hooked(substitute=config.stash[NETLISTS].substitute)
     substitutes.__enter__()
     config.add_cleanup(lambda: substitutes.__exit__(None, None, None))
+
+
+def in_package(argument, folder):
+    """``argument``, a path from ``folder`` or a node id, through its part's link: models/x_test.py::test is
+    talbot/models/x_test.py::test, so that no file is imported as two modules."""
+    name, *node = argument.partition("::")
+    path = Path(os.path.relpath(folder / name, PACKAGE.parent))
+    return f"{PACKAGE / path}{''.join(node)}" if PACKAGE.joinpath(*path.parts[:1]).is_symlink() else argument
 
 
 def pytest_collection_modifyitems(config, items):

@@ -2,24 +2,34 @@
 
 import io
 import re
+import textwrap
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import BinaryIO
 
+import numpy as np
+from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+from matplotlib.transforms import Bbox
 
+# Of a label beside its point: offset in points, alignment
+PLACES = ((5, 3, "left", "bottom"), (5, -3, "left", "top"), (-5, 3, "right", "bottom"), (-5, -3, "right", "top"))
+PLACES += ((0, 7, "center", "bottom"), (0, -7, "center", "top"))
 COLOURS = ("#4878a8", "#e8a33d", "#7aa874", "#b8678f", "#8a8f99", "#c9574b")
 
 
-def svg(figure: Figure) -> str:
-    """SVG text of a figure, for a page."""
+def svg(figure: Figure) -> Markup:
+    """SVG of a figure, for a page: black is the page's ink, white its paper."""
     FigureCanvasSVG(figure)
     out = io.StringIO()
-    figure.savefig(out, format="svg", bbox_inches="tight", metadata={"Date": None})
-    text = out.getvalue()
-    return re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg") :], count=1)
+    figure.savefig(out, format="svg", bbox_inches="tight", transparent=True, metadata={"Date": None})
+    text = out.getvalue().replace("#000000", "currentColor")
+    return Markup(re.sub(r'width="[\d.]+pt" height="[\d.]+pt"', "", text[text.index("<svg") :], count=1))
 
 
 def save(figure: Figure, path: Path | BinaryIO) -> None:
@@ -40,7 +50,7 @@ def bars(parts: Mapping[str, float], unit: str, title: str) -> Figure:
         text = f"{parts[name]:,.0f}" if parts[name] >= 1000 else f"{parts[name]:.4g}"
         axes.text(parts[name], i, f" {text} {unit}{share}", va="center", fontsize=8)
     axes.set_xlim(0, 1.55 * max(parts.values(), default=1) or 1)
-    axes.set_title(title, fontsize=10, loc="left")
+    _titled(axes, title)
     axes.xaxis.set_visible(False)
     for side in ("top", "right", "bottom"):
         axes.spines[side].set_visible(False)
@@ -57,32 +67,68 @@ def curves(
     log_y: bool = False,
     mark: tuple[float, float] | None = None,
 ) -> Figure:
-    """Draw lines with markers. series: name -> points (x, y, label or ''); mark: one (x, y) to circle."""
-    figure = Figure(figsize=(4.6, 3.1))
+    """Draw lines with markers. series: name -> points (x, y, label or ''); mark: one (x, y) to circle.
+
+    A label that has no place beside its point is left out.
+    """
+    legend_rows = -(-len(series) // 2) if len(series) > 1 else 0
+    figure = Figure(figsize=(4.6, 3.2 + 0.18 * legend_rows), layout="constrained")
     axes = figure.add_subplot()
     for i, (name, points) in enumerate(series.items()):
-        axes.plot(
-            [p[0] for p in points],
-            [p[1] for p in points],
-            "o-",
-            color=COLOURS[i % len(COLOURS)],
-            label=name,
-            markersize=4,
-        )
-        for x, y, label in points:
-            if label:
-                axes.annotate(label, (x, y), textcoords="offset points", xytext=(4, 4), fontsize=7)
+        x, y = ([point[k] for point in points] for k in (0, 1))
+        style = "o-" if i < len(COLOURS) else "s--"
+        axes.plot(x, y, style, color=COLOURS[i % len(COLOURS)], label=name, markersize=4, linewidth=1.2)
     if mark:
         axes.plot(*mark, "o", markersize=12, fillstyle="none", color="#c9574b")
-    if log_x:
-        axes.set_xscale("log")
-    if log_y:
-        axes.set_yscale("log")
-    if len(series) > 1:
-        axes.legend(fontsize=8, frameon=False)
+    for axis, scale, log in ((axes.xaxis, axes.set_xscale, log_x), (axes.yaxis, axes.set_yscale, log_y)):
+        if log:
+            scale("log")
+            values = [y if axis is axes.yaxis else x for points in series.values() for x, y, _ in points]
+            if values and max(values) < 300 * min(values):
+                axis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
+                axis.set_major_formatter(FuncFormatter(_number))
+            axis.set_minor_locator(NullLocator())
+    axes.margins(0.09)
     axes.set_xlabel(x_label, fontsize=9)
     axes.set_ylabel(y_label, fontsize=9)
-    axes.set_title(title, fontsize=10, loc="left")
+    _titled(axes, title)
     axes.grid(alpha=0.25)
     axes.tick_params(labelsize=8)
+    if len(series) > 1:
+        figure.legend(fontsize=8, frameon=False, loc="outside lower left", ncols=2)
+    place_labels(axes, [point for points in series.values() for point in points])
     return figure
+
+
+def place_labels(axes: Axes, points: Sequence[tuple[float, float, str]], size: float = 7) -> None:
+    """Write the labels of ``points`` (x, y, label or '') beside them, over no other label, point or line."""
+    figure = axes.figure
+    canvas = FigureCanvasAgg(figure)  # pyright: ignore[reportArgumentType]
+    canvas.draw()  # the layout is that of the finished figure
+    at = axes.transData.transform([point[:2] for point in points]) if points else []
+    taken = [Bbox.from_extents(x - 3, y - 3, x + 3, y + 3) for x, y in at]
+    for line in axes.lines:
+        ends = axes.transData.transform(np.column_stack(line.get_data(orig=False)).astype(float))
+        for start, end in pairwise(ends[np.isfinite(ends).all(1)] if line.get_linestyle() != "None" else ()):
+            steps = np.linspace(start, end, 2 + int(np.hypot(*(end - start)) // 3))
+            taken += [Bbox.from_extents(x - 1, y - 1, x + 1, y + 1) for x, y in steps]
+    inside = axes.get_window_extent()
+    for (x, y, label), own in zip(points, taken[: len(points)], strict=True):
+        for dx, dy, across, up in PLACES if label else ():
+            text = axes.annotate(
+                label, (x, y), (dx, dy), textcoords="offset points", fontsize=size, ha=across, va=up, in_layout=False
+            )
+            box = text.get_window_extent(canvas.get_renderer())
+            free = inside.x0 <= box.x0 and box.x1 <= inside.x1 and inside.y0 <= box.y0 and box.y1 <= inside.y1
+            if free and not any(box.overlaps(other) for other in taken if other is not own):
+                taken.append(box)
+                break
+            text.remove()
+
+
+def _number(value: float, _: object) -> str:
+    return f"{value:,.0f}" if 1000 <= value < 1e7 else f"{value:g}"
+
+
+def _titled(axes: Axes, title: str) -> None:
+    axes.set_title(textwrap.fill(title, 52), fontsize=10, loc="left")

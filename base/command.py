@@ -56,7 +56,7 @@ def add_command(parser: argparse.ArgumentParser, command: ModuleType) -> None:
 def main(command: ModuleType, argv: Sequence[str] | None = None) -> int:
     """Exit status of ``command`` alone: for processes that our code starts, and for tests."""
     spec = command.__spec__
-    parser = Parser(prog=spec.name.removesuffix(".command") if spec else command.__name__)
+    parser = Parser(prog=spec.name.removeprefix("talbot.").removesuffix(".command") if spec else command.__name__)
     add_command(parser, command)
     return execute(parser, argv)
 

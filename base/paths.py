@@ -1,10 +1,11 @@
-"""Where the repository and what is built from it are."""
+"""Where the package, the repository and what is built from it are."""
 
 from pathlib import Path
 
 from platformdirs import user_cache_path
 
-ROOT = Path(__file__).parents[1]
+PACKAGE = Path(__file__).parents[1]  # the folder talbot, as Python found it: in a checkout its parts are links
+ROOT = PACKAGE.parent  # the repository, or the folder of an installation's packages
 
 
 def build(root: Path) -> Path:

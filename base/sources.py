@@ -1,4 +1,4 @@
-"""The files of the repository that decide what a piece of code does, found in its text.
+"""The files of the package that decide what a piece of code does, found in its text.
 
 From a module on, the closure of: what it imports (a re-export leads to the file that defines the name), modules that
 its strings name (``[sys.executable, "-m", "talbot.rtl.export"]``, ``import_module("a.b")``, f-strings as
@@ -15,7 +15,7 @@ from itertools import accumulate
 from pathlib import Path
 
 from .cache import digest
-from .paths import ROOT
+from .paths import PACKAGE, ROOT
 
 DATA = frozenset(
     (".md", ".toml", ".sv", ".v", ".cpp", ".vlt", ".rdl", ".tcl", ".lib", ".html", ".css", ".js", ".json", ".yaml")
@@ -64,17 +64,17 @@ class Syntax:
 
 
 class Tree:
-    """The Python modules and data files below ``root`` and what each of them refers to, by text alone."""
+    """The Python modules and data files of the package in ``root`` and what each refers to, by text alone."""
 
     def __init__(self, root: Path = ROOT) -> None:
-        self.root = root
+        self.root, self.package = root, root / PACKAGE.name
         self._texts: dict[str, Text] = {}
 
     @cached_property
     def modules(self) -> dict[str, Path]:
-        """Every module by its dotted name; a package is its __init__.py."""
-        found = {}
-        for path in _files(self.root, (".py",)):
+        """Every module by its dotted name, and conftest; a package is its __init__.py."""
+        found = {"conftest": path} if (path := self.root / "conftest.py").exists() else {}
+        for path in _files(self.package, (".py",)):
             parts = path.relative_to(self.root).with_suffix("").parts
             found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
         return found
@@ -83,12 +83,12 @@ class Tree:
     def data(self) -> dict[str, list[Path]]:
         """Data files by their name without folders."""
         found: dict[str, list[Path]] = {}
-        for path in _files(self.root, DATA):
+        for path in _files(self.package, DATA):
             found.setdefault(path.name, []).append(path)
         return found
 
     def closure(self, starts: Iterable[str | Path], chosen: Mapping[str, str] | None = None) -> list[Path]:
-        """All files that decide what ``starts`` (dotted names; files and folders below the root) do, ascending.
+        """All files that decide what ``starts`` (dotted names; files and folders of the package) do, ascending.
 
         chosen: package -> the one of its members that an f-string with that package in front means; without it all
         that fit. Raises KeyError for a start that is none.
@@ -110,9 +110,9 @@ class Tree:
             if isinstance(start, str) and start in self.modules:
                 yield Reference(start)
                 continue
-            path = self.root / start
-            if not path.exists():
-                raise KeyError(f"{start}: neither a module nor a file of {self.root}")
+            path = next((path for path in (self.package / start, self.root / start) if path.exists()), None)
+            if not path:
+                raise KeyError(f"{start}: neither a module nor a file of {self.package}")
             for file in [path] if path.is_file() else _files(path, (".py",)):
                 yield Reference(names[file])
 
@@ -124,8 +124,8 @@ class Tree:
         more = [*(found for _, found in text.imports), *map(Reference, text.named)]
         for pattern in text.patterns:
             more += [Reference(name) for name in self.modules if re.fullmatch(pattern, name) and _meant(name, chosen)]
-        parents = accumulate(reference.module.split(".")[:-1], "{}.{}".format)
-        more += [Reference(name) for name in parents if name in self.modules and not self._text(name).plain]
+        _, *parents = accumulate(reference.module.split("."), "{}.{}".format)  # talbot itself loads nothing
+        more += [Reference(name) for name in parents[:-1] if name in self.modules and not self._text(name).plain]
         return text, more
 
     def _text(self, module: str) -> Text:
@@ -234,8 +234,10 @@ def _patterns(nodes: list[ast.AST]) -> Iterator[str]:
 
 
 def _meant(name: str, chosen: Mapping[str, str]) -> bool:
-    package, _, rest = name.partition(".")
-    return package not in chosen or rest.partition(".")[0] == chosen[package]
+    return all(
+        not name.startswith(f"{package}.") or f"{name}.".startswith(f"{package}.{one}.")
+        for package, one in chosen.items()
+    )
 
 
 def _plain(tree: ast.Module) -> bool:
@@ -256,7 +258,7 @@ def _tree(root: Path) -> Tree:
 
 
 def modules(root: Path = ROOT) -> Mapping[str, Path]:
-    """Every module of the repository by its dotted name."""
+    """Every module of the package by its dotted name."""
     return _tree(root).modules
 
 
@@ -269,8 +271,9 @@ def _code(root: Path, starts: tuple[str | Path, ...], chosen: tuple[tuple[str, s
 def code(*starts: str | Path, chosen: Mapping[str, str] | None = None, root: Path = ROOT) -> str:
     """Digest of all files that decide what ``starts`` do: text for a key of `base.cache`.
 
-    starts: dotted names of modules, or files and folders relative to ``root``; a module from elsewhere decides by its
-    version, which is not looked at here. chosen: see `Tree.closure`. Computed once in a process for the same arguments.
+    starts: dotted names of modules, or files and folders relative to the package or ``root``; a module from elsewhere
+    decides by its version, which is not looked at here. chosen: see `Tree.closure`. Computed once in a process for the
+    same arguments.
     """
     inside = modules(root)
     starts = tuple(start for start in starts if not isinstance(start, str) or start in inside or "/" in start)

@@ -7,10 +7,14 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
+from talbot.base.cases import write_page
+from talbot.base.files import check_folder
+from talbot.base.paths import RESULTS
 from talbot.cells import sources
 from talbot.cells.characterize import delay, tristate
 from talbot.cells.characterize.bench import Bench
@@ -136,10 +140,13 @@ def _case(name: str, bound: str, seconds: float, ok: bool | np.bool_) -> Case:
 
 
 def add_arguments(parser: ArgumentParser) -> None:
-    """Options of `talbot cells-stability`: none."""
+    """Options of `talbot cells-stability`."""
+    parser.add_argument("--out", type=Path, default=RESULTS / "cells" / "stability", help="folder of the page")
 
 
 def run(options: Namespace) -> int:
-    """Print the table of all cases; 1 where a bound is missed."""
+    """Print the table of all cases and write it as a page; 1 where a bound is missed."""
+    check_folder("out", options.out)
     print(table(found := cases()))
+    write_page(options.out, "Stiff and extreme cases of the characterizer", "make cells-stability", found)
     return 0 if all(case.ok for case in found) else 1

@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
+from talbot.base.cases import write_page
 from talbot.base.files import check_folder, staged
+from talbot.base.paths import RESULTS
 from talbot.flow.frame import job
 from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
@@ -42,15 +44,18 @@ FRAMES = (
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot stability`."""
+    parser.add_argument("--out", type=Path, default=RESULTS / "stability", help="folder of the page")
     parser.add_argument("--json", type=Path, help="also write the table to this file")
 
 
 def run(options: Namespace) -> int:
-    """Print the table of all cases; 1 where a bound is missed."""
+    """Print the table of all cases and write it as a page; 1 where a bound is missed."""
+    check_folder("out", options.out)
     if options.json:
         check_folder("json", options.json.parent)
     cases = all_cases()
     print(table(cases))
+    write_page(options.out, "Stiff and extreme cases", "of the optics and of the chip; make stability", cases)
     if options.json:
         with staged(options.json.parent) as part:
             (part / options.json.name).write_text(json.dumps([vars(case) for case in cases], indent=1) + "\n")

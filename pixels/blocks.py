@@ -15,7 +15,8 @@ ROW_PHASES = {"pixel_reset": 1, "shutter": 1, "integrate": 1, "read": 1, "tap": 
 DIODES = "a", "b"
 ROW_BITS, GROUP_BITS, K_BITS, BALANCE_BITS, CODE_BITS = 10, 8, 3, 10, 8
 # Inputs of the blocks from the chip, bits each: phases of the amplifiers; position and trim as in pixels/afe.sv
-DRIVER_IN = {"amp_row": ROW_BITS} | ROW_PHASES
+# The row driver keeps for each row whether it is open: set by `expose`, cleared by its own `integrate` or `pixel_reset`
+DRIVER_IN = {"amp_row": ROW_BITS, "reset_row": ROW_BITS, "expose": 1} | ROW_PHASES
 COLUMNS_IN = {
     "ref_ctl": 1,
     "cm_reset": 1,

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 from types import ModuleType
 
 from talbot.base.command import Parser, add_command, execute
+from talbot.base.page import index
+from talbot.base.paths import RESULTS
 
 from .make import arguments
 
@@ -32,6 +34,7 @@ COMMANDS = {
     "verilog": ("talbot.rtl.export", "the chip and its blocks as Verilog, linted"),
     "replay": ("talbot.rtl.replay.command", "a block's ports recorded in its tests, replayed into any Verilog of it"),
     "document": ("talbot.flow.host.document.command", "the documents for a host: register map, pins, tile, C header"),
+    "site": ("talbot.site.command", "the documents site: READMEs, docs, API, architecture, gallery"),
     "footprints": ("talbot.pixels.footprints", "footprints of the analog blocks: LEF and GDS"),
     "cells": ("talbot.cells.command", "a cell library characterized at one corner"),
     "cells-report": ("talbot.cells.report.command", "the characterizer against a foundry's tables"),
@@ -50,6 +53,7 @@ COMMANDS = {
     ),
     "suite": ("talbot.verif.suite.command", "every test, counted by block and level"),
     "verify": ("talbot.verif.report.command", "all of these six, and their report"),
+    "index": ("talbot.base.page.command", "the page over all results; every command brings it up to date, too"),
     "handoff": ("talbot.flow.handoff.command", "one archive of a finished layout"),
 }
 
@@ -78,4 +82,7 @@ def main(argv: Sequence[str]) -> int:
         alone = Parser(prog=f"talbot {name}")
         add_command(alone, command(name))
         words = [name, *arguments(alone, given, fixed)]
-    return execute(parser(words[0] if words else ""), words)
+    status = execute(parser(words[0] if words else ""), words)
+    if status in (0, 1):
+        index.refresh(RESULTS)
+    return status

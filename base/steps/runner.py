@@ -132,7 +132,7 @@ def source_of(step: Step[Any], root: Path = ROOT) -> str:
     inside = [name for name in names if name in modules(root)]
     outside = [inspect.getsource(sys.modules[name]) for name in names if name not in inside]
     pdk = getattr(step.parameters, "pdk", None)
-    chosen = {"platforms": pdk.replace("-", "_")} if isinstance(pdk, str) else {}
+    chosen = {"talbot.platforms": pdk.replace("-", "_")} if isinstance(pdk, str) else {}
     return digest(code(*inside, *step.starts(), chosen=chosen, root=root), *outside)
 
 

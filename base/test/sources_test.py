@@ -1,5 +1,7 @@
 """What decides a piece of code: imports, re-exports, names in strings, processes, data files; nothing else."""
 
+import os
+
 import pytest
 
 from talbot.base.sources import Tree, code
@@ -13,62 +15,64 @@ FILES = {
     "state/__init__.py": "import talbot.models.own\nready = True\n",
     "state/part.py": "",
     "tool/__init__.py": "",
-    "tool/__main__.py": "from tool.inner import main\n",
+    "tool/__main__.py": "from talbot.tool.inner import main\n",
     "tool/inner.py": 'PAGE = "page.html"\n',
     "tool/page.html": "<p>",
     "other/page.html": "<i>",
-    "plain/x.py": "from pkg import used\n",
-    "plain/process.py": 'import sys\ncommand = [sys.executable, "-m", "tool"]\n',
-    "plain/program.py": 'PROGRAM = "import sys; from tool.inner import main; main()"\n',
+    "plain/x.py": "from talbot.pkg import used\n",
+    "plain/process.py": 'import sys\ncommand = [sys.executable, "-m", "talbot.tool"]\n',
+    "plain/program.py": 'PROGRAM = "import sys; from talbot.tool.inner import main; main()"\n',
     "plain/chosen.py": 'def of(name):\n    return import_module(f"talbot.platforms.{name}.layers")\n',
-    "plain/lazy.py": "def f():\n    from state import part\n    return part\n",
+    "plain/lazy.py": "def f():\n    from talbot.state import part\n    return part\n",
     "plain/tests.py": 'command = ["python", "-m", "pytest"]\n',
     "plain/tests_started.py": 'PROGRAM = "import sys, pytest; sys.exit(pytest.main())"\n',
     "plain/documented.py": '"""As tool.inner does; see page.html."""\n',
     "platforms/a/layers.py": "A = 1\n",
     "platforms/b/layers.py": "B = 1\n",
-    "conftest.py": "import talbot.models.own\n",
+    "__init__.py": "from .models.own import Own\nlazy = 1\n",
+    "../conftest.py": "import talbot.models.own\n",
 }
 
 
 @pytest.fixture
 def root(tmp_path):
     for name, text in FILES.items():
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).write_text(text)
+        path = tmp_path / "talbot" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
     return tmp_path
 
 
 @pytest.mark.parametrize(
     "start, chosen, files",
     [
-        ("plain.x", {}, "plain/x.py pkg/near.py models/deep.py"),
-        ("pkg", {}, "pkg/__init__.py pkg/near.py pkg/other.py models/deep.py"),
-        ("plain.process", {}, "plain/process.py tool/__init__.py tool/__main__.py tool/inner.py tool/page.html"),
-        ("plain.program", {}, "plain/program.py tool/inner.py tool/page.html"),
-        ("plain.chosen", {}, "plain/chosen.py platforms/a/layers.py platforms/b/layers.py"),
-        ("plain.chosen", {"platforms": "a"}, "plain/chosen.py platforms/a/layers.py"),
-        ("plain.lazy", {}, "plain/lazy.py state/part.py state/__init__.py models/own.py"),
-        ("plain.tests", {}, "plain/tests.py conftest.py models/own.py"),
-        ("plain.tests_started", {}, "plain/tests_started.py conftest.py models/own.py"),
-        ("plain.documented", {}, "plain/documented.py"),
+        ("talbot.plain.x", {}, "plain/x.py pkg/near.py models/deep.py"),
+        ("talbot.pkg", {}, "pkg/__init__.py pkg/near.py pkg/other.py models/deep.py"),
+        ("talbot.plain.process", {}, "plain/process.py tool/__init__.py tool/__main__.py tool/inner.py tool/page.html"),
+        ("talbot.plain.program", {}, "plain/program.py tool/inner.py tool/page.html"),
+        ("talbot.plain.chosen", {}, "plain/chosen.py platforms/a/layers.py platforms/b/layers.py"),
+        ("talbot.plain.chosen", {"talbot.platforms": "a"}, "plain/chosen.py platforms/a/layers.py"),
+        ("talbot.plain.lazy", {}, "plain/lazy.py state/part.py state/__init__.py models/own.py"),
+        ("talbot.plain.tests", {}, "plain/tests.py ../conftest.py models/own.py"),
+        ("talbot.plain.tests_started", {}, "plain/tests_started.py ../conftest.py models/own.py"),
+        ("talbot.plain.documented", {}, "plain/documented.py"),
         ("platforms/a", {}, "platforms/a/layers.py"),
     ],
 )
 def test_what_decides(root, start, chosen, files):
-    start = root / start if "/" in start else start
-    assert {str(path.relative_to(root)) for path in Tree(root).closure([start], chosen)} == set(files.split())
+    found = {os.path.relpath(path, root / "talbot") for path in Tree(root).closure([start], chosen)}
+    assert found == set(files.split())
 
 
 def test_another_text_is_another_digest(root):
-    before, other = code("plain.x", root=root), code("plain.process", root=root)
-    (root / "models/deep.py").write_text("value = 2\n")
+    before, other = code("talbot.plain.x", root=root), code("talbot.plain.process", root=root)
+    (root / "talbot/models/deep.py").write_text("value = 2\n")
     code_now = Tree(root)
-    assert root / "models/deep.py" in code_now.closure(["plain.x"])
+    assert root / "talbot/models/deep.py" in code_now.closure(["talbot.plain.x"])
     from talbot.base import sources
 
     sources.forget()
-    assert code("plain.x", root=root) != before and code("plain.process", root=root) == other
+    assert code("talbot.plain.x", root=root) != before and code("talbot.plain.process", root=root) == other
 
 
 def test_a_start_that_is_none(root):

@@ -22,6 +22,9 @@ BOUNDS = {"delay": (2, 8), "slew": (2, 8), "capacitance": (5, None), "leakage": 
 BOUNDS |= {"setup": (15, None), "hold": (15, None)}
 
 
+TABLES = "curve", "off_grid", "variants"
+
+
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot cells-report`."""
     parser.add_argument("--reference", type=Path, help="folder of <cell>.lib.json; without it nothing is compared")
@@ -44,7 +47,7 @@ def run(options: Namespace) -> int:
     picture = pictures.error_against_time(found, curve.DEFAULT)
     page |= {"curve": found, "curve_picture": picture, "off_grid": curve.by_cell(measured)}
     with staged(options.out) as part:
-        (part / "index.html").write_text(render(Path(__file__).with_name("index.html"), **page))
+        (part / "index.html").write_text(html(page))
         figures = {name: page.get(name) for name in ("tables", "curve", "off_grid", "variants", "alone")}
         (part / "report.json").write_text(json.dumps(figures, indent=1) + "\n")
     for title, kinds in page["tables"].items():
@@ -57,6 +60,19 @@ def run(options: Namespace) -> int:
             print(f"{kind:16} {(errors + least).format(**e)}, {e['entries']} entries")
     print(options.out / "index.html")
     return 0
+
+
+def html(page: dict[str, Any]) -> str:
+    """The page; of its values the rows of tables become texts."""
+    rows = {name: [list(map(_text, row)) for row in page[name]] for name in TABLES if name in page}
+    rows["curve"] = [[f"{number}. {name}", *row] for number, (name, *row) in enumerate(rows["curve"], start=1)]
+    template, title = Path(__file__).with_name("index.html"), f"The characterizer at {page['corner']}"
+    values: dict[str, Any] = page | rows
+    return render(template, title, picture=None, listed=True, **values)
+
+
+def _text(value: object) -> str:
+    return f"{value:.2f}" if isinstance(value, float) else str(value)
 
 
 def against(conditions: Conditions, options: Namespace) -> dict[str, Any]:

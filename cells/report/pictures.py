@@ -1,28 +1,23 @@
 """Heat maps and curves as pictures inside the page."""
 
-import base64
 import io
 from collections.abc import Sequence
 
 import numpy as np
+from markupsafe import Markup
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from PIL import Image
 
+from talbot.base.charts import place_labels, svg
+from talbot.base.page import Picture
 from talbot.cells.liberty.compare import Difference
 from talbot.cells.report.curve import Setting
 
 SCALE = 15  # per cent at the ends of the colours
 
 
-def embedded(figure: Figure) -> str:
-    """The figure as the text of an <img src>."""
-    FigureCanvasAgg(figure)
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=80)
-    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()
-
-
-def heat_maps(differences: Sequence[Difference]) -> str:
+def heat_maps(differences: Sequence[Difference]) -> Picture:
     """Draw the relative error in per cent (of constraints ps) of every two-dimensional table of one cell."""
     tables = [d for d in differences if np.ndim(d.theirs) == 2 and np.isfinite(d.ours - d.theirs).all()]
     columns = 6
@@ -39,20 +34,25 @@ def heat_maps(differences: Sequence[Difference]) -> str:
             color = "white" if abs(value) > 0.7 * SCALE else "black"
             axis.text(j, i, str(round(value)), ha="center", va="center", fontsize=6, color=color)
         axis.set_title(f"{d.what}{' (ps)' if time else ' (%)'}", fontsize=6)
-    return embedded(figure)
+    FigureCanvasAgg(figure)
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=80)
+    caption = "rows: input slew (of constraints: the clock's); columns: load (the data's slew)"
+    return Picture(differences[0].cell if differences else "", "", caption, Image.open(buffer))
 
 
-def error_against_time(rows: Sequence[Setting], default: str) -> str:
+def error_against_time(rows: Sequence[Setting], default: str) -> Markup:
     """Draw the error against CPU seconds: median and 95th percentile; points have their numbers in ``rows``."""
-    axis = (figure := Figure(figsize=(9, 5), layout="constrained")).subplots()
+    axes = (figure := Figure(figsize=(6, 4), layout="constrained")).subplots()
+    points = []
     for number, (name, seconds, median, high) in enumerate(rows, start=1):
         marker = "s" if name.startswith("grid") else "o"
-        axis.plot([seconds, seconds], [median, high], "-", color="0.8", zorder=1)
-        axis.plot(seconds, median, marker, color="C0")
-        axis.plot(seconds, high, marker, color="C3", mfc="none")
-        weight, at = "bold" if name == default else "normal", (seconds, high)
-        axis.annotate(str(number), at, fontsize=8, weight=weight, xytext=(2, 3), textcoords="offset points")
+        axes.plot([seconds, seconds], [median, high], "-", color="0.6", zorder=1)
+        axes.plot(seconds, median, marker, color="C0")
+        axes.plot(seconds, high, marker, color="C3", mfc="none", markersize=11 if name == default else 6)
+        points.append((seconds, high, str(number)))
     label = "error in per cent: median, 95th percentile"
-    axis.set(xscale="log", yscale="log", xlabel="CPU seconds, three cells", ylabel=label)
-    axis.grid(alpha=0.3, which="both")
-    return embedded(figure)
+    axes.set(xscale="log", yscale="log", xlabel="CPU seconds, three cells", ylabel=label)
+    axes.grid(alpha=0.3, which="both")
+    place_labels(axes, points)
+    return svg(figure)

@@ -1,4 +1,4 @@
-"""Token formats and scan orders of the byte stream compared: build/formats/."""
+"""Token formats and scan orders of the byte stream compared, and the stream with general coders: build/formats/."""
 
 import sys
 import tempfile
@@ -19,7 +19,7 @@ from talbot.rtl.verilog import export_verilog
 from . import company
 from .codes import codes_of, load_codes
 from .measure import THRESHOLDS, growth, measure
-from .table import chart, markdown
+from .table import chart, lines, markdown, page, tables
 from .tokens import FORMATS
 
 DEFAULT_THRESHOLD = 10
@@ -28,7 +28,7 @@ DEFAULT_THRESHOLD = 10
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot formats`."""
     out = RESULTS / "formats"
-    parser.add_argument("--out", type=Path, default=out, help="folder of formats.csv, formats.md and formats.png")
+    parser.add_argument("--out", type=Path, default=out, help="folder of formats.csv, .md and .png, and of the page")
     parser.add_argument("--codes", type=Path, help="npz with codes and ideal, both (rows, cols), in place of the scene")
     parser.add_argument("--document", type=Path, help="also put the tables between the marks of this Markdown file")
 
@@ -39,23 +39,25 @@ def run(options: Namespace) -> int:
     source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
     rows = measure(codes, ideal, THRESHOLDS, lambda every: tqdm(every, desc="threshold", disable=None))
     growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
-    text = markdown(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD, source)
+    found = tables(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD)
     beside: list[dict[str, Any]] = []
     for name in [] if options.codes else tqdm(company.SCENES, desc="scene", disable=None):
         beside += company.compare(name, codes_of(name)[0])
-    tables = company.markdown(beside, DEFAULT_THRESHOLD) if beside else ""
+    in_company = company.tables(beside, DEFAULT_THRESHOLD) if beside else []
+    text = markdown(found, source)
     with staged(options.out) as part:
         write_csv(part / "formats.csv", rows)
-        (part / "formats.md").write_text(text)
         if beside:
             write_csv(part / "company.csv", beside)
-            (part / "company.md").write_text(tables)
+        (part / "formats.md").write_text(f"# Token formats and scan orders\n\n{text}\n{lines(in_company)}")
         save(chart(rows), part / "formats.png")
+        (part / "report.html").write_text(page([*found, *in_company], chart(rows), source))
     if options.document:
-        insert(options.document, "formats", text.split("\n", 2)[2].strip() + "\n")
+        insert(options.document, "formats", text)
         if beside:
-            insert(options.document, "company", tables)
-    print(text, tables, sep="\n", end="")
+            insert(options.document, "company", lines(in_company))
+    print(text, lines(in_company), sep="\n", end="")
+    print(f"look at {options.out / 'report.html'}", file=sys.stderr)
     return 0
 
 

@@ -16,6 +16,7 @@ from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 
 from .codes import Codes, entropy_bytes, thresholded
 from .orders import CHIP, segments_of
+from .table import Table
 
 SCENES = ("motorcycle", "astronaut", "camera", "chelsea", "coffee", "coins", "rocket", "text")
 LEVELS = (0, 2, 4, 7, 10, 14, 20)  # thresholds; the first two lie under the noise
@@ -66,35 +67,30 @@ def compare(name: str, codes: Codes, thresholds: Sequence[int] = LEVELS) -> list
     return rows
 
 
-def markdown(rows: Sequence[Mapping[str, Any]], threshold: int) -> str:
-    """Tables of the scenes at one ``threshold``, and of what is worst of all scenes at each. rows: of `compare`."""
+def tables(rows: Sequence[Mapping[str, Any]], threshold: int) -> list[Table]:
+    """The scenes at one ``threshold``, and what is worst of all scenes at each. rows: of `compare`."""
     names = "entropy", "stream", *CODERS
-
-    def line(cells: Sequence[object]) -> str:
-        return f"| {' | '.join(map(str, cells))} |"
 
     def worst(some: Sequence[Mapping[str, Any]], bound: Callable[[Mapping[str, Any]], float]) -> str:
         over, scene = max((r["stream"] / bound(r), r["scene"]) for r in some)
         return f"{over:.2f} ({scene})"
 
-    scenes = [r for r in rows if r["threshold"] == threshold]
-    out = [line(["scene", "not zero", *names]), "|---" + "|---:" * (len(names) + 1) + "|"]
-    out += [line([r["scene"], f"{100 * r['not_zero']:.2f} %", *(f"{r[n]:,}" for n in names)]) for r in scenes]
-    head = [
-        "threshold",
-        *names,
-        f"worst of {GOAL:g} entropy + {FIXED}",
-        "worst of zstd -19",
-        "worst of a byte a sample",
+    scenes = [
+        [r["scene"], f"{100 * r['not_zero']:.2f} %", *(f"{r[n]:,}" for n in names)]
+        for r in rows
+        if r["threshold"] == threshold
     ]
-    out += ["", line(head), "|---:" * len(head) + "|"]
+    levels = []
     for level in dict.fromkeys(r["threshold"] for r in rows):
         some = [r for r in rows if r["threshold"] == level]
-        totals = [f"{sum(r[n] for r in some):,}" for n in names]
         worsts = (
             worst(some, lambda r: GOAL * r["entropy"] + FIXED),
             worst(some, lambda r: r["zstd -19"]),
             worst(some, lambda r: r["samples"]),
         )
-        out.append(line([level, *totals, *worsts]))
-    return "\n".join(out) + "\n"
+        levels.append([level, *(f"{sum(r[n] for r in some):,}" for n in names), *worsts])
+    bounds = f"worst of {GOAL:g} entropy + {FIXED}", "worst of zstd -19", "worst of a byte a sample"
+    return [
+        Table(f"Scenes at a threshold of {threshold}, bytes of a frame:", ["scene", "not zero", *names], scenes),
+        Table("All scenes, sums of bytes:", ["threshold", *names, *bounds], levels),
+    ]

@@ -1,32 +1,36 @@
 """The measured comparison as Markdown and charts."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 from matplotlib.figure import Figure
 
-from talbot.base.charts import curves
+from talbot.base.charts import curves, svg
+from talbot.base.page import TABLES, Section, render
 
 from .orders import CHIP, ORDERS
 from .tokens import CHOSEN, FORMATS
 
 
-def _table(head: Sequence[str], rows: Iterable[Iterable[object]]) -> list[str]:
-    first, *lines = [f"| {' | '.join(map(str, cells))} |" for cells in (head, *rows)]
-    return [first, "|---" + "|---:" * (len(head) - 1) + "|", *lines]
+class Table(NamedTuple):
+    """A table after a text. rows: of anything that has a text, their first a name."""
+
+    text: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[object]]
+
+    def markdown(self) -> list[str]:
+        """Lines of Markdown."""
+        first, *lines = [f"| {' | '.join(map(str, cells))} |" for cells in (self.head, *self.rows)]
+        return [*([self.text, ""] if self.text else []), first, "|---" + "|---:" * (len(self.head) - 1) + "|", *lines]
 
 
-def markdown(
-    rows: Sequence[Mapping[str, Any]],
-    gates: Mapping[str, float] | None,
-    growths: Mapping[str, float],
-    threshold: int,
-    source: str,
-) -> str:
-    """The tables: formats at ``threshold`` in every order, the chosen one at every threshold.
+def tables(
+    rows: Sequence[Mapping[str, Any]], gates: Mapping[str, float] | None, growths: Mapping[str, float], threshold: int
+) -> list[Table]:
+    """Formats at ``threshold`` in every order, the orders, the chosen format at every threshold.
 
     rows: of `measure`. gates: format -> NAND2 equivalents, or None where Yosys is missing. growths: format -> ratio.
-    source: what was measured, in words.
     """
     at = [r for r in rows if r["threshold"] == threshold]
     ratios = {(r["order"], r["format"]): f"{r['ratio']:.2f}" for r in at}
@@ -45,25 +49,41 @@ def markdown(
         + [f"{r['ratio'] * r['bytes'] / r['stream']:.2f}", f"{r['entropy_ratio']:.2f}"]
         for r in chosen
     ]
-    out = [
-        "# Token formats and scan orders",
-        "",
-        f"Measured on {source}, by `talbot formats`.",
-        "",
+    about = (
         f"Threshold {threshold}: {at[0]['psnr_db']:.1f} dB, {share(at[0])} of the samples are "
         f"not zero, and their zero-order entropy allows {at[0]['entropy_ratio']:.2f} : 1. Compression (a byte a "
         "sample over all bytes of the frame, a mark after every part that the order cuts it into), what random codes "
-        "grow by, and gates of the packer:",
-        "",
-        *_table(["format", *ORDERS, "noise grows", "gates"], formats),
-        "",
-        *_table(["order", "must be held", "a wrong byte costs"], [[n, o.buffer, o.lost] for n, o in ORDERS.items()]),
-        "",
-        "The chip's stream, with its default segments:",
-        "",
-        *_table(["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"], thresholds),
+        "grow by, and gates of the packer:"
+    )
+    return [
+        Table(about, ["format", *ORDERS, "noise grows", "gates"], formats),
+        Table("", ["order", "must be held", "a wrong byte costs"], [[n, o.buffer, o.lost] for n, o in ORDERS.items()]),
+        Table(
+            "The chip's stream, with its default segments:",
+            ["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"],
+            thresholds,
+        ),
     ]
-    return "\n".join(out) + "\n"
+
+
+def markdown(found: Sequence[Table], source: str) -> str:
+    """The tables of the formats as Markdown. source: what was measured, in words."""
+    return f"Measured on {source}, by `talbot formats`.\n\n{lines(found)}"
+
+
+def lines(found: Sequence[Table]) -> str:
+    """Tables as Markdown."""
+    return "\n".join("\n".join([*table.markdown(), ""]) for table in found)
+
+
+def page(found: Sequence[Table], drawn: Figure, source: str) -> str:
+    """The tables and the chart of the formats as a page."""
+    sections = [Section(charts=[svg(drawn)])]
+    for table in found:
+        rows = [list(map(str, row)) for row in table.rows]
+        sections.append(Section(text=table.text, head=table.head, rows=rows))
+    about = f"measured on {source.replace('`', '')}, by make formats"
+    return render(TABLES, "Token formats and scan orders", about=about, sections=sections)
 
 
 def chart(rows: Sequence[Mapping[str, Any]]) -> Figure:

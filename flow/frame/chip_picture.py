@@ -21,7 +21,7 @@ def chip_svg(sensor: SensorParameters, frame: FrameParameters, width: float = 36
     parts += _lanes(sensor, x, y + h + 5, w)
     parts += [_rect(x - 20, y, 14, h, "#5f8f6a"), _text(x - 13, y + h / 2, "rows", 9, -90)]
     parts += [_rect(x, y + h + 32, w, 12, "#6b7b8d"), _text(x + w / 2, y + h + 41, "encoder, registers, SPI", 9)]
-    parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} um", 10))
+    parts.append(_text(width / 2, 14, f"die {side * 1e3:.3g} mm, pitch {pitch * 1e6:g} µm", 10))
     tile = _tile(sensor, frame, width + 24, 24, 46)
     view = f'viewBox="0 0 {width + 320} {width}" font-family="sans-serif"'
     return f'<svg xmlns="http://www.w3.org/2000/svg" {view}>{"".join(parts + tile)}</svg>'
@@ -61,7 +61,7 @@ def _lanes(sensor: SensorParameters, x: float, y: float, w: float) -> list[str]:
 def _tile(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, cell: float) -> list[str]:
     tile = sensor.tile
     title = "one tile: grating orientation and type; faded = not read"
-    parts = [_text(x, y - 8, title, 11, fill="#333", anchor="start")]
+    parts = [_text(x, y - 8, title, 11, fill="currentColor", anchor="start")]
     for position, number in enumerate(tile.order):
         kind = tile.types[number]
         px, py = x + position % tile.cols * cell, y + position // tile.cols * cell
@@ -79,5 +79,5 @@ def _tile(sensor: SensorParameters, frame: FrameParameters, x: float, y: float, 
     legend = y + tile.rows * cell + 20
     for i, beta in enumerate(sorted({t.beta for t in tile.types})):
         parts.append(_rect(x + 88 * i, legend, 12, 12, BETA_COLOURS.get(beta, GRAY)))
-        parts.append(_text(x + 88 * i + 17, legend + 10, f"beta {beta:g}", 11, fill="#333", anchor="start"))
+        parts.append(_text(x + 88 * i + 17, legend + 10, f"beta {beta:g}", 11, fill="currentColor", anchor="start"))
     return parts

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.cache import digest
 from talbot.base.progress import Steps
-from talbot.models.parameters import LANES, MODES, STANDARD, CameraParameters, read_sensor
+from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, STANDARD, CameraParameters, read_sensor
 
 from . import arguments as text
 
@@ -60,6 +60,10 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--types", default="all", help="pixel types: 0x<mask>, numbers 0..23, or groups " + ", ".join(text.TYPE_GROUPS))
     add("--window", default="full", help="tiles to read, inclusive: row0:row1,col0:col1")
     add("--decimation", default="0", help="log2 of the tile step, 0..3")
+    add("--lux", default="500", help="illuminance of white, 0.001..1000000; time of flight brings its own light")
+    add(
+        "--exposure", default="auto", help="rows by which the reset pointer leads, 0..1023 (default: as the light asks)"
+    )
     add("--lanes", default=Own("8"), help="converters, one of " + ", ".join(map(str, LANES)))
     add("--phase", action="store_true", help="tof mode: phase and amplitude from the chip's divider")
     add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
@@ -135,6 +139,8 @@ def _request(a: Namespace) -> "FrameRequest":
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
     plain = {name: typed[name] for name in ("scene", "depth", "mode", "phase", "out", "converter") if name in typed}
+    exposure = None if a.exposure == "auto" else text.integer("exposure", a.exposure, 0, EXPOSURE_MAX, also=" or auto")
+    lux = text.real("lux", a.lux, 1e-3, 1e6)
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)
     window = partial(text.window, a.window)
     return request(
@@ -147,6 +153,8 @@ def _request(a: Namespace) -> "FrameRequest":
         views=views,
         noise=noise,
         waves=waves,
+        lux=lux,
+        exposure=exposure,
     )
 
 
@@ -159,7 +167,7 @@ def _camera(a: Namespace, own: CameraParameters) -> CameraParameters:
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:
-    from .figures import camera_line, depth_line, energy_line, trims_line
+    from .figures import camera_line, depth_line, energy_line, exposure_line, trims_line
     from .report import against, decibels
 
     print(
@@ -167,6 +175,7 @@ def _print_figures(s: dict[str, Any], folder: Path) -> None:
         f"{s['stream_mismatches']} stream bytes and {s['decoded_mismatches']} decoded samples differ from the model"
     )
     print(f"  {camera_line(s)}")
+    print(f"  {exposure_line(s)}")
     print(
         f"  {s['stream_bytes']:,} bytes for {s['raw_bytes']:,} values ({s['compression_ratio']:.2f}:1); "
         f"SNR {decibels(s['snr_db'])} (nothing sent: {decibels(s['snr_nothing_sent_db'])})"

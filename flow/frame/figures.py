@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from talbot.base.verilator import verilator_version
 from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
-from talbot.models.parameters import EnergyParameters, LightParameters
+from talbot.models.digital.exposure import integration_cycles, slot_cycles
+from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
 from talbot.models.parameters.energy import DECISIONS, WINDOW, Events
 from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
@@ -59,7 +60,7 @@ def energy_of(result: FrameResult) -> dict[str, float]:
     for i, end in enumerate(("", "_high")):
         out[f"total{end}"] = sum(value[i] for value in parts.values())
     if asked.frame.mode == "tof":
-        sensor, lens, timing = asked.sensor, asked.sensor.optics.camera, asked.frame.timing
+        sensor, lens, timing = asked.sensor, asked.sensor.optics.camera, asked.frame.exposing
         pixels = sensor.array.rows * sensor.array.cols
         power = LightParameters().power(
             sensor.electrical.white_current, sensor.array.pitch, pixels, lens.nu_max, lens.magnification
@@ -103,6 +104,49 @@ def camera_of(result: GoldenResult) -> dict[str, float | None]:
         {"f_number": lens.f_number, "focal_length_m": lens.focal_length, "focus_m": lens.focus, "scale": lens.scale}
         | {"views": result.exposed.views.most, "exit_pupil_m": lens.exit_pupil, "magnification": lens.magnification}
         | {"nearest_m": near, "farthest_m": far}
+    )
+
+
+def exposure_of(result: GoldenResult) -> dict[str, Any]:
+    """How long a row integrates, and the light: lux of the room, to volts and codes of a white diode.
+
+    white_electrons: before the first common-mode reset. deviating_rows: rows that integrated other than the formula
+    says, by the pins of the chip; of the golden chip none.
+    """
+    asked, timing = result.request, result.request.frame.exposing
+    sensor, e, cycles = asked.lit, asked.lit.electrical, integration_cycles(timing)
+    seconds = sum(cycles) / sensor.chip.f_clk
+    measured = result.chip.integrated if isinstance(result, FrameResult) else []
+    rows = np.flatnonzero(result.golden.read.any(1)) if measured else []
+    light: dict[str, float] = {}
+    if asked.frame.mode != "tof":
+        light = asked.room.white(sensor.array.pitch, sensor.optics.nu_max)._asdict()
+    electrons = e.white_current * cycles[0] / sensor.chip.f_clk / ELEMENTARY_CHARGE
+    return (
+        {
+            "rows": timing.exposure,
+            "t_int_cycles": timing.t_int,
+            "slot_cycles": slot_cycles(timing, asked.frame.mode == "tof"),
+        }
+        | {"integration_cycles": sum(cycles), "integration_s": seconds, "white": light, "white_electrons": electrons}
+        | {"white_volts": e.swing * electrons / e.full_well, "white_codes": electrons / e.lsb_electrons}
+        | {"deviating_rows": sum(measured[row] != sum(cycles) for row in rows)}
+    )
+
+
+def exposure_line(summary: dict[str, Any]) -> str:
+    """How long a row integrates, in what light, and what white gives, in one line."""
+    x = summary["exposure"]
+    text = f"a row integrates {1e3 * x['integration_s']:.3g} ms of {1e3 * summary['frame_s_at_clock']:.3g} ms"
+    if x["deviating_rows"]:
+        text += f", {x['deviating_rows']} rows longer"
+    lit = x["white"]
+    if lit:
+        text += f", {lit['room_lux']:g} lux: {lit['sensor_lux']:.3g} lux at the pixels, {lit['irradiance']:.3g} W/m2"
+        text += f", {1e12 * lit['current']:.3g} pA"
+    return (
+        f"{text}; white gives {x['white_electrons']:,.0f} electrons a diode = {x['white_volts']:.2g} V"
+        f" = {x['white_codes']:.3g} codes"
     )
 
 
@@ -181,15 +225,15 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     ideal, marks = result.exposed.ideal, MARK.size * decoded.segments
     sent, size = golden.read.sum() * golden.sent.shape[2], len(result.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
-    tokens = size - HEADER_BYTES - TRAILER_BYTES - marks
     error = decoding_error(decoded.samples, ideal, golden.read, frame)
-    parts = {"header": HEADER_BYTES, "tokens": tokens, "marks": marks, "trailer": TRAILER_BYTES}
+    rest = size - HEADER_BYTES - TRAILER_BYTES - marks
+    parts = {"header": HEADER_BYTES, "samples": rest, "marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
     return (
         {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}
         | {"threshold": frame.threshold, "lanes": sensor.chip.lanes, "noise": asked.noise, "seed": asked.seed}
         | {"window": vars(frame.window), "mask": f"{frame.mask:#08x}", "decimation": frame.decimation}
-        | {"camera": camera_of(result)}
+        | {"camera": camera_of(result), "exposure": exposure_of(result)}
         | {"capture_error_codes": result.exposed.views.error}
         | {"trims_at_end": trims_at_end(result.exposed.front_end.trim)}
         | {"phase": frame.phase, "pixels": int(golden.read.sum()), "samples": golden.samples}

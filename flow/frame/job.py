@@ -14,7 +14,7 @@ import numpy.typing as npt
 from talbot.base.files import check_folder, staged
 from talbot.flow.simulate.frame import Waves
 from talbot.models.afe import trim_codes, trim_gain
-from talbot.models.capture import Exposure, Region, choose_views, currents, exposed, integrate
+from talbot.models.capture import Exposure, Region, choose_views, exposed, integrate, moving_currents
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
@@ -58,11 +58,11 @@ def see(request: FrameRequest) -> tuple[Scene, Plan]:
 
 def expose(request: FrameRequest, scene: Scene, todo: Plan) -> Exposed:
     """Expose ``scene``. The trims come from a frame of a flat field."""
-    sensor, frame = request.sensor, request.frame
+    sensor, frame = request.lit, request.frame
     trims = trim_codes(measured_gains(flat_field(request), sensor.tile))
     front_end = front_end_of(sensor, trims)
-    views = choose_views(scene, sensor, frame.timing, request.views, read=todo.read)
-    pairs = currents(scene, sensor, todo, regions=views.regions)
+    views = choose_views(scene, sensor, frame.exposing, request.views, read=todo.read)
+    pairs = moving_currents(scene, sensor, todo, frame.exposing, regions=views.regions)
 
     def samples(noise: float) -> Values:
         return np.asarray(exposed(pairs, sensor, _exposure(request, noise), trim_gain(trims)), np.float64)
@@ -78,15 +78,15 @@ def flat_field(request: FrameRequest) -> Values:
 
     One frame of the same chip with noise of its own, from which the trims are measured as on a bench.
     """
-    sensor, frame = request.sensor, request.frame
+    sensor, frame = request.lit, request.frame
     pair = integrate(load("flat:50", Sampling.of(sensor)), sensor, Region(1, np.ones(sensor.shape, bool)))[0]
-    exposure = replace(_exposure(request, request.noise), timing=replace(frame.timing, n_cm=0))
+    exposure = replace(_exposure(request, request.noise), timing=replace(frame.exposing, n_cm=0))
     return expose_pair(pair, exposure, tap=BENCH) - expose_pair(0 * pair, replace(exposure, noise=0.0))
 
 
 def _exposure(request: FrameRequest, noise: float) -> Exposure:
-    sensor = request.sensor
-    return Exposure(sensor.electrical, request.frame.timing, sensor.chip.f_clk, noise, request.seed)
+    sensor = request.lit
+    return Exposure(sensor.electrical, request.frame.exposing, sensor.chip.f_clk, noise, request.seed)
 
 
 def read_out(

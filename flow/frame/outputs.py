@@ -5,23 +5,29 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from markupsafe import Markup
 
 from talbot.base.charts import bars, svg
+from talbot.base.page import Picture, Scale
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
+from talbot.models.reconstruct import white_sum
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
 from .figures import depth_line
-from .quality import Values, part_read
-from .report import Picture, against, decibels, render
+from .quality import Values, decoding_error, depth_error, depth_map, image_error, part_read
+from .report import Views, against, decibels, render
 from .result import FrameResult, GoldenResult
 
 # Every name that some mode writes: those that this run does not write are of an earlier run and are removed
-PICTURES = ("overview", "scene", "differences", "image", "conversions", "phase", "edges", "views", "views_decoded")
+PICTURES = ("overview", "scene", "differences", "image", "conversions", "depth", "edges", "views", "views_decoded")
+PICTURES += ("differences_error", "image_error", "depth_error", "phase")
 NAMES = (
     *("stream.bin", "decoded.npz", "sensor.toml", "report.html", "summary.json", "waves.vcd"),
     *(f"{name}.png" for name in PICTURES),
 )
+VIEW = 256  # px, width of a view on the page at most
+SHEET = 1600  # px, width of all views on the page at most
 
 
 def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
@@ -29,51 +35,91 @@ def write(folder: Path, result: FrameResult, summary: dict[str, Any]) -> None:
     (folder / "stream.bin").write_bytes(result.chip.stream)
     result.decoded.save(folder / "decoded.npz")
     (folder / "sensor.toml").write_text(sensor_text(result.request.sensor))
-    singles, sheets = shown(result, summary), _sheets(result, summary)
-    for picture in (*singles, *sheets):
+    singles, errors, sheets = shown(result, summary), error_maps(result, summary), _sheets(result)
+    for picture in (*singles, *errors, *sheets):
         picture.image.save(folder / f"{picture.name}.png")
     pictures.overview([(picture.name, picture.image) for picture in singles]).save(folder / "overview.png")
-    large = [picture._replace(image=pictures.enlarge(picture.image, 384)) for picture in singles]
     chip = chip_svg(result.request.sensor, result.request.frame)
-    errors = [svg(figure) for figure in error_plots.figures(result, summary)]
-    (folder / "report.html").write_text(
-        render(summary, large, chip, sheets, _where(summary), errors, assumptions(result))
-    )
+    fields = _fields(result, summary)
+    for name, field in zip(("views", "views_decoded"), fields, strict=False):
+        pictures.view_sheet(field[1]).save(folder / f"{name}.png")
+    curves = [svg(figure) for figure in error_plots.figures(result, summary)]
+    every = [picture for single in singles for picture in (single, *(e for e in errors if e.title == single.name))]
+    page = render(summary, every, chip, sheets, _views(fields), _where(summary), curves, assumptions(result))
+    (folder / "report.html").write_text(page)
 
 
 def shown(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
     """The single pictures of the mode."""
     frame, golden, decoded, scene = result.request.frame, result.golden, result.decoded, result.exposed.scene
-    out = [Picture("scene", "", "the scene, centre view", pictures.gray(scene.image, high=_top(scene.image)))]
+    out = [_gray("scene", "the scene, centre view", scene.image, 0.0, _top(scene.image))]
     samples = decoded.samples.astype(float)
     converted = "which pixels were converted (yellow), unread (light)"
     if frame.mode == "edge":
         scale, rebuilt = max(float(np.abs(samples).max()), 1.0), result.rebuilt
-        differences = pictures.signed(samples[..., 0], scale)
-        image = pictures.gray(*_within(result, rebuilt.image, *np.quantile(rebuilt.image, (0.005, 0.995))))
         caption = "decoded differences, pixel by pixel (blue negative, red positive)"
-        out.append(Picture("differences", "", caption, differences))
-        out.append(Picture("image", "", f"2-D image rebuilt from edges ({rebuilt.method}): {against(summary)}", image))
+        out.append(_signed("differences", caption, samples[..., 0], scale, "codes"))
+        ends = (float(end) for end in np.quantile(rebuilt.image, (0.005, 0.995)))
+        caption = f"2-D image rebuilt from edges ({rebuilt.method}): {against(summary)}"
+        out.append(_gray("image", caption, *_within(result, rebuilt.image, *ends)))
         converted = "which samples were converted (yellow), zero by the window (dark), unread (light)"
     elif frame.mode == "tof":
-        phase, strength = result.echo
-        image = pictures.gray(*_within(result, strength, 0.0, _top(strength)))
-        hue = pictures.phase_wheel(phase, strength / _top(strength))
-        caption = f"time-of-flight phase as hue (one turn), amplitude as brightness; {depth_line(summary)}"
-        out.append(Picture("image", "", f"2-D image, amplitude of the modulated light: {against(summary)}", image))
-        out.append(Picture("phase", "", caption, hue))
+        strength = result.echo[1]
+        caption = f"2-D image, amplitude of the modulated light: {against(summary)}"
+        out.append(_gray("image", caption, *_within(result, strength, 0.0, _top(strength)), "codes"))
+        out.append(_depth(result, summary))
     else:
-        image = result.image
-        out.append(
-            Picture(
-                "image",
-                "",
-                f"2-D image, the sum of each pair: {against(summary)}",
-                pictures.gray(*_within(result, image, 0.0, _top(image))),
-            )
-        )
+        caption = f"2-D image, the sum of each pair: {against(summary)}"
+        out.append(_gray("image", caption, *_within(result, result.image, 0.0, _top(result.image))))
     decisions = pictures.decisions(golden.read, np.any(golden.converted, axis=2))
     return [*out, Picture("conversions", "", converted, decisions)]
+
+
+def error_maps(result: GoldenResult, summary: dict[str, Any]) -> list[Picture]:
+    """Errors of the single pictures; title: the name of the picture that it is of."""
+    frame, decoded, golden = result.request.frame, result.decoded, result.golden
+    out = []
+    if frame.mode == "edge":
+        error = np.full(golden.read.shape, np.nan)
+        error[golden.read] = decoding_error(decoded.samples, result.exposed.ideal, golden.read, frame)[:, 0]
+        caption = "error of the decoded differences: less those without noise, window and rounding; "
+        caption += f"SNR {decibels(summary['snr_db'])}"
+        out.append(_error("differences", caption, error, "codes"))
+    if frame.mode != "tof":
+        caption = "error of the 2-D image, brought to the mean of the scene, of white = 1"
+        out.append(_error("image", caption, image_error(result), ""))
+    found = depth_error(result)
+    if found is not None and not np.isnan(found).all():
+        rms = summary["depth_rms_m"]
+        out.append(_error("depth", f"error of the depth: {100 * rms:.3g} cm RMS", found, "m"))
+    return out
+
+
+def _gray(name: str, caption: str, values: npt.ArrayLike, low: float, high: float, unit: str = "") -> Picture:
+    image = pictures.gray(np.asarray(values, float), low, high)
+    return Picture(name, "", caption, image, pictures.gray_scale(low, high, unit))
+
+
+def _signed(name: str, caption: str, values: Values, scale: float, unit: str) -> Picture:
+    return Picture(name, "", caption, pictures.signed(values, scale), pictures.signed_scale(scale, unit))
+
+
+def _error(name: str, caption: str, error: Values, unit: str) -> Picture:
+    """A signed map; its colours end where all but a hundredth of the pixels are within."""
+    scale = max(float(np.nanquantile(np.abs(error), 0.99)), 1e-6)
+    return _signed(f"{name}_error", caption, np.nan_to_num(error), scale, unit)._replace(title=name)
+
+
+def _depth(result: GoldenResult, summary: dict[str, Any]) -> Picture:
+    """The depth from near to far, as far as the scene reaches where its depth is known."""
+    found, truth = depth_map(result), result.exposed.scene.depth
+    seen = found[~np.isnan(found)] if truth is None else truth
+    low, high = (float(np.quantile(seen, share)) for share in (0.0, 1.0)) if seen.size else (0.0, 1.0)
+    margin = 0.05 * max(high - low, 0.1)
+    low, high = max(low - margin, 0.0), high + margin
+    scale = Scale(pictures.depth_colours(), low, high, "m")
+    caption = f"depth from the phase (gray: no amplitude); {depth_line(summary) or 'the scene has no depth to compare'}"
+    return Picture("depth", "", caption, pictures.depth(found, low, high), scale)
 
 
 def _within(result: GoldenResult, image: Values, low: float, high: float) -> tuple[Values, float, float]:
@@ -87,29 +133,51 @@ def _top(values: npt.NDArray[np.floating]) -> float:
     return max(float(np.quantile(values, 0.999)), 1e-6)
 
 
-def _sheets(result: FrameResult, summary: dict[str, Any]) -> list[Picture]:
+def _sheets(result: FrameResult) -> list[Picture]:
     """The contact sheets of the mode."""
-    sensor, frame, scene = result.request.sensor, result.request.frame, result.exposed.scene
-    out = []
-    if frame.mode in ("edge", "raw"):
-        edges = result.edges
-        caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "
-        caption += "cosine or sine analyzer; blue negative, red positive"
-        sheet = pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))
-        out.append(Picture("edges", "The 24 edge images", caption, sheet))
-    if scene.angular:
-        sheet = pictures.view_sheet(scene.full_light_field)
-        out.append(Picture("views", "The scene's light field", "what the pixels saw, view by view", sheet))
-    if frame.mode == "raw":
-        sheet = pictures.view_sheet(np.maximum(result.light_field, 0))
-        found, copied = (summary[f"light_field_psnr{name}_db"] for name in ("", "_copied"))
-        caption = "linear estimate from the decoded diodes, view by view: PSNR "
-        caption += f"{decibels(found)}; the 2-D image in every view has {decibels(copied)}"
-        out.append(Picture("views_decoded", "The light field read back", caption, sheet))
+    sensor, frame = result.request.sensor, result.request.frame
+    if frame.mode not in ("edge", "raw"):
+        return []
+    edges = result.edges
+    caption = "one a pixel type, every sample of the tile grid: beta and gamma of the grating, "
+    caption += "cosine or sine analyzer; blue negative, red positive"
+    sheet = pictures.edge_sheet(edges, sensor.tile, max(float(np.abs(edges).max()), 1.0))
+    return [Picture("edges", f"The {len(edges)} edge images", caption, sheet)]
+
+
+def _fields(result: FrameResult, summary: dict[str, Any]) -> list[tuple[str, Values]]:
+    """Captions and light fields l[v, u, y, x] to show, relative radiance: the scene's, and in raw mode its estimate."""
+    scene, out = result.exposed.scene, []
+    if scene.angular or result.request.frame.mode == "raw":
+        out.append(("the scene's light field: what the pixels saw", np.asarray(scene.full_light_field, float)))
+    if result.request.frame.mode == "raw":
+        found, copied = (decibels(summary[f"light_field_psnr{name}_db"]) for name in ("", "_copied"))
+        field = np.maximum(result.light_field, 0) / white_sum(result.request.sensor, result.request.frame.timing)
+        caption = f"linear estimate from the decoded diodes: PSNR {found}; the 2-D image in every view has {copied}"
+        out.append((caption, field))
     return out
 
 
-def _where(s: dict[str, Any]) -> list[str]:
+def _views(fields: list[tuple[str, Values]]) -> list[Views]:
+    """The fields for the slider, and the error of the second."""
+    if not fields:
+        return []
+    columns, top = len(fields[0][1]), _top(fields[0][1])
+    width = min(VIEW, SHEET // columns)
+    out = []
+    for caption, field in fields:
+        views = [[pictures.gray(view, high=top) for view in row] for row in field]
+        out.append(Views(caption, columns, pictures.sprite(views, width), pictures.gray_scale(0.0, top, "")))
+    if len(fields) > 1:
+        error = fields[1][1] - fields[0][1]
+        scale = max(float(np.quantile(np.abs(error), 0.99)), 1e-6)
+        views = [[pictures.signed(view, scale) for view in row] for row in error]
+        scaled = pictures.signed_scale(scale, "")
+        out.append(Views("error: the estimate less the scene's", columns, pictures.sprite(views, width), scaled))
+    return out
+
+
+def _where(s: dict[str, Any]) -> list[Markup]:
     """Charts of cycles, energy and bytes, as SVG."""
     pins = s["cycles_by_pin"]
     phases = ("pixel_reset", "integrate", "cm_reset", "read", "waiting")
@@ -118,7 +186,7 @@ def _where(s: dict[str, Any]) -> list[str]:
     energy = {name.replace("_", " "): s["energy_uj"][name] for name in parts}
     return [
         svg(bars(cycles, "cycles", f"Cycles: the amplifiers' phases ({s['cycles']:,} in all)")),
-        svg(bars(energy, "uJ", f"Energy ({s['energy_uj']['total']:.1f} uJ)")),
+        svg(bars(energy, "µJ", f"Energy ({s['energy_uj']['total']:.1f} µJ)")),
         svg(bars(s["bytes"], "bytes", f"Bytes ({s['stream_bytes']:,})")),
     ]
 
@@ -128,5 +196,13 @@ def assumptions(result: FrameResult) -> list[tuple[str, object, str]]:
     sensor = result.request.sensor
     converter = [(f"converter {name}", value, "assumed") for name, value in vars(sensor.converter).items()]
     optics, array = sensor.optics, sensor.array
-    known = (optics.camera, optics, array, sensor.electrical, EnergyParameters(), LightParameters())
+    known = (
+        optics.camera,
+        optics,
+        array,
+        sensor.electrical,
+        result.request.room,
+        EnergyParameters(),
+        LightParameters(),
+    )
     return [*(row for parameters in known for row in sources(parameters)), *converter]

@@ -8,6 +8,7 @@ from PIL import Image as pillow
 from PIL import ImageDraw, ImageFont
 from PIL.Image import Image, Resampling
 
+from talbot.base.page import Scale
 from talbot.models.parameters import TileParameters
 
 Values = npt.NDArray[np.floating]
@@ -33,11 +34,29 @@ def signed(values: Values, scale: float) -> Image:
     return pillow.fromarray(np.round(rgb).astype(np.uint8), "RGB")
 
 
-def phase_wheel(phase: Values, strength: Values) -> Image:
-    """Phase (rad) as hue, ``strength`` 0..1 as brightness."""
-    hue = np.round(np.mod(phase, 2 * np.pi) / (2 * np.pi) * 255).astype(np.uint8)
-    value = np.round(255 * np.clip(strength, 0, 1)).astype(np.uint8)
-    return pillow.fromarray(np.stack([hue, np.full_like(hue, 190), value], -1), "HSV").convert("RGB")
+def depth(values: Values, low: float, high: float) -> Image:
+    """Values (rows, cols) on the scale of `depth_colours`, ``low`` to ``high``; NaN is gray."""
+    unit = np.clip((np.asarray(values, float) - low) / max(high - low, np.finfo(float).tiny), 0, 1)
+    codes = np.nan_to_num(np.round(255 * unit)).astype(np.uint8)
+    rgb = np.where(np.isnan(values)[..., None], UNREAD, depth_colours()[codes])
+    return pillow.fromarray(rgb.astype(np.uint8), "RGB")
+
+
+def depth_colours() -> npt.NDArray[np.uint8]:
+    """The colours of `depth`, (256, 3), from near to far."""
+    from matplotlib import colormaps
+
+    return np.round(255 * colormaps["viridis"](np.linspace(0, 1, 256))[:, :3]).astype(np.uint8)
+
+
+def signed_scale(scale: float, unit: str) -> Scale:
+    """The colours of `signed`."""
+    return Scale(np.asarray(signed(np.linspace(-scale, scale, 511)[None], scale))[0], -scale, scale, unit)
+
+
+def gray_scale(low: float, high: float, unit: str) -> Scale:
+    """The colours of `gray`."""
+    return Scale(np.asarray(gray(np.linspace(low, high, 511)[None], low, high).convert("RGB"))[0], low, high, unit)
 
 
 def decisions(read: npt.NDArray[np.bool_], converted: npt.NDArray[np.bool_]) -> Image:
@@ -83,6 +102,17 @@ def view_sheet(light_field: Values, cell: int = 96) -> Image:
     v, u = light_field.shape[:2]
     images = [gray(light_field[j, i], high=high) for j in range(v) for i in range(u)]
     return contact_sheet(images, [f"v{j - v // 2:+d} u{i - u // 2:+d}" for j in range(v) for i in range(u)], u, cell)
+
+
+def sprite(images: Sequence[Sequence[Image]], width: int) -> Image:
+    """Views [v][u] of one size edge to edge, each at most ``width`` pixels wide."""
+    own = images[0][0]
+    size = min(width, own.width), max(1, round(own.height * min(1.0, width / own.width)))
+    sheet = pillow.new(own.mode, (len(images[0]) * size[0], len(images) * size[1]))
+    for v, row in enumerate(images):
+        for u, image in enumerate(row):
+            sheet.paste(image.resize(size, Resampling.BOX), (u * size[0], v * size[1]))
+    return sheet
 
 
 def overview(named: Sequence[tuple[str, Image]], cell: int = 288) -> Image:

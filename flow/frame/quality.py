@@ -121,12 +121,12 @@ def ssim(image: Values, truth: Values) -> float | None:
 def coded_sum(result: GoldenResult) -> Values:
     """The sum image that the same exposure gives in image mode, every pixel read, relative radiance."""
     asked, samples = result.request, result.exposed.samples
-    frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.timing)
+    frame = FrameParameters(asked.sensor.full_window, mode="image", timing=asked.frame.exposing)
     sums = golden_frame(samples.mean(0, keepdims=True), asked.sensor, frame, result.exposed.front_end)
     # A tap of time of flight is half of the light on average.
     half = 2.0 if asked.frame.mode == "tof" else 1.0
     read = result.golden.read
-    return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.sensor, read, asked.frame.timing), float)
+    return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.lit, read, asked.frame.exposing), float)
 
 
 def coded(image: Values, codec: str, size: int) -> Values | None:
@@ -152,27 +152,45 @@ def field_quality(result: GoldenResult) -> dict[str, float | None]:
     # Corners that the round pupil does not reach have no light
     part = (cells(result.exposed.scene.views), *part_read(result.golden.read))
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
-    field = result.light_field[part] / white_sum(result.request.sensor, result.request.frame.timing)
+    field = result.light_field[part] / white_sum(result.request.lit, result.request.frame.exposing)
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
     return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
 
 
 def depth_quality(result: GoldenResult) -> dict[str, float | None]:
     """Of the depth in time of flight, against the scene's where the amplitude is not 0, in m; of one depth for all."""
-    truth = result.exposed.scene.depth
-    if result.request.frame.mode != "tof" or truth is None:
+    truth, error = result.exposed.scene.depth, depth_error(result)
+    if truth is None or error is None or np.isnan(error).all():
         return {"depth_rms_m": None, "depth_rms_constant_m": None}
-    phase, strength = result.echo
-    seen = result.golden.read & (strength > 0)
-    if not seen.any():
-        return {"depth_rms_m": None, "depth_rms_constant_m": None}
-    f_mod = result.request.sensor.electrical.f_mod
-    far = float(depth_of(np.pi, f_mod))  # half of the range in which depth is unambiguous
-    error = np.mod(depth_of(phase, f_mod)[seen] - truth[seen] + far, 2 * far) - far
+    seen = ~np.isnan(error)
     return {
-        "depth_rms_m": float(np.sqrt(np.mean(error**2))),
+        "depth_rms_m": float(np.sqrt(np.mean(error[seen] ** 2))),
         "depth_rms_constant_m": float((truth[seen] - truth[seen][0]).std()),
     }
+
+
+def depth_map(result: GoldenResult) -> Values:
+    """The depth in time of flight, (rows, cols) in m, NaN where there is no amplitude."""
+    phase, strength = result.echo
+    found = depth_of(phase, result.request.sensor.electrical.f_mod)
+    return np.where(result.golden.read & (strength > 0), found, np.nan)
+
+
+def depth_error(result: GoldenResult) -> Values | None:
+    """`depth_map` less the scene's depth, the short way round; None in other modes and without a scene's depth."""
+    truth = result.exposed.scene.depth
+    if result.request.frame.mode != "tof" or truth is None:
+        return None
+    far = float(depth_of(np.pi, result.request.sensor.electrical.f_mod))  # half of the unambiguous range
+    return np.mod(depth_map(result) - truth + far, 2 * far) - far
+
+
+def image_error(result: GoldenResult) -> Values:
+    """The 2-D image, brought to the mean of the scene's centre view, less this view; NaN where nothing is read."""
+    part = part_read(result.golden.read)
+    truth, error = np.asarray(result.exposed.scene.image, float)[part], np.full(result.image.shape, np.nan)
+    error[part] = result.image[part] - result.image[part].mean() + truth.mean() - truth
+    return error
 
 
 def quality(result: GoldenResult) -> dict[str, Any]:

@@ -1,7 +1,5 @@
 """The report: one self-contained page from the summary, the pictures and the charts."""
 
-import base64
-import io
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,32 +8,26 @@ from markupsafe import Markup
 from PIL.Image import Image
 
 from talbot.base import page
+from talbot.base.page import Picture, Scale, Tile
 
-from .figures import camera_line, energy_line, trims_line
+from .figures import camera_line, energy_line, exposure_line, trims_line
 
 
-class Picture(NamedTuple):
-    """A picture of the page. name: of its file, without a suffix. title: of its section, '' for none."""
+class Views(NamedTuple):
+    """Views of a light field for the slider. columns: views along an axis. sprite: all, edge to edge."""
 
-    name: str
-    title: str
     caption: str
-    image: Image
+    columns: int
+    sprite: Image
+    scale: Scale | None = None
 
     @property
     def src(self) -> str:
-        """The picture as a data URL."""
-        out = io.BytesIO()
-        self.image.save(out, "PNG")
-        return "data:image/png;base64," + base64.b64encode(out.getvalue()).decode()
+        """The sprite as a data URL."""
+        return page.data_url(self.sprite, "WEBP", quality=82)
 
 
-class Tile(NamedTuple):
-    """A figure at the top of the page. kind: 'good', 'bad' or ''."""
-
-    value: str
-    label: str
-    kind: str = ""
+FIRST = "differences", "depth", "image"  # names of pictures, one of which is on the card
 
 
 def decibels(value: float | None) -> str:
@@ -70,20 +62,30 @@ def render(
     pictures: Sequence[Picture],
     chip: str,
     sheets: Sequence[Picture],
-    where: Sequence[str],
-    errors: Sequence[str],
+    views: Sequence[Views],
+    where: Sequence[Markup],
+    errors: Sequence[Markup],
     assumed: Sequence[tuple[str, object, str]] = (),
 ) -> str:
-    """The page as HTML. chip, where, errors: SVG texts of the chip, of where cycles went, of error against time.
+    """The page as HTML. chip: SVG text. where, errors: SVG of where cycles went, of error against time.
 
-    assumed: name, value and source of parameters.
+    views: light fields side by side, of as many views. assumed: name, value and source of parameters.
     """
-    drawn = {"chip": Markup(chip), "where": [Markup(svg) for svg in where], "errors": [Markup(svg) for svg in errors]}
-    template = Path(__file__).with_name("report.html")
     texts = {
         "camera": camera_line(summary),
+        "exposure": exposure_line(summary),
         "energy": energy_line(summary),
         "trims": trims_line(summary),
-        "assumed": assumed,
     }
-    return page.render(template, s=summary, tiles=headline(summary), pictures=pictures, sheets=sheets, **texts, **drawn)
+    shown = {"pictures": pictures, "sheets": sheets, "views": views, "where": where, "errors": errors}
+    return page.render(
+        Path(__file__).with_name("report.html"),
+        f"{summary['scene']}: one frame in {summary['mode']} mode",
+        picture=next((p.image for p in pictures if p.name in FIRST), None),
+        s=summary,
+        tiles=headline(summary),
+        chip=Markup(chip),
+        assumed=assumed,
+        **texts,
+        **shown,
+    )

@@ -1,7 +1,8 @@
 """The parameters of one run, validated before anything is computed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,15 @@ from talbot.models.parameters import (
     ALL_TYPES,
     STANDARD,
     TYPICAL_CONVERTER,
+    AmpTiming,
     CameraParameters,
     FrameParameters,
     ParameterError,
+    RoomParameters,
     SensorParameters,
     Window,
 )
+from talbot.models.plan.exposure import exposed_for, fitting
 from talbot.models.scene import LightField
 
 CONVERTERS = {"typical": TYPICAL_CONVERTER, "ideal": parameters.ConverterParameters()}
@@ -29,6 +33,7 @@ class FrameRequest:
     scene: a name of models.scene.scenes, a file or folder (models/scene/README.md), or a light field.
     depth: a file, or None.
     views: of the capture along the pupil's diameter, 1..31, or None for as many as it needs.
+    room: the light of all modes but time of flight, whose light is its source's alone (`lit`).
     noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
     out: folder for the results, or None for build/sim/<scene>.
     """
@@ -37,6 +42,7 @@ class FrameRequest:
     frame: FrameParameters
     scene: str | LightField = "motorcycle"
     depth: str | None = None
+    room: RoomParameters = RoomParameters()
     noise: float = 1.0
     seed: int = 1
     views: int | None = None
@@ -52,6 +58,11 @@ class FrameRequest:
         if self.waves and self.waves[1] >= self.sensor.array.rows:
             first, last = self.waves
             raise ParameterError(f"waves = {first}:{last}: rows must be in 0..{self.sensor.array.rows - 1}")
+
+    @cached_property
+    def lit(self) -> SensorParameters:
+        """The sensor with the photocurrent of white in the light of the frame."""
+        return self.sensor if self.frame.mode == "tof" else self.room.lit(self.sensor)
 
     @property
     def name(self) -> str:
@@ -71,13 +82,19 @@ def request(
     camera: CameraParameters | None = None,
     converter: str | None = None,
     sensor: SensorParameters = STANDARD,
+    lux: float = RoomParameters().illuminance,
+    exposure: int | None = None,
+    timing: Mapping[str, int] | None = None,
     window: Cut | None = None,
     mask: int = ALL_TYPES,
     **rest: Any,
 ) -> FrameRequest:
     """A FrameRequest for ``sensor``, or one that has these in place of its own: rows, cols, lanes, camera, converter.
 
-    converter: typical or ideal.
+    converter: typical or ideal. lux: illuminance of white. timing: phases that are not the default, fields of AmpTiming
+    but exposure. exposure: rows by which the reset pointer leads, or None for as many as give the signal of
+    RoomParameters. Where it leads, t_int is so long that no row waits for the converters; a t_int in timing stays as it
+    is, and the pointer then leads by no row where exposure is None. In time of flight it never leads.
     window: the window to read, from the full one (all of it).
     rest: fields of FrameRequest and FrameParameters. Raises ParameterError.
     """
@@ -92,8 +109,21 @@ def request(
     )
     full = sensor.full_window
     own = {field.name: rest.pop(field.name) for field in fields(FrameRequest) if field.name in rest}
-    frame = FrameParameters(window=window(full) if window else full, mask=mask, **rest)
-    return FrameRequest(sensor=sensor, frame=frame, **own)
+    phases = dict(timing or {})
+    frame = FrameParameters(window=window(full) if window else full, mask=mask, timing=AmpTiming(**phases), **rest)
+    asked = FrameRequest(sensor=sensor, frame=frame, room=RoomParameters(illuminance=lux), **own)
+    return replace(asked, frame=replace(frame, timing=_timing(asked, exposure, "t_int" in phases)))
+
+
+def _timing(asked: FrameRequest, exposure: int | None, typed: bool) -> AmpTiming:
+    """The timing of ``asked`` with its exposure; typed: its t_int stays as it is."""
+    frame, sensor = asked.frame, asked.lit
+    if frame.mode == "tof":
+        return replace(frame.timing, exposure=exposure or 0)
+    if exposure is None and not typed:
+        return exposed_for(asked.room.signal, frame, sensor)
+    timing = frame.timing if typed or not exposure else fitting(frame, sensor)
+    return replace(timing, exposure=exposure or 0)
 
 
 def _with(part: Any, **values: Any) -> Any:

@@ -57,15 +57,15 @@ class GoldenResult:
 
     @cached_property
     def sensor(self) -> SensorParameters:
-        """The sensor, with as many views as the scene: a light field has its own."""
-        sensor = self.request.sensor
+        """The sensor in the light of the frame, with as many views as the scene: a light field has its own."""
+        sensor = self.request.lit
         return replace(sensor, optics=replace(sensor.optics, views=self.exposed.scene.views))
 
     @cached_property
     def rebuilt(self) -> Rebuilt:
         """The 2-D image rebuilt from the decoded edges and the scene's disparity."""
         exposed, edges = self.exposed, self.decoded.samples[..., 0]
-        trim, timing = exposed.front_end.trim, self.request.frame.timing
+        trim, timing = exposed.front_end.trim, self.request.frame.exposing
         return rebuild(edges, self.decoded.read, exposed.scene, self.sensor, trim, timing)
 
     @property
@@ -78,14 +78,14 @@ class GoldenResult:
     @cached_property
     def image(self) -> npt.NDArray[np.float64]:
         """The 2-D image of the mode, relative radiance: rebuilt from edges, or from sums, or the taps' amplitude."""
-        frame, sensor, samples = self.request.frame, self.request.sensor, self.decoded.samples.astype(float)
+        frame, sensor, samples = self.request.frame, self.request.lit, self.decoded.samples.astype(float)
         if frame.mode == "edge":
             return self.rebuilt.image
         if frame.mode == "tof":
             # Amplitude is half the difference of two taps that see a wave of half the light.
-            return np.asarray(sum_image(self.echo[1], sensor, self.decoded.read, frame.timing), float)
+            return np.asarray(sum_image(self.echo[1], sensor, self.decoded.read, frame.exposing), float)
         total = samples[..., 0] if frame.mode == "image" else samples.sum(2) / 2
-        return np.asarray(sum_image(total, sensor, self.decoded.read, frame.timing), float)
+        return np.asarray(sum_image(total, sensor, self.decoded.read, frame.exposing), float)
 
     @cached_property
     def echo(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:

@@ -10,8 +10,8 @@
 #define ASP_ADDRESS_MAX 0x7fu /* the address stops counting here */
 
 #define ASP_CONFIGURATION_ADDRESS 0x04u
-#define ASP_CONFIGURATION_SIZE 76u
-#define ASP_COUNTERS_ADDRESS 0x50u
+#define ASP_CONFIGURATION_SIZE 78u
+#define ASP_COUNTERS_ADDRESS 0x58u
 #define ASP_COUNTERS_SIZE 24u
 #define ASP_TRIMS 24u /* ASP_TRIM_* is that of pixel type 0 */
 #define ASP_TRIM_SIZE 2u /* bytes from one to the next */
@@ -52,7 +52,8 @@
     FIELD(t_cm, T_CM) \
     FIELD(t_settle, T_SETTLE) \
     FIELD(t_read, T_READ) \
-    FIELD(t_guard, T_GUARD)
+    FIELD(t_guard, T_GUARD) \
+    FIELD(exposure, EXPOSURE)
 
 /* The counters, ascending: FIELD(name, stem of its macros) */
 #define ASP_COUNTER_FIELDS(FIELD) \
@@ -72,7 +73,7 @@
 #define ASP_VERSION_ADDRESS 0x01u
 #define ASP_VERSION_SHIFT 0u
 #define ASP_VERSION_WIDTH 8u
-#define ASP_VERSION_DEFAULT 0x3u
+#define ASP_VERSION_DEFAULT 0x4u
 #define ASP_VERSION_MASK 0xffu
 
 /* start (wo): 1 starts a frame; refused while one runs, while `loop_enable` is set and together with `abort`. */
@@ -295,20 +296,26 @@ enum asp_mode { ASP_MODE_EDGE = 0, ASP_MODE_IMAGE = 1, ASP_MODE_RAW = 2, ASP_MOD
 #define ASP_TRIM_WIDTH 10u
 #define ASP_TRIM_DEFAULT 0x0u
 
+/* exposure (rw): Rows by which the reset pointer leads the read pointer, 0..1023; not in tof mode. */
+#define ASP_EXPOSURE_ADDRESS 0x50u
+#define ASP_EXPOSURE_SHIFT 0u
+#define ASP_EXPOSURE_WIDTH 10u
+#define ASP_EXPOSURE_DEFAULT 0x0u
+
 /* cycles (ro): Clock cycles from the start to the sequencer's last message. */
-#define ASP_CYCLES_ADDRESS 0x50u
+#define ASP_CYCLES_ADDRESS 0x58u
 #define ASP_CYCLES_SHIFT 0u
 #define ASP_CYCLES_WIDTH 64u
 #define ASP_CYCLES_DEFAULT 0x0u
 
 /* conversions_made (ro): Samples that took a full conversion. */
-#define ASP_CONVERSIONS_MADE_ADDRESS 0x58u
+#define ASP_CONVERSIONS_MADE_ADDRESS 0x60u
 #define ASP_CONVERSIONS_MADE_SHIFT 0u
 #define ASP_CONVERSIONS_MADE_WIDTH 64u
 #define ASP_CONVERSIONS_MADE_DEFAULT 0x0u
 
 /* conversions_left_out (ro): Samples that the window comparison made an exact zero. */
-#define ASP_CONVERSIONS_LEFT_OUT_ADDRESS 0x60u
+#define ASP_CONVERSIONS_LEFT_OUT_ADDRESS 0x68u
 #define ASP_CONVERSIONS_LEFT_OUT_SHIFT 0u
 #define ASP_CONVERSIONS_LEFT_OUT_WIDTH 64u
 #define ASP_CONVERSIONS_LEFT_OUT_DEFAULT 0x0u
@@ -316,7 +323,7 @@ enum asp_mode { ASP_MODE_EDGE = 0, ASP_MODE_IMAGE = 1, ASP_MODE_RAW = 2, ASP_MOD
 /* amp_state (ro): Amplifier control. 0 idle (no row), 1 guard (all phases low), 2 pixel_reset (pixel reset), 3 */
 /* integrate (integration), 4 cm_reset (common-mode reset), 5 reference_level (read, reference level), 6 */
 /* signal_level (read, signal). */
-#define ASP_AMP_STATE_ADDRESS 0x68u
+#define ASP_AMP_STATE_ADDRESS 0x70u
 #define ASP_AMP_STATE_SHIFT 0u
 #define ASP_AMP_STATE_WIDTH 3u
 #define ASP_AMP_STATE_DEFAULT 0x0u
@@ -326,7 +333,7 @@ enum asp_amp_state { ASP_AMP_STATE_IDLE = 0, ASP_AMP_STATE_GUARD = 1, ASP_AMP_ST
 /* seq_state (ro): Sequencer. 0 idle (no frame), 1 check (a frame starts), 2 wait (for the amplifiers), 3 drain */
 /* (the converters end a row), 4 frame (offers the frame's start), 5 row (offers a row), 6 sample (offers a */
 /* sample), 7 end (offers the frame's end). */
-#define ASP_SEQ_STATE_ADDRESS 0x68u
+#define ASP_SEQ_STATE_ADDRESS 0x70u
 #define ASP_SEQ_STATE_SHIFT 4u
 #define ASP_SEQ_STATE_WIDTH 3u
 #define ASP_SEQ_STATE_DEFAULT 0x0u
@@ -335,7 +342,7 @@ enum asp_seq_state { ASP_SEQ_STATE_IDLE = 0, ASP_SEQ_STATE_CHECK = 1, ASP_SEQ_ST
 
 /* encoder_state (ro): Encoder. 0 idle (no frame), 1 header (sends the header), 2 rows (sends samples), 3 mark */
 /* (sends a mark), 4 trailer (sends the trailer), 5 drain (the last bytes wait). */
-#define ASP_ENCODER_STATE_ADDRESS 0x69u
+#define ASP_ENCODER_STATE_ADDRESS 0x71u
 #define ASP_ENCODER_STATE_SHIFT 0u
 #define ASP_ENCODER_STATE_WIDTH 3u
 #define ASP_ENCODER_STATE_DEFAULT 0x0u
@@ -343,82 +350,82 @@ enum asp_seq_state { ASP_SEQ_STATE_IDLE = 0, ASP_SEQ_STATE_CHECK = 1, ASP_SEQ_ST
 enum asp_encoder_state { ASP_ENCODER_STATE_IDLE = 0, ASP_ENCODER_STATE_HEADER = 1, ASP_ENCODER_STATE_ROWS = 2, ASP_ENCODER_STATE_MARK = 3, ASP_ENCODER_STATE_TRAILER = 4, ASP_ENCODER_STATE_DRAIN = 5 };
 
 /* hold_taken (ro): The sample-and-hold is taken by the row that converts: the next row waits before its read. */
-#define ASP_HOLD_TAKEN_ADDRESS 0x6au
+#define ASP_HOLD_TAKEN_ADDRESS 0x72u
 #define ASP_HOLD_TAKEN_SHIFT 0u
 #define ASP_HOLD_TAKEN_WIDTH 1u
 #define ASP_HOLD_TAKEN_DEFAULT 0x0u
 #define ASP_HOLD_TAKEN_MASK 0x01u
 
 /* converting (ro): A converter works. */
-#define ASP_CONVERTING_ADDRESS 0x6au
+#define ASP_CONVERTING_ADDRESS 0x72u
 #define ASP_CONVERTING_SHIFT 1u
 #define ASP_CONVERTING_WIDTH 1u
 #define ASP_CONVERTING_DEFAULT 0x0u
 #define ASP_CONVERTING_MASK 0x02u
 
 /* step_waits (ro): The sequencer's message waits for the converters. */
-#define ASP_STEP_WAITS_ADDRESS 0x6au
+#define ASP_STEP_WAITS_ADDRESS 0x72u
 #define ASP_STEP_WAITS_SHIFT 2u
 #define ASP_STEP_WAITS_WIDTH 1u
 #define ASP_STEP_WAITS_DEFAULT 0x0u
 #define ASP_STEP_WAITS_MASK 0x04u
 
 /* scan_waits (ro): A sample or mark of the converters waits for the phase path. */
-#define ASP_SCAN_WAITS_ADDRESS 0x6au
+#define ASP_SCAN_WAITS_ADDRESS 0x72u
 #define ASP_SCAN_WAITS_SHIFT 3u
 #define ASP_SCAN_WAITS_WIDTH 1u
 #define ASP_SCAN_WAITS_DEFAULT 0x0u
 #define ASP_SCAN_WAITS_MASK 0x08u
 
 /* link_waits (ro): A byte waits for `link_rdy`. */
-#define ASP_LINK_WAITS_ADDRESS 0x6au
+#define ASP_LINK_WAITS_ADDRESS 0x72u
 #define ASP_LINK_WAITS_SHIFT 4u
 #define ASP_LINK_WAITS_WIDTH 1u
 #define ASP_LINK_WAITS_DEFAULT 0x0u
 #define ASP_LINK_WAITS_MASK 0x10u
 
 /* loop_waits (ro): A byte of `loop_back` waits for the link; the configuration is locked. */
-#define ASP_LOOP_WAITS_ADDRESS 0x6au
+#define ASP_LOOP_WAITS_ADDRESS 0x72u
 #define ASP_LOOP_WAITS_SHIFT 5u
 #define ASP_LOOP_WAITS_WIDTH 1u
 #define ASP_LOOP_WAITS_DEFAULT 0x0u
 #define ASP_LOOP_WAITS_MASK 0x20u
 
 /* stepping (ro): Mask set of the chip. */
-#define ASP_STEPPING_ADDRESS 0x70u
+#define ASP_STEPPING_ADDRESS 0x74u
 #define ASP_STEPPING_SHIFT 0u
 #define ASP_STEPPING_WIDTH 8u
 #define ASP_STEPPING_DEFAULT 0x0u
 #define ASP_STEPPING_MASK 0xffu
 
 /* lanes (ro): Converters. */
-#define ASP_LANES_ADDRESS 0x71u
+#define ASP_LANES_ADDRESS 0x75u
 #define ASP_LANES_SHIFT 0u
 #define ASP_LANES_WIDTH 8u
 #define ASP_LANES_DEFAULT 0x8u
 #define ASP_LANES_MASK 0xffu
 
 /* rows (ro): Pixel rows of the array. */
-#define ASP_ROWS_ADDRESS 0x72u
+#define ASP_ROWS_ADDRESS 0x76u
 #define ASP_ROWS_SHIFT 0u
 #define ASP_ROWS_WIDTH 16u
 #define ASP_ROWS_DEFAULT 0x180u
 
 /* cols (ro): Pixel columns of the array. */
-#define ASP_COLS_ADDRESS 0x74u
+#define ASP_COLS_ADDRESS 0x78u
 #define ASP_COLS_SHIFT 0u
 #define ASP_COLS_WIDTH 16u
 #define ASP_COLS_DEFAULT 0x180u
 
 /* tile_rows (ro): Pixel rows of a tile. */
-#define ASP_TILE_ROWS_ADDRESS 0x76u
+#define ASP_TILE_ROWS_ADDRESS 0x7au
 #define ASP_TILE_ROWS_SHIFT 0u
 #define ASP_TILE_ROWS_WIDTH 8u
 #define ASP_TILE_ROWS_DEFAULT 0x4u
 #define ASP_TILE_ROWS_MASK 0xffu
 
 /* tile_cols (ro): Pixel columns of a tile. */
-#define ASP_TILE_COLS_ADDRESS 0x77u
+#define ASP_TILE_COLS_ADDRESS 0x7bu
 #define ASP_TILE_COLS_SHIFT 0u
 #define ASP_TILE_COLS_WIDTH 8u
 #define ASP_TILE_COLS_DEFAULT 0x6u
@@ -426,7 +433,7 @@ enum asp_encoder_state { ASP_ENCODER_STATE_IDLE = 0, ASP_ENCODER_STATE_HEADER = 
 
 /* divider (ro): Divider of the phase path. 0 radix2 (restoring), 1 radix4 (restoring, two bits a cycle), 2 */
 /* pipelined (one result a cycle), 3 cordic (CORDIC). */
-#define ASP_DIVIDER_ADDRESS 0x78u
+#define ASP_DIVIDER_ADDRESS 0x7cu
 #define ASP_DIVIDER_SHIFT 0u
 #define ASP_DIVIDER_WIDTH 2u
 #define ASP_DIVIDER_DEFAULT 0x1u

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.files import staged
+from talbot.base.page import Picture
 from talbot.base.steps import Runner, StepError
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.wires import wire_corner
@@ -19,7 +20,7 @@ from .netlist.netlist import Netlist
 from .options import Options
 from .power.energy import blocks
 from .report.metrics import broken, summarize
-from .report.page import Picture, write_report
+from .report.page import picture, write_report
 from .report.picture import by_block, render
 from .search import lay_out_smallest
 
@@ -64,11 +65,11 @@ def publish(folder: Path, name: str, options: Options, runner: Runner, summary: 
         for suffix, source in results.items():  # results of an earlier run are removed where this one has none
             if source in runner.paths:
                 shutil.copyfile(runner.paths[source], part / f"{name}.{suffix}")
+        layout = None
         if "fill.gds" in runner.paths:
-            render(runner.paths["fill.gds"], part / f"{name}.png", tech)
-        pictures = draw(part, name, runner, options)
-        picture = f"{name}.png" if (part / f"{name}.png").exists() else None
-        write_report(part, folder, summary, broken(summary), tech, picture, pictures)
+            layout = render(runner.paths["fill.gds"], tech, runner.paths["stream_out.gds"])
+            layout.image.save(part / f"{name}.png")
+        write_report(part, folder, summary, broken(summary), layout, draw(part, name, runner, options))
 
 
 def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Picture]:
@@ -82,4 +83,5 @@ def draw(folder: Path, name: str, runner: Runner, options: Options) -> list[Pict
     netlist, tech = Netlist.read(runner.paths[f"{step}.netlist"]), coriolis_platform(options.pdk)
     file = f"{name}.blocks.png"
     by_block(folder / file, netlist, placement["instances"], areas, tech, blocks(netlist), plan)
-    return [Picture(file, "Cells by block"), Picture(f"{name}.{first}.ir_drop.png", "IR drop")]
+    drop = folder / f"{name}.{first}.ir_drop.png"
+    return [picture(folder / file, "Cells by block"), picture(drop, f"IR drop, {first}")]

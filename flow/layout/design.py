@@ -9,17 +9,23 @@ from talbot.platforms.processes import PROCESSES
 
 @dataclass(frozen=True)
 class Clock:
-    """The clock. port: its name. uncertainty_ns: of an edge, for setup; hold_uncertainty_ns: for hold."""
+    """The clock.
+
+    port: its name. uncertainty_ns: of an edge, for setup; hold_uncertainty_ns: for hold. derate: share by which cells
+    and wires of one chip are slower or faster than others of it (on-chip variation).
+    """
 
     port: str = "clk"
     period_ns: float = field(default=20.0, metadata={"unit": "ns"})
     uncertainty_ns: float = field(default=0.25, metadata={"unit": "ns"})
     hold_uncertainty_ns: float = field(default=0.05, metadata={"unit": "ns"})
+    derate: float = 0.05
 
     def __post_init__(self) -> None:
         check_real("period_ns", self.period_ns, 0.5, 1e4)
         check_real("uncertainty_ns", self.uncertainty_ns, 0, self.period_ns / 2)
         check_real("hold_uncertainty_ns", self.hold_uncertainty_ns, 0, self.period_ns / 2)
+        check_real("derate", self.derate, 0, 0.5)
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from talbot.base.liberty.functional import with_latches
 from talbot.base.liberty.read import only, read
+from talbot.base.liberty.verilog import write_models
 from talbot.base.liberty.write import text
 from talbot.base.steps import Runner, Step
-from talbot.base.tools import run
 from talbot.flow.layout.chain import netlist_tests, timing_steps
 from talbot.flow.layout.design import Design
 from talbot.flow.layout.options import Options
@@ -61,8 +61,7 @@ def given(
     for corner in tech.corners:
         (made / f"{corner}.lib").write_text(only((root / tech.liberty[corner]).read_text(), used))
     (made / "functional.lib").write_text(text(with_latches(read(made / f"{tech.corners[0]}.lib"))))
-    cells = f"read_liberty -ignore_miss_func {made}/functional.lib"
-    run(["yosys", "-q", "-p", f"{cells}; proc; write_verilog -noattr {made}/cells.v"])
+    write_models(made / "functional.lib", made / "cells.v", "-ignore_miss_func")
     return {
         "rtl": folder / f"{design.top}.sv",
         "sdc": made / "final.sdc",

@@ -7,7 +7,7 @@
 //                                              00          stop
 //   +miso=FILE     every byte that came back over SPI
 //   +stream=FILE   every byte that left the chip
-//   +activity=FILE how many cycles each pin of the front end was high, and in all
+//   +activity=FILE how many cycles each pin of the front end was high, and in all; how many each row integrated
 //   +stall=P       the link is not ready in P of 256 cycles, pseudo-random
 //   +samples=FILE, +converter=FILE   see pixels/afe.sv
 `default_nettype none
@@ -28,7 +28,8 @@ module Bench #(
   wire [7:0] link_data;
   wire link_val, frame_sync;
   reg  link_rdy;
-  wire pixel_reset, integrate, cm_reset, read, busy;
+  wire pixel_reset, integrate, expose, cm_reset, read, busy;
+  wire [9:0] amp_row, reset_row;
   wire [8*LANES-1:0] dac;
   wire [LANES-1:0] comparator, en;
   wire hold, unsigned_;
@@ -42,10 +43,10 @@ module Bench #(
       .link_data(link_data), .link_val(link_val), .link_rdy(link_rdy), .frame_sync(frame_sync),
       .dac(dac), .hold(hold), .unsigned_(unsigned_), .mode(mode), .row(row), .group(group), .k(k), .sub(sub),
       .en(en), .balance(balance), .comparator(comparator),
-      .pixel_reset(pixel_reset), .integrate(integrate), .cm_reset(cm_reset), .read(read),
-      .busy(busy),
+      .pixel_reset(pixel_reset), .integrate(integrate), .expose(expose), .cm_reset(cm_reset), .read(read),
+      .amp_row(amp_row), .reset_row(reset_row), .busy(busy),
       /* verilator lint_off PINCONNECTEMPTY */
-      .shutter(), .ref_ctl(), .sample(), .tap(), .amp_row()
+      .shutter(), .ref_ctl(), .sample(), .tap()
       /* verilator lint_on PINCONNECTEMPTY */
   );
 
@@ -89,13 +90,44 @@ module Bench #(
       if (link_val & link_rdy) n_bytes <= n_bytes + 1;
     end
   end
+
+  // ---- integration of every row, as the row driver sees the pins (pixels/README.md) ----
+  reg [0:ROWS-1] open;
+  reg [31:0] opened[0:ROWS-1], integrated[0:ROWS-1];
+  reg [31:0] since, sum;
+  reg was_integrate;
+  integer at;
+  initial for (at = 0; at < ROWS; at = at + 1) integrated[at] = 0;
+  always @(posedge clk) begin
+    was_integrate <= integrate & ~reset;
+    if (reset) open <= 0;
+    else begin
+      if (pixel_reset) begin
+        open[reset_row] <= 1'b0;
+        if (reset_row == amp_row) sum <= 0;
+      end
+      if (expose) begin
+        open[reset_row] <= 1'b1;
+        opened[reset_row] <= n_cycles;
+      end
+      if (integrate & ~was_integrate) begin
+        since <= open[amp_row] ? opened[amp_row] : n_cycles;
+        if (open[amp_row]) sum <= 0;
+        open[amp_row] <= 1'b0;
+      end
+      if (~integrate & was_integrate) sum <= sum + n_cycles - since;
+      if (read) integrated[amp_row] <= sum;
+    end
+  end
+
   task automatic write_activity;
     if ($value$plusargs("activity=%s", name)) begin
       activity = $fopen(name, "w");
       $fwrite(activity, "{\"cycles\": %0d, \"busy\": %0d, \"pixel_reset\": %0d, \"integrate\": %0d, \"cm_reset\": %0d, ",
               n_cycles, n_busy, n_reset, n_integrate, n_cm);
-      $fwrite(activity, "\"read\": %0d, \"waiting\": %0d, \"steps\": %0d, \"bytes\": %0d}\n",
+      $fwrite(activity, "\"read\": %0d, \"waiting\": %0d, \"steps\": %0d, \"bytes\": %0d, \"integrated\": [",
               n_read, n_dark, n_hold, n_bytes);
+      for (at = 0; at < ROWS; at = at + 1) $fwrite(activity, "%0d%s", integrated[at], at == ROWS - 1 ? "]}\n" : ", ");
       $fclose(activity);
     end
   endtask

@@ -18,13 +18,15 @@ class FrameRun:
     """What one simulation gave.
 
     stream: bytes that left the chip. miso: bytes that came back over SPI. activity: cycles that each pin of the front
-    end was high, by pin (bench.sv). cycles: clock cycles of the simulation, SPI included. seconds: wall clock of the
-    clock loop (Icarus: of its process).
+    end was high, by pin (bench.sv). integrated: cycles that each row of pixels integrated, as its driver sees it.
+    cycles: clock cycles of the simulation, SPI included. seconds: wall clock of the clock loop (Icarus: of its
+    process).
     """
 
     stream: bytes
     miso: bytes
     activity: dict[str, int]
+    integrated: list[int]
     cycles: int
     seconds: float
 
@@ -82,7 +84,8 @@ def run_frame(
             tail = (result.stdout + result.stderr).strip()[-800:]
             raise ToolError(f"the simulation stopped with status {result.returncode}{reason}: {tail}")
         activity = json.loads((folder / "activity").read_text())
+        integrated = activity.pop("integrated")
         stats = folder / "stats"
         seconds = json.loads(stats.read_text())["seconds"] if stats.exists() else spent
         stream, miso = (folder / "stream").read_bytes(), (folder / "miso").read_bytes()
-        return FrameRun(stream, miso, activity, activity.pop("cycles"), seconds)
+        return FrameRun(stream, miso, activity, integrated, activity.pop("cycles"), seconds)

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.base.tools import run
 
 from .build import Build
@@ -16,7 +16,7 @@ def icarus_program(build: Build, folder: Path, chip: Sequence[Path] = (), tops: 
     chip: Verilog files of it, a netlist's and its cells' too; exported now if empty. tops: modules beside the bench.
     """
     program = folder / "bench.vvp"
-    bench = [ROOT / "pixels" / "afe.sv", FRAME / "bench.sv", FRAME / "clock.sv"]
+    bench = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv", FRAME / "clock.sv"]
     sources = [*(chip or [build.chip_verilog(folder)]), *bench]
     roots = [word for top in ("Clock", *tops) for word in ("-s", top)]
     run(["iverilog", "-g2012", *roots, *build.parameters("-PClock."), "-o", program, *sources])

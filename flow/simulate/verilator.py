@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from talbot.base.cache import cached, digest
-from talbot.base.paths import BUILD, ROOT
+from talbot.base.paths import BUILD, PACKAGE
 from talbot.base.sources import code
 from talbot.base.verilator import FAST, compile_program, runtime, verilate, verilator_version
 
@@ -23,7 +23,7 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
     note: called with a line of text before each long step. Raises ToolError.
     """
     options = [*build.parameters("-G"), *(["--trace"] if build.waves else [])]
-    sources = [ROOT / "pixels" / "afe.sv", FRAME / "bench.sv"]
+    sources = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv"]
     return _cached(build, "Bench", options, sources, FRAME / "main.cpp", note)
 
 

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolError, finish
 
-LIBRARY = ROOT / "cells" / "gates.lib"
+LIBRARY = PACKAGE / "cells" / "gates.lib"
 TIES = "hilomap -hicell TIE1 Y -locell TIE0 Y -singleton"
 MAP = f"dfflibmap -liberty {LIBRARY}; abc -liberty {LIBRARY}; {TIES}; opt_clean -purge"
 FLIP_FLOP = "DFF"

@@ -6,15 +6,16 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from matplotlib.figure import Figure
+from PIL import Image
 from tqdm import tqdm
 
-from talbot.base.charts import save
+from talbot.base.charts import save, svg
 from talbot.base.files import staged
-from talbot.base.page import render
-from talbot.base.table import write_csv
+from talbot.base.page import TABLES, Section, render
+from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
 
-from . import divider, noise, precision, pupil, threshold, views
+from . import divider, exposure, noise, precision, pupil, threshold, views
 
 
 class Sweep(Protocol):
@@ -38,6 +39,7 @@ class Sweep(Protocol):
 SWEEPS: dict[str, Sweep] = {
     "divider": divider,
     "threshold": threshold,
+    "exposure": exposure,
     "views": views,
     "pupil": pupil,
     "precision": precision,
@@ -54,19 +56,32 @@ def measured(name: str, quick: bool = False) -> list[dict[str, Any]]:
 def run_sweeps(out: Path, only: Sequence[str] | None = None, quick: bool = False) -> dict[str, list[dict[str, Any]]]:
     """Run the sweeps named in ``only`` (default: all) and write their files into ``out``; returns rows by sweep.
 
-    Raises ParameterError for an unknown sweep.
+    The page shows every sweep whose table is there. Raises ParameterError for an unknown sweep.
     """
     names = list(SWEEPS) if only is None else only
     for name in names:
         check_choice("only", name, list(SWEEPS))
     tables = {}
     for name in names:
-        sweep, rows = SWEEPS[name], measured(name, quick)
-        tables[name] = rows
+        rows = tables[name] = measured(name, quick)
         with staged(out) as folder:
             write_csv(folder / f"{name}.csv", rows)
-            save(sweep.plot(rows), folder / f"{name}.png")
-    done = {name: sweep.__doc__ for name, sweep in SWEEPS.items() if (out / f"{name}.csv").exists()}
+            save(SWEEPS[name].plot(rows), folder / f"{name}.png")
+    done = [name for name in SWEEPS if (out / f"{name}.csv").exists()]
     with staged(out) as folder:
-        (folder / "tradeoff.html").write_text(render(Path(__file__).with_name("tradeoff.html"), sweeps=done))
+        (folder / "tradeoff.html").write_text(_page(out, done))
     return tables
+
+
+def _page(out: Path, done: Sequence[str]) -> str:
+    """The page of the sweeps in ``out``."""
+    sections = []
+    for name in done:
+        rows, about = read_csv(out / f"{name}.csv"), " ".join((SWEEPS[name].__doc__ or "").split())
+        cells = [list(map(str, row.values())) for row in rows]
+        sections.append(
+            Section(name.capitalize(), about, [svg(SWEEPS[name].plot(rows))], head=list(rows[0]), rows=cells)
+        )
+    with Image.open(out / f"{done[0]}.png") as picture:
+        about = f"{', '.join(done)}; each with its table, also as <name>.csv; a label is left out where it has no place"
+        return render(TABLES, "Error against run time", picture=picture, about=about, sections=sections)

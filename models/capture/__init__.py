@@ -2,6 +2,7 @@
 
 from .expose import Exposure, expose
 from .frame import capture, currents, exposed
+from .moving import moving_currents
 from .operator import CaptureOperator
 from .pupil import Region, cells, integrate
 from .ratio import capture_ratio
@@ -20,4 +21,5 @@ __all__ = [
     "expose",
     "exposed",
     "integrate",
+    "moving_currents",
 ]

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import (
     ELEMENTARY_CHARGE,
     AmpTiming,
@@ -30,7 +31,7 @@ class Exposure:
     electrical : ElectricalParameters
         Photodiodes and amplifiers.
     timing : AmpTiming
-        Integration time and common-mode resets.
+        Integration times, common-mode resets, lead of the reset pointer.
     f_clk : float
         System clock, 1e3..1e9 Hz.
     noise : float
@@ -51,9 +52,9 @@ class Exposure:
         check_int("seed", self.seed, 0, 2**32 - 1)
 
     @property
-    def interval(self) -> float:
-        """Seconds between common-mode resets."""
-        return self.timing.t_int / self.f_clk
+    def intervals(self) -> tuple[float, ...]:
+        """Seconds of each integration; a common-mode reset is between any two."""
+        return tuple(cycles / self.f_clk for cycles in integration_cycles(self.timing))
 
     def generator(self, stream: int) -> np.random.Generator:
         """Random generator of one stream.
@@ -76,10 +77,10 @@ def expose(
 ) -> npt.NDArray[np.floating]:
     """Integrate photocurrents to diode pairs ready for conversion.
 
-    Each of n_cm + 1 intervals adds photocurrent and dark current with shot noise, up to the full well. Each reset
-    between them removes the charge that both diodes have in common, so that the difference a - g b of a whole
-    exposure survives where the wells would overflow, and leaves kT/C noise. Read noise, the offsets of pixels and
-    columns and the columns' 1/f noise are added once, at the end.
+    Each of n_cm + 1 intervals, of which the first contains the lead of the reset pointer, adds photocurrent and dark
+    current with shot noise, up to the full well. Each reset between them removes the charge that both diodes have in
+    common, so that the difference a - g b of a whole exposure survives where the wells would overflow, and leaves kT/C
+    noise. Read noise, the offsets of pixels and columns and the columns' 1/f noise are added once, at the end.
 
     Parameters
     ----------
@@ -115,15 +116,16 @@ def expose(
 
     gain = np.maximum(1 + _normal(fixed, e.gain_fpn), 0)
     offset = _normal(exposure.generator(101), e.offset_fpn)
-    per_white = e.white_current * exposure.interval / ELEMENTARY_CHARGE
-    dark = e.dark_current * exposure.interval / ELEMENTARY_CHARGE
-    mean = np.minimum(pair * dtype.type(per_white) * gain + dtype.type(dark), dtype.type(PHOTONS_MAX))
+    current = pair * dtype.type(e.white_current / ELEMENTARY_CHARGE) * gain + dtype.type(
+        e.dark_current / ELEMENTARY_CHARGE
+    )
 
     resets = exposure.generator(301 + tap)
     g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
     wells = np.zeros_like(pair)
-    for interval in range(exposure.timing.n_cm + 1):
-        if interval:
+    for number, seconds in enumerate(exposure.intervals):
+        mean = np.minimum(current * dtype.type(seconds), dtype.type(PHOTONS_MAX))
+        if number:
             common = np.minimum(wells[0] / g, wells[1])
             wells[0] -= g * common
             wells[1] -= common

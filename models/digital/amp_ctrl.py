@@ -25,6 +25,7 @@ class AmpPins:
     tap: int = 0
     busy: int = 0
     done: int = 0
+    expose: int = 0
 
 
 PIN_NAMES = tuple(f.name for f in fields(AmpPins))
@@ -32,7 +33,26 @@ PIN_NAMES = tuple(f.name for f in fields(AmpPins))
 Waveform = Generator[AmpPins, bool, None]
 
 
-def row_waveform(timing: AmpTiming, four_tap: bool = False) -> Waveform:
+@dataclass(frozen=True)
+class Slot:
+    """What one run of AmpCtrl does; its duration is the same in any case.
+
+    Attributes
+    ----------
+    resets : bool
+        It resets a row of pixels.
+    reads : bool
+        It ends the integration of a row and reads it.
+    opens : bool
+        The row that it resets is read in a later slot: it integrates from `expose` on.
+    """
+
+    resets: bool = True
+    reads: bool = True
+    opens: bool = False
+
+
+def row_waveform(timing: AmpTiming, four_tap: bool = False, slot: Slot = Slot()) -> Waveform:
     """Pins of one row from the cycle after `start` to the cycle of `done`.
 
     The generator expects hold_free (bool) of the cycle whose pins it has just yielded; the guard before a read lasts
@@ -44,6 +64,8 @@ def row_waveform(timing: AmpTiming, four_tap: bool = False) -> Waveform:
         Durations of the phases.
     four_tap : bool
         Four sub-frames, one per time-of-flight tap, instead of one.
+    slot : Slot
+        What is left out of the row.
 
     Yields
     ------
@@ -51,36 +73,49 @@ def row_waveform(timing: AmpTiming, four_tap: bool = False) -> Waveform:
         Of each cycle.
     """
     for tap in range(TAPS if four_tap else 1):
-        yield from _sub_frame(timing, tap)
+        yield from _sub_frame(timing, tap, slot)
     yield AmpPins(done=1)
 
 
-def _sub_frame(t: AmpTiming, tap: int) -> Waveform:
+def _sub_frame(t: AmpTiming, tap: int, slot: Slot) -> Waveform:
+    on = {"pixel_reset": slot.resets, "expose": slot.opens and tap == 0}
+
+    def pins(**high: int) -> AmpPins:
+        return AmpPins(
+            tap=tap, busy=1, **{name: level if on.get(name, slot.reads) else 0 for name, level in high.items()}
+        )
+
     def phase(length: int, **high: int) -> Waveform:
         for _ in range(length):
-            yield AmpPins(tap=tap, busy=1, **high)
+            yield pins(**high)
+
+    def integrate(first: bool) -> Waveform:
+        yield pins(integrate=1, shutter=1, expose=int(first))
+        yield from phase(t.t_int - 1, integrate=1, shutter=1)
 
     if tap == 0:  # later taps begin in the guard that ends the tap before
         yield from phase(t.t_guard)
     yield from phase(t.t_reset, pixel_reset=1)
     yield from phase(t.t_guard)
+    yield from integrate(first=True)
     for _ in range(t.n_cm):
-        yield from phase(t.t_int, integrate=1, shutter=1)
         yield from phase(t.t_guard, shutter=1)
         yield from phase(t.t_cm, cm_reset=1, shutter=1)
         yield from phase(t.t_guard, shutter=1)
-    yield from phase(t.t_int, integrate=1, shutter=1)
+        yield from integrate(first=False)
     yield from phase(t.t_guard - 1)
-    while not (yield AmpPins(tap=tap, busy=1)):
+    while not (yield pins()):
         pass
     for length, reference in ((t.t_settle, 1), (t.t_read, 0)):
         yield from phase(length - 1, read=1, ref_ctl=reference)
-        yield AmpPins(tap=tap, busy=1, read=1, ref_ctl=reference, sample=1)
+        yield pins(read=1, ref_ctl=reference, sample=1)
     # The tap counts up after the guard, long after the end of the second `sample` into this tap's capacitors.
     yield from phase(t.t_guard)
 
 
-def waveform(timing: AmpTiming, four_tap: bool, hold_free: Iterable[bool]) -> dict[str, npt.NDArray[np.uint8]]:
+def waveform(
+    timing: AmpTiming, four_tap: bool, hold_free: Iterable[bool], slot: Slot = Slot()
+) -> dict[str, npt.NDArray[np.uint8]]:
     """Pins of one row for a known pattern of hold_free.
 
     Parameters
@@ -91,13 +126,15 @@ def waveform(timing: AmpTiming, four_tap: bool, hold_free: Iterable[bool]) -> di
         Four sub-frames instead of one.
     hold_free : iterable of bool
         Entry i belongs to the i-th cycle after `start`.
+    slot : Slot
+        What is left out of the row.
 
     Returns
     -------
     dict of str to uint8
         Pin name to one value per cycle, up to the cycle of `done` or the end of ``hold_free``.
     """
-    row, cycles = row_waveform(timing, four_tap), []
+    row, cycles = row_waveform(timing, four_tap, slot), []
     pins = next(row)
     for free in hold_free:
         cycles.append(pins)

@@ -7,8 +7,9 @@ from .chip import ASYNCHRONOUS, LANES, SPI_INPUTS, ChipParameters
 from .divider import DIVIDERS
 from .electrical import ELEMENTARY_CHARGE, TYPICAL_CONVERTER, ConverterParameters, ElectricalParameters
 from .energy import EnergyParameters, LightParameters
-from .frame import ALL_TYPES, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
+from .frame import ALL_TYPES, EXPOSURE_MAX, MODES, SAMPLES_PER_PIXEL, SHORT_TIMING, AmpTiming, FrameParameters, Window
 from .optics import OpticsParameters
+from .room import RoomParameters
 from .sensor import SensorParameters
 from .sensor_file import STANDARD, read_sensor, sensor_of, sensor_text
 from .sources import sources
@@ -20,6 +21,7 @@ __all__ = [
     "COLS_MAX",
     "DIVIDERS",
     "ELEMENTARY_CHARGE",
+    "EXPOSURE_MAX",
     "FOCUS_MAX",
     "LANES",
     "LightParameters",
@@ -42,6 +44,7 @@ __all__ = [
     "ParameterError",
     "PixelType",
     "Response",
+    "RoomParameters",
     "SensorParameters",
     "TileParameters",
     "Window",

@@ -7,6 +7,7 @@ from .checks import check_int, check_real
 from .sources import sourced
 
 ELEMENTARY_CHARGE = 1.602176634e-19  # C
+PHOTON = 1.98644586e-25  # J m: Planck's constant times the speed of light
 BOLTZMANN = 1.380649e-23  # J/K
 TEMPERATURE = 300.0  # K, assumed
 
@@ -18,7 +19,8 @@ class ElectricalParameters:
     Attributes
     ----------
     white_current : float
-        Photocurrent of one diode in a flat white scene, 1e-15..1e-3 A.
+        Photocurrent of one diode in a flat white scene, 1e-21..1e-3 A: that of time of flight's own light; in the other
+        modes that of the room's light (`RoomParameters`) takes its place.
     full_well : float
         Charge that one diode holds between common-mode resets, 100..1e9 electrons.
     difference_gain : float
@@ -41,7 +43,7 @@ class ElectricalParameters:
         RMS 1/f noise of a column's amplifier over the rows of a frame, 0..1e5 electrons per diode.
     """
 
-    white_current: float = sourced(0.25e-9, "assumed: 80 % of a full well in 51.2 us, at any f-number")
+    white_current: float = sourced(0.25e-9, "assumed, of modulated light: 80 % of a full well in 51.2 us")
     full_well: float = sourced(1e5, "assumed")
     difference_gain: float = sourced(4.0, "our choice: edges reach the converter's range")
     read_noise: float = sourced(30.0, "assumed")
@@ -54,7 +56,7 @@ class ElectricalParameters:
     flicker_noise: float = sourced(10.0, "assumed")
 
     def __post_init__(self) -> None:
-        check_real("white_current", self.white_current, 1e-15, 1e-3)
+        check_real("white_current", self.white_current, 1e-21, 1e-3)
         check_real("full_well", self.full_well, 100, 1e9)
         check_real("difference_gain", self.difference_gain, 0.25, 64)
         check_real("read_noise", self.read_noise, 0, 1e5)

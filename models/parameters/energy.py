@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 from .checks import check_real
+from .electrical import ELEMENTARY_CHARGE, PHOTON
 from .sources import sourced
 
 TABLE = "[Jayasuriya2017], Table 6.1"
@@ -108,8 +109,12 @@ class LightParameters:
 
     Attributes
     ----------
-    responsivity : float
-        Of a diode under its gratings, 1e-4..1 A/W.
+    quantum_efficiency : float
+        Of the bare diode at the source's wavelength, 0.01..1.
+    gratings : float
+        What is left of it under the gratings, 0.01..1; in the light of a room, too.
+    wavelength : float
+        Of the source, 700e-9..1000e-9 m.
     fill : float
         Area of one diode over the pixel's, 0.01..0.5.
     transmission : float
@@ -118,15 +123,23 @@ class LightParameters:
         Optical over electrical power of the source, 0.001..1.
     """
 
-    responsivity: float = sourced(0.05, "assumed: quantum efficiency 0.7 at 850 nm, a tenth of it under the gratings")
+    quantum_efficiency: float = sourced(0.7, "assumed")
+    gratings: float = sourced(0.5, "[Jayasuriya2017], Ch. 2: phase gratings, up to 50 % relative quantum efficiency")
+    wavelength: float = sourced(850e-9, "assumed")
     fill: float = sourced(0.4, "assumed")
     transmission: float = sourced(0.9, "assumed")
     efficiency: float = sourced(0.3, "assumed")
 
     def __post_init__(self) -> None:
-        low = {"responsivity": 1e-4, "fill": 0.01, "transmission": 0.01, "efficiency": 0.001}
+        check_real("wavelength", self.wavelength, 700e-9, 1000e-9)
+        low = {"quantum_efficiency": 0.01, "gratings": 0.01, "fill": 0.01, "transmission": 0.01, "efficiency": 0.001}
         for name, least in low.items():
             check_real(name, getattr(self, name), least, 0.5 if name == "fill" else 1)
+
+    @property
+    def responsivity(self) -> float:
+        """Of a diode under its gratings, A/W."""
+        return self.quantum_efficiency * self.gratings * ELEMENTARY_CHARGE * self.wavelength / PHOTON
 
     def power(self, white_current: float, pitch: float, pixels: int, nu_max: float, magnification: float) -> float:
         """Electrical power of a source that lights a white field in the focal plane, and nothing beside it.

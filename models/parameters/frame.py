@@ -1,17 +1,18 @@
 """Configuration of a frame: the contents of the chip's registers, by their meaning."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 from .checks import ParameterError, check_choice, check_int
 
 MODES = ("edge", "image", "raw", "tof")  # in the order of the register's code
 SAMPLES_PER_PIXEL = {"edge": 1, "image": 1, "raw": 2, "tof": 4}
 ALL_TYPES = (1 << 24) - 1
+EXPOSURE_MAX = 1023  # rows
 
 
 @dataclass(frozen=True)
 class AmpTiming:
-    """Durations of the amplifier's phases, and the number of common-mode resets.
+    """Durations of the amplifier's phases, the number of common-mode resets, and the lead of the reset pointer.
 
     Attributes
     ----------
@@ -19,6 +20,8 @@ class AmpTiming:
         Cycles, each 1..65535.
     n_cm : int
         Common-mode resets during the integration, 0..255.
+    exposure : int
+        Rows by which the reset pointer leads the read pointer, 0..1023; 0 in time of flight, whatever it is.
     """
 
     t_reset: int = 32
@@ -28,10 +31,12 @@ class AmpTiming:
     t_read: int = 16
     t_guard: int = 2
     n_cm: int = 0
+    exposure: int = 0
 
     def __post_init__(self) -> None:
+        ends = {"n_cm": (0, 255), "exposure": (0, EXPOSURE_MAX)}
         for f in fields(self):
-            check_int(f.name, getattr(self, f.name), 0 if f.name == "n_cm" else 1, 255 if f.name == "n_cm" else 65535)
+            check_int(f.name, getattr(self, f.name), *ends.get(f.name, (1, 65535)))
 
 
 SHORT_TIMING = AmpTiming(t_reset=2, t_int=3, t_cm=2, t_settle=2, t_read=2, t_guard=1, n_cm=1)  # of simulated frames
@@ -120,3 +125,8 @@ class FrameParameters:
         check_int("calibration", self.calibration, 0, 255)
         if self.phase and self.mode != "tof":
             raise ParameterError(f"phase = True: needs mode 'tof', not {self.mode!r}")
+
+    @property
+    def exposing(self) -> AmpTiming:
+        """The timing as the chip exposes with it: in time of flight each tap has its own reset, and nothing leads."""
+        return replace(self.timing, exposure=0) if self.mode == "tof" else self.timing

@@ -5,7 +5,7 @@ import struct
 MAGIC = b"TLBT"
 VERSION = 2
 
-HEADER_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sHBHB")
+HEADER_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sHHBHB")
 CRC = struct.Struct(">I")
 FIELD_BYTES = HEADER_FIELDS.size
 HEADER_BYTES = FIELD_BYTES + CRC.size

@@ -1,5 +1,6 @@
 """From photocurrents to codes."""
 
+from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
 
 
@@ -11,7 +12,7 @@ def codes_per_unit(sensor: SensorParameters, timing: AmpTiming) -> float:
     sensor : SensorParameters
         The sensor.
     timing : AmpTiming
-        Integration time and common-mode resets.
+        Integration times, common-mode resets, lead of the reset pointer.
 
     Returns
     -------
@@ -19,5 +20,5 @@ def codes_per_unit(sensor: SensorParameters, timing: AmpTiming) -> float:
         Codes per unit.
     """
     e = sensor.electrical
-    seconds = timing.t_int / sensor.chip.f_clk * (timing.n_cm + 1)
+    seconds = sum(integration_cycles(timing)) / sensor.chip.f_clk
     return e.white_current * seconds / ELEMENTARY_CHARGE / e.lsb_electrons * e.difference_gain

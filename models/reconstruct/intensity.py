@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import distance_transform_edt
 
+from talbot.models.digital.exposure import integration_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, AmpTiming, SensorParameters
 from talbot.models.pixel.weights import view_weights
 
@@ -28,7 +29,8 @@ def white_sum(sensor: SensorParameters, timing: AmpTiming = AmpTiming()) -> floa
         In LSB.
     """
     e = sensor.electrical
-    return 2 * e.white_current * timing.t_int / sensor.chip.f_clk / ELEMENTARY_CHARGE / e.lsb_electrons
+    seconds = integration_cycles(timing)[-1] / sensor.chip.f_clk  # a common-mode reset takes the sum away
+    return 2 * e.white_current * seconds / ELEMENTARY_CHARGE / e.lsb_electrons
 
 
 def sum_image(

@@ -17,6 +17,7 @@ from .scene import Scene
 # Each is a function of a Sampling; `name:number` on the command line adds the number (edge:30 is 30 degrees).
 scenes: dict[str, Callable[..., Scene]] = {
     "motorcycle": motorcycle,
+    "moving": targets.moving,
     "tilted": targets.tilted,
     "point": targets.point,
     "edge": targets.edge,
@@ -26,7 +27,12 @@ scenes: dict[str, Callable[..., Scene]] = {
     "polarized": targets.polarized,
     **{name: partial(photograph, name) for name in PHOTOGRAPHS},
 }
-NUMBERS = {"edge": ("degrees", -360.0, 360.0), "flat": ("percent", 0.0, 1600.0), "polarized": ("percent", 0.0, 100.0)}
+NUMBERS = {
+    "edge": ("degrees", -360.0, 360.0),
+    "flat": ("percent", 0.0, 1600.0),
+    "moving": ("px/s", 0.0, 1e6),
+    "polarized": ("percent", 0.0, 100.0),
+}
 
 
 def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None = None) -> Scene:

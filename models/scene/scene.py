@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int
+from talbot.models.parameters import FOCUS_MAX, ParameterError, check_choice, check_int, check_real
 
 from .sampling import DTYPES
 
@@ -18,6 +18,7 @@ Bools = npt.NDArray[np.bool_]
 # Radiance and disparity (rows, cols) of the view at an offset (dv, du) in view steps, at most views / 2 each way
 View = Callable[[float, float], tuple[npt.NDArray[np.floating], npt.NDArray[np.floating]]]
 
+SPEED_MAX = 1e7  # px/s
 RADIANCE_MAX = 16.0  # 1 = diffuse white; highlights and the saturated target go above it
 
 
@@ -47,6 +48,10 @@ class Scene:
         are no others.
     static : bool
         Nothing moves or changes between the taps of a time-of-flight frame.
+    moved : callable or None
+        From a time after the frame's start in s to the scene at that time, of the same size; None: nothing moves.
+    speed : float
+        Of what moves, 0..1e7 px/s.
 
     Raises
     ------
@@ -63,6 +68,8 @@ class Scene:
     polarization: npt.NDArray[np.floating] | None = None
     render: Callable[[Bools], View] | None = None
     static: bool = True
+    moved: Callable[[float], "Scene"] | None = None
+    speed: float = 0.0
 
     def __post_init__(self) -> None:
         check_int("views", self.views, 1, 31)
@@ -86,6 +93,7 @@ class Scene:
             if value.shape != shape:
                 raise ParameterError(f"{name} shape = {value.shape}: must be {shape}")
             check_values(name, value, low, high)
+        check_real("speed", self.speed, 0, SPEED_MAX)
         if self.polarization is not None:
             check_values("degree of polarization", np.hypot(*self.polarization), 0, 1 + 1e-6)
 

@@ -5,6 +5,7 @@ Positions are px from the middle of the array, x to the right, y down. Each targ
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -105,6 +106,31 @@ def edge(sampling: Sampling, degrees: float = 20.0) -> Scene:
     """
     c, s = np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))
     return _on_plane("edge", sampling, lambda y, x: 0.5 + 0.9 * np.clip(x * c + y * s, -0.5, 0.5))
+
+
+def moving(sampling: Sampling, speed: float = 5000.0) -> Scene:
+    """Upright edge from dark (0.05) to bright (0.95) that moves.
+
+    At the frame's start it is a quarter of the array left of the middle.
+
+    Parameters
+    ----------
+    sampling : Sampling
+        Array, views and camera.
+    speed : float
+        To the right, 0..1e6 px/s.
+
+    Returns
+    -------
+    Scene
+        All views; one view in focus.
+    """
+
+    def _at(seconds: float) -> Scene:
+        place = speed * seconds - sampling.cols / 4
+        return _on_plane("moving", sampling, lambda y, x: 0.5 + 0.9 * np.clip(x - place + 0 * y, -0.5, 0.5))
+
+    return replace(_at(0.0), static=False, moved=_at, speed=speed)
 
 
 def tilted(sampling: Sampling) -> Scene:

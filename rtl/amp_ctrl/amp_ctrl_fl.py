@@ -2,10 +2,10 @@
 
 from pymtl3 import Component, update_ff
 
-from talbot.models.digital.amp_ctrl import AmpPins, row_waveform
+from talbot.models.digital.amp_ctrl import AmpPins, Slot, row_waveform
 from talbot.models.parameters import AmpTiming
 
-from .ports import DURATIONS, declare_ports
+from .ports import DURATIONS, SLOT, declare_ports
 
 
 class AmpCtrlFL(Component):
@@ -34,6 +34,7 @@ class AmpCtrlFL(Component):
             s.shutter <<= s.pins.shutter
             s.ref_ctl <<= s.pins.ref_ctl
             s.integrate <<= s.pins.integrate
+            s.expose <<= s.pins.expose
             s.cm_reset <<= s.pins.cm_reset
             s.read <<= s.pins.read
             s.sample <<= s.pins.sample
@@ -47,7 +48,8 @@ class AmpCtrlFL(Component):
         durations = {name: int(getattr(s, name)) for name in DURATIONS}
         s.error = int(0 in durations.values())
         if not s.error:
-            s.row = row_waveform(AmpTiming(n_cm=int(s.n_cm), **durations), bool(s.four_tap))
+            slot = Slot(*(bool(getattr(s, name)) for name in SLOT))
+            s.row = row_waveform(AmpTiming(n_cm=int(s.n_cm), **durations), bool(s.four_tap), slot)
             s.pins = next(s.row)
 
     def line_trace(s):

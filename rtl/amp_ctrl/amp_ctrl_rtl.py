@@ -18,6 +18,8 @@ class AmpCtrl(Component):
         s.d_reset, s.d_int, s.d_cm = Wire(16), Wire(16), Wire(16)
         s.d_settle, s.d_read, s.d_guard = Wire(16), Wire(16), Wire(16)
         s.d_n_cm, s.d_four = Wire(8), Wire()
+        s.d_resets, s.d_reads = Wire(), Wire()
+        s.d_opens = Wire()  # until `expose`
         s.state, s.after = Wire(3), Wire(3)  # after: the phase after the guard
         s.count = Wire(16)  # cycles left in the current phase after this one
         s.resets = Wire(8)  # common-mode resets left
@@ -25,7 +27,7 @@ class AmpCtrl(Component):
         s.next_count = Wire(16)
         s.length = Wire(16)
         s.zero, s.accept, s.last, s.blocked = Wire(), Wire(), Wire(), Wire()
-        s.sub_frame_done, s.next_tap = Wire(), Wire()
+        s.sub_frame_done, s.next_tap, s.reading = Wire(), Wire(), Wire()
 
         # Logic
         @update
@@ -97,6 +99,10 @@ class AmpCtrl(Component):
                 else:
                     s.next_after @= IDLE
 
+        @update
+        def up_reading():
+            s.reading @= s.d_reads & ((s.next_state == REFERENCE) | (s.next_state == SIGNAL))
+
         @update_ff
         def up_state():
             if s.reset:
@@ -134,6 +140,9 @@ class AmpCtrl(Component):
                 s.d_guard <<= 0
                 s.d_n_cm <<= 0
                 s.d_four <<= 0
+                s.d_resets <<= 0
+                s.d_reads <<= 0
+                s.d_opens <<= 0
             elif s.accept:
                 s.d_reset <<= s.t_reset
                 s.d_int <<= s.t_int
@@ -143,6 +152,11 @@ class AmpCtrl(Component):
                 s.d_guard <<= s.t_guard
                 s.d_n_cm <<= s.n_cm
                 s.d_four <<= s.four_tap
+                s.d_resets <<= s.slot_resets
+                s.d_reads <<= s.slot_reads
+                s.d_opens <<= s.slot_opens
+            elif s.next_state == INTEGRATE:
+                s.d_opens <<= 0
 
         @update_ff
         def up_pins():
@@ -151,18 +165,20 @@ class AmpCtrl(Component):
                 s.shutter <<= 0
                 s.ref_ctl <<= 0
                 s.integrate <<= 0
+                s.expose <<= 0
                 s.cm_reset <<= 0
                 s.read <<= 0
                 s.sample <<= 0
             else:
-                s.pixel_reset <<= s.next_state == RESET
-                s.integrate <<= s.next_state == INTEGRATE
-                s.cm_reset <<= s.next_state == CM_RESET
-                s.ref_ctl <<= s.next_state == REFERENCE
-                s.read <<= (s.next_state == REFERENCE) | (s.next_state == SIGNAL)
-                s.sample <<= ((s.next_state == REFERENCE) | (s.next_state == SIGNAL)) & (s.next_count == 0)
+                s.pixel_reset <<= s.d_resets & (s.next_state == RESET)
+                s.integrate <<= s.d_reads & (s.next_state == INTEGRATE)
+                s.expose <<= s.d_opens & (s.next_state == INTEGRATE)
+                s.cm_reset <<= s.d_reads & (s.next_state == CM_RESET)
+                s.ref_ctl <<= s.d_reads & (s.next_state == REFERENCE)
+                s.read <<= s.reading
+                s.sample <<= s.reading & (s.next_count == 0)
                 if s.next_state == INTEGRATE:
-                    s.shutter <<= 1
+                    s.shutter <<= s.d_reads
                 elif (s.next_state == IDLE) | ((s.next_state == GUARD) & (s.next_after == REFERENCE)):
                     s.shutter <<= 0
 

@@ -22,7 +22,7 @@ from talbot.rtl.reg_file import RegFileFL, chip_status
 from .golden_run import GoldenRun, idle_pins
 from .pins import declare_pins
 
-TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
+TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm", "exposure")
 
 
 def frame_of(cfg: Any) -> FrameParameters:

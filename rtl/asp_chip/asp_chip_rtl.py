@@ -20,8 +20,9 @@ from .state_rtl import State
 from .status_rtl import Status
 
 TIMING = ("t_reset", "t_int", "t_cm", "t_settle", "t_read", "t_guard", "n_cm")
-PHASES = ("pixel_reset", "shutter", "ref_ctl", "integrate", "cm_reset", "read", "sample", "tap")
+PHASES = ("pixel_reset", "shutter", "ref_ctl", "integrate", "expose", "cm_reset", "read", "sample", "tap")
 ADDRESS = ("row", "group", "k", "sub", "en")
+SLOT = ("slot_resets", "slot_reads", "slot_opens")
 WINDOW = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation")
 TOF = 3
 
@@ -78,6 +79,7 @@ class AspChip(Component):
 
         s.seq.start //= s.regs.start
         s.seq.overlap //= cfg.overlap
+        s.seq.exposure //= cfg.exposure
         s.seq.amp_done //= s.amp.done
         s.seq.amp_err //= s.amp.cfg_err
         s.seq.bank_idle //= s.bank.idle
@@ -88,6 +90,9 @@ class AspChip(Component):
         s.amp.four_tap //= s.seq.four_tap
         s.amp.hold_free //= s.seq.hold_free
         s.amp_row //= s.seq.amp_row
+        s.reset_row //= s.seq.reset_row
+        for name in SLOT:
+            connect(getattr(s.amp, name), getattr(s.seq, name))
         for name in TIMING:
             connect(getattr(s.amp, name), getattr(cfg, name))
 
@@ -118,7 +123,7 @@ class AspChip(Component):
         s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made
         s.encoder.left_out //= s.bank.left_out
-        for name in (*WINDOW, "threshold", "frame_number", "resync", "n_cm", "t_int", "calibration"):
+        for name in (*WINDOW, "threshold", "frame_number", "resync", "exposure", "n_cm", "t_int", "calibration"):
             connect(getattr(s.encoder, name), getattr(cfg, name))
 
         s.link.loop_enable //= cfg.loop_enable

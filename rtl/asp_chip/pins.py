@@ -29,16 +29,18 @@ def pins(lanes: int) -> tuple[dict[str, type], dict[str, type]]:
         "sub": Bits2,
         "en": mk_bits(lanes),
         "balance": mk_bits(register_map().trims[0].width),
-        # to the amplifiers of the row that integrates
+        # to the pixels and their amplifiers
         "pixel_reset": Bits1,
         "shutter": Bits1,
         "ref_ctl": Bits1,
         "integrate": Bits1,
+        "expose": Bits1,
         "cm_reset": Bits1,
         "read": Bits1,
         "sample": Bits1,
         "tap": Bits2,
         "amp_row": Bits10,
+        "reset_row": Bits10,
     }
     return inputs, outputs
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from pymtl3 import Component, InPort, Interface, OutPort
 from pymtl3.passes.backends.verilog import VerilogTranslationPass
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 
 COLUMNS = "200"  # PyMTL folds lines at the terminal's width
 KEPT = {"Synchronizer": "stages"}  # module -> the register that synthesis may neither merge nor move
@@ -115,7 +115,7 @@ def tidy(text: str) -> str:
 
     A bit is no vector [0:0]. The registers of synchronizers have the attribute `keep`.
     """
-    text = text.replace(f"// At {ROOT}{os.sep}", "// At ")
+    text = text.replace(f"// At {PACKAGE}{os.sep}", "// At ")
     text = re.sub(r"(?m)^(\s*// At )/.*/(pymtl3/\S+)$", r"\1\2", text)
     text = re.sub(r"(int unsigned \w+ = )1'd0;", r"\g<1>32'd0;", text)
     text = re.sub(r"\+= 1'd1 \)", "+= 32'd1 )", text)

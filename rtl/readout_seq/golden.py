@@ -28,6 +28,11 @@ def row_steps(scan: Scan, row: int) -> list[Any]:
     return [Step(SAMPLE, row, step.group, step.k, step.sub, step.enable) for step in scan.steps(row) if step.enable]
 
 
+def lead(s) -> int:
+    """Slots from a row's reset to its read, as the ports of component ``s`` configure it."""
+    return 0 if MODES[int(s.mode)] == "tof" else int(s.exposure)
+
+
 def mark(kind: int, lanes: int, row: int = 0) -> Any:
     """The StepMsg of a FRAME, ROW or END."""
     return step_msg(lanes)(kind, row)

@@ -42,9 +42,11 @@ def declare_ports(s, lanes: int) -> None:
     s.mode, s.mask, s.decimation = InPort(2), InPort(24), InPort(2)
     for name in WINDOW:
         setattr(s, name, InPort(8))
+    s.exposure = InPort(10)
     s.amp_done, s.amp_err, s.bank_idle = InPort(), InPort(), InPort()
     s.busy, s.done, s.cfg_err = OutPort(), OutPort(), OutPort()
-    s.amp_start, s.amp_row = OutPort(), OutPort(10)
+    s.amp_start, s.amp_row, s.reset_row = OutPort(), OutPort(10), OutPort(10)
+    s.slot_resets, s.slot_reads, s.slot_opens = OutPort(), OutPort(), OutPort()
     s.four_tap, s.hold_free = OutPort(), OutPort()
     s.step = SendIfcRTL(step_msg(lanes))
     s.cycles = OutPort(64)

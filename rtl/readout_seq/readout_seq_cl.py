@@ -5,7 +5,7 @@ from pymtl3 import Component, update, update_ff
 from talbot.models.parameters import MODES, ParameterError
 from talbot.rtl.messages import END, FRAME, ROW
 
-from .golden import configured_scan, mark, row_steps, tile_of
+from .golden import configured_scan, lead, mark, row_steps, tile_of
 from .ports import declare_ports, edges
 
 
@@ -21,6 +21,7 @@ class ReadoutSeqCL(Component):
         @update
         def up_four_tap():
             s.four_tap @= MODES[int(s.mode)] == "tof"
+            s.slot_opens @= s.slot_resets & (lead(s) != 0)
 
         @update_ff
         def behave():
@@ -33,6 +34,9 @@ class ReadoutSeqCL(Component):
             s.cfg_err <<= s.error
             s.amp_start <<= s.started
             s.amp_row <<= s.amplified
+            s.reset_row <<= s.opened
+            s.slot_resets <<= s.resetting
+            s.slot_reads <<= s.waiting == 0
             s.hold_free <<= s.held is None
             s.step.val <<= s.offer is not None
             if s.offer is not None:
@@ -42,8 +46,10 @@ class ReadoutSeqCL(Component):
     def clear(s):
         """Set the state after a reset."""
         s.frame = None  # generator of the frame, a cycle a step
-        s.todo = None  # rows that the amplifiers have not started
-        s.amplified = 0  # the row they started last
+        s.to_reset = s.to_read = None  # rows of the slots to come
+        s.waiting = 0  # slots from the current one to the first that reads
+        s.amplified = s.opened = 0  # the rows that they read and reset last
+        s.resetting = False
         s.integrating = s.started = s.failing = s.ended = s.error = False
         s.held = None  # row in the sample-and-holds
         s.offer = None  # message at the port
@@ -61,13 +67,18 @@ class ReadoutSeqCL(Component):
             if s.amp_err:
                 s.integrating, s.failing = False, True
             elif s.amp_done:
-                s.integrating, s.held = False, s.amplified
-                if s.overlap:
+                s.integrating = False
+                if s.waiting:
                     s.launch()
+                else:
+                    s.held = s.amplified
+                    if s.overlap or lead(s):
+                        s.launch()
         if s.failing and (s.offer is None or s.step.rdy):
-            count, row = s.count, s.amplified
+            slot = s.count, s.amplified, s.opened, s.resetting, s.waiting
             s.clear()
-            s.count, s.amplified, s.error = count, row, True
+            s.count, s.amplified, s.opened, s.resetting, s.waiting = slot
+            s.error = True
         else:
             next(s.frame, None)
 
@@ -79,14 +90,20 @@ class ReadoutSeqCL(Component):
             s.error = True
             return
         s.error, s.count = False, 0
-        s.todo = [int(row) for row in scan.row_list]
+        s.to_reset, s.to_read = ([int(row) for row in scan.row_list] for _ in range(2))
+        s.waiting = lead(s) + 1
         s.frame = s.walk(scan)
         next(s.frame)
 
     def launch(s):
-        """Start the amplifiers for the next row, if there is one."""
-        if s.todo:
-            s.amplified = s.todo.pop(0)
+        """Start the amplifiers' next slot, if a row is left to read."""
+        if s.to_read:
+            s.waiting = max(s.waiting - 1, 0)
+            s.resetting = bool(s.to_reset)
+            if s.to_reset:
+                s.opened = s.to_reset.pop(0)
+            if not s.waiting:
+                s.amplified = s.to_read.pop(0)
             s.integrating = s.started = True
 
     def walk(s, scan):

@@ -7,7 +7,7 @@ from pymtl3 import Component, update, update_ff
 from talbot.models.parameters import MODES, ParameterError
 from talbot.rtl.messages import END, FRAME, ROW
 
-from .golden import configured_scan, mark, row_steps, tile_of
+from .golden import configured_scan, lead, mark, row_steps, tile_of
 from .ports import declare_ports, edges
 
 
@@ -23,6 +23,7 @@ class ReadoutSeqFL(Component):
         @update
         def up_four_tap():
             s.four_tap @= MODES[int(s.mode)] == "tof"
+            s.slot_opens @= s.slot_resets & (lead(s) != 0)
 
         @update_ff
         def behave():
@@ -41,6 +42,9 @@ class ReadoutSeqFL(Component):
             s.cfg_err <<= s.error
             s.amp_start <<= s.started
             s.amp_row <<= s.row
+            s.reset_row <<= s.opened
+            s.slot_resets <<= s.resetting
+            s.slot_reads <<= s.reading
             s.hold_free <<= s.free
             s.step.val <<= bool(s.queue)
             if s.queue:
@@ -50,7 +54,8 @@ class ReadoutSeqFL(Component):
     def clear(s):
         """Set the state after a reset."""
         s.job, s.queue = None, deque()  # the frame's generator, and messages to be sent
-        s.row = s.count = 0
+        s.row = s.opened = s.count = 0
+        s.resetting, s.reading = False, True
         s.started = s.ended = False
         s.error, s.free = False, True
 
@@ -65,8 +70,13 @@ class ReadoutSeqFL(Component):
     def frame(s, scan):
         """Generate a frame; every yield is one clock cycle."""
         opening = [mark(FRAME, scan.lanes)]  # not before AmpCtrl has accepted its durations
-        for row in scan.row_list:
-            s.row, s.started = int(row), True
+        rows, ahead = [int(row) for row in scan.row_list], lead(s)
+        for slot in range(len(rows) + ahead):
+            s.resetting, s.reading, s.started = slot < len(rows), slot >= ahead, True
+            if s.resetting:
+                s.opened = rows[slot]
+            if s.reading:
+                s.row = rows[slot - ahead]
             yield  # `amp_start`
             yield
             while not (s.amp_done or s.amp_err):
@@ -78,6 +88,8 @@ class ReadoutSeqFL(Component):
                     yield
                 s.job, s.error = None, True
                 return
+            if not s.reading:
+                continue
             s.free = False
             s.queue.extend([*opening, mark(ROW, scan.lanes, s.row), *row_steps(scan, s.row)])
             opening = []

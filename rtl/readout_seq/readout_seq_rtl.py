@@ -28,10 +28,16 @@ class ReadoutSeq(Component):
         declare_ports(s, lanes)
 
         # Components
-        s.rows = RowWalk(tile_rows, last_row, rows_there)
+        s.rows = RowWalk(tile_rows, last_row, rows_there)  # that are read
+        s.ahead = RowWalk(tile_rows, last_row, rows_there)  # that are reset
+        s.unused_columns = Wire(6)
         s.steps = StepWalk(lanes, last_col, cols_there)
         s.state = Wire(3)
-        s.integrating = Wire()  # the amplifiers expose or read a row
+        s.integrating = Wire()  # the amplifiers work on a slot: they reset, expose or read a row
+        s.lead = Wire(10)  # slots from a row's reset to its read
+        s.wait_slots = Wire(10)  # from the current slot to the first one that reads
+        s.wait_over = Wire()  # the next slot reads
+        s.overlaps = Wire()
         s.failing = Wire()  # aborted as soon as the offered message is taken
         s.row = Wire(10)  # the row that converts
         s.count_low, s.count_high = Wire(8), Wire(56)  # of `cycles`, the higher bits clocked at a carry alone
@@ -39,6 +45,7 @@ class ReadoutSeq(Component):
         s.columns = Wire(24)  # of these, those in tile column col0 that exist
         s.window_ok = Wire()
         s.idle, s.taken, s.listening, s.failed, s.landed, s.drained = Wire(), Wire(), Wire(), Wire(), Wire(), Wire()
+        s.over, s.next_slot = Wire(), Wire()
         s.accept, s.launch, s.abort = Wire(), Wire(), Wire()
 
         # Connections
@@ -50,9 +57,15 @@ class ReadoutSeq(Component):
         s.rows.row0 //= s.row0
         s.rows.row1 //= s.row1
         s.rows.decimation //= s.decimation
-        s.rows.first //= s.idle
-        s.rows.move //= s.launch
         s.rows.row //= s.amp_row
+        s.ahead.columns //= s.columns
+        s.ahead.row0 //= s.row0
+        s.ahead.row1 //= s.row1
+        s.ahead.decimation //= s.decimation
+        s.ahead.first //= s.idle
+        s.ahead.look //= s.next_slot
+        s.ahead.row //= s.reset_row
+        s.ahead.row_columns //= s.unused_columns
         s.steps.columns //= s.rows.row_columns
         s.steps.load //= s.landed
         s.steps.col0 //= s.col0
@@ -78,6 +91,10 @@ class ReadoutSeq(Component):
                 & (zext(s.col1, 9) <= last_col)
             )
             s.four_tap @= s.mode == TOF
+            s.lead @= s.exposure
+            if s.mode == TOF:  # each tap resets the row itself
+                s.lead @= 0
+            s.overlaps @= s.overlap | (s.lead != 0)  # else a slot's time would follow the conversions
             s.steps.subs @= concat(s.mode == TOF, (s.mode == TOF) | (s.mode == RAW))
 
         # Logic: events of this cycle
@@ -89,22 +106,37 @@ class ReadoutSeq(Component):
             s.steps.advance @= s.taken & (s.state == OFFER + SAMPLE)
             s.listening @= s.integrating & ~s.amp_start  # amp_err may be of the start before
             s.failed @= s.listening & s.amp_err
-            s.landed @= s.listening & s.amp_done & ~s.amp_err
+            s.over @= s.listening & s.amp_done & ~s.amp_err
+            s.landed @= s.over & s.slot_reads
             s.drained @= (s.state == DRAIN) & s.bank_idle
-            s.rows.look @= (s.idle & s.start) | (s.overlap & s.landed) | (~s.overlap & s.drained)
+            s.next_slot @= (
+                (s.idle & s.start) | (s.over & ~s.slot_reads) | (s.overlaps & s.landed) | (~s.overlaps & s.drained)
+            )
+
+        @update
+        def up_slot():
+            s.slot_reads @= s.wait_slots == 0
+            s.slot_opens @= s.slot_resets & (s.lead != 0)
+            s.wait_over @= s.wait_slots[1:10] == 0
+            if s.idle:
+                s.wait_over @= s.lead == 0
+            s.rows.look @= s.next_slot & s.wait_over
+            s.rows.first @= s.idle | ~s.slot_reads
 
         @update
         def up_columns():
             s.columns @= 0
-            if s.rows.look | s.landed:  # the condition only spares simulators the work
+            if s.next_slot | s.landed:  # the condition only spares simulators the work
                 s.columns @= s.unmasked
                 if s.col0 == last_col:
                     s.columns @= s.columns & THERE
 
         @update
         def up_decisions():
-            s.accept @= s.idle & s.start & s.window_ok & s.rows.found
-            s.launch @= s.accept | (~s.idle & s.rows.found)  # found only when looked for
+            s.accept @= s.idle & s.start & s.window_ok & s.ahead.found  # found only when looked for
+            s.launch @= s.accept | (~s.idle & s.next_slot & (s.rows.found | ~s.wait_over))
+            s.ahead.move @= s.launch & s.ahead.found
+            s.rows.move @= s.launch & s.rows.found
             s.abort @= (s.failed | s.failing) & (~s.step.val | s.step.rdy)
 
         # Logic: state
@@ -140,13 +172,21 @@ class ReadoutSeq(Component):
         def up_rows():
             if s.reset:
                 s.amp_start <<= 0
+                s.slot_resets <<= 0
+                s.wait_slots <<= 0
                 s.integrating <<= 0
                 s.failing <<= 0
                 s.hold_free <<= 1
                 s.row <<= 0
             else:
                 s.amp_start <<= s.launch
-                s.integrating <<= s.launch | (s.integrating & ~s.landed & ~s.failed)
+                if s.launch:
+                    s.slot_resets <<= s.ahead.found
+                    if s.idle:
+                        s.wait_slots <<= s.lead
+                    elif ~s.slot_reads:
+                        s.wait_slots <<= s.wait_slots - 1
+                s.integrating <<= s.launch | (s.integrating & ~s.over & ~s.failed)
                 s.failing <<= (s.failed | s.failing) & ~s.abort
                 if s.landed:
                     s.hold_free <<= 0

@@ -1,6 +1,6 @@
 """HeaderBytes at RTL: the header's fields, byte by byte (docs/stream.md, Header)."""
 
-from pymtl3 import Bits1, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update
+from pymtl3 import Bits1, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update, zext
 
 from talbot.models.parameters.stream_format import MAGIC, VERSION
 
@@ -76,10 +76,14 @@ class HeaderBytes(Component):
             elif s.index == 21:
                 s.octet @= s.frame_number[0:8]
             elif s.index == 22:
-                s.octet @= s.n_cm
+                s.octet @= zext(s.exposure[8:10], 8)
             elif s.index == 23:
-                s.octet @= s.t_int[8:16]
+                s.octet @= s.exposure[0:8]
             elif s.index == 24:
+                s.octet @= s.n_cm
+            elif s.index == 25:
+                s.octet @= s.t_int[8:16]
+            elif s.index == 26:
                 s.octet @= s.t_int[0:8]
             else:
                 s.octet @= s.calibration

@@ -29,6 +29,7 @@ def header_of(s, rows: int, cols: int, lanes: int, tile_rows: int, tile_cols: in
         int(s.threshold),
         int(s.frame_number),
         int(s.resync),
+        int(s.exposure),
         int(s.n_cm),
         int(s.t_int),
         int(s.calibration),

@@ -70,10 +70,12 @@ class RunLength(Component):
         @update
         def select_word():
             s.word @= s.crc32.crc
-            s.place @= s.control.index[0:2] ^ 2  # the CRC-32s start at an index of 2 modulo 4
-            if (s.control.state == TRAILER) & (s.control.index < COUNTS):
-                s.word @= s.left_out if s.control.index[2] else s.made
-                s.place @= s.control.index[0:2]
+            s.place @= s.control.index[0:2]
+            if s.control.state == TRAILER:
+                if s.control.index < COUNTS:
+                    s.word @= s.left_out if s.control.index[2] else s.made
+                else:
+                    s.place @= s.control.index[0:2] ^ 2  # the mark is before the CRC-32
 
         @update
         def select():

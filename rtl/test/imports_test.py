@@ -26,6 +26,8 @@ def imported(path):
 @pytest.mark.parametrize("path", FILES, ids=lambda path: str(path.relative_to(RTL)))
 def test_the_rtl_imports_of_the_models_only_their_parameters(path):
     golden = [
-        name for name in imported(path) if name.startswith("models") and not name.startswith("talbot.models.parameters")
+        name
+        for name in imported(path)
+        if name.startswith("talbot.models") and not name.startswith("talbot.models.parameters")
     ]
     assert not golden, f"{path.name} imports {', '.join(golden)}: must import talbot.models.parameters only"

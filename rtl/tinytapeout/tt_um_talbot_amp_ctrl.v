@@ -43,6 +43,7 @@ module tt_um_talbot_amp_ctrl
   end
 
   AmpCtrl ctrl(.clk(clk), .reset(reset), .start(start), .four_tap(four_tap), .hold_free(free[1]),
+               .slot_resets(1'b1), .slot_reads(1'b1), .slot_opens(1'b0), .expose(),
                .t_reset(durations[15:0]), .t_int(durations[31:16]), .t_cm(durations[47:32]),
                .t_settle(durations[63:48]), .t_read(durations[79:64]), .t_guard(durations[95:80]),
                .n_cm(durations[103:96]), .pixel_reset(uo_out[0]), .shutter(uo_out[1]), .ref_ctl(uo_out[2]),

@@ -77,7 +77,7 @@ class Run:
         if disparity is not None and (mode, what) != ("edge", "image"):
             raise ParameterError("disparity = an array: must be left out, it is of an image from edges")
         if what == "light_field":
-            white = white_sum(result.request.sensor, result.request.frame.timing)
+            white = white_sum(result.request.lit, result.request.frame.exposing)
             values = np.clip(result.light_field / white, 0, RADIANCE_MAX)
             return LightField(values, result.exposed.scene.disparity, f"{result.request.name}_estimate")
         if what == "edges":

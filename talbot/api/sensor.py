@@ -55,6 +55,8 @@ class Settings(TypedDict, total=False):
     threshold: int
     phase: bool
     noise_floor: int
+    lux: float
+    exposure: int | None
     timing: Mapping[str, int]
     overlap: bool
     test_pattern: bool
@@ -143,8 +145,11 @@ class Sensor:
         col1), both ends included (all). decimation: log2 of the tile step, 0..3 (0).
         threshold: in edge mode, |code| below it is left out, 0..127 (10). phase: in tof mode, phase and amplitude from
         the chip's divider (False); noise_floor: amplitude below which a phase is not valid, 0..255 (0).
+        lux: illuminance of white, 0.001..1e6 (500); time of flight has a light of its own, white_current.
+        exposure: rows by which the reset pointer leads, 0..1023, or None for as many as that light asks for.
         timing: cycles of the amplifier's phases, {'t_int': 512, ...}: t_reset, t_int, t_cm, t_settle, t_read, t_guard,
-        1..65535, and n_cm, common-mode resets, 0..255. overlap: integrate a row while another converts (True).
+        1..65535, and n_cm, common-mode resets, 0..255; with a t_int of its own an exposure of None is 0 rows.
+        overlap: integrate a row while another converts (True).
         test_pattern: digital, in place of the pixels (False). frame_number: 0..65535 (0).
 
         Raises ParameterError, and ToolError where the simulator cannot be made.
@@ -166,8 +171,8 @@ class Sensor:
         if types is not None:
             given["mask"] = types if isinstance(types, int) else _mask(types)
         if timing is not None:
-            _check_names("timing", timing, [item.name for item in fields(AmpTiming)])
-            given["timing"] = AmpTiming(**timing)
+            _check_names("timing", timing, [item.name for item in fields(AmpTiming) if item.name != "exposure"])
+            given["timing"] = timing
         if window is not None:
             if len(window) != 4:
                 raise ParameterError(f"window = {window!r}: must be (row0, row1, col0, col1) in tiles")

@@ -36,8 +36,8 @@ class Tradeoff:
 def tradeoff(name: str, *, quick: bool = False) -> Tradeoff:
     """Measure one of the trade-offs of `make tradeoff`.
 
-    name: divider, threshold, views, pupil, precision or noise. quick: fewer points of a smaller array. Raises
-    ParameterError, ToolError.
+    name: divider, threshold, exposure, views, pupil, precision or noise. quick: fewer points of a smaller array.
+    Raises ParameterError, ToolError.
     """
     check_choice("name", name, list(SWEEPS))
     rows = measured(name, quick)

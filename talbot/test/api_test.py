@@ -68,7 +68,8 @@ def test_the_example_of_the_readme(tmp_path):
 
 
 def test_importing_it_loads_nothing():
-    code = "import talbot, sys; print([n for n in ('numpy', 'flow', 'models', 'matplotlib') if n in sys.modules])"
+    heavy = "numpy", "talbot.flow", "talbot.models", "matplotlib"
+    code = f"import talbot, sys; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True).stdout == "[]\n"
 
 
@@ -112,6 +113,9 @@ def test_sensors():
         (lambda: talbot.Sensor(tile=[[]]), "tile cols = 0: must be an integer in 1..6"),
         (lambda: talbot.Sensor().golden("coins", treshold=3), r"treshold = 3: must be .*; did you mean threshold\?"),
         (lambda: talbot.Sensor().golden("coins", timing={"t_i": 3}), "t_i must be one of its keys"),
+        (lambda: talbot.Sensor().golden("coins", timing={"exposure": 3}), "exposure must be one of its keys"),
+        (lambda: talbot.Sensor().golden("coins", lux=0), r"lux = 0: must be a number in .0.001, 1000000.0."),
+        (lambda: talbot.Sensor().golden("coins", exposure=1024), "exposure = 1024: must be an integer in 0..1023"),
         (lambda: talbot.Sensor().golden("coins", window=(1, 2)), "window = .* must be .row0, row1, col0, col1."),
         (lambda: talbot.Sensor().golden("coins", types=[24]), "types = 24: must be an integer in 0..23"),
         (lambda: talbot.Sensor().golden("none.npy"), "no such file"),

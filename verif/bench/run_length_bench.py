@@ -63,6 +63,7 @@ class RunLengthBench(Bench):
             "threshold": header.threshold,
             "frame_number": header.frame_number,
             "resync": header.resync,
+            "exposure": header.exposure,
             "n_cm": header.n_cm,
             "t_int": header.t_int,
             "calibration": header.calibration,

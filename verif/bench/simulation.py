@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from xml.etree import ElementTree
 
 from talbot.base.cache import digest
-from talbot.base.paths import BUILD, ROOT
+from talbot.base.paths import BUILD, PACKAGE, ROOT
 from talbot.base.tools import ToolError
 from talbot.base.verilator import verilator_folder
 from talbot.models.parameters import ArrayParameters, ChipParameters, SensorParameters
@@ -107,7 +107,7 @@ def flat(design: Design) -> str:
 
 def sources(design: Design) -> dict[str, str]:
     """Return the Verilog of a design by file name, its top last."""
-    front_end = {"afe.sv": (ROOT / "pixels" / "afe.sv").read_text()} if design.afe else {}
+    front_end = {"afe.sv": (PACKAGE / "pixels" / "afe.sv").read_text()} if design.afe else {}
     return {f"{design.block}.v": translate(design.block, design.sensor), **front_end, f"{TOP}.v": flat(design)}
 
 

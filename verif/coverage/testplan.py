@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.rtl.tops import TOPS, build_top
 from talbot.verif.formal import manifest
@@ -88,12 +88,12 @@ class TestPlan:
 @cache
 def folder_of(block: str) -> str:
     """Return the folder of a block of rtl.tops below rtl/."""
-    return type(build_top(block, SensorParameters())).__module__.split(".")[1]
+    return type(build_top(block, SensorParameters())).__module__.split(".")[2]
 
 
 def plan_file(folder: str) -> Path:
     """Return the test plan of a folder of rtl/."""
-    return ROOT / "verif" / f"{folder}.testplan.yaml"
+    return PACKAGE / "verif" / f"{folder}.testplan.yaml"
 
 
 def load_plan(path: Path) -> TestPlan:
@@ -207,7 +207,7 @@ def proofs() -> frozenset[str]:
 @cache
 def tests_in(folder: str) -> frozenset[str]:
     """Return the names of the test functions in the files of ``folder``, methods too."""
-    return frozenset(name for path in sorted((ROOT / folder).glob("*_test.py")) for name in _tests_of(path))
+    return frozenset(name for path in sorted((PACKAGE / folder).glob("*_test.py")) for name in _tests_of(path))
 
 
 def _tests_of(path: Path) -> set[str]:
@@ -223,7 +223,7 @@ def _check_tests(name: str, plan: TestPlan) -> None:
     for i, promise in enumerate(plan.promises):
         for test in promise.tests:
             file, _, function = test.rpartition("::")
-            path, own = ROOT / file, tests_in(f"rtl/{plan.folder}/test")
+            path, own = PACKAGE / file, tests_in(f"rtl/{plan.folder}/test")
             if function not in (own if not file else _tests_of(path) if path.is_file() else ()):
                 raise ParameterError(f"{name}: promises[{i}].tests = {test!r}: no such test")
 

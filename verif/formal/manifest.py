@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.models.parameters import ParameterError
 from talbot.rtl.tops import TOPS
 
@@ -70,7 +70,7 @@ def _proof(folder: Path, entry: dict[str, Any]) -> Proof:
 
 def every() -> list[Proof]:
     """Return all proofs of the repository in the order of the blocks in rtl.tops."""
-    proofs = [proof for path in sorted(ROOT.glob("rtl/*/formal/proofs.yaml")) for proof in read(path)]
+    proofs = [proof for path in sorted(PACKAGE.glob("rtl/*/formal/proofs.yaml")) for proof in read(path)]
     names = [proof.name for proof in proofs]
     if len(set(names)) != len(names):
         raise ParameterError(f"proofs = {', '.join(n for n in set(names) if names.count(n) > 1)}: must occur once")

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from talbot.base.jobs import Job
 from talbot.base.jobs import run as run_jobs
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.base.records import from_json
 from talbot.base.sources import code
 from talbot.models.parameters import ParameterError
@@ -93,7 +93,7 @@ def try_mutants(blocks: Iterable[str], store: Path, factor: float = 1.0, seed: i
     made = [one for block in blocks for one in populations(block, traces[block], store, factor, seed)]
     tests, judges, whole, of = [], [], [], []
     for one in made:
-        text, formal = one.folder / "mutants.v", ROOT / "rtl" / folder_of(one.block) / "formal"
+        text, formal = one.folder / "mutants.v", PACKAGE / "rtl" / folder_of(one.block) / "formal"
         decides = one.path.with_suffix(".trace"), text, code(f"rtl/{folder_of(one.block)}/test")
         tried = str(one.path), str(one.folder), one.folder.name == "bits"  # the tests of a block once
         whole.append(Job(one.name, try_original, tried, decides))

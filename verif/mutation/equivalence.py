@@ -5,7 +5,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolTimeout
 from talbot.rtl.harness.ports import Port, split, validity
 from talbot.verif.coverage.program import tool
@@ -71,7 +71,7 @@ def promises(top: str) -> str:
     """
     found = [
         text
-        for text in map(Path.read_text, sorted(ROOT.glob("rtl/*/formal/promises.sv")))
+        for text in map(Path.read_text, sorted(PACKAGE.glob("rtl/*/formal/promises.sv")))
         if re.search(rf"^module {top}Promises\b", text, re.MULTILINE)
     ]
     return found[0] if found else ""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.base.tools import ToolError
 from talbot.flow.layout.netlist.verilog import modules
 from talbot.flow.simulate.divider import exhaustive, simulator
@@ -68,7 +68,7 @@ def try_tests(path: str, folder: str, mutant: Mutant) -> Judgement:
 
 def own_tests(mutant: Mutant) -> list[Path]:
     """Return the test file of the mutated module alone, if any: `test/<name>_test.py` beside its `<name>_rtl.py`."""
-    source = ROOT / mutant.source.split(":")[0]
+    source = PACKAGE / mutant.source.split(":")[0]
     file = source.parent / "test" / f"{source.stem.removesuffix('_rtl')}_test.py"
     return [file] if file.exists() and source.stem.removesuffix("_rtl") != source.parent.name else []
 

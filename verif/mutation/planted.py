@@ -71,7 +71,7 @@ def is_caught(bug: Planted) -> bool:
     text = bug.text()
     with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
         copy = Path(temporary) / "talbot"
-        shutil.copytree(ROOT, copy, ignore=LEFT_OUT)
+        shutil.copytree(ROOT, copy, symlinks=True, ignore=LEFT_OUT)
         (ROOT / "build").mkdir(exist_ok=True)
         (copy / "build").symlink_to(ROOT / "build")
         (copy / bug.file).write_text(text)

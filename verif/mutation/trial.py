@@ -103,7 +103,7 @@ def attempt(
 ) -> Trial:
     """Run ``tests`` (node ids, files or folders) on a mutant. Other arguments: see Trial."""
     trial = Trial(head, verilog, mutant, cycles, alone)
-    tests_loaded = [name for name in sys.modules if name.startswith("rtl.") and ".test." in name + "."]
+    tests_loaded = [name for name in sys.modules if name.startswith("talbot.rtl.") and ".test." in name + "."]
     before_trial = {name: sys.modules.pop(name) for name in tests_loaded}  # tests keep their simulators
     settings.register_profile("trial", phases=(Phase.explicit, Phase.generate), database=None)
     before = settings.get_current_profile_name()  # the option loads its profile after that of conftest.py

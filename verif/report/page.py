@@ -6,18 +6,19 @@ from importlib.metadata import version
 from pathlib import Path
 
 from talbot.base import page
+from talbot.base.page import Tile
 from talbot.verif.results import COVERAGE, BlockResults, Property
 
 from .limits import Limits, check, limit_text, of_block
 from .merge import figures
 from .steps import Outcome
 
-NOTHING = "-"
+NOT_RUN, NONE = "not run", "none"  # none: the block cannot have it, or nothing is asked of it
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell of the table. kind: 'good', 'bad' or ''. title: the limits."""
+    """A cell of the table. kind: 'good', 'bad', 'none' (not run) or ''. title: the limits."""
 
     text: str
     kind: str
@@ -38,37 +39,35 @@ class Row:
         return any(cell.kind == "bad" for cell in self.cells)
 
 
-@dataclass(frozen=True)
-class Tile:
-    """A figure to see first. kind: as of Cell."""
-
-    value: str
-    label: str
-    kind: str
-
-
 def row(block: str, entry: BlockResults, limits: Limits) -> Row:
     """Return the row of a block; each cell is coloured by the limits of the figures in it."""
     found, wanted = figures(entry), of_block(limits, block)
 
-    def cell(text: str, *names: str) -> Cell:
+    def cell(text: str | None, *names: str) -> Cell:
         held = {name: wanted[name] for name in names if name in wanted}
         kind = "bad" if any(check("", found, held)) else "good" if held else ""
+        asked = any(side != "none" for sides in held.values() for side in sides)
+        if text is None:
+            text, kind = (NOT_RUN, kind if kind == "bad" else "none") if asked else (NONE, "")
         return Cell(text, kind, "; ".join(f"{name} {limit_text(sides)}" for name, sides in held.items()))
 
     tests, mutants, proofs = entry.tests, entry.mutants, entry.proofs
-    stuck = f"{entry.stuck_at.share:.1f} ± {entry.stuck_at.margin:.1f} %" if entry.stuck_at else NOTHING
-    killed = f"{_percent(mutants.score)} of {mutants.killable}" if mutants else NOTHING
+    stuck = f"{entry.stuck_at.share:.1f} ± {entry.stuck_at.margin:.1f} %" if entry.stuck_at else None
+    killed = f"{_percent(mutants.score)} of {mutants.killable}" if mutants else None
     cells = [
-        cell(_of(tests.passed, tests.passed + tests.failed), "tests.failed", "tests.passed"),
+        cell(
+            _of(tests.passed, tests.passed + tests.failed) if tests.passed + tests.failed else None,
+            "tests.failed",
+            "tests.passed",
+        ),
         cell(_proofs(proofs), "proofs.proven", "proofs.unproven", "proofs.twins_not_caught"),
-        cell(", ".join(sorted({p.engine.split(" ")[0] for p in proofs})) or NOTHING),
+        cell(", ".join(sorted({p.engine.split(" ")[0] for p in proofs})) or None),
         cell(_depths(proofs)),
-        cell(f"{sum(p.wall_s for p in proofs):.0f} s" if proofs else NOTHING),
+        cell(f"{sum(p.wall_s for p in proofs):.0f} s" if proofs else None),
         *(cell(_percent(entry.coverage.get(kind)), f"coverage.{kind}") for kind in COVERAGE),
         cell(killed, "mutants.survived", "mutants.score", "mutants.made"),
         cell(stuck, "stuck_at.share"),
-        cell(", ".join(entry.simulators) or NOTHING),
+        cell(", ".join(entry.simulators) or None),
         cell(str(len(entry.open_points)), "open_points"),
     ]
     return Row(block, cells, entry)
@@ -78,23 +77,23 @@ def _of(part: int, whole: int) -> str:
     return f"{part:,}" if part == whole else f"{part:,} of {whole:,}"
 
 
-def _proofs(proofs: Sequence[Property]) -> str:
-    return _of(sum(p.good for p in proofs), len(proofs)) if proofs else NOTHING
+def _proofs(proofs: Sequence[Property]) -> str | None:
+    return _of(sum(p.good for p in proofs), len(proofs)) if proofs else None
 
 
-def _depths(proofs: Sequence[Property]) -> str:
+def _depths(proofs: Sequence[Property]) -> str | None:
     """Return 'unbounded', '24', '12..40', or both."""
     bounded = [p.depth for p in proofs if isinstance(p.depth, int)]
     texts = ["unbounded"] if len(bounded) < len(proofs) else []
     if bounded:
         texts.append(f"{min(bounded)}" if min(bounded) == max(bounded) else f"{min(bounded)}..{max(bounded)}")
-    return ", ".join(texts) or NOTHING
+    return ", ".join(texts) or None
 
 
-def _percent(value: float | None) -> str:
+def _percent(value: float | None) -> str | None:
     """Return a percentage, 100 only where it is: 99.96 becomes 99.9."""
     if value is None:
-        return NOTHING
+        return None
     return f"{value:.0f} %" if value >= 100 else f"{int(10 * value) / 10:.1f} %"
 
 
@@ -109,20 +108,16 @@ def headline(summary: Mapping[str, BlockResults], bad: int) -> list[Tile]:
     proven = sum(p.good for p in proofs)
     inputs = sum(e.fuzz.inputs for e in entries if e.fuzz)
 
-    def kind(good: object) -> str:
-        return "good" if good else "bad"
+    def tile(text: str | None, label: str, good: object, run: object) -> Tile:
+        return Tile(text, label, "good" if good else "bad") if run and text else Tile(NOT_RUN, label, "none")
 
     return [
-        Tile("verified" if not bad else f"{bad} open", "points", kind(not bad)),
-        Tile(_of(passed, passed + failed), "tests passed, counted by block", kind(not failed)),
-        Tile(_of(proven, len(proofs)), "properties proven, twin caught", kind(proofs and proven == len(proofs))),
-        Tile(_percent(lowest), "lowest coverage of any kind and block", kind(lowest is not None and lowest >= 100)),
-        Tile(
-            f"{killed:,} of {killable:,}",
-            "distinguishable mutants killed",
-            kind(mutants and not sum(m.survived for m in mutants)),
-        ),
-        Tile(f"{inputs:,}", "fuzzed inputs", ""),
+        Tile("verified" if not bad else f"{bad} open", "points", "bad" if bad else "good"),
+        tile(_of(passed, passed + failed), "tests passed, counted by block", not failed, passed + failed),
+        tile(_of(proven, len(proofs)), "properties proven, twin caught", proven == len(proofs), proofs),
+        tile(_percent(lowest), "lowest coverage of any kind and block", lowest == 100, lowest is not None),
+        tile(_of(killed, killable), "distinguishable mutants killed", killed == killable, mutants),
+        Tile(f"{inputs:,}", "fuzzed inputs") if inputs else Tile(NOT_RUN, "fuzzed inputs", "none"),
     ]
 
 
@@ -144,6 +139,7 @@ def render(
     points = sum(len(entry.open_points) for entry in summary.values())
     return page.render(
         Path(__file__).with_name("page.html"),
+        "Verification",
         tiles=headline(summary, len(problems) + len(fallen) + points),
         rows=[row(block, entry, limits) for block, entry in summary.items()],
         coverage=COVERAGE,

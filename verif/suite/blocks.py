@@ -58,6 +58,6 @@ def level_of(test: str) -> str:
     for word, level in LEVELS if len(parts) > 2 else ():
         if word in parts[1]:
             return level
-    if parts[0].startswith(("flow/simulate", "verif/faults", "flow/simulate/divider")):
+    if parts[0].removeprefix("talbot/").startswith(("flow/simulate", "verif/faults", "flow/simulate/divider")):
         return "Icarus" if "icarus" in parts[-1].lower() else "Verilator"
     return ""

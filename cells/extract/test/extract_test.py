@@ -155,8 +155,8 @@ def test_conductors_connect_what_the_schematic_connects(cell):
 def test_the_same_layout_has_the_same_netlist_in_every_process():
     """KLayout orders a network's nodes by where they lie in memory; results are kept by the netlist's text."""
     code = (
-        "from talbot.cells.extract.subcircuit import extract; from talbot.platforms.extraction import extraction_platform; "
-        "from talbot.platforms.sky130 import cells; "
+        "from talbot.cells.extract.subcircuit import extract; from talbot.platforms.sky130 import cells; "
+        "from talbot.platforms.extraction import extraction_platform; "
         "print(extract(cells.file('bufinv_16', 'gds'), 'sky130_fd_sc_hd__bufinv_16', extraction_platform('sky130'), "
         "capacitors=False))"
     )

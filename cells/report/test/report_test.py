@@ -1,16 +1,12 @@
 """The page and its figures, from errors whose summary is known."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 pytest.importorskip("klayout.db", reason="klayout = not installed: make cells")
 
-from talbot.base.page import render
-from talbot.cells import report
 from talbot.cells.liberty.compare import Difference, summary
-from talbot.cells.report import curve, pictures
+from talbot.cells.report import command, curve, pictures
 
 ERRORS = [
     {"name": curve.DEFAULT, "cell": "inv_1", "seconds": 2.0, "error": [1.0, -3.0, 2.0]},
@@ -47,7 +43,7 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
     full, none = np.full((2, 2), 1.0), np.full((2, 2), np.nan)
     found = [Difference("c", "delay", "Y A cell_rise", full, 2 * full), Difference("c", "slew", "Y B", none, full)]
     picture = pictures.heat_maps(found)
-    assert picture.startswith("data:image/png;base64,") and picture == pictures.heat_maps(found[:1])
+    assert picture.src.startswith("data:image/png;base64,") and picture.src == pictures.heat_maps(found[:1]).src
     found += [Difference("fit", "delay", "Y A cell_rise", full, full)]
     found_summary = summary(found, fitted=("fit",))
     page = {
@@ -66,7 +62,7 @@ def test_a_table_that_is_alone_is_named_and_has_no_map():
         "off_grid": curve.by_cell(ERRORS),
         "curve_picture": pictures.error_against_time(curve.table(ERRORS), curve.DEFAULT),
     }
-    html = render(Path(report.__file__).with_name("index.html"), **page)
+    html = command.html(page)
     assert "In the reference alone: c: Y B." in html and "Here alone: nothing." in html
     assert html.index("held out") < html.index("of the fit")
     assert found_summary["error"]["delay"]["median"] == 50 and found_summary["error_of_fit"]["delay"]["median"] == 0

@@ -11,6 +11,7 @@ from talbot.flow.formats import command, company
 from talbot.flow.formats.codes import entropy_bytes, load_codes, thresholded
 from talbot.flow.formats.measure import frame_bytes, growth, measure
 from talbot.flow.formats.orders import CHIP, ORDERS, segments_of
+from talbot.flow.formats.table import lines
 from talbot.flow.formats.tokens import CHOSEN, FORMATS
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import FrameParameters, ParameterError, Window
@@ -144,7 +145,7 @@ def test_the_tables_of_the_coders():
     row = {"scene": "a", "threshold": 10, "samples": 1000, "not_zero": 0.5, "entropy": 100, "stream": 130}
     rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300}]
     rows += [rows[0] | {"scene": "b", "stream": 520}, rows[0] | {"threshold": 4}]
-    text = company.markdown(rows, 10)
+    text = lines(company.tables(rows, 10))
     assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 |" in text
     assert "| 10 | 200 | 650 | 400 | 520 | 600 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
     assert "| 4 | 100 | 130 | 200 | 260 | 300 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text

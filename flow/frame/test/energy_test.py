@@ -9,6 +9,7 @@ from talbot.models.parameters import (
     ElectricalParameters,
     EnergyParameters,
     LightParameters,
+    RoomParameters,
     sources,
 )
 from talbot.models.parameters.energy import Events
@@ -38,12 +39,15 @@ def test_light_reaches_the_sensor_through_the_same_pupil(f_number):
     """Of the radiance E / pi of a white field, the integral over the pupil of the capture's own vignetting arrives."""
     nu = np.linspace(0, 1 / (2 * f_number), 20001)
     share = np.trapezoid(vignetting(nu, 0 * nu, 4.0) * 2 * np.pi * nu, nu) / np.pi
-    by_hand = 125 / 0.9 / share * 147456 * (10e-6 / 0.0385) ** 2 / 0.3  # 125 W/m^2 at the sensor
+    sensor = 0.25e-9 / (0.7 * 0.5 * 850 / 1239.842 * 0.4 * (10e-6) ** 2)  # W/m^2
+    by_hand = sensor / 0.9 / share * 147456 * (10e-6 / 0.0385) ** 2 / 0.3
     found = LightParameters().power(0.25e-9, 10e-6, 147456, 1 / (2 * f_number), 0.0385)
     assert found == pytest.approx(by_hand, rel=1e-6)
 
 
-@pytest.mark.parametrize("kind", [CameraParameters, ElectricalParameters, EnergyParameters, LightParameters])
+@pytest.mark.parametrize(
+    "kind", [CameraParameters, ElectricalParameters, EnergyParameters, LightParameters, RoomParameters]
+)
 def test_every_default_names_its_source(kind):
     rows = sources(kind())
     assert len(rows) > 3 and all(source and source != "set" for _, _, source in rows)

@@ -8,7 +8,7 @@ from talbot.flow.frame.job import expose, flat_field, see, simulate_frame
 from talbot.flow.frame.quality import coded, decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
 from talbot.flow.frame.report import against
 from talbot.flow.frame.request import request
-from talbot.models.parameters import CameraParameters, ElectricalParameters, FrameParameters, Window
+from talbot.models.parameters import CameraParameters, FrameParameters, Window
 
 ONE = Window(0, 0, 0, 0)
 
@@ -28,7 +28,7 @@ def test_the_bench_measures_the_chip_that_takes_the_frame():
     """The same fixed pattern, other noise: pixels of one type have the trims of their own gains."""
     quiet = {"read_noise": 0.0, "offset_fpn": 0.0, "column_fpn": 0.0, "flicker_noise": 0.0, "gain_fpn": 0.1}
     asked = request(4, 6, scene="flat:50")
-    asked = replace(asked, sensor=replace(asked.sensor, electrical=ElectricalParameters(**quiet)))
+    asked = replace(asked, sensor=replace(asked.sensor, electrical=replace(asked.sensor.electrical, **quiet)))
     scene, todo = see(asked)
     flat, seen = flat_field(asked), expose(asked, scene, todo)
     assert not np.array_equal(flat, seen.samples[0])

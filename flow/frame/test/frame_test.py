@@ -67,10 +67,13 @@ def test_every_mode_at_odd_sizes(programs, size, mode, phase):
     decimation=st.integers(0, 3),
     types=st.sets(st.integers(0, 23), min_size=1),
     overlap=st.booleans(),
+    lead=st.integers(0, 40),
     stall=st.integers(0, 240),
     seed=st.integers(0, 99),
 )
-def test_windows_masks_and_back_pressure(programs, data, mode, threshold, decimation, types, overlap, stall, seed):
+def test_windows_masks_and_back_pressure(
+    programs, data, mode, threshold, decimation, types, overlap, lead, stall, seed
+):
     row0, row1 = sorted(data.draw(st.tuples(st.integers(0, 2), st.integers(0, 2))))
     col0, col1 = sorted(data.draw(st.tuples(st.integers(0, 7), st.integers(0, 7))))
     asked = asked_of(
@@ -82,6 +85,7 @@ def test_windows_masks_and_back_pressure(programs, data, mode, threshold, decima
         threshold=threshold,
         decimation=decimation,
         overlap=overlap,
+        exposure=lead,
     )
     front_end = front_end_of(asked.sensor, np.random.default_rng(seed).integers(-512, 512, 24))
     check(programs["odd"], asked, front_end, exposure(asked.sensor, seed), stall)
@@ -103,7 +107,7 @@ def test_imperfect_converters(programs, mode):
 def test_icarus_sends_the_same_bytes(programs, tmp_path):
     if not shutil.which("iverilog"):
         pytest.skip("Icarus Verilog is not installed: make tools")
-    asked = asked_of("odd", threshold=9)
+    asked = asked_of("odd", threshold=9, exposure=5)
     front_end, samples = front_end_of(asked.sensor, [7] * 24), exposure(asked.sensor, 2)
     program = icarus_program(Build.of(asked.sensor, TAPS), tmp_path)
     chip = check(program, asked, front_end, samples)

@@ -33,15 +33,17 @@ ANALOG = {  # to and from the array, the amplifiers and the converters; a host l
     "sub": "Sub-sample: raw 0 diode a, 1 diode b; tof the tap 0..3.",
     "en": "Lanes that convert.",
     "balance": "Trim of the pixel type at the converters, signed; valid with `hold`.",
-    "pixel_reset": "Amplifier phase: reset of the pixels of row `amp_row`.",
+    "pixel_reset": "Amplifier phase: reset of the pixels of row `reset_row`.",
     "shutter": "From the first integration to the end of the last.",
     "ref_ctl": "With `read`: the reference level, then the signal.",
-    "integrate": "Amplifier phase: integration.",
+    "integrate": "Amplifier phase: row `amp_row` integrates, and no longer than this.",
+    "expose": "One cycle: row `reset_row` integrates from now on, until `integrate` of its own slot ends.",
     "cm_reset": "Amplifier phase: common-mode reset.",
     "read": "Amplifier phase: read.",
     "sample": "Last cycle of each half of `read`.",
     "tap": "Time-of-flight tap, for the modulation generator.",
-    "amp_row": "Row of the amplifier phases.",
+    "amp_row": "Row of the amplifier phases but `pixel_reset`.",
+    "reset_row": "Row of `pixel_reset` and `expose`: `exposure` rows ahead of `amp_row`.",
 }
 
 

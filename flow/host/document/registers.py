@@ -58,5 +58,15 @@ def markdown(chip: RegisterMap) -> str:
 
 def html(chip: RegisterMap) -> str:
     """The map as a page."""
-    table = [row.cells for row in rows(chip)]
-    return render(Path(__file__).with_name("registers.html"), note=NOTE, columns=COLUMNS, table=table) + "\n"
+    table = [[cell.replace("`", "") for cell in row.cells] for row in rows(chip)]
+    return (
+        render(
+            Path(__file__).with_name("registers.html"),
+            "Registers of AspChip",
+            listed=False,
+            note=NOTE,
+            columns=COLUMNS,
+            table=table,
+        )
+        + "\n"
+    )

@@ -96,10 +96,10 @@ def length(points: list[Point]) -> float:
     return (max(x) - min(x) + max(y) - min(y)) * (1.0 + 0.03 * max(0, len(points) - 3))
 
 
-def clock_nets(netlist: Netlist) -> set[str]:
+def clock_nets(instances: Collection[Instance]) -> set[str]:
     """All nets between the clock's port and the registers."""
-    found = {instance.pins["clk"] for instance in netlist.instances if "clk" in instance.pins}
-    drivers = {net: i for i in netlist.instances for pin, net in i.pins.items() if pin in OUTPUT_PINS}
+    found = {instance.pins["clk"] for instance in instances if "clk" in instance.pins}
+    drivers = {net: i for i in instances for pin, net in i.pins.items() if pin in OUTPUT_PINS}
     waiting = list(found)
     while waiting:
         driver = drivers.get(waiting.pop())
@@ -110,12 +110,10 @@ def clock_nets(netlist: Netlist) -> set[str]:
     return found
 
 
-def repaired(
-    plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks | None = None, enough: float = 0.0
-) -> dict[str, int]:
+def repaired(plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks | None = None) -> dict[str, int]:
     """Size and buffer until every driver's load is within its limit: how many cells were sized, how many buffers.
 
-    kept: nets that stay as they are. slacks: ns of setup, where only drivers with less than ``enough`` count.
+    kept: nets that stay as they are. slacks: ns of setup; of a net the sinks that can wait are buffered.
     """
     counts = {"sized": 0, "buffers": 0}
     for _ in range(ROUNDS):
@@ -123,8 +121,6 @@ def repaired(
         for net, (driver, pin, sinks) in connected(plan.instances).items():
             cell = plan.instances[driver].cell
             if net in kept or (cell, pin) not in drives.limits:
-                continue
-            if slacks is not None and slacks.get((driver, pin), enough) >= enough:
                 continue
             load = plan.load(drives, net, [plan.point(driver)], sinks)
             if load <= drives.limits[cell, pin]:

@@ -1,22 +1,26 @@
 """Finished layouts side by side, in build/layout/hierarchy/."""
 
 import json
-import os
 from argparse import ArgumentParser, Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from talbot.base.files import staged
-from talbot.base.page import render
+from talbot.base.page import TABLES, Section, render
 from talbot.base.paths import RESULTS
 from talbot.flow.layout.design import DESIGNS, design, macro_designs
 from talbot.models.parameters import ParameterError
 
 from .metrics import broken
-from .text import as_text
+from .page import picture
+from .text import NOT_RUN, as_text
 
 PAIR = "asp_chip", "asp_chip_macros"  # of the thesis (B.3.2): flat, and around its two macros
+ABOUT = (
+    "by corner: tt, ss, ff as they were run; cells, wire length and run time of a design with macros include those of "
+    "its macros"
+)
 ROWS = (
     ("area_um2", "area, um2"),
     ("cells", "cells, clock buffers included"),
@@ -98,6 +102,10 @@ def _text(name: str, value: Any) -> str:
     return as_text(value)
 
 
+def _cells(row: tuple[str, list[str]]) -> list[str | None]:
+    return [row[0], *(None if value == NOT_RUN else value for value in row[1])]
+
+
 def run(options: Namespace) -> int:
     """Write table.json and report.html, print the table; 1 where a limit is broken."""
     macros = [block.name for name in options.designs for block in macro_designs(design(name))]
@@ -105,7 +113,7 @@ def run(options: Namespace) -> int:
     made = columns(options.designs, summaries)
     names, rows, folder = [column.name for column in made], table(made, summaries), options.out / "hierarchy"
     pictures = [
-        (name, os.path.relpath(path, folder))
+        picture(path, name)
         for name in options.designs
         for path in (options.out / name / f"{name}.blocks.png", options.out / name / f"{name}.png")
         if path.is_file()
@@ -113,7 +121,9 @@ def run(options: Namespace) -> int:
     found = {label: dict(zip(names, values, strict=True)) for label, values in rows}
     with staged(folder, ["table.json", "report.html"]) as part:
         (part / "table.json").write_text(json.dumps(found, indent=1) + "\n")
-        page = render(Path(__file__).with_name("compare.html"), names=names, rows=rows, pictures=pictures)
+        sections = [Section(head=["", *names], rows=list(map(_cells, rows)), kind="pinned")]
+        sections += [Section("Pictures", pictures=pictures)] * bool(pictures)
+        page = render(TABLES, "Layouts side by side", about=ABOUT, sections=sections)
         (part / "report.html").write_text(page)
     width = max(len(label) for label in found)
     for label, values in [("", names), *rows]:

@@ -3,17 +3,21 @@
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-from talbot.base.page import render
-from talbot.platforms.coriolis import CoriolisPlatform
+from PIL import Image
+
+from talbot.base.page import Picture, Tile, render
 
 from .history import history, table
-from .picture import PALETTE
+from .picture import LayoutPicture
 from .text import as_text
 
 NOT_FIGURES = {"design", "top", "backend", "pdk", "attempts", "wall_s", "peak_mib", "tools", "timing_rests_on"}
 NOT_FIGURES |= {"table_6_1", "not_checked", "power_by_block_uw"}
+NO_MACROS = "macros", None  # which a design may have
+ACRONYMS = "drc", "lvs"
+UNITS = {"um2": "um2", "um": "um", "pf": "pF", "uw": "uW", "mhz": "MHz", "ns": "ns", "percent": "%", "mv": "mV"}
 PARTS = {"pixel_array": "pixel array", "amplifiers": "amplifiers; here: their control"}
 PARTS |= {"timing": "timing, addressing", "adcs": "converters; here: their logic"}
 BY_CORNER = (
@@ -34,19 +38,10 @@ BY_CORNER = (
 )
 
 
-class Picture(NamedTuple):
-    """A picture in the folder of the report."""
-
-    file: str
-    caption: str
-
-
-class Tile(NamedTuple):
-    """A figure at the top of the page. kind: 'good', 'bad' or ''."""
-
-    value: Any
-    label: str
-    kind: str
+def picture(path: Path, caption: str) -> Picture:
+    """A picture in a file, for the page."""
+    with Image.open(path) as image:
+        return Picture(path.stem, "", caption, image.convert("RGB"))
 
 
 def write_report(
@@ -54,22 +49,29 @@ def write_report(
     folder: Path,
     summary: dict[str, Any],
     broken: Sequence[str],
-    tech: CoriolisPlatform,
-    picture: str | None = None,
+    layout: LayoutPicture | None = None,
     pictures: Sequence[Picture] = (),
 ) -> None:
     """Write summary, history and page into ``part``, whose files will be in ``folder``.
 
-    broken: lines of `metrics.broken`. picture: file name of the layout's, beside the page. pictures: further ones.
+    broken: lines of `metrics.broken`. pictures: beside that of the layout.
     """
     runs = history(folder / "history.jsonl", summary)
     (part / "history.jsonl").write_text("".join(run.line() for run in runs))
     (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
-    key = [(metal.name, f"#{color:06x}") for metal, color in zip(tech.metals, PALETTE)]
-    shown = {"picture": picture, "key": key, "pictures": pictures, "history": table(runs)}
+    shown = {"layout": layout, "pictures": pictures, "history": table(runs)}
     tables = {"corners": _corners(summary), "blocks": _blocks(summary), "table": _table(summary)}
-    tables |= {"tiles": _tiles(summary, broken), "figures": _figures(summary)}
-    page = render(Path(__file__).with_name("page.html"), s=summary, broken=broken, **tables, **shown)
+    tables |= {"tiles": _tiles(summary, broken), "figures": _figures(summary), "attempts": _attempts(summary)}
+    tables["steps"] = [(step, f"{s:,.1f}", f"{summary['peak_mib'][step]:,}") for step, s in summary["wall_s"].items()]
+    page = render(
+        Path(__file__).with_name("page.html"),
+        f"{summary['design']}: layout of {summary['top']}",
+        picture=layout and layout.image,
+        s=summary,
+        broken=broken,
+        **tables,
+        **shown,
+    )
     (part / "report.html").write_text(page)
 
 
@@ -78,29 +80,37 @@ def _tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
 
     def tile(value: Any, label: str, rule: str | None = None) -> Tile:
         bad = rule and any(line.startswith(rule) for line in broken)
-        kind = "bad" if bad else "" if rule is None or value is None else "good"
-        return Tile("-" if value is None else value, label, kind)
+        if value is None:
+            return Tile("not run", label, "bad" if bad else "none")
+        return Tile(str(value), label, "bad" if bad else "good" if rule else "")
 
     tests = s["gate_tests"] or {}
     return [
-        tile(f"{s['area_um2']:,.0f}", "um2"),
-        tile(s["utilization"], "utilization"),
+        tile(f"{s['area_um2']:,.0f} um2", "area"),
+        tile(s["utilization"] and f"{100 * s['utilization']:.0f} %", "utilization"),
         tile(s["cells"] and f"{s['cells']:,}", "cells"),
         tile(s["open_nets"], "open nets", "open_nets"),
         tile(s["drc_violations"], "DRC violations", "drc_violations"),
         tile({True: "match", False: "differ"}.get(s["lvs_match"]), "LVS", "lvs_match"),
         tile(s["equivalence"], "equivalence", "equivalence"),
         tile(tests.get("passed"), "netlist tests passed", "gate_tests"),
-        tile(s["f_max_mhz"], "MHz, highest clock"),
+        tile(s["f_max_mhz"] and f"{s['f_max_mhz']:.1f} MHz", "highest clock"),
         tile(s["antenna_violations"], "antennas", "antenna_violations"),
     ]
 
 
-def _corners(s: dict[str, Any]) -> tuple[list[str], list[tuple[str, list[Any]]]] | None:
+def _corners(s: dict[str, Any]) -> tuple[list[str], list[list[str | None]]] | None:
     """Names of the corners and rows (label, value a corner) of the figures by corner; None without timing."""
     corners: list[str] = list(s.get("wns_ns") or ())
-    rows = [(words, [s[name].get(corner) for corner in corners]) for name, words in BY_CORNER if s.get(name)]
+    rows = [[words, *(_text(s[name].get(corner)) for corner in corners)] for name, words in BY_CORNER if s.get(name)]
     return (corners, rows) if corners else None
+
+
+def _attempts(s: dict[str, Any]) -> list[list[str | None]]:
+    """Rows of the search for the smallest area."""
+    names = "utilization", "aspect", "density_variation", "open_nets", "rules_broken"
+    rows = [[_text(attempt[name]) for name in names] for attempt in s.get("attempts") or ()]
+    return [[*row[:3], row[3] or "placer stopped", *row[4:]] for row in rows]
 
 
 def _blocks(s: dict[str, Any]) -> list[tuple[str, float, float]]:
@@ -117,12 +127,22 @@ def _table(s: dict[str, Any]) -> list[tuple[str, ...]]:
     ]
 
 
-def _figures(s: dict[str, Any]) -> list[tuple[str, str]]:
-    """Rows (name, value as text) of the figures without a table of their own."""
+def _figures(s: dict[str, Any]) -> list[tuple[str, str | None]]:
+    """Rows (name, value as text, None for what was not run) of the figures without a table of their own."""
+    left = NOT_FIGURES | dict(BY_CORNER).keys()
+    return [(_name(name), _text(value)) for name, value in s.items() if name not in left and (name, value) != NO_MACROS]
 
-    def text(value: Any) -> str:
-        if isinstance(value, dict):
-            return ", ".join(f"{name}: {text(v)}" for name, v in value.items())
-        return ", ".join(map(str, value)) or "-" if isinstance(value, list) else as_text(value)
 
-    return [(name, text(value)) for name, value in s.items() if name not in NOT_FIGURES | dict(BY_CORNER).keys()]
+def _name(name: str) -> str:
+    """A name of summary.json in words: area_um2 is 'area, um2'."""
+    words = [word.upper() if word in ACRONYMS else word for word in name.split("_")]
+    unit = UNITS.get(words[-1])
+    return f"{' '.join(words[:-1])}, {unit}" if unit else " ".join(words)
+
+
+def _text(value: Any) -> str | None:
+    if value is None:
+        return None
+    if isinstance(value, dict):
+        return ", ".join(f"{name.replace('_', ' ')}: {_text(v)}" for name, v in value.items())
+    return ", ".join(map(str, value)) or "none" if isinstance(value, list) else as_text(value)

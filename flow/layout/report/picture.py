@@ -1,39 +1,113 @@
-"""Pictures of a layout: KLayout's own rendering, without its window; the cells by block."""
+"""Pictures of a layout: every layer by KLayout's own rendering, without its window; the cells by block."""
 
+import io
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from PIL import Image as pillow
+from PIL.Image import Image
+
+from talbot.base.gds import db, read_gds
+from talbot.base.page import data_url
 from talbot.flow.layout.netlist.netlist import Netlist
 from talbot.flow.layout.netlist.placed import MIRRORED
 from talbot.platforms.coriolis import CoriolisPlatform
 
-PALETTE = (0x2E7D32, 0xC62828, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
-BACKGROUND = "#101014"
+PALETTE = (0x43A047, 0xE53935, 0x1E88E5, 0x8E24AA, 0xF9A825, 0xEF6C00)  # metal layers, from the lowest up
+OTHERS = {"fill": 0x707A86, "diffusion": 0x6D4C41, "poly": 0xA1887F}
+BACKGROUND = (16, 16, 20)
+FILL = 1023, 0  # GDS layer, in memory alone, where fill is apart from its metals
+LARGEST = 2400  # px of the longer side
 
 
-def render(gds: Path, png: Path, tech: CoriolisPlatform, side: int = 2400) -> None:
-    """Write the metal layers of the layout ``gds`` as a picture of ``side`` x ``side`` pixels."""
+@dataclass(frozen=True)
+class Layer:
+    """A layer of a picture. mask: where it is. shown: at first."""
+
+    name: str
+    rgb: int
+    mask: Image
+    shown: bool
+
+    @property
+    def color(self) -> str:
+        """As CSS has it."""
+        return f"#{self.rgb:06x}"
+
+    @property
+    def src(self) -> str:
+        """In its colour on nothing, as a data URL."""
+        image = self.mask.convert("P")
+        image.putpalette([0, 0, 0, *self.rgb.to_bytes(3, "big")])
+        return data_url(image.point([0] + [1] * 255), transparency=0, bits=1, optimize=True)
+
+
+@dataclass(frozen=True)
+class LayoutPicture:
+    """A layout's layers, from the lowest up. width_um, height_um: of its outline."""
+
+    width_um: float
+    height_um: float
+    layers: list[Layer]
+
+    @property
+    def image(self) -> Image:
+        """All layers that are shown at first, over each other."""
+        image = pillow.new("RGB", self.layers[0].mask.size, BACKGROUND)
+        for layer in self.layers:
+            if layer.shown:
+                image.paste(tuple(layer.rgb.to_bytes(3, "big")), mask=layer.mask)
+        return image
+
+
+def render(gds: Path, tech: CoriolisPlatform, unfilled: Path | None = None, side: int = LARGEST) -> LayoutPicture:
+    """Draw the layers of the layout ``gds``, the longer side ``side`` pixels.
+
+    unfilled: the same layout without metal fill, which then is a layer of its own.
+    """
     import klayout.lay as lay
 
+    layout = read_gds(unfilled or gds)
+    top = layout.top_cell()
+    if unfilled:
+        filled, into = read_gds(gds), layout.layer(*FILL)
+        for metal in tech.metals:
+            drawn = db.Region(filled.top_cell().shapes(filled.layer(*metal.gds)))
+            top.shapes(into).insert(drawn - db.Region(top.shapes(layout.layer(*metal.gds))))
     view = lay.LayoutView()
-    for name, value in (("background-color", BACKGROUND), ("grid-visible", "false"), ("text-visible", "false")):
+    for name, value in (("background-color", "#000000"), ("grid-visible", "false"), ("text-visible", "false")):
         view.set_config(name, value)
-    view.load_layout(str(gds), False)
+    view.show_layout(layout, True)
     view.max_hier()
-    colors = {wire.gds: color for wire, color in zip(tech.metals, PALETTE)}
+    view.add_missing_layers()
+    box = top.dbbox()
+    size = [max(1, round(side * length / max(box.width(), box.height()))) for length in (box.width(), box.height())]
+    wanted = [("diffusion", tech.active, False), ("poly", tech.poly, False)]
+    wanted += [("fill", FILL, True)] * bool(unfilled) + [(m.name, m.gds, True) for m in tech.metals]
+    colors = OTHERS | {metal.name: color for metal, color in zip(tech.metals, PALETTE)}
+    return LayoutPicture(
+        round(box.width(), 3),
+        round(box.height(), 3),
+        [Layer(name, colors[name], _mask(view, at, size, box), shown) for name, at, shown in wanted],
+    )
+
+
+def _mask(view: Any, wanted: tuple[int, int], size: list[int], box: Any) -> Image:
+    """Pixels on which a GDS layer is, as an image of two colours."""
     layers = view.begin_layers()
     while not layers.at_end():
         shown = layers.current().dup()
-        color = colors.get((shown.source_layer, shown.source_datatype))
-        shown.visible = color is not None
-        if color is not None:
-            shown.fill_color = shown.frame_color = color
-            shown.dither_pattern = 0
-            shown.transparent = False
+        shown.visible = (shown.source_layer, shown.source_datatype) == wanted
+        shown.fill_color = shown.frame_color = 0xFFFFFF
+        shown.dither_pattern = 0
+        shown.transparent = False
         view.set_layer_properties(layers, shown)
         layers.next()
-    view.zoom_fit()
-    view.save_image(str(png), side, side)
+    drawn = view.get_pixels_with_options(*size, 0, 1, 1.0, box).to_png_data()
+    gray = np.asarray(pillow.open(io.BytesIO(drawn)).convert("L"))
+    return pillow.fromarray(gray > 127)
 
 
 def by_block(
@@ -65,6 +139,6 @@ def by_block(
     for k, (block, boxes) in enumerate(sorted(groups.items(), key=lambda item: -len(item[1]))):
         axes.add_collection(PatchCollection(boxes, facecolor=f"C{k % 10}", edgecolor="white", linewidth=0.2))
         axes.plot([], [], "s", color=f"C{k % 10}", label=f"{block} ({len(boxes)})")
-    axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="um", ylabel="um")
+    axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="µm", ylabel="µm")
     figure.legend(loc="outside right upper", frameon=False)
     figure.savefig(png, dpi=130, metadata={"Software": None})

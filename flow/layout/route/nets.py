@@ -100,9 +100,11 @@ def _below(route: Route, top: int) -> list[tuple[int, Box]]:
 
 
 def clear_of(legs: Sequence[Leg], route: Route, board: Board) -> list[Leg]:
-    """Those of ``legs`` that are not too near to another net's ``route``; none if all are not."""
-    left = [leg for leg in legs if not leg.route.near(route, board.rules)]
-    return left if len(left) < len(legs) else []
+    """Those of ``legs`` that are not too near to another net's ``route``, nor meet a pin by way of one that is; none if
+    no leg is too near."""
+    near = [leg.route.near(route, board.rules) for leg in legs]
+    pins = set[int]().union(*(leg.pins for leg, lost in zip(legs, near, strict=True) if lost))
+    return [leg for leg, lost in zip(legs, near, strict=True) if not lost and not leg.pins & pins] if any(near) else []
 
 
 def _diodes(view: NetView, net: str, kept: Sequence[Leg]) -> list[Leg]:

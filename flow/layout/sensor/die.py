@@ -12,7 +12,7 @@ from talbot.flow.layout.block import lay_out
 from talbot.flow.layout.design import Design
 from talbot.flow.layout.options import Options
 from talbot.flow.layout.report.metrics import broken
-from talbot.flow.layout.report.page import Picture, write_report
+from talbot.flow.layout.report.page import picture, write_report
 from talbot.flow.layout.report.picture import render
 from talbot.flow.layout.steps.drc import Drc
 from talbot.flow.layout.steps.parameters import PdkParameters
@@ -94,8 +94,10 @@ def lay_out_die(
     with staged(folder, [f"{SENSOR}.{suffix}" for suffix in results]) as part:
         for suffix, source in results.items():
             shutil.copyfile(runner.paths[source], part / f"{SENSOR}.{suffix}")
-        blocks = Picture(f"{SENSOR}.blocks.png", "Blocks; hatched: black box, no circuit")
-        by_block(part / blocks.file, json.loads(runner.paths["die_plan.plan"].read_text()), black_boxes)
-        render(runner.paths["die_gds.gds"], part / f"{SENSOR}.png", tech)
-        write_report(part, folder, summary, lines, tech, f"{SENSOR}.png", [blocks])
+        blocks = part / f"{SENSOR}.blocks.png"
+        by_block(blocks, json.loads(runner.paths["die_plan.plan"].read_text()), black_boxes)
+        layout = render(runner.paths["die_gds.gds"], tech)
+        layout.image.save(part / f"{SENSOR}.png")
+        shown = [picture(blocks, "Blocks; hatched: black box, no circuit")]
+        write_report(part, folder, summary, lines, layout, shown)
     return folder / "summary.json", lines

@@ -27,13 +27,13 @@ def by_block(png: Path, plan: dict[str, Any], black_boxes: Collection[str]) -> N
         width, height, hatch = right - left, top - bottom, "//" if name in black_boxes else None
         style = {"facecolor": COLORS[name], "alpha": 0.85, "edgecolor": "0.3", "hatch": hatch, "linewidth": 0.6}
         axes.add_patch(Rectangle((left, bottom), width, height, **style))
-        label = f"{'digital chip' if name == CORE else name.replace('_', ' ')}\n{width:g} x {height:g} um"
+        label = f"{'digital chip' if name == CORE else name.replace('_', ' ')}\n{width:g} × {height:g} µm"
         style = {"ha": "center", "va": "center", "fontsize": 8, "rotation": 90 if height > 3 * width else 0}
         box = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8}
         axes.annotate(label, ((left + right) / 2, (bottom + top) / 2), bbox=box, **style)
     lines = [line for route in plan["routes"].values() for line in _lines(route)]
     axes.add_collection(LineCollection(lines, colors="#17202a", linewidths=0.25))
-    axes.set(xlim=(0, plan["die"][0] / 1e3), ylim=(0, plan["die"][1] / 1e3), aspect="equal", xlabel="um", ylabel="um")
+    axes.set(xlim=(0, plan["die"][0] / 1e3), ylim=(0, plan["die"][1] / 1e3), aspect="equal", xlabel="µm", ylabel="µm")
     figure.savefig(png, dpi=220, metadata={"Software": None})
 
 

@@ -118,5 +118,5 @@ def picture(path: Path, at: Sequence[Point], drop: Values, straps: Rows, plan: M
         axes.axvline(place, color="0.8", linewidth=1, zorder=0)
     shown = axes.scatter(x, y, c=drop, s=max(1.0, 20000 / len(at)), cmap="inferno", marker="s")
     figure.colorbar(shown, label="IR drop of supply and ground, mV")
-    axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="um", ylabel="um")
+    axes.set(xlim=(0, plan["width_um"]), ylim=(0, plan["height_um"]), aspect="equal", xlabel="µm", ylabel="µm")
     figure.savefig(path, dpi=130, metadata={"Software": None})

@@ -4,8 +4,8 @@ import importlib
 import json
 from typing import Any
 
+from talbot.base.liberty.verilog import write_models
 from talbot.base.steps import Files, Step
-from talbot.base.tools import run
 from talbot.cells.standard import standard_cells
 from talbot.platforms.coriolis import coriolis_platform
 from talbot.platforms.extraction import device_models, extraction_platform
@@ -61,6 +61,5 @@ class Library(Step[PdkParameters]):
         found = liberty.functions(outputs["gds"], logic, device_models(pdk), extraction_platform(pdk))
         chosen = {name: cell for name, cell in found.items() if not cell.storage or cell.storage.kind != "latch"}
         outputs["liberty"].write_text(liberty.liberty(chosen, ports, areas))
-        script = f"read_liberty {outputs['liberty']}; proc; write_verilog -noattr {outputs['verilog']}"
-        run(["yosys", "-q", "-p", script])
+        write_models(outputs["liberty"], outputs["verilog"])
         return {"cells": len(cells)}

@@ -32,7 +32,7 @@ def tree(tmp_path_factory):
     """A copy of the repository's sources, which `changed` leaves as it was."""
     root = tmp_path_factory.mktemp("tree")
     for folder in FOLDERS:
-        shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(ROOT / folder, root / folder, True, shutil.ignore_patterns("__pycache__"))
     for name in ("conftest.py", "pyproject.toml"):
         shutil.copy(ROOT / name, root)
     return root

@@ -1,4 +1,4 @@
-"""Clock, I/O delays, slews and loads of a design as SDC: one text for synthesis, STA and OpenROAD."""
+"""Clock, variation, I/O delays, slews and loads of a design as SDC: one text for synthesis, STA and OpenROAD."""
 
 from talbot.flow.layout.design import Design
 
@@ -12,6 +12,8 @@ def sdc(design: Design, propagated: bool = True) -> str:
     return f"""create_clock -name {clock.port} -period {clock.period_ns:g} [get_ports {{{clock.port}}}]
 set_clock_uncertainty -setup {clock.uncertainty_ns:g} [get_clocks {{{clock.port}}}]
 set_clock_uncertainty -hold {clock.hold_uncertainty_ns:g} [get_clocks {{{clock.port}}}]
+set_timing_derate -early {1 - clock.derate:g}
+set_timing_derate -late {1 + clock.derate:g}
 {tree}set data_inputs {{}}
 foreach port [all_inputs] {{
   if {{[get_property $port full_name] ne "{clock.port}"}} {{ lappend data_inputs $port }}

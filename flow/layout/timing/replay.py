@@ -171,7 +171,13 @@ def _netlist(
     short = {net: net if net in ports else plain for net, plain in nets.items()}
     renamed, lines = [], []
     for i in netlist.instances:
-        renamed.append(Instance(names[i.name], i.cell, {pin: short[net] for pin, net in i.pins.items()}))
+        pins: dict[str, str] = {}
+        for pin, net in i.pins.items():
+            again = short[net] in pins.values()
+            if again:  # Icarus 11 annotates one path where two inputs are the same net
+                lines.append(f"  buf (s{len(lines)}, {short[net]});")
+            pins[pin] = f"s{len(lines) - 1}" if again else short[net]
+        renamed.append(Instance(names[i.name], i.cell, pins))
     for k, check in enumerate(constrained(delays, netlist) if delays else ()):
         clock, data = (short[check.instance.net(pin)] for pin in (CLOCK_PIN, check.pin))
         times = f".SETUP({check.setup:.4f}), .HOLD({check.hold:.4f})"

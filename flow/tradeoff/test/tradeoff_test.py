@@ -23,7 +23,7 @@ def test_every_sweep_writes_its_table_and_plot(tables):
 
 
 def test_the_verilog_agreed_everywhere(tables):
-    for name in ("divider", "threshold", "noise"):
+    for name in ("divider", "threshold", "exposure", "noise"):
         assert all(row["mismatches"] == 0 for row in tables[1][name])
 
 
@@ -37,6 +37,15 @@ def test_higher_thresholds_send_less_and_err_more(tables):
     rows = tables[1]["threshold"]
     assert [r["bytes"] for r in rows] == sorted((r["bytes"] for r in rows), reverse=True)
     assert rows[0]["psnr_edges_db"] > rows[-1]["psnr_edges_db"]
+
+
+def test_a_longer_lead_lights_more_and_takes_longer(tables):
+    """From next to no light past a full well, and all rows integrate as long."""
+    rows = tables[1]["exposure"]
+    for name in ("integration_ms", "frame_ms", "white_of_full_well", "snr_edges_db"):
+        values = [r[name] or 0.0 for r in rows]  # nothing of an edge at all: None
+        assert values == sorted(values) and len(set(values)) == len(values)
+    assert not any(row["deviating_rows"] for row in rows)
 
 
 def test_more_nodes_err_less_for_uniform_light(tables):

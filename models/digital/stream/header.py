@@ -54,8 +54,8 @@ class StreamHeader:
         Size of the tile in pixels, 1..4 and 1..6.
     window, mode, phase, decimation, mask, threshold, frame_number, resync, calibration
         As in FrameParameters.
-    n_cm, t_int : int
-        Common-mode resets of a row and cycles of each integration, as in AmpTiming.
+    exposure, n_cm, t_int : int
+        Lead of the reset pointer in rows, common-mode resets of a row and cycles of each integration, as in AmpTiming.
 
     Raises
     ------
@@ -76,6 +76,7 @@ class StreamHeader:
     threshold: int
     frame_number: int
     resync: int
+    exposure: int
     n_cm: int
     t_int: int
     calibration: int
@@ -124,6 +125,7 @@ class StreamHeader:
             frame.threshold,
             frame.frame_number,
             frame.resync,
+            frame.timing.exposure,
             frame.timing.n_cm,
             frame.timing.t_int,
             frame.calibration,
@@ -142,7 +144,7 @@ class StreamHeader:
             frame_number=self.frame_number,
             resync=self.resync,
             calibration=self.calibration,
-            timing=AmpTiming(n_cm=self.n_cm, t_int=self.t_int),
+            timing=AmpTiming(n_cm=self.n_cm, t_int=self.t_int, exposure=self.exposure),
         )
 
     @property
@@ -179,6 +181,7 @@ class StreamHeader:
             w.col1,
             self.mask.to_bytes(3, "big"),
             self.frame_number,
+            self.exposure,
             self.n_cm,
             self.t_int,
             self.calibration,
@@ -323,7 +326,7 @@ def read_header(data: bytes) -> ReceivedHeader:
         raise StreamError("header CRC-32 does not fit, and no change of one byte corrects it")
     sent, position = found
     magic, version, flags, threshold, lanes, tile, rows, cols, *fields = HEADER_FIELDS.unpack_from(sent)
-    row0, row1, col0, col1, mask, frame_number, n_cm, t_int, calibration = fields
+    row0, row1, col0, col1, mask, frame_number, exposure, n_cm, t_int, calibration = fields
     if magic != MAGIC:
         raise StreamError(f"starts with {magic!r}: a frame starts with {MAGIC!r}")
     if version != VERSION:
@@ -345,6 +348,7 @@ def read_header(data: bytes) -> ReceivedHeader:
             threshold,
             frame_number,
             flags >> 6,
+            exposure,
             n_cm,
             t_int,
             calibration,

@@ -1,15 +1,16 @@
 """AmpCtrl: every cycle of every pin equals the golden waveform, at every level."""
 
 import random
+from itertools import product
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from talbot.models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_cycles, row_waveform
+from talbot.models.digital.amp_ctrl import PIN_NAMES, AmpPins, Slot, row_cycles, row_waveform
 from talbot.models.parameters import AmpTiming
 from talbot.rtl.amp_ctrl import AmpCtrl, AmpCtrlFL
-from talbot.rtl.amp_ctrl.ports import DURATIONS
+from talbot.rtl.amp_ctrl.ports import DURATIONS, SLOT
 from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.harness.testbench import build
 
@@ -17,6 +18,7 @@ from talbot.rtl.harness.testbench import build
 SETTINGS = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.differing_executors])
 PHASES = ("pixel_reset", "integrate", "cm_reset", "read")
 
+slots = st.builds(Slot, *[st.booleans()] * 3)
 timings = st.builds(AmpTiming, **{name: st.integers(1, 5) for name in DURATIONS}, n_cm=st.integers(0, 3))
 
 
@@ -30,6 +32,10 @@ def drive(sim, timing=None, four_tap=0, **ports):
     for name, value in ports.items():
         port = getattr(sim, name)
         port @= value
+
+
+def slot_ports(slot):
+    return {f"slot_{name}": int(on) for name, on in vars(slot).items()}
 
 
 def pins(sim):
@@ -47,15 +53,15 @@ class TestAmpCtrlFL:
 
     def fresh(self, sim):
         sim.sim_reset()
-        drive(sim, start=0, hold_free=1)
+        drive(sim, start=0, hold_free=1, **slot_ports(Slot()))
         return sim
 
-    def check_row(self, sim, timing, four_tap, free, noise=None):
+    def check_row(self, sim, timing, four_tap, free, noise=None, slot=Slot()):
         """One row, cycle by cycle; ``free``: hold_free by cycle; ``noise``: random starts and durations while busy."""
-        drive(sim, timing, four_tap, start=1)
+        drive(sim, timing, four_tap, start=1, **slot_ports(slot))
         sim.sim_tick()
         drive(sim, start=0)
-        golden = row_waveform(timing, bool(four_tap))
+        golden = row_waveform(timing, bool(four_tap), slot)
         expected, cycle = next(golden), 0
         while True:
             assert pins(sim) == vars(expected), f"cycle {cycle}"
@@ -69,17 +75,18 @@ class TestAmpCtrlFL:
                     sim,
                     AmpTiming(*(noise.randint(1, 9) for _ in DURATIONS), noise.randint(0, 9)),
                     start=noise.randint(0, 1),
+                    **{name: noise.randint(0, 1) for name in SLOT},
                 )
             sim.sim_tick()
             expected, cycle = golden.send(hold_free), cycle + 1
 
     @SETTINGS
-    @given(timings, st.booleans(), st.integers(0, 2**32))
-    def test_waveform(self, sim, timing, four_tap, seed):
+    @given(timings, st.booleans(), st.lists(slots, min_size=2, max_size=2), st.integers(0, 2**32))
+    def test_waveform(self, sim, timing, four_tap, slots, seed):
         noise = random.Random(seed)
         self.fresh(sim)
-        for _ in range(2):
-            self.check_row(sim, timing, int(four_tap), lambda _: noise.random() < 0.7, noise)
+        for slot in slots:
+            self.check_row(sim, timing, int(four_tap), lambda _: noise.random() < 0.7, noise, slot)
             drive(sim, start=0)
             sim.sim_tick()
             assert pins(sim) == vars(AmpPins())
@@ -88,6 +95,11 @@ class TestAmpCtrlFL:
     def test_cycles(self, sim, four_tap):
         timing = AmpTiming(7, 11, 3, 5, 2, 4, n_cm=2)
         assert self.check_row(self.fresh(sim), timing, four_tap, lambda _: True) == row_cycles(timing, four_tap)
+
+    @pytest.mark.parametrize("slot", [Slot(*map(bool, bits)) for bits in product((0, 1), repeat=3)], ids=str)
+    def test_what_a_slot_leaves_out_takes_its_time(self, sim, slot):
+        timing = AmpTiming(2, 4, 3, 2, 3, 1, n_cm=2)
+        assert self.check_row(self.fresh(sim), timing, 0, lambda _: True, slot=slot) == row_cycles(timing)
 
     def test_back_to_back(self, sim):
         """A start in the cycle of `done` is accepted."""

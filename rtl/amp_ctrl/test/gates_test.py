@@ -5,13 +5,17 @@ from itertools import product
 import numpy as np
 import pytest
 
-from talbot.models.digital.amp_ctrl import PIN_NAMES, AmpPins, row_waveform
+from talbot.models.digital.amp_ctrl import PIN_NAMES, AmpPins, Slot, row_waveform
 from talbot.models.parameters import AmpTiming
 from talbot.rtl.amp_ctrl import AmpCtrl
-from talbot.rtl.amp_ctrl.ports import DURATIONS
+from talbot.rtl.amp_ctrl.ports import DURATIONS, SLOT
 from talbot.rtl.harness.gates import WIDE, Gates, packed, unpacked
 
-WIDTHS = dict.fromkeys(DURATIONS, 16) | {"n_cm": 8} | dict.fromkeys(("four_tap", "hold_free", "start", "reset"), 1)
+WIDTHS = (
+    dict.fromkeys(DURATIONS, 16) | {"n_cm": 8} | dict.fromkeys(("four_tap", "hold_free", "start", "reset", *SLOT), 1)
+)
+
+ROW = {f"slot_{name}": int(on) for name, on in vars(Slot()).items()}
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +42,8 @@ class Golden:
                 timing = {name: int(inputs[name]) for name in (*DURATIONS, "n_cm")}
                 self.error = int(not all(timing[name] for name in DURATIONS))
                 if not self.error:
-                    self.row = row_waveform(AmpTiming(**timing), bool(inputs["four_tap"]))
+                    slot = Slot(*(bool(inputs[name]) for name in SLOT))
+                    self.row = row_waveform(AmpTiming(**timing), bool(inputs["four_tap"]), slot)
                     self.pins = next(self.row)
 
 
@@ -73,6 +78,7 @@ def test_any_start_any_configuration_and_any_reset(gates):
         zero = chance[2] & (random.random((len(DURATIONS), WIDE)) < 0.04)
         values = {name: np.where(none, 0, values[name]) for name, none in zip(DURATIONS, zero)}
         values |= {"n_cm": random.integers(0, 4, WIDE), "four_tap": random.integers(0, 2, WIDE)}
+        values |= {name: random.integers(0, 2, WIDE) for name in SLOT}
         return values | {"start": chance[0], "hold_free": chance[1], "reset": chance[3] & (random.random(WIDE) < 0.02)}
 
     follow(gates, inputs, 250)
@@ -92,6 +98,7 @@ def test_every_set_of_zeros(gates):
             "n_cm": 1,
             "four_tap": 0,
             "hold_free": 1,
+            **ROW,
             "reset": cycle == 5 and others < 4,
         }
 
@@ -134,6 +141,8 @@ def test_every_bit_of_a_duration_and_every_number_of_resets(gates):
     timings += [AmpTiming(**one, n_cm=number) for number in range(256)]
     timings += timings[: WIDE - len(timings)]
     gates["four_tap"], gates["hold_free"], gates["reset"] = 0, 1, 1
+    for name, level in ROW.items():
+        gates[name] = level
     gates.tick()
     gates["reset"], gates["start"] = 0, 1
     for name in (*DURATIONS, "n_cm"):

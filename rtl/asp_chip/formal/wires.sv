@@ -4,11 +4,12 @@
 module AspChipWires (
   input clk, input reset, input sclk, input csn, input mosi, input link_rdy, input [`LANES - 1:0] comparator
 );
-  wire miso, miso_oe, link_val, frame_sync, busy, hold, unsigned_, pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample;
+  wire miso, miso_oe, link_val, frame_sync, busy, hold, unsigned_, pixel_reset, shutter, ref_ctl, integrate, expose,
+       cm_reset, read, sample;
   wire [7:0] link_data, group;
   wire [8 * `LANES - 1:0] dac;
   wire [1:0] mode, sub, tap;
-  wire [9:0] row, balance, amp_row;
+  wire [9:0] row, balance, amp_row, reset_row;
   wire [2:0] k;
   wire [`LANES - 1:0] en;
   AspChip dut (.*);
@@ -18,7 +19,7 @@ module AspChipWires (
   (* hierconn *) wire \dut.encoder.reset , \dut.generator.reset , \dut.frame_status.reset , \dut.resets.reset ;
 
   // RegFile's bits: in the order of the register map, trims in the lowest bits
-  localparam TRIMS = 384, CONFIGURATION = TRIMS + 209;
+  localparam TRIMS = 384, CONFIGURATION = TRIMS + 219;
   (* hierconn *) wire [CONFIGURATION - 1:0] \dut.regs.cfg ;
   (* hierconn *) wire [63:0] \dut.regs.cycles , \dut.regs.conversions_made , \dut.regs.conversions_left_out ;
   (* hierconn *) wire [63:0] \dut.seq.cycles ;
@@ -33,6 +34,7 @@ module AspChipWires (
   (* hierconn *) wire [7:0] \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ;
   (* hierconn *) wire [7:0] \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ;
   (* hierconn *) wire [1:0] \dut.encoder.resync ;
+  (* hierconn *) wire [9:0] \dut.encoder.exposure ;
   (* hierconn *) wire [7:0] \dut.encoder.n_cm , \dut.encoder.calibration ;
   (* hierconn *) wire [15:0] \dut.encoder.t_int , \dut.encoder.frame_number , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ;
   (* hierconn *) wire [15:0] \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard ;
@@ -60,6 +62,9 @@ module AspChipWires (
   (* hierconn *) wire \dut.amp.cfg_err , \dut.seq.amp_err , \dut.bank.idle , \dut.seq.bank_idle ;
   (* hierconn *) wire \dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate ;
   (* hierconn *) wire \dut.amp.cm_reset , \dut.amp.read , \dut.amp.sample ;
+  (* hierconn *) wire \dut.amp.expose , \dut.amp.slot_resets , \dut.amp.slot_reads , \dut.amp.slot_opens ;
+  (* hierconn *) wire \dut.seq.slot_resets , \dut.seq.slot_reads , \dut.seq.slot_opens ;
+  (* hierconn *) wire [9:0] \dut.seq.exposure , \dut.seq.reset_row ;
   (* hierconn *) wire [1:0] \dut.amp.tap ;
   (* hierconn *) wire [14:0] \dut.regs.state ;
   (* hierconn *) wire [2:0] \dut.seq.state , \dut.encoder.state ;
@@ -75,13 +80,14 @@ module AspChipWires (
         \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.encoder.resync , \dut.seq.mode , \dut.seq.decimation ,
         \dut.bank.threshold , \dut.phase.noise_floor , \dut.seq.mask , \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 ,
         \dut.seq.col1 , \dut.encoder.frame_number , \dut.amp.n_cm , \dut.encoder.calibration , \dut.amp.t_reset ,
-        \dut.amp.t_int , \dut.amp.t_cm , \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.balancer.trims });
+        \dut.amp.t_int , \dut.amp.t_cm , \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.seq.exposure ,
+        \dut.balancer.trims });
     p_header: assert ({\dut.encoder.mode , \dut.encoder.decimation , \dut.encoder.threshold , \dut.encoder.mask ,
                        \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ,
-                       \dut.encoder.n_cm , \dut.encoder.t_int } ==
+                       \dut.encoder.exposure , \dut.encoder.n_cm , \dut.encoder.t_int } ==
                       {\dut.seq.mode , \dut.seq.decimation , \dut.bank.threshold , \dut.seq.mask ,
                        \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ,
-                       \dut.amp.n_cm , \dut.amp.t_int });
+                       \dut.seq.exposure , \dut.amp.n_cm , \dut.amp.t_int });
     p_mode: assert (\dut.bank.mode == \dut.seq.mode && mode == \dut.seq.mode
                     && \dut.phase.on == (phase && mode == 3) && \dut.encoder.phase == \dut.phase.on );
     p_counts: assert (\dut.regs.cycles == \dut.seq.cycles
@@ -90,7 +96,7 @@ module AspChipWires (
                       && \dut.encoder.made == \dut.bank.made && \dut.encoder.left_out == \dut.bank.left_out );
     p_address: assert ({row, group, k, sub, en, unsigned_} == {\dut.bank.row , \dut.bank.group , \dut.bank.k ,
                        \dut.bank.sub , \dut.bank.en , \dut.bank.unsigned_ } && dac == \dut.bank.dac
-                       && amp_row == \dut.seq.amp_row && balance == \dut.balancer.balance );
+                       && amp_row == \dut.seq.amp_row && reset_row == \dut.seq.reset_row && balance == \dut.balancer.balance );
     p_pattern: assert ({\dut.generator.row , \dut.generator.group , \dut.generator.k , \dut.generator.sub ,
                         \dut.generator.hold , \dut.generator.dac , \dut.generator.analog , \dut.bank.comparator } ==
                        {row[7:0], group, k, sub, \dut.bank.hold , dac, comparator, \dut.generator.comparator });
@@ -102,13 +108,15 @@ module AspChipWires (
                        {\dut.encoder.recv__msg , \dut.encoder.recv__val , \dut.phase.send__rdy } ==
                        {\dut.phase.send__msg , \dut.phase.send__val , \dut.encoder.recv__rdy });
     p_rows: assert ({\dut.amp.start , \dut.amp.four_tap , \dut.amp.hold_free , \dut.seq.amp_done , \dut.seq.amp_err ,
-                     \dut.seq.bank_idle , \dut.seq.start } ==
+                     \dut.seq.bank_idle , \dut.seq.start , \dut.amp.slot_resets , \dut.amp.slot_reads ,
+                     \dut.amp.slot_opens } ==
                     {\dut.seq.amp_start , \dut.seq.four_tap , \dut.seq.hold_free , \dut.amp.done , \dut.amp.cfg_err ,
-                     \dut.bank.idle , \dut.regs.start });
-    p_pins: assert ({pixel_reset, shutter, ref_ctl, integrate, cm_reset, read, sample, tap, hold, link_val, frame_sync,
+                     \dut.bank.idle , \dut.regs.start , \dut.seq.slot_resets , \dut.seq.slot_reads ,
+                     \dut.seq.slot_opens });
+    p_pins: assert ({pixel_reset, shutter, ref_ctl, integrate, expose, cm_reset, read, sample, tap, hold, link_val, frame_sync,
                      busy, miso_oe} ==
-                    (\dut.gate.low ? 14'd0 :
-                     {\dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate ,
+                    (\dut.gate.low ? 15'd0 :
+                     {\dut.amp.pixel_reset , \dut.amp.shutter , \dut.amp.ref_ctl , \dut.amp.integrate , \dut.amp.expose ,
                       \dut.amp.cm_reset , \dut.amp.read , \dut.amp.sample , \dut.amp.tap , \dut.bank.hold ,
                       \dut.link.send__val , \dut.encoder.frame_sync , \dut.frame_status.status [3], !csn})
                     && {\dut.regs.sclk , \dut.regs.csn , \dut.regs.mosi , miso} == {sclk, csn, mosi, \dut.regs.miso }

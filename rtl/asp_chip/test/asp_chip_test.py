@@ -1,5 +1,7 @@
 """AspChip at every level: whole frames over its pins against the golden chip."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -31,14 +33,15 @@ PATTERN = PatternEnd(ROWS, COLS)
 CHIP = register_map()
 
 
-def pattern_frame(window=FULL, mode="edge", **fields):
-    return FrameParameters(window, mode, test_pattern=True, timing=SHORT_TIMING, **fields)
+def pattern_frame(window=FULL, mode="edge", exposure=0, **fields):
+    return FrameParameters(window, mode, test_pattern=True, timing=replace(SHORT_TIMING, exposure=exposure), **fields)
 
 
 FRAMES = {
     "edge": pattern_frame(frame_number=7),
     "every sample": pattern_frame(threshold=0, overlap=False),
     "image, some types": pattern_frame(mode="image", mask=0x8040A1),
+    "a lead of the reset pointer": pattern_frame(exposure=3, overlap=False),
     "raw, a window": pattern_frame(Window(1, 1, 1, 2), "raw"),
     "tof, decimated": pattern_frame(mode="tof", mask=0x03, decimation=1),
 }
@@ -139,12 +142,14 @@ class FrameTests(ChipTests):
             st.integers(0, 3),
             st.booleans(),
             st.booleans(),
+            st.integers(0, 12),
             st.floats(0, 0.9),
         )
-        def check(mode, mask, rows, cols, threshold, decimation, phase, overlap, stall):
+        def check(mode, mask, rows, cols, threshold, decimation, phase, overlap, exposure, stall):
             frame = pattern_frame(
                 Window(*rows, *cols),
                 mode,
+                exposure,
                 mask=mask,
                 threshold=threshold,
                 decimation=decimation,
@@ -250,6 +255,25 @@ class TestVerilog(FrameTests):
             assert int(bench.sim.balance) == (0x3FF if value else 0)
         bench.registers = dict.fromkeys(writable, 0)
         self.check(bench, FRAMES["edge"], golden_frame(None, SENSOR, FRAMES["edge"], PATTERN))
+
+    def test_reset_pointer_at_the_pins(self):
+        """Every row is reset, and integrates from then on, three slots before it is read."""
+        bench, events, was = self.bench(), [], {}
+        frame = FRAMES["a lead of the reset pointer"]
+        bench.write(frame_writes(replace(frame, timing=replace(frame.timing, t_reset=60))))
+        bench.spi.transfer(command("start"))  # ends within the first reset
+        while bench.sim.busy:
+            for pin, row in (("pixel_reset", "reset_row"), ("expose", "reset_row"), ("read", "amp_row")):
+                now = bool(getattr(bench.sim, pin))
+                if now and not was.get(pin):
+                    events.append((pin, int(getattr(bench.sim, row))))
+                was[pin] = now
+            bench.tick()
+        expected = []
+        for slot in range(ROWS + 3):
+            expected += [("pixel_reset", slot), ("expose", slot)] if slot < ROWS else []
+            expected += [("read", slot - 3)] if slot >= 3 else []
+        assert events == expected
 
     def test_overlap_saves_time(self):
         """The next row integrates while one converts: the bytes are the same, the frame is shorter."""

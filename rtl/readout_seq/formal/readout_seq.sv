@@ -5,6 +5,7 @@
 // Completeness: (p_row, p_k, p_group, p_sub) is any step, fixed within a frame; if it is required, it has been
 // sent when END is offered. Only `column_ok`, `row_ok` and `lanes_of` state the document's rules. Rows are compared by
 // their place, {tile, row in the tile}, which ascends with their `index`.
+// Which rows are reset when: reset_pointer.sv.
 // Progress: a rank, which never falls in a frame, rises in every cycle but those that wait for the link (an offer), the
 // amplifiers (a row that they expose, with the sample-and-holds free) or the bank (a row whose steps are taken). So
 // a frame ends after finitely many cycles in which these three answer.
@@ -12,11 +13,11 @@
 module ReadoutSeqProof (
   input clk, input reset, input start, input amp_done, input amp_err, input bank_idle, input step__rdy,
   input [1:0] mode, input [23:0] mask, input [7:0] row0, input [7:0] row1, input [7:0] col0, input [7:0] col1,
-  input [1:0] decimation, input overlap,
+  input [1:0] decimation, input overlap, input [9:0] exposure,
   input [9:0] p_row, input [2:0] p_k, input [7:0] p_group, input [1:0] p_sub
 );
-  wire [9:0] amp_row;
-  wire amp_start, busy, cfg_err, done, four_tap, hold_free, step__val;
+  wire [9:0] amp_row, reset_row;
+  wire slot_resets, slot_reads, slot_opens, amp_start, busy, cfg_err, done, four_tap, hold_free, step__val;
   wire [63:0] cycles;
   wire [24 + `LANES:0] step__msg;
   ReadoutSeq dut (.*);
@@ -49,6 +50,7 @@ module ReadoutSeqProof (
              && place[1:0] < `TILE_ROWS && `TILE_ROWS * {2'b0, place[9:2]} + place[1:0] < `ROWS
              && columns_of(place[1:0]) != 0;
   endfunction
+  wire [9:0] lead = mode == 3 ? 10'd0 : exposure;
   function [`LANES - 1:0] lanes_of(input [7:0] group, input [2:0] k);
     integer lane;
     reg [12:0] tile;
@@ -68,6 +70,7 @@ module ReadoutSeqProof (
   (* hierconn *) wire [9:0] \dut.row ;
   (* hierconn *) wire [7:0] \dut.rows.tile ;
   (* hierconn *) wire [1:0] \dut.rows.in_tile ;
+  (* hierconn *) wire [9:0] \dut.wait_slots ;
   (* hierconn *) wire [7:0] \dut.steps.last_tile ;
   (* hierconn *) wire [5:0] \dut.steps.left ;
   localparam CHECK = 1, WAIT = 2, DRAIN = 3;
@@ -78,26 +81,31 @@ module ReadoutSeqProof (
   wire [5:0] left = \dut.steps.left ;
 
   // The frame so far: the amplifiers, what has been sent, whether the fixed step is among it, the last message
-  reg exposing, refused;                  // they expose or read a row; have refused one of this frame
+  reg exposing, refused;                  // they work on a slot; have refused one of this frame
   reg [9:0] current;                      // place of the last row that they have finished
-  wire starts = start && !busy, lands = exposing && amp_done && !amp_err, fails = exposing && amp_err || refused;
+  wire overlaps = overlap || lead != 0;
+  wire starts = start && !busy, over = exposing && amp_done && !amp_err,
+       lands = over && slot_reads, fails = exposing && amp_err || refused;
   reg seen, framed, rows_sent, sampled;
   reg [22:0] last;
   wire [22:0] here = {current, k, group, sub}, there = {p_row, p_k, p_group, p_sub};
   wire taken = step__val && step__rdy;
   wire sampling = step__val && kind == SAMPLE;
-  wire [93:0] choice = {mode, mask, row0, row1, col0, col1, decimation, overlap, there};
+  wire [103:0] choice = {mode, mask, row0, row1, col0, col1, decimation, overlap, exposure, there};
   wire waits_link = step__val && !step__rdy;
   wire waits_amplifiers = !step__val && exposing && hold_free && !amp_done && !amp_err;
   wire waits_bank = !step__val && sampled && !hold_free && !bank_idle;
   wire [2:0] part = state == 5 ? 0 : state == 6 ? 1 : state == DRAIN ? 2 : amp_start ? 3 : 4;  // of a row
-  wire [27:0] rank = state == CHECK ? !amp_start : kind == FRAME && step__val ? 2 : kind == END && step__val ? -28'd1
-                     : state == WAIT && !rows_sent ? 3
+  wire [27:0] rank = kind == END && step__val ? -28'd1
+                     : state == CHECK || kind == FRAME && step__val || state == WAIT && !rows_sent
+                     ? {15'd0, lead - \dut.wait_slots , 3'd0} + (state == CHECK ? 28'd0 : state == WAIT ? 28'd2 : 28'd1)
+                       + (landed ? 28'd4 : !amp_start)
                      : {2'd1, current, part, state == 6 ? here[12:0] : 13'd0};
   reg first = 1, was_busy, was_reset, was_val, was_rdy, was_starts, was_start_ok, was_start_bad, was_lands, was_free,
-      was_bank_idle, was_last, was_given_up, was_cfg_err, was_waits, was_row_left;
+      was_bank_idle, was_last, was_given_up, was_cfg_err, was_waits, was_row_left,
+      was_passes;
   reg [24 + `LANES:0] was_msg;
-  reg [93:0] was_choice;
+  reg [103:0] was_choice;
   reg [9:0] was_amp_row, held_row;
   reg [27:0] was_rank;
   reg [63:0] was_cycles;
@@ -108,7 +116,7 @@ module ReadoutSeqProof (
     was_starts <= starts && !reset;
     was_start_ok <= starts && window_ok && wanted;
     was_start_bad <= starts && !window_ok;
-    was_lands <= lands;
+    was_lands <= lands; was_passes <= over && !slot_reads;
     was_last <= taken && kind == END;
     was_given_up <= fails && (!step__val || step__rdy);
     was_waits <= waits_link || waits_amplifiers || waits_bank;
@@ -146,7 +154,8 @@ module ReadoutSeqProof (
       a_amp: assume (!(exposing && amp_done) || hold_free);
     end
     if (!first) begin
-      p_reset: assert (!was_reset || {busy, done, cfg_err, amp_start, step__val, amp_row, cycles} == 0 && hold_free);
+      p_reset: assert (!was_reset || {busy, done, cfg_err, amp_start, step__val, amp_row, reset_row, slot_resets,
+                        slot_opens, cycles} == 0 && hold_free && slot_reads);
       p_four_tap: assert (four_tap == (mode == 3));
       p_cycles: assert (cycles == (was_reset || busy && !was_busy ? 64'd0 : was_cycles + was_busy));
     end
@@ -173,11 +182,12 @@ module ReadoutSeqProof (
       p_done: assert (done == was_last && !(done && busy));
       p_given_up: assert (!was_given_up || !busy && cfg_err && hold_free);
       p_busy: assert (busy == was_busy || (busy ? was_starts : done != was_given_up));
-      // The amplifiers: a row is started when the one before is finished, if there is one; a row is sent from the
+      // The amplifiers: a slot is started when the one before is finished, if a row is left; a row is sent from the
       // sample-and-holds, which are not free until the bank has converted it
-      p_amp_start: assert (!amp_start || row_ok(amp_place) && amp_row == index(amp_place) && !exposing
-                           && (overlap || hold_free) && (!landed || amp_place > current));
-      p_launch: assert (!(was_row_left && (overlap ? was_lands : hold_free && !was_free && busy)) || amp_start);
+      p_amp_start: assert (!amp_start || !exposing && (overlaps || hold_free) && (!slot_reads
+                           || row_ok(amp_place) && amp_row == index(amp_place) && (!landed || amp_place > current)));
+      p_early: assert (!was_passes || amp_start);
+      p_launch: assert (!(was_row_left && (overlaps ? was_lands : hold_free && !was_free && busy)) || amp_start);
       p_amp_row: assert (amp_row == was_amp_row || amp_start);
       p_held: assert (!(step__val && (kind == ROW || kind == SAMPLE)) || !hold_free && row == held_row);
       p_hold: assert (hold_free == was_free
@@ -193,16 +203,20 @@ module ReadoutSeqProof (
       inv_current: assert (\dut.row == index(current));
       inv_held: assert (hold_free || held_row == \dut.row );
       inv_window: assert (!busy || window_ok);
-      inv_exposed: assert (!busy || row_ok(amp_place));
+      inv_exposed: assert (!busy || !slot_reads || row_ok(amp_place));
+      inv_wait: assert (!busy || \dut.wait_slots <= lead && slot_reads == (\dut.wait_slots == 0));
+      inv_some_row: assert (!busy || row_ok({row0, 2'd0}) || row_ok({row0, 2'd1}) || row_ok({row0, 2'd2})
+                            || row_ok({row0, 2'd3}));
+      inv_reads: assert (!(busy && landed) || slot_reads);
       inv_landed: assert (!(busy && landed) || row_ok(current) && current <= amp_place);
       inv_stages: assert (!busy || (state == CHECK || state == 4 ? !framed && !rows_sent
                                     : framed && (state == WAIT || state == 5 || rows_sent)));
       inv_hold: assert (!busy || (state == CHECK || state == 4 || state == WAIT || state == 7 ? 1 : !hold_free));
       inv_free: assert (state != 7 || hold_free && !integrating && !\dut.failing );
       inv_launch: assert (!busy || \dut.failing || (landed ? integrating == (amp_place != current) : integrating));
-      inv_wait: assert (state != WAIT || \dut.failing || integrating || !hold_free);
+      inv_waiting: assert (state != WAIT || \dut.failing || integrating || !hold_free);
       inv_early: assert (!(state == CHECK && amp_start) || hold_free);
-      inv_overlap: assert (!(busy && !overlap && integrating) || hold_free);
+      inv_overlap: assert (!(busy && !overlaps && integrating) || hold_free);
       inv_row: assert (!rows_sent || !busy || (state == WAIT || state == 5 ? last[22:13] <= current
               : last[22:13] == current)
                        && (!hold_free || last[22:13] == current));
@@ -227,13 +241,13 @@ module ReadoutSeqProof (
                                                       : !rows_sent ? 1'b0
                                                       : state == 5 || !hold_free ? p_row < current : p_row <= current));
       // No wanted row is between two consecutive ones
-      inv_first_row: assert (!(busy && row_wanted && !landed) || p_row >= amp_place);
+      inv_first_row: assert (!(busy && row_wanted && !landed && slot_reads) || p_row >= amp_place);
       inv_first_landed: assert (!(busy && row_wanted && landed && !rows_sent) || p_row >= current);
       inv_next_landed: assert (!(busy && row_wanted && rows_sent && !hold_free && (state == WAIT || state == 5))
                                || p_row <= last[22:13] || p_row >= current);
       inv_next_row: assert (!(busy && row_wanted && landed && integrating) || p_row <= current || p_row >= amp_place);
       inv_no_row: assert (!(row_wanted && landed && !integrating && !\dut.failing
-                            && (state == 7 || overlap && busy)) || p_row <= current);
+                            && (state == 7 || overlaps && busy)) || p_row <= current);
     end
   end
 
@@ -244,5 +258,6 @@ module ReadoutSeqProof (
     c_given_up: cover (cfg_err && was_busy);
     c_waits: cover (waits_bank && was_val);
     c_overlap: cover (amp_start && !hold_free);
+    c_lead: cover (done && seen && lead == 2);
   end
 endmodule

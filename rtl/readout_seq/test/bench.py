@@ -5,16 +5,17 @@ from dataclasses import dataclass, field
 from functools import cache
 
 from talbot.models.digital.scan import Scan
-from talbot.models.parameters import MODES, FrameParameters, ParameterError, TileParameters, Window
+from talbot.models.parameters import MODES, AmpTiming, FrameParameters, ParameterError, TileParameters, Window
 from talbot.rtl.amp_ctrl import AmpCtrl
 from talbot.rtl.harness.testbench import build
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
-CONFIGURATION = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap")
+CONFIGURATION = ("mode", "mask", "row0", "row1", "col0", "col1", "decimation", "overlap", "exposure")
 QUIET = dict(start=0, amp_done=0, amp_err=0, bank_idle=1)
-AFTER_RESET = dict(
-    busy=0, done=0, cfg_err=0, amp_start=0, amp_row=0, four_tap=0, hold_free=1, cycles=0, offer=None
-)  # the output pins
+PINS = ("busy", "done", "cfg_err", "amp_start", "amp_row", "reset_row", "slot_resets", "slot_reads", "slot_opens")
+PINS += ("four_tap", "hold_free", "cycles")
+AFTER_RESET = dict.fromkeys(PINS, 0) | dict(slot_reads=1, hold_free=1, offer=None)  # the output pins
+SLOT = dict.fromkeys(("amp_row", "reset_row", "slot_resets", "slot_reads", "slot_opens"), 0)
 SMALL_TILE = 3, 5, (4, 14, 0, 9, 2, 7, 13, 1, 8, 3, 10, 6, 12, 5, 11)
 
 
@@ -41,7 +42,9 @@ class Size:
         """Values of the configuration ports for the whole array, all types, except for ``ports``."""
         rows, cols = self.tiles
         return (
-            dict(mode=0, mask=2**24 - 1, row0=0, row1=rows - 1, col0=0, col1=cols - 1, decimation=0, overlap=0) | ports
+            dict(mode=0, mask=2**24 - 1, row0=0, row1=rows - 1, col0=0, col1=cols - 1, decimation=0, overlap=0)
+            | dict(exposure=0)
+            | ports
         )
 
     def scan(self, ports):
@@ -53,6 +56,7 @@ class Size:
                 MODES[ports["mode"]],
                 ports["mask"],
                 decimation=ports["decimation"],
+                timing=AmpTiming(exposure=ports["exposure"]),
             )
             return Scan(
                 self.rows,
@@ -77,6 +81,17 @@ def messages(scan):
         out.append((ROW, row, 0, 0, 0, 0))
         out += [(SAMPLE, s.row, s.group, s.k, s.sub, s.enable) for s in scan.steps(row) if s.enable]
     return out + [(END, 0, 0, 0, 0, 0)]
+
+
+def lead(scan):
+    """Slots from a row's reset to its read."""
+    return 0 if scan.frame.mode == "tof" else scan.frame.timing.exposure
+
+
+def slots(scan):
+    """(row that is read or None, row that is reset or None) of every slot of a frame."""
+    rows, nothing = [int(row) for row in scan.row_list], [None] * lead(scan)
+    return list(zip(nothing + rows, rows + nothing))
 
 
 def fields_of(msg):
@@ -164,7 +179,7 @@ class Record:
     """The values at the ports by cycle; `start` is high in cycle 0."""
 
     taken: list = field(default_factory=list)  # (cycle, message)
-    starts: list = field(default_factory=list)  # (cycle, amp_row)
+    starts: list = field(default_factory=list)  # (cycle, (row that is read or None, row that is reset or None))
     dones: list = field(default_factory=list)
     idle: list = field(default_factory=list)  # bank_idle of every cycle
     pins: list = field(default_factory=list)  # and the output pins
@@ -178,13 +193,17 @@ class Record:
 def check(record, scan, overlap, before):
     """Check one frame's record; overlap: rows are exposed while others convert.
 
+    overlap: the port, or None of a level that never overlaps.
     before: the pins, which must not change if there is no frame.
     """
     if scan is None:
+        before |= {"slot_opens": record.pins[1]["slot_opens"]}  # follows the configuration
         assert record.pins[1] == before | {"cfg_err": 1} and not record.taken and not record.starts
         return
     assert record.messages == messages(scan)
-    assert [row for _, row in record.starts] == list(scan.row_list)
+    assert [slot for _, slot in record.starts] == slots(scan)
+    assert {pins["slot_opens"] for pins in record.pins[1:] if pins["slot_resets"]} == {int(lead(scan) > 0)}
+    assert not any(pins["slot_opens"] for pins in record.pins[1:] if not pins["slot_resets"])
     assert record.pins[-1]["done"] and not any(pins["done"] for pins in record.pins[:-1])
     assert not any(pins["cfg_err"] for pins in record.pins[1:])
     assert all(pins["busy"] for pins in record.pins[1:-1])
@@ -195,11 +214,14 @@ def check(record, scan, overlap, before):
 
 def check_holds(record, scan, overlap):
     """hold_free is low from a row's amp_done until its steps are converted, and the next row starts in time."""
+    overlap = overlap or (lead(scan) and overlap is not None)
     used, last = [], {msg[1]: cycle for cycle, msg in record.taken if msg[0] == SAMPLE}
-    for done, row, start in zip(record.dones, scan.row_list, [*record.starts[1:], (None, None)]):
-        converted = record.idle.index(1, last[row] + 1)
+    for done, (row, _), start in zip(record.dones, slots(scan), [*record.starts[1:], (None, None)]):
+        converted = done
+        if row is not None:
+            converted = record.idle.index(1, last[row] + 1)
+            used += range(done + 1, converted + 1)
         assert start[0] in (None, 1 + (done if overlap else converted))
-        used += range(done + 1, converted + 1)
     assert [cycle for cycle, pins in enumerate(record.pins) if not pins["hold_free"]] == used
 
 
@@ -207,7 +229,8 @@ def check_given_up(record, scan):
     """Check the record of a frame that the amplifiers refused: the current offer is taken, then nothing more."""
     golden = messages(scan)
     assert record.messages == golden[: len(record.messages)] and len(record.messages) < len(golden)
-    assert record.pins[-1] | {"cycles": 0, "amp_row": 0, "four_tap": 0} == AFTER_RESET | {"cfg_err": 1}
+    ends = {"cycles": 0, "four_tap": 0} | SLOT
+    assert record.pins[-1] | ends == AFTER_RESET | ends | {"cfg_err": 1}
 
 
 class Bench:
@@ -236,10 +259,7 @@ class Bench:
         self.drive(start=start, amp_done=self.answer[0], amp_err=self.answer[1], bank_idle=idle)
         sim.step.rdy @= ready
         sim.sim_eval_combinational()
-        pins = {
-            name: int(getattr(sim, name))
-            for name in ("busy", "done", "cfg_err", "amp_start", "amp_row", "four_tap", "hold_free", "cycles")
-        }
+        pins = {name: int(getattr(sim, name)) for name in PINS}
         pins["offer"] = fields_of(sim.step.msg) if sim.step.val else None
         taken = pins["offer"] is not None and ready
         number = len(record.pins)
@@ -250,7 +270,11 @@ class Bench:
         if taken:
             record.taken.append((number, pins["offer"]))
         if pins["amp_start"]:
-            record.starts.append((number, pins["amp_row"]))
+            read, reset = (
+                pins[f"{row}_row"] if pins[f"slot_{on}"] else None
+                for row, on in (("amp", "reads"), ("reset", "resets"))
+            )
+            record.starts.append((number, (read, reset)))
         if self.answer[0]:
             record.dones.append(number)
         self.answer = self.amplifier.send((pins["amp_start"], pins["hold_free"]))

@@ -52,6 +52,7 @@ def configurations(draw, size):
         "mask": draw(masks),
         "decimation": draw(st.integers(0, 3)),
         "overlap": draw(st.integers(0, 1)),
+        "exposure": draw(st.just(0) | st.integers(1, 12)),
     }
     for axis, tiles in zip(("row", "col"), size.tiles):
         low, high = sorted(draw(st.tuples(*[st.integers(0, tiles - 1)] * 2)))
@@ -72,7 +73,7 @@ class TestReadoutSeqFL:
         return Bench(simulator(self.cls, size, self.verilog), *surroundings)
 
     def check(self, record, scan, overlap, before=None):
-        check(record, scan, overlap and self.overlaps, before)
+        check(record, scan, overlap if self.overlaps else None, before)
 
     @SETTINGS
     @given(st.data(), seeds)
@@ -125,6 +126,21 @@ class TestReadoutSeqFL:
         record = bench.frame(size.whole())
         assert record.pins[0]["cfg_err"] and not any(pins["cfg_err"] for pins in record.pins[1:])
         assert record.messages == messages(size.scan(size.whole()))
+
+    def test_nothing_of_a_frame_outlives_a_reset(self):
+        """After a reset the first offer is 0 in every bit, whatever was sent before."""
+        size, offers = Size(7, 31, 2), set()
+        bench = self.bench(size, steadily(1, 1, 0))
+        for col1 in (1, 5):
+            bench.frame(size.whole(col1=col1))
+            bench.reset()
+            bench.drive(**size.whole())
+            record = Record()
+            bench.cycle(record, start=1)
+            while record.standing is None and not record.taken:
+                bench.cycle(record)
+                offers |= {int(bench.sim.step.msg.to_bits())} if bench.sim.step.val else set()
+        assert offers == {0}  # FRAME
 
     @SETTINGS
     @given(st.integers(0, 3), st.integers(0, 1), st.integers(0, 80), seeds)
@@ -214,6 +230,23 @@ class TestReadoutSeqFL:
         bench.surround(amp_ctrl(None, 0), bench.converters)  # all durations 0
         record = bench.frame(ports)
         assert not record.taken and record.pins[-1]["cfg_err"] and len(record.starts) == 1
+
+    @pytest.mark.parametrize("mode", [0, 2, 3])
+    @pytest.mark.parametrize("exposure", [0, 1, 3, 6, 7, 40])
+    def test_reset_pointer(self, exposure, mode):
+        """A row is reset as many slots ahead of its read; rows that are not read take none, time of flight none."""
+        size = Size(7, 31, 2)
+        for cut in (dict(), dict(row0=1), dict(mask=0x842), dict(mask=0x842, col0=1, decimation=1)):
+            for overlap in (0, 1):
+                ports = size.whole(**cut, exposure=exposure, mode=mode, overlap=overlap)
+                self.check(self.bench(size, steadily(5, 2, 3)).frame(ports), size.scan(ports), overlap)
+
+    def test_longest_exposure(self):
+        size = Size(7, 31, 2)
+        ports = size.whole(exposure=1023, overlap=1)
+        record = self.bench(size, steadily(1, 1, 0)).frame(ports)
+        self.check(record, size.scan(ports), 1)
+        assert len(record.starts) == 7 + 1023
 
     def test_addresses_of_the_largest_array(self):
         size = LARGEST

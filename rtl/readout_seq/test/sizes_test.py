@@ -144,7 +144,11 @@ class TestReadoutSeqSizes:
         for ports in frames:
             scan = size.scan(ports)
             modes = range(4) if scan and len(messages(scan)) < 40 else range(2)
-            ports |= {"mode": pick.choice(modes), "overlap": pick.randint(0, 1)}
+            ports |= {
+                "mode": pick.choice(modes),
+                "overlap": pick.randint(0, 1),
+                "exposure": pick.choice((0, 0, 1, 2, 9)),
+            }
             self.spoil(bench, size, ports, wrong, pick)
             surroundings, noise = quickly(pick)
             bench.surround(*surroundings)

@@ -64,7 +64,7 @@ class Bench:
 
     def write(self, writes):
         for transfer in write_transfers(writes):
-            self.spi.transfer(transfer)
+            assert not any(self.spi.transfer(transfer)), "miso is 0 in a write"
 
     def enable_loop(self, on=True):
         field = CHIP["loop_enable"]
@@ -99,6 +99,15 @@ class TestFL:
         # Downwards: a counter's upper bytes before the first one, which captures it
         assert [bench.read(address)[0] for address in reversed(range(128))] == expected[::-1]
         assert list(bench.read(0, 128)) == expected
+
+    def test_sclk_is_high_as_a_transfer_begins(self):
+        """Its fall is no bit: the transfer is good, and `miso` is 0 in the command byte."""
+        bench = self.bench()
+        for pin, level in (("sclk", 1), ("csn", 0), ("sclk", 0)):
+            wire = getattr(bench.sim, pin)
+            wire @= level
+            bench.spi.wait(8)
+        assert bench.spi.transfer(read_transfer(0, 2)) == bytes((0, CHIP["id"].reset, CHIP["version"].reset))
 
     def test_a_byte_alone(self):
         """Each byte in turn, over all ones and over zeros, then alone: no other bit changes in any cycle."""

@@ -10,7 +10,7 @@ module RowProof (input clk);
   reg first = 1;  // one reset, to begin with: the proof is bounded from there
   always @(posedge clk) first <= 0;
   wire reset = first;
-  localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, HEADER = 30, TAKEN = 3 * `SAMPLES + 4;
+  localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, HEADER = 32, TAKEN = 3 * `SAMPLES + 4;
 
   // The messages in order: FRAME, ROW, the samples, END
   reg [3:0] turn = 0;
@@ -23,8 +23,8 @@ module RowProof (input clk);
   RunLength dut (.clk(clk), .reset(reset), .recv__val(recv__val), .recv__rdy(recv__rdy), .recv__msg(recv__msg),
                  .send__val(send__val), .send__rdy(1'b1), .send__msg(send__msg), .frame_sync(frame_sync),
                  .threshold(threshold), .mode(2'd0), .phase(1'b0), .row0(8'd0), .row1(8'd0), .col0(8'd0), .col1(8'd0),
-                 .decimation(2'd0), .mask(24'd1), .frame_number(16'd0), .resync(2'd0), .n_cm(8'd0), .t_int(16'd0),
-                 .calibration(8'd0), .made(32'd0), .left_out(32'd0));
+                 .decimation(2'd0), .mask(24'd1), .frame_number(16'd0), .resync(2'd0), .exposure(10'd0), .n_cm(8'd0),
+                 .t_int(16'd0), .calibration(8'd0), .made(32'd0), .left_out(32'd0));
 
   // The bytes after the header, the first on top
   reg [5:0] came = 0;

@@ -6,7 +6,7 @@ module StreamProof (
   input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
   input [1:0] mode, input phase, input [7:0] row0, input [7:0] row1, input [7:0] col0, input [7:0] col1,
   input [1:0] decimation, input [23:0] mask, input [6:0] threshold, input [15:0] frame_number,
-  input [1:0] resync, input [7:0] n_cm, input [15:0] t_int, input [7:0] calibration,
+  input [1:0] resync, input [9:0] exposure, input [7:0] n_cm, input [15:0] t_int, input [7:0] calibration,
   input [31:0] made, input [31:0] left_out
 );
   wire recv__rdy, send__val, frame_sync;
@@ -74,15 +74,15 @@ module StreamProof (
   wire taken = recv__val && recv__rdy;
   wire [1:0] kind = recv__msg[11:10];
   wire in_rows = taken && part == ROWS;
-  wire [207:0] header = {"TLBT", 8'd2, resync, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
-                         col1, mask, frame_number, n_cm, t_int, calibration};
+  wire [223:0] header = {"TLBT", 8'd2, resync, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
+                         col1, mask, frame_number, 6'b0, exposure, n_cm, t_int, calibration};
   wire [31:0] long_value = ~long_crc;
-  wire [239:0] header_bytes = {header, long_value};
+  wire [255:0] header_bytes = {header, long_value};
   wire [111:0] trailer_bytes = {made, left_out, short_crc ^ 16'hFFFF, long_value};
   wire [15:0] mark = short_crc ^ {6'b0, row};
   wire payload = due && (part == ROWS || part == MARK);
   wire [7:0] wanted = payload ? \dut.packer.octet
-                      : part == HEADER ? header_bytes[8 * (29 - n) +: 8]
+                      : part == HEADER ? header_bytes[8 * (31 - n) +: 8]
                       : part == MARK ? (n == 0 ? mark[15:8] : mark[7:0]) : trailer_bytes[8 * (13 - n) +: 8];
   always @(posedge clk) begin
     if (reset) begin
@@ -106,11 +106,11 @@ module StreamProof (
       if (open && !(in_rows && kind == ROW && !open)) size <= grown;
       if (put) begin
         // The header's CRC-32 and the last one are in no check; the marks are not in the CRC-16
-        if (!(part == HEADER && n >= 26) && !(part == TRAILER && n >= 10)) long_crc <= crc32(long_crc, octet);
+        if (!(part == HEADER && n >= 28) && !(part == TRAILER && n >= 10)) long_crc <= crc32(long_crc, octet);
         if (payload || part == TRAILER && n < 8) short_crc <= crc16(short_crc, octet);
         if (!payload) begin
           n <= n + 1;
-          if (part == HEADER && n == 29) begin
+          if (part == HEADER && n == 31) begin
             part <= ROWS; n <= 0;
           end
           if (part == MARK && n == 1) begin
@@ -127,9 +127,9 @@ module StreamProof (
 
   reg first = 1, was_reset, was_val, was_rdy, was_busy, ended, fresh;
   reg [7:0] was_msg;
-  wire [117:0] choice = {resync, n_cm, t_int, calibration, mode, phase, row0, row1, col0, col1, decimation, mask, threshold,
+  wire [127:0] choice = {resync, exposure, n_cm, t_int, calibration, mode, phase, row0, row1, col0, col1, decimation, mask, threshold,
                          frame_number};
-  reg [117:0] was_choice;
+  reg [127:0] was_choice;
   reg [4:0] quiet;
   wire busy = part != IDLE;
   always @(posedge clk) begin
@@ -163,7 +163,7 @@ module StreamProof (
     if (!first) begin
       inv_part: assert (\dut.control.state == part && part <= DRAIN && \dut.control.index == n
               && \dut.control.open == open);
-      inv_index: assert (part == HEADER ? n < 30 : part == MARK ? n < 2 : part == TRAILER ? n < 14 : n == 0);
+      inv_index: assert (part == HEADER ? n < 32 : part == MARK ? n < 2 : part == TRAILER ? n < 14 : n == 0);
       inv_ending: assert (part != MARK && part != TRAILER || \dut.control.ending == ending && ending == !open);
       inv_rows: assert (part != HEADER && part != ROWS || !\dut.control.ending && !ending);
       inv_trailing: assert (part != TRAILER || ending && !open);
@@ -185,7 +185,7 @@ module StreamProof (
   end
 
   always @* if (!first && !was_reset) begin
-    c_header: cover (put && part == HEADER && n == 29);
+    c_header: cover (put && part == HEADER && n == 31);
     c_row: cover (put && payload);
     c_frame: cover (part == DRAIN && !open && send__val);
   end

@@ -90,6 +90,7 @@ class Bench:
             "threshold": header.threshold,
             "frame_number": header.frame_number,
             "resync": header.resync,
+            "exposure": header.exposure,
             "n_cm": header.n_cm,
             "t_int": header.t_int,
             "calibration": header.calibration,
@@ -165,7 +166,7 @@ def any_header(pick):
         frame_number=pick.getrandbits(16),
         resync=pick.randint(0, 3),
         calibration=pick.getrandbits(8),
-        timing=AmpTiming(n_cm=pick.getrandbits(8), t_int=pick.randint(1, 65535)),
+        timing=AmpTiming(n_cm=pick.getrandbits(8), t_int=pick.randint(1, 65535), exposure=pick.getrandbits(10)),
     )
 
 
@@ -425,9 +426,9 @@ class TestRunLength(TestRunLengthCL):
         pick, bench = random.Random(6), self.bench(header_of())
         fixed = int.from_bytes(header_of().to_bytes()[:FIELD_BYTES], "big")
         places = dict(
-            resync=166, decimation=164, phase=162, mode=160, threshold=152, row0=96, row1=88, col0=80, col1=72
+            resync=182, decimation=180, phase=178, mode=176, threshold=168, row0=112, row1=104, col0=96, col1=88
         )
-        places |= dict(mask=48, frame_number=32, n_cm=24, t_int=8, calibration=0)  # of lowest bits, from the end
+        places |= dict(mask=64, frame_number=48, exposure=32, n_cm=24, t_int=8, calibration=0)  # from the end
         for turn in range(20):
             expected = fixed
             for name, low in places.items():

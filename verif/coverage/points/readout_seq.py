@@ -58,6 +58,19 @@ POINTS: Points = {
     # The next row that is read is not the next one that exists.
     "rows_left_out": lambda p: (p.amp_start == 1) & (p.was(p.busy) == 1) & (p.amp_row > p.was(p.amp_row) + 1),
     "last_row_reached": lambda p: (p.amp_start == 1) & (p.amp_row == p.arguments[0] - 1),
+    "no_lead": lambda p: _started(p) & (p.exposure == 0),
+    "lead_of_one_row": lambda p: _started(p) & (p.exposure == 1) & (p.mode != 3),
+    "lead_ignored_in_tof": lambda p: _started(p) & (p.exposure > 0) & (p.mode == 3),
+    "slot_resets_only": lambda p: (p.amp_start == 1) & (p.slot_resets == 1) & (p.slot_reads == 0),
+    "slot_resets_one_row_and_reads_another": lambda p: (
+        (p.amp_start == 1) & (p.slot_resets == 1) & (p.slot_reads == 1) & (p.slot_opens == 1)
+    ),
+    "slot_reads_only": lambda p: (p.amp_start == 1) & (p.slot_resets == 0) & (p.slot_reads == 1),
+    "slot_does_nothing": lambda p: (p.amp_start == 1) & (p.slot_resets == 0) & (p.slot_reads == 0),
+    "lead_over_masked_rows": lambda p: (
+        (p.amp_start == 1) & (p.slot_opens == 1) & (p.was(p.busy) == 1) & (p.reset_row > p.was(p.reset_row) + 1)
+    ),
+    "lead_without_overlap": lambda p: _started(p) & (p.exposure > 0) & (p.overlap == 0) & (p.mode != 3),
     "window_upside_down": lambda p: _refused(p) & (p.row0 > p.row1),
     "window_right_to_left": lambda p: _refused(p) & (p.col0 > p.col1),
     "rows_outside": lambda p: _refused(p) & (p.row0 <= p.row1) & (p.row1 > _last_tile(p)[0]),

@@ -6,7 +6,7 @@ import subprocess
 import pytest
 
 from talbot.base.command import main
-from talbot.base.paths import ROOT
+from talbot.base.paths import PACKAGE
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.asp_chip.balance_rtl import Balance
 from talbot.rtl.harness.ports import Port, ports_of
@@ -148,7 +148,7 @@ def test_judged(tmp_path):
 
 def test_a_module_has_tests_of_its_own(tmp_path):
     balance = Mutant(1, "", "Balance", 0, "rtl/asp_chip/balance_rtl.py:31", "")
-    assert own_tests(balance) == [ROOT / "rtl" / "asp_chip" / "test" / "balance_test.py"]
+    assert own_tests(balance) == [PACKAGE / "rtl" / "asp_chip" / "test" / "balance_test.py"]
     assert not own_tests(Mutant(1, "", "AmpCtrl", 0, "rtl/amp_ctrl/amp_ctrl_rtl.py", ""))
 
 

@@ -375,6 +375,24 @@ def test_legs_are_clear_of_another_route():
     assert clear_of(legs, far, board) == []  # in the way is what no leg is
 
 
+def test_a_leg_goes_with_that_by_which_it_meets_a_pin():
+    """A diode's leg begins where another leg meets the gate; without that one it would end there."""
+    layout, top = empty()
+    at = (5_015, 20_000), (35_020, 20_000), (7_990, 20_000)
+    pins = [pin(layout, top, *point) for point in at]
+    board = Board(layout, RULES, {"w1": {"segments": [], "vias": [], "pins": list(map(um, pins[:2]))}})
+    trunk = route_net(board, "w1").legs
+    board.add_diode("w1", um(pins[2]), 0)
+    legs = route_net(board, "w1", kept=trunk).legs
+    assert [leg.pins for leg in legs] == [{0, 1}, {0, 2}]
+    ends = [(level, box) for level, made in trunk[0].route.segments.items() for box in made]
+    level, box = max(ends, key=lambda end: end[1])
+    kept = clear_of(legs, Route({level: [box]}), board)
+    board.put("w1", route_net(board, "w1", kept=kept).route)
+    drawn = board.drawn()
+    assert len(set(nets(drawn, drawn.top_cell(), [(0, *point) for point in at]))) == 1
+
+
 def test_what_is_too_long_for_a_diode_gets_a_jumper():
     """345 um of one layer beside a gate of 0.075 um2."""
     layout, top = empty()

@@ -207,7 +207,7 @@ def test_verilog_joins_every_port_of_the_chip(made, tmp_path):
     own = set(
         re.findall(r"(?m)^\s*(?:input|output)\s+(?:logic|wire|reg)?\s*(?:\[\S+\])?\s*(\w+)", head[: head.index(");")])
     )
-    assert len(own) == 32 and names == own
+    assert len(own) == 34 and names == own
     assert {block.name for block in blocks()} == set(re.findall(r"(?m)^  (\w+) \1 \(", module))
     if not shutil.which("yosys"):
         pytest.skip("yosys: not installed")

@@ -55,9 +55,9 @@ def liberty(setup, hold):
 WIRE = 2.0, 10.0  # fF, ohm
 
 
-def timed(folder, setup=0.1, hold=0.05, wire=WIRE):
+def timed(folder, setup=0.1, hold=0.05, wire=WIRE, derate=0.0):
     """Metrics of the STA, and the rules of the layout that its slacks break."""
-    design = Design("pair", "Pair", "", clock=Clock(period_ns=10.0))
+    design = Design("pair", "Pair", "", clock=Clock(period_ns=10.0, derate=derate))
     files = {
         "verilog": NETLIST.verilog(),
         "spef": spef(NETLIST, {"between": wire}),
@@ -76,6 +76,13 @@ def test_what_keeps_its_times_breaks_no_rule(tmp_path):
     found, rules = timed(tmp_path)
     assert found["whs_ns"] == pytest.approx(0.3 - 0.05 - 0.05, abs=0.01)  # delay, hold, uncertainty
     assert rules == []
+
+
+def test_on_chip_variation_takes_from_both_slacks(tmp_path):
+    """A delay of 0.3 ns."""
+    plain, derated = timed(tmp_path)[0], timed(tmp_path, derate=0.1)[0]
+    assert plain["wns_ns"] - derated["wns_ns"] == pytest.approx(0.03, abs=0.001)
+    assert plain["whs_ns"] - derated["whs_ns"] == pytest.approx(0.03, abs=0.001)
 
 
 @pytest.mark.parametrize("times, rule", [({"hold": 0.5}, "whs_ns"), ({"setup": 9.9}, "wns_ns")])

@@ -26,10 +26,10 @@ SDF = """(DELAYFILE (SDFVERSION "3.0")
 EASY = Timing(10.0, 0.2, 0.2)
 
 
-def played(folder, netlist, timing=EASY, sdf=SDF, inverted=1, count=False):
+def played(folder, netlist, timing=EASY, sdf=SDF, inverted=1, count=False, cells=small.CELLS):
     (folder / "t.trace").write_text("\n".join(small.trace(200, inverted)) + "\n")
     (folder / "t.json").write_text(json.dumps(small.HEAD | {"cycles": 200}))
-    return replay(netlist, small.CELLS, folder / "t.json", timing, folder, delays.read(sdf) if sdf else None, count)
+    return replay(netlist, cells, folder / "t.json", timing, folder, delays.read(sdf) if sdf else None, count)
 
 
 def test_what_is_read_of_an_sdf():
@@ -75,6 +75,25 @@ def test_a_net_that_nothing_drives_is_x(tmp_path):
         replace(i, pins=i.pins | {"i": "nowhere"}) if i.name == "second.d_reg" else i for i in netlist.instances
     )
     assert played(tmp_path, replace(netlist, instances=cut)).wrong == 198
+
+
+def test_a_cell_with_two_inputs_on_one_net_has_its_delays(tmp_path):
+    cells = (
+        small.CELLS
+        + "module nand_x1 (i0, i1, nq);\n  input i0, i1;\n  output nq;\n  assign nq = ~(i0 & i1);\nendmodule\n"
+    )
+    netlist = small.shift()
+    instances = tuple(
+        Instance("u0", "nand_x1", {"i0": i.pins["i"], "i1": i.pins["i"], "nq": i.pins["nq"]}) if i.name == "u0" else i
+        for i in netlist.instances
+    )
+    paths = " ".join(
+        f"(IOPATH {pin} nq ({delay}) ({delay}))" for pin, delay in (("i0", "0.1::0.4"), ("i1", "0.1::0.2"))
+    )
+    sdf = SDF.replace("(IOPATH i nq (0.1::0.2) (0.1::0.4))", paths)
+    found = played(tmp_path, replace(netlist, instances=instances), sdf=sdf, cells=cells)
+    assert (found.wrong, found.late) == (0, ())
+    assert found.margins[1] == pytest.approx(0.5 + 0.25 + 0.2 - 0.1)  # by the faster one, which is the second
 
 
 def test_transitions_are_counted(tmp_path):

@@ -6,7 +6,7 @@ from talbot.models.digital.stream import decode_stream
 from talbot.models.digital.stream.test.examples import EXAMPLES, small_frame
 from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
-DOCUMENT = (Path(__file__).parents[4] / "docs" / "stream.md").read_text()
+DOCUMENT = (Path(__file__).parents[5] / "docs" / "stream.md").read_text()
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

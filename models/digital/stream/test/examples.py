@@ -1,4 +1,4 @@
-"""The worked examples of docs/stream.md, written by the encoder: `python -m talbot.models.digital.stream.test.examples`."""
+"""The worked examples of docs/stream.md: `python -m talbot.models.digital.stream.test.examples` writes them."""
 
 import numpy as np
 
@@ -22,6 +22,7 @@ FIELDS = (
     ("col1", 1),
     ("mask", 3),
     ("frame number", 2),
+    ("exposure", 2),
     ("n_cm", 1),
     ("t_int", 2),
     ("calibration", 1),

@@ -54,7 +54,9 @@ def headers(draw):
             frame_number=draw(st.integers(0, 65535)),
             resync=draw(st.integers(0, 3)),
             calibration=draw(st.integers(0, 255)),
-            timing=AmpTiming(n_cm=draw(st.integers(0, 255)), t_int=draw(st.integers(1, 65535))),
+            timing=AmpTiming(
+                n_cm=draw(st.integers(0, 255)), t_int=draw(st.integers(1, 65535)), exposure=draw(st.integers(0, 1023))
+            ),
         )
         try:
             header.layout()

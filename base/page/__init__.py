@@ -1,0 +1,128 @@
+"""HTML pages, each one file without a request: templates extend base.html; page.css and page.js are those of all.
+
+A page that is given a ``card`` is listed by `base.page.index`.
+"""
+
+import base64
+import io
+import json
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
+from PIL import Image as pillow
+from PIL.Image import Image
+
+FOLDER = Path(__file__).parent
+TABLES = FOLDER / "tables.html"  # a page of `Section`s
+CARD = (480, 340)  # px, of the picture on a card, at most
+CARD_TILES = 4
+# As people write them; in files, terminals and names they are ASCII
+UNITS = ((r"\bum2\b", "µm²"), (r"\bu(?=[mWJAV]\b)", "µ"), (r"(?<=\d) x (?=\d)", " × "))
+
+
+class Tile(NamedTuple):
+    """A figure at the top of a page. kind: 'good', 'bad', 'none' (not run) or ''."""
+
+    value: str
+    label: str
+    kind: str = ""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What the colours of a picture mean: ``colours`` (n, 3), uint8, stand for values from ``low`` to ``high``."""
+
+    colours: npt.NDArray[np.uint8]
+    low: float
+    high: float
+    unit: str = ""
+
+    @property
+    def src(self) -> str:
+        """The bar as a data URL."""
+        return data_url(pillow.fromarray(self.colours[None]))
+
+    @property
+    def low_text(self) -> str:
+        """The lower end."""
+        return f"{self.low:.3g}"
+
+    @property
+    def high_text(self) -> str:
+        """The upper end."""
+        return f"{self.high:.3g}"
+
+
+class Picture(NamedTuple):
+    """A picture of a page. name: of its file, without a suffix. title: of its section, '' for none."""
+
+    name: str
+    title: str
+    caption: str
+    image: Image
+    scale: Scale | None = None
+
+    @property
+    def src(self) -> str:
+        """The picture as a data URL."""
+        return data_url(self.image)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A part of a page of tables. charts: SVG. rows: texts, None for what was not run; numbers: all but the first."""
+
+    title: str = ""
+    text: str = ""
+    charts: Sequence[Markup] = ()
+    pictures: Sequence[Picture] = ()
+    head: Sequence[str] = ()
+    rows: Iterable[Sequence[str | None]] = field(default_factory=tuple)
+    numbers: bool = True
+    kind: str = ""
+
+
+def data_url(image: Image, kind: str = "PNG", **options: Any) -> str:
+    """An image inside a page."""
+    out = io.BytesIO()
+    image.save(out, kind, **options)
+    return f"data:image/{kind.lower()};base64,{base64.b64encode(out.getvalue()).decode()}"
+
+
+def units(value: object) -> str:
+    """A text with its units as people write them: um2 as µm²."""
+    text = value if isinstance(value, str) else str(value)
+    for ascii_form, written in UNITS:
+        text = re.sub(ascii_form, written, text)
+    return text
+
+
+def card(title: str, tiles: Sequence[Tile] = (), picture: Image | None = None) -> str:
+    """What the index shows of a page, as JSON."""
+    src = ""
+    if picture:
+        small = picture.convert("RGB")
+        small.thumbnail(CARD)
+        src = data_url(small, "WEBP", quality=80)
+    return json.dumps({"title": title, "tiles": tiles[:CARD_TILES], "picture": src})
+
+
+def render(template: Path, title: str, *, picture: Image | None = None, listed: bool = True, **values: Any) -> str:
+    """HTML of a Jinja2 ``template`` with ``values``, text escaped. Raises jinja2.UndefinedError for a missing value.
+
+    values: ``tiles``, a sequence of `Tile`, are at the top. listed: in the index, where ``picture`` is on its card.
+    """
+    loader = FileSystemLoader([template.parent, FOLDER])
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, trim_blocks=True)
+    environment.filters["units"] = units
+    environment.globals["parts"] = environment.get_template("parts.html").module
+    values = {"tiles": ()} | values
+    shown = card(title, values["tiles"], picture) if listed else ""
+    return environment.get_template(template.name).render(title=title, card=shown, **values)

@@ -1,0 +1,58 @@
+"""The page over a folder of results: a card for each page in it that has one."""
+
+import html
+import json
+import re
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from talbot.base.files import write
+
+from . import FOLDER, Tile, render
+
+NAME = "index.html"
+HEAD = 100_000  # characters of a page in which its card is
+PATTERNS = ("*/*.html", "*/*/*.html")
+CARD = re.compile(r'<meta name="talbot" content="([^"]*)">')
+
+
+class Card(NamedTuple):
+    """A page of the index. href, folder: relative to the folder of all. when: UTC."""
+
+    href: str
+    folder: str
+    when: str
+    title: str
+    tiles: list[Tile]
+    picture: str
+
+
+def cards(folder: Path) -> list[Card]:
+    """Those of the pages below ``folder``, the newest first."""
+    pages = {path: path.stat().st_mtime for pattern in PATTERNS for path in folder.glob(pattern)}
+    return [found for path in sorted(pages, key=lambda path: -pages[path]) if (found := read(path, folder))]
+
+
+def refresh(folder: Path) -> Path:
+    """Write the index of ``folder`` where it would change, none where there is no page; returns its path."""
+    groups: dict[str, list[Card]] = {}
+    for card in cards(folder):
+        groups.setdefault(card.href.partition("/")[0], []).append(card)
+    path, text = folder / NAME, render(FOLDER / "index.html", "Talbot: results", listed=False, groups=groups)
+    if groups and not path.is_file() or path.is_file() and path.read_text() != text:
+        write(path, text)
+    return path
+
+
+def read(path: Path, folder: Path) -> Card | None:
+    """The card of a page below ``folder``, None where it has none."""
+    with path.open(errors="replace") as file:
+        found = CARD.search(file.read(HEAD))
+    if not found:
+        return None
+    values: dict[str, Any] = json.loads(html.unescape(found[1]))
+    when = datetime.fromtimestamp(path.stat().st_mtime, UTC).strftime("%Y-%m-%d %H:%M UTC")
+    href = path.relative_to(folder)
+    tiles = [Tile(*tile) for tile in values["tiles"]]
+    return Card(href.as_posix(), href.parent.as_posix(), when, values["title"], tiles, values["picture"])

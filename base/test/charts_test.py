@@ -1,0 +1,45 @@
+"""Charts: labels over nothing else and inside the axes; colours of a page."""
+
+from itertools import combinations
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from talbot.base.charts import bars, curves, svg
+
+CROWDED = [(1 + 0.02 * i, 5 + 0.05 * i, f"T={i}") for i in range(60)]
+
+
+def labels(figure):
+    """Extents of the labels that were placed, of the axes, and the points in pixels."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    (axes,) = figure.axes
+    found = [text.get_window_extent(canvas.get_renderer()) for text in axes.texts]
+    return found, axes.get_window_extent(), axes.transData.transform([point[:2] for point in CROWDED])
+
+
+def test_labels_collide_with_nothing():
+    found, inside, points = labels(curves({"a": CROWDED}, "x", "y", "crowded"))
+    assert 5 < len(found) < len(CROWDED)
+    assert not any(a.overlaps(b) for a, b in combinations(found, 2))
+    assert not any(box.contains(*point) for box in found for point in points)
+    assert all(inside.x0 <= box.x0 and box.x1 <= inside.x1 for box in found)
+
+
+def test_labels_that_have_room_are_all_there():
+    few = [(10.0**i, 10.0**-i, str(i)) for i in range(4)]
+    figure = curves({"a": few, "b": []}, "x", "y", "few", log_x=True, log_y=True)
+    assert [text.get_text() for text in figure.axes[0].texts] == ["0", "1", "2", "3"]
+
+
+def test_ticks_of_a_short_logarithmic_axis_are_plain_numbers():
+    figure = curves({"a": [(900, 1, ""), (70000, 2, "")]}, "x", "y", "t", log_x=True)
+    FigureCanvasAgg(figure).draw()
+    shown = {tick.get_text() for tick in figure.axes[0].get_xticklabels()}
+    assert {"1,000", "2,000", "5,000", "50,000"} <= shown
+
+
+def test_black_is_the_ink_of_the_page():
+    text = svg(bars({"one": 1.0, "two": np.float64(3000)}, "cycles", "a title"))
+    assert text.startswith("<svg") and "currentColor" in text and "#000000" not in text and "#ffffff" not in text

@@ -1,0 +1,91 @@
+"""Registers behind clock gates and buffers that are near them, as many of these as the placement asks for."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from talbot.base.steps import StepError
+
+from ..coriolis.leaves import assigned
+from ..netlist.buffering import clusters
+from ..netlist.gating import ClockCells
+from ..netlist.netlist import Instance, is_register
+from .drive import Drives
+from .repair import End, Plan, connected
+
+
+class _Kind(NamedTuple):
+    """Clock gates, or buffers. cells: the weakest first. clock, output: pins."""
+
+    cells: tuple[str, ...]
+    clock: str
+    output: str
+
+
+def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int) -> int:
+    """Group the registers of each enable, and those without one, anew by their places; how many drivers were added.
+
+    Every group has a gate or a buffer in its middle (see `netlist.gating.drive_registers`), is of ``most`` registers at
+    most and no load that is too large for the last of ``sizes``. The tree's leaves get about as many of these each.
+    Raises StepError where a driver has no room.
+    """
+    gate, buffer = sizes[0].gate, sizes[0].buffer
+    kinds = (
+        _Kind(tuple(cells.gate.cell for cells in sizes), gate.clock, gate.output),
+        _Kind(tuple(cells.buffer.cell for cells in sizes), buffer.input, buffer.output),
+    )
+    nets = connected(plan.instances)
+    branches = sorted({i.pins[gate.clock] for i in plan.instances.values() if is_register(i.cell)} & set(nets))
+    groups: dict[tuple[_Kind, frozenset[End]], list[Instance]] = {}  # by the net of the enable
+    for driver in (plan.instances[nets[net][0]] for net in branches):
+        for kind in (kind for kind in kinds if driver.cell in kind.cells):
+            enable = frozenset(driver.pins.items()) - {(pin, driver.pins[pin]) for pin in (kind.clock, kind.output)}
+            groups.setdefault((kind, enable), []).append(driver)
+    made, leaves = list[tuple[str, str]](), set[str]()
+    for (kind, _), drivers in groups.items():
+        sinks = [name for driver in drivers for name, _ in nets[driver.pins[kind.output]][2]]
+        leaves |= {driver.pins[kind.clock] for driver in drivers}
+        made += [(name, kind.clock) for name in _behind(plan, drives, kind, drivers, sinks, gate.clock, most)]
+    ends = sorted(leaves)
+    there = [plan.point(nets[net][0]) if net in nets else plan.ports[net] for net in ends]
+    numbers = assigned([plan.point(name) for name, _ in made], there) if made else []
+    for (name, pin), number in zip(made, numbers, strict=True):
+        plan.instances[name].pins[pin] = ends[number]
+    return len(made) - sum(map(len, groups.values()))
+
+
+def _behind(
+    plan: Plan,
+    drives: Drives,
+    kind: _Kind,
+    drivers: Sequence[Instance],
+    registers: Sequence[str],
+    clock: str,
+    most: int,
+) -> list[str]:
+    """Put ``registers``, by their pin ``clock``, behind new drivers in place of ``drivers``; the names of the new."""
+    points, strongest = np.array([plan.point(name) for name in registers]), kind.cells[-1]
+    for count in range(-(-len(registers) // most), len(registers) + 1):
+        groups = clusters(points, -(-len(registers) // count))
+        middles = [(float(x), float(y)) for x, y in (points[group].mean(axis=0) for group in groups)]
+        ends = [[(registers[k], clock) for k in group] for group in groups]
+        loads = [plan.load(drives, "", [at], sinks) for at, sinks in zip(middles, ends, strict=True)]
+        if max(loads) <= drives.limits[strongest, kind.output]:
+            break
+    for driver in drivers:
+        plan.rows.give(plan.widths[driver.cell], plan.places.pop(driver.name))
+        del plan.instances[driver.name]
+    names, first = list[str](), drivers[0]
+    for k, (middle, sinks, load) in enumerate(zip(middles, ends, loads, strict=True)):
+        cell = next((cell for cell in kind.cells if drives.limits[cell, kind.output] >= load), strongest)
+        name, net = f"{first.name}_{k}", f"{first.pins[kind.output]}_{k}"
+        if not plan.put(Instance(name, cell, first.pins | {kind.output: net}), middle):
+            raise StepError(f"no room in the rows for {name}, which drives the clock of {len(sinks)} registers")
+        for register, _ in sinks:
+            plan.instances[register] = replace(
+                plan.instances[register], pins=plan.instances[register].pins | {clock: net}
+            )
+        names.append(name)
+    return names

@@ -1,0 +1,57 @@
+"""The picture of a layout: every layer where it is, fill apart from the metal that it is drawn on."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("klayout.lay", reason="klayout = not installed: make layout")
+
+from talbot.base.gds import db, write_gds
+from talbot.flow.layout.report.picture import BACKGROUND, render
+from talbot.platforms.coriolis import coriolis_platform
+
+TECH = coriolis_platform("sky130")
+SIDE = 100
+
+
+@pytest.fixture
+def files(tmp_path):
+    """10 x 5 um with a metal over the left fifth; the same with a square of fill."""
+    layout, paths = db.Layout(), (tmp_path / "plain.gds", tmp_path / "filled.gds")
+    layout.dbu = 0.001
+    top, metal = layout.create_cell("top"), layout.layer(*TECH.metals[1].gds)
+    top.shapes(layout.layer(*TECH.outline)).insert(db.Box(0, 0, 10000, 5000))
+    top.shapes(metal).insert(db.Box(0, 0, 2000, 5000))
+    write_gds(layout, paths[0])
+    top.shapes(metal).insert(db.Box(6000, 1000, 8000, 3000))
+    write_gds(layout, paths[1])
+    return paths
+
+
+def shares(picture):
+    """Layer to the share of the picture that it covers."""
+    return {layer.name: np.asarray(layer.mask).mean() for layer in picture.layers}
+
+
+def test_fill_is_a_layer_of_its_own(files):
+    plain, filled = files
+    picture, name = render(filled, TECH, plain, SIDE), TECH.metals[1].name
+    assert (picture.width_um, picture.height_um) == (10, 5) and picture.layers[0].mask.size == (SIDE, SIDE // 2)
+    found = shares(picture)
+    assert found["fill"] == pytest.approx(0.08, abs=0.01) and found[name] == pytest.approx(0.2, abs=0.02)
+    fill = np.asarray(next(layer for layer in picture.layers if layer.name == "fill").mask)
+    rows, cols = np.nonzero(fill)
+    assert rows.min() >= 19 and rows.max() <= 41 and cols.min() >= 59 and cols.max() <= 81  # y is upward
+    assert [value for other, value in found.items() if other not in ("fill", name)] == [0] * (len(found) - 2)
+
+
+def test_without_the_plain_layout_fill_is_metal(files):
+    found = shares(render(files[1], TECH, side=SIDE))
+    assert "fill" not in found and found[TECH.metals[1].name] == pytest.approx(0.28, abs=0.02)
+
+
+def test_the_whole_picture_and_its_layers_have_the_same_colours(files):
+    picture = render(files[1], TECH, files[0], SIDE)
+    colors = {color for _, color in picture.image.getcolors()}
+    shown = {tuple(layer.rgb.to_bytes(3, "big")) for layer in picture.layers if np.asarray(layer.mask).any()}
+    assert colors == shown | {BACKGROUND}
+    assert all(layer.src.startswith("data:image/png") for layer in picture.layers)

@@ -1,0 +1,80 @@
+"""A scene that moves, through a rolling shutter: each row sees it while it integrates, and no longer."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.models.digital.exposure import windows
+from talbot.models.parameters import AmpTiming, ParameterError, SensorParameters
+from talbot.models.plan import Plan
+from talbot.models.scene import Scene
+
+from .frame import currents
+from .pupil import Region
+
+STEP = 0.5  # px that the scene moves at most between two instants
+INSTANTS_MAX = 2000
+
+
+def moving_currents(
+    scene: Scene,
+    sensor: SensorParameters,
+    plan: Plan,
+    timing: AmpTiming,
+    dtype: str = "float64",
+    regions: Sequence[Region] | None = None,
+) -> npt.NDArray[np.floating]:
+    """Photocurrents of a frame, each row's the mean over the time in which it integrates.
+
+    The frame is cut into instants between which the scene moves half a pixel at most; an instant is captured for the
+    rows that integrate in it. A scene that does not move is captured once.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of the sensor's size.
+    sensor : SensorParameters
+        The sensor.
+    plan : Plan
+        Plan of the same scene and sensor.
+    timing : AmpTiming
+        Of the frame as it exposes.
+    dtype : str
+        'float32' or 'float64'.
+    regions : sequence of Region, optional
+        As in `currents`.
+
+    Returns
+    -------
+    array (taps, 2, rows, cols)
+        As of `currents`.
+
+    Raises
+    ------
+    ParameterError
+        As `currents`; for time of flight of a scene that moves, and for one that moves too far in a frame.
+    """
+    if scene.moved is None or not scene.speed:
+        return currents(scene, sensor, plan, dtype, regions)
+    if plan.taps != 1:
+        raise ParameterError("scene = moving: must not move in time of flight")
+    read = np.flatnonzero(plan.read.any(1))
+    starts, span = windows(timing, read.size)
+    begin, total = np.array(starts), starts[-1] + span
+    count = int(np.ceil(max(scene.speed * total / sensor.chip.f_clk / STEP, 1)))
+    if count > INSTANTS_MAX:
+        travel = scene.speed * total / sensor.chip.f_clk
+        raise ParameterError(f"scene travel = {travel:.0f} px a frame: must be at most {INSTANTS_MAX * STEP:.0f}")
+    out = np.zeros((1, 2, *scene.shape), dtype)
+    ends = np.linspace(0, total, count + 1)
+    for first, last in zip(ends[:-1], ends[1:]):
+        share = np.clip(np.minimum(begin + span, last) - np.maximum(begin, first), 0, None) / span
+        seen = np.zeros_like(plan.read)
+        seen[read[share > 0]] = plan.read[read[share > 0]]
+        if seen.any():
+            now = scene.moved((first + last) / 2 / sensor.chip.f_clk)
+            part = currents(now, sensor, replace(plan, read=seen), dtype, regions)
+            out[:, :, read] += part[:, :, read] * share[:, None].astype(dtype)
+    return out

@@ -1,0 +1,128 @@
+"""The documents: examples run, make lines are understood, links lead somewhere, diagrams are those of the code."""
+
+import re
+import shlex
+import xml.etree.ElementTree as xml
+
+import pytest
+
+from talbot.base.command import Parser, add_command
+from talbot.base.command import main as run_command
+from talbot.base.paths import ROOT
+from talbot.commands import command
+from talbot.make import arguments
+from talbot.models.parameters import SensorParameters
+from talbot.rtl.amp_ctrl.ports import SLOT
+from talbot.rtl.tops import build_top
+from talbot.site import api, architecture, collect, diagrams
+from talbot.site import command as site
+
+PYTHON = re.compile(r"(?ms)^```python\n(.*?)^```")
+MAKE = re.compile(r"(?m)^ {4}make ([a-z-]+)(.*?)(?:#.*)?$")
+TUTORIAL = sorted((ROOT / "docs" / "tutorial").glob("*.md"))
+MAKEFILE = (ROOT / "Makefile").read_text()
+OF_MAKE = "PDK_ROOT", "SCHEDULER", "PYTHON"
+
+
+@pytest.mark.parametrize("path", TUTORIAL, ids=lambda path: path.stem)
+def test_examples_run(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    blocks = PYTHON.findall(path.read_text())
+    assert blocks
+    exec(compile("\n".join(blocks), path.name, "exec"), {})
+
+
+def make_lines():
+    for path in [ROOT / "README.md", *TUTORIAL]:
+        for target, words in MAKE.findall(path.read_text()):
+            yield pytest.param(target, words, id=f"{path.stem}: {target}{words.rstrip()}")
+
+
+@pytest.mark.parametrize("target, words", list(make_lines()))
+def test_make_knows_every_target_and_variable(target, words):
+    (recipe,) = re.findall(rf"(?m)^{target}:.*\n((?:\t.*\n)+)", MAKEFILE)
+    variables = [word.strip("[]") for word in shlex.split(words) if "=" in word]
+    given = [word for word in variables if word.partition("=")[0] not in OF_MAKE]
+    if not given:
+        return
+    name, *fixed = re.sub(r"\$\(if .*", target, recipe.partition("$(talbot) ")[2]).split()
+    parser = Parser(prog=name)
+    add_command(parser, command(name))
+    flags = " ".join(word.replace(" ", r"\ ") for word in given)
+    options = arguments(parser, target, fixed, {"MAKEFLAGS": f" -- {flags}", "MAKELEVEL": "1"})
+    parser.parse_args(options)
+
+
+def test_no_link_leads_nowhere(tmp_path):
+    assert collect.collect(ROOT, tmp_path) == []
+    every = {path.relative_to(tmp_path).with_suffix("").as_posix() for path in tmp_path.rglob("*.md")}
+    listed = set(re.findall(r"(?m)^([\w/]+)$", collect.contents(tmp_path)))
+    assert every - {"index"} <= listed and len(every) > 40
+
+
+def test_links_of_the_site(tmp_path):
+    (tmp_path / "rtl" / "a").mkdir(parents=True)
+    (tmp_path / "rtl" / "a" / "a.py").write_text("")
+    text = "[up](../../README.md#x), [code](a.py), `[no](b)`, [web](https://a.b), [here](#c), [lost](b.md)\n"
+    (tmp_path / "rtl" / "a" / "README.md").write_text(f"{text}\n```\n[no](link)\n```\n")
+    (tmp_path / "README.md").write_text("[a folder](rtl/a), ![lost](p.png)\n")
+    broken = collect.collect(tmp_path, tmp_path / "out")
+    assert broken == ["README.md: ![](p.png) leads nowhere", "rtl/a/README.md: [lost](b.md) leads nowhere"]
+    assert (tmp_path / "out" / "index.md").read_text().startswith("[a folder](rtl/a/README.md)")
+    done = (tmp_path / "out" / "rtl" / "a" / "README.md").read_text()
+    assert done.startswith("[up](../../index.md#x), code, `[no](b)`, [web](https://a.b), [here](#c), [lost](b.md)")
+    assert "\n[no](link)\n" in done
+
+
+def test_connections_are_those_of_the_rtl():
+    top = build_top("AspChip", SensorParameters())
+    top.elaborate()
+    blocks, bits = architecture.connections(top)
+    assert blocks["amp"] == "AmpCtrl" and blocks["encoder"] == "RunLength" and len(blocks) == 14
+    assert bits["seq", "amp"] == 3 + len(SLOT)  # start, four_tap, hold_free and a slot's
+    assert bits["phase", "encoder"] == 1 + top.phase.send.msg._dsl.Type.nbits  # a stream: val and msg forth
+    assert bits["encoder", "phase"] == 1  # rdy back
+    assert ("amp", "encoder") not in bits
+
+
+def test_diagrams_show_everything():
+    drawn = diagrams.machine({"idle": 0, "run": 2, "b<c": 1}, [("idle", "run"), ("run", "b<c"), ("b<c", "idle")])
+    root = xml.fromstring(drawn)
+    texts = {"".join(element.itertext()) for element in root.iter()}
+    assert {"0 idle", "1 b<c", "2 run", "idle to run", "run to b<c", "b<c to idle"} <= texts
+    text = diagrams.matrix({"a": "A", "b": "B"}, {("a", "b"): 12})
+    assert "a to b: 12 bits" in text and xml.fromstring(text).tag.endswith("svg")
+    floors = diagrams.floors(next(iter(architecture.layers().values())))
+    assert {"verif", "cells", "pixels", "models"} <= {"".join(e.itertext()) for e in xml.fromstring(floors).iter()}
+
+
+def test_the_page_of_the_api_has_every_name(tmp_path):
+    import talbot
+
+    api.write(tmp_path)
+    text = (tmp_path / "api.md").read_text()
+    assert sorted(re.findall(r"\.\. (?:auto\w+|py:data):: (\w+)", text)) == sorted(talbot.__all__)
+
+
+def test_docstrings_are_prose():
+    lines = ["|code| and a*b of x_ `|kept|`", "    code * |"]
+    api.as_text(None, "", "", None, None, lines)
+    assert lines == [r"\|code\| and a\*b of x\_ `|kept|`", "    code * |"]
+
+
+def test_a_warning_of_sphinx_is_a_failure(tmp_path):
+    pytest.importorskip("myst_parser")
+    source = tmp_path / "source"
+    source.mkdir()
+    (source / "index.md").write_text("# Title\n\n[here](nowhere.md)\n")
+    (said,) = site.build(source, tmp_path / "out", tmp_path / "trees")
+    assert said.startswith("index.md:3: WARNING: ") and "nowhere.md" in said
+    (source / "index.md").write_text("# Title\n")
+    assert site.build(source, tmp_path / "out", tmp_path / "trees") == []
+    assert "Title" in (tmp_path / "out" / "index.html").read_text()
+
+
+def test_a_bad_folder_is_one_line(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert run_command(site, ["--out", str(tmp_path / "file")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
