@@ -7,6 +7,7 @@ from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 IDLE, HEADER, ROWS, MARK, TRAILER, DRAIN = range(6)
 HEADER_FIELDS, COUNTS, COUNTED = FIELD_BYTES, COUNT_BYTES, COUNTED_BYTES  # names in the Verilog
+HEADER_LAST, TRAILER_LAST = HEADER_BYTES - 1, TRAILER_BYTES - 1
 
 
 class RunLengthCtrl(Component):
@@ -64,9 +65,9 @@ class RunLengthCtrl(Component):
             s.step @= s.queue_ready & ~s.packer_val & ((s.state == HEADER) | (s.state == MARK) | (s.state == TRAILER))
             s.put @= s.step | (s.queue_ready & s.packer_val)
             s.last @= s.step & (
-                ((s.state == HEADER) & (s.index == HEADER_BYTES - 1))
+                ((s.state == HEADER) & (s.index == HEADER_LAST))
                 | ((s.state == MARK) & s.index[0])
-                | (s.index == TRAILER_BYTES - 1) & (s.state == TRAILER)
+                | (s.index == TRAILER_LAST) & (s.state == TRAILER)
             )
             s.marked @= s.last & (s.state == MARK)
             s.restart @= s.first_row | s.marked | (s.finish & ~s.open)

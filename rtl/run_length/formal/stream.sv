@@ -1,6 +1,6 @@
 // RunLength puts the bytes of docs/stream.md into its queue, frame after frame of any length, with any stalls: header,
-// each segment's payload from the packer and its mark, trailer. `payload` proves the packer, `byte_queue` the queue; their
-// assumptions about the control are asserted here (p_packer, p_queue).
+// each segment's payload from the packer and its mark, trailer. `tokens` and `payload` prove the packer, `byte_queue` the
+// queue; their assumptions about the control are asserted here (p_packer, p_queue).
 
 module StreamProof (
   input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
@@ -125,18 +125,16 @@ module StreamProof (
     end
   end
 
-  reg first = 1, was_reset, was_val, was_rdy, was_busy, ended, fresh;
+  reg first = 1, was_reset, was_val, was_rdy, was_busy;
   reg [7:0] was_msg;
-  wire [127:0] choice = {resync, exposure, n_cm, t_int, calibration, mode, phase, row0, row1, col0, col1, decimation, mask, threshold,
-                         frame_number};
+  wire [127:0] choice = {resync, exposure, n_cm, t_int, calibration, mode, phase, row0, row1, col0, col1, decimation,
+                         mask, threshold, frame_number};
   reg [127:0] was_choice;
   reg [4:0] quiet;
   wire busy = part != IDLE;
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_val <= send__val; was_rdy <= send__rdy; was_msg <= send__msg;
     was_busy <= busy || taken && kind == FRAME; was_choice <= choice;
-    ended <= !reset && (flush || ended && !restart);
-    fresh <= reset || restart || fresh && !push && !flush;
     quiet <= reset || put || recv__rdy || !send__rdy || part == DRAIN ? 0 : quiet + !(&quiet);
   end
 
@@ -150,10 +148,11 @@ module StreamProof (
       p_whole: assert (!(put && part == MARK && !payload) || \dut.packer.count == 0);
       p_push: assert (push == (in_rows && open && kind == SAMPLE) && flush == (in_rows && open && (kind == ROW
               && closes || kind == END)));
+      p_restart: assert (restart == (in_rows && !open && (kind == ROW || kind == END)
+              || put && !payload && part == MARK && n == 1));
       p_code: assert (\dut.packer.code == recv__msg[7:0] && \dut.packer.threshold == threshold
                       && \dut.packer.coded == (mode == 0));
-      p_packer: assert (push + flush + restart <= 1 && (\dut.packer.ready || !push && !flush)
-                        && ({mode, threshold} == {was_choice[83:82], was_choice[22:16]} || ended || fresh));
+      p_packer: assert (push + flush <= 1 && (\dut.packer.ready || !push && !flush));
       p_queue: assert (!put || \dut.queue.count < 2);
       p_sync: assert (!send__val || frame_sync);
       p_sync_low: assert (!frame_sync || part != IDLE);
@@ -176,8 +175,6 @@ module StreamProof (
       inv_packer: assert (part == ROWS && open || part == MARK || \dut.packer.count == 0);
       inv_flushed: assert (part != MARK || \dut.packer.count [2:0] == 0);
       inv_marked: assert (!(part == MARK && n == 1) || \dut.packer.count == 0);
-      inv_fresh: assert (fresh || part != IDLE && part != HEADER && part != TRAILER && part != DRAIN);
-      inv_ended: assert (ended == (part == MARK));
       inv_queue: assert (\dut.queue.count <= 2 && (part != IDLE && !(part == HEADER && n == 0)
               || \dut.queue.count == 0));
       inv_sync: assert (frame_sync == !(part == IDLE || part == HEADER && n == 0));
