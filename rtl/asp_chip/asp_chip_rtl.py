@@ -1,10 +1,12 @@
 """AspChip: the whole digital chip. It connects the blocks, which have their own folders."""
 
 from pymtl3 import Component, Wire, connect, update
+from pymtl3.stdlib.stream.queues import PipeQueue1EntryRTL
 
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.adc_bank import AdcBank
 from talbot.rtl.amp_ctrl import AmpCtrl
+from talbot.rtl.messages import ScanMsg
 from talbot.rtl.phase_path import PhasePath
 from talbot.rtl.readout_seq import ReadoutSeq
 from talbot.rtl.reg_file import RegFile
@@ -48,6 +50,7 @@ class AspChip(Component):
             s.seq = ReadoutSeq(rows, cols, lanes, order, tile_rows, tile_cols)
             s.bank = AdcBank(lanes)
             s.phase = PhasePath(lanes, divider, n_frac, iterations)
+            s.scan = PipeQueue1EntryRTL(ScanMsg)  # ends the longest path: divider, phase, token
             s.encoder = RunLength(rows, cols, lanes, tile_rows, tile_cols)
             s.generator = Pattern(lanes)
             s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
@@ -118,7 +121,8 @@ class AspChip(Component):
         s.phase.recv //= s.bank.scan
         s.phase.on //= s.phase_on
         s.phase.noise_floor //= cfg.noise_floor
-        s.phase.send //= s.encoder.recv
+        s.phase.send //= s.scan.recv
+        s.scan.send //= s.encoder.recv
 
         s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made

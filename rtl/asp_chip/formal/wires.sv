@@ -53,6 +53,8 @@ module AspChipWires (
   (* hierconn *) wire \dut.seq.step__val , \dut.bank.step__val , \dut.seq.step__rdy , \dut.bank.step__rdy ;
   (* hierconn *) wire [11:0] \dut.bank.scan__msg , \dut.phase.recv__msg , \dut.phase.send__msg , \dut.encoder.recv__msg ;
   (* hierconn *) wire \dut.bank.scan__val , \dut.phase.recv__val , \dut.bank.scan__rdy , \dut.phase.recv__rdy ;
+  (* hierconn *) wire [11:0] \dut.scan.recv__msg , \dut.scan.send__msg ;
+  (* hierconn *) wire \dut.scan.recv__val , \dut.scan.recv__rdy , \dut.scan.send__val , \dut.scan.send__rdy ;
   (* hierconn *) wire \dut.phase.send__val , \dut.encoder.recv__val , \dut.phase.send__rdy , \dut.encoder.recv__rdy ;
   (* hierconn *) wire \dut.encoder.frame_sync , \dut.frame_status.frame_sync , \dut.link.send__val , \dut.gate.low ;
   (* hierconn *) wire [3:0] \dut.regs.status , \dut.frame_status.status ;
@@ -105,8 +107,10 @@ module AspChipWires (
                        {\dut.seq.step__msg , \dut.seq.step__val , \dut.bank.step__rdy } &&
                        {\dut.phase.recv__msg , \dut.phase.recv__val , \dut.bank.scan__rdy } ==
                        {\dut.bank.scan__msg , \dut.bank.scan__val , \dut.phase.recv__rdy } &&
-                       {\dut.encoder.recv__msg , \dut.encoder.recv__val , \dut.phase.send__rdy } ==
-                       {\dut.phase.send__msg , \dut.phase.send__val , \dut.encoder.recv__rdy });
+                       {\dut.scan.recv__msg , \dut.scan.recv__val , \dut.phase.send__rdy } ==
+                       {\dut.phase.send__msg , \dut.phase.send__val , \dut.scan.recv__rdy } &&
+                       {\dut.encoder.recv__msg , \dut.encoder.recv__val , \dut.scan.send__rdy } ==
+                       {\dut.scan.send__msg , \dut.scan.send__val , \dut.encoder.recv__rdy });
     p_rows: assert ({\dut.amp.start , \dut.amp.four_tap , \dut.amp.hold_free , \dut.seq.amp_done , \dut.seq.amp_err ,
                      \dut.seq.bank_idle , \dut.seq.start , \dut.amp.slot_resets , \dut.amp.slot_reads ,
                      \dut.amp.slot_opens } ==
