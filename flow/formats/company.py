@@ -38,7 +38,20 @@ def _jpeg_ls(codes: Codes) -> int:
     return len(file.getvalue())
 
 
-CODERS: dict[str, Callable[[Codes], int]] = {"zlib -9": _zlib, "zstd -19": _zstd, "JPEG-LS": _jpeg_ls}
+def _rice(codes: Codes) -> int:
+    """A Golomb-Rice code of each sample, its parameter the best of the frame's: as small a coder as there is."""
+    magnitudes = np.abs(codes[codes != 0].astype(int))
+    rank = magnitudes - magnitudes.min(initial=128) + 1
+    folded = 2 * rank - (codes[codes != 0] > 0)
+    return -(-min(int((folded >> k).sum()) + codes.size * (1 + k) for k in range(8)) // 8)
+
+
+CODERS: dict[str, Callable[[Codes], int]] = {
+    "zlib -9": _zlib,
+    "zstd -19": _zstd,
+    "JPEG-LS": _jpeg_ls,
+    "Golomb-Rice": _rice,
+}
 
 
 def stream_bytes(codes: Codes, threshold: int, tile: TileParameters = TileParameters()) -> int:

@@ -141,11 +141,18 @@ def test_noise_grows_by_less_than_a_sixteenth():
     assert company.stream_bytes(noise, 0) <= noise.size * 17 / 16
 
 
+def test_golomb_rice_of_a_known_frame():
+    """36 times 0, 1, 3 and 4 after the folding; with a parameter of 1 they take 2, 2, 3 and 4 bits, with 0 or 2 more."""
+    codes = np.array([[0, 9], [10, -10]], np.int16)
+    (row,) = company.compare("known", np.tile(codes, (6, 6)), [9])
+    assert row["Golomb-Rice"] == company.FRAME + -(-36 * (2 + 2 + 3 + 4) // 8)
+
+
 def test_the_tables_of_the_coders():
     row = {"scene": "a", "threshold": 10, "samples": 1000, "not_zero": 0.5, "entropy": 100, "stream": 130}
-    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300}]
+    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300, "Golomb-Rice": 400}]
     rows += [rows[0] | {"scene": "b", "stream": 520}, rows[0] | {"threshold": 4}]
     text = lines(company.tables(rows, 10))
-    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 |" in text
-    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
-    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
+    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 400 |" in text
+    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 800 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
+    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 400 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
