@@ -142,7 +142,7 @@ def test_noise_grows_by_less_than_a_sixteenth():
 
 
 def test_golomb_rice_of_a_known_frame():
-    """36 times 0, 1, 3 and 4 after the folding; with a parameter of 1 they take 2, 2, 3 and 4 bits, with 0 or 2 more."""
+    """36 times 0, 1, 3 and 4 after the folding; parameter 1: 2, 2, 3 and 4 bits."""
     codes = np.array([[0, 9], [10, -10]], np.int16)
     (row,) = company.compare("known", np.tile(codes, (6, 6)), [9])
     assert row["Golomb-Rice"] == company.FRAME + -(-36 * (2 + 2 + 3 + 4) // 8)

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from talbot.models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked, segments
+from talbot.models.digital.stream.payload import START, code_sample
 from talbot.models.digital.stream.test.frames import samples_of
 from talbot.models.digital.stream.trailer import trailer
 from talbot.models.parameters import LANES as LANE_COUNTS
@@ -339,6 +340,23 @@ class TestRunLengthFL:
         rows = [*zeros, (20, [0, 0, 77]), *zeros[:3]]
         got = self.bench(header).run(scan_of(rows))
         assert got == stream_of(header, rows, 0, 0) and len(got) < HEADER_BYTES + TRAILER_BYTES + 8
+
+    @pytest.mark.parametrize("order", [1, 2, 3])
+    def test_the_longest_token_behind_seven_bits(self, order):
+        """It ends at the end of the gathering register: after runs of 2^11 zeros, the value of most bits."""
+        pick = random.Random(order)
+        while True:
+            codes, state, sent = [], START, 0
+            start = [pick.choice((-40, -9, -1, 1, 2, 9)) for _ in range(pick.randrange(12))]
+            while start or state[0] < 11:
+                codes.append(start.pop() if start else 0)
+                _, length, *state = code_sample(codes[-1], 1, *state)
+                sent += length
+            if (sent % 8, state[1] // 2, state[2]) == (7, order, 0):
+                break
+        rows = [(0, [*codes, -128, 127])]
+        header = header_of()
+        assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_the_largest_order_of_the_values_stays(self):
         """Values that raise their order half a bit at a time to its end and go on."""
