@@ -1,7 +1,6 @@
 """Registers behind clock gates and buffers that are near them, as many of these as the placement asks for."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +12,7 @@ from ..netlist.buffering import clusters
 from ..netlist.gating import ClockCells
 from ..netlist.netlist import Instance, is_register
 from .drive import Drives
-from .repair import End, Plan, connected
+from .repair import End, Plan, Point, Sinks, connected
 
 
 class _Kind(NamedTuple):
@@ -22,6 +21,14 @@ class _Kind(NamedTuple):
     cells: tuple[str, ...]
     clock: str
     output: str
+
+
+class _Group(NamedTuple):
+    """Pins that a gate or a buffer is to drive: its place, and its load (pF)."""
+
+    ends: Sinks
+    middle: Point
+    load: float
 
 
 def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int) -> int:
@@ -57,35 +64,35 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
 
 
 def _behind(
-    plan: Plan,
-    drives: Drives,
-    kind: _Kind,
-    drivers: Sequence[Instance],
-    registers: Sequence[str],
-    clock: str,
-    most: int,
+    plan: Plan, drives: Drives, kind: _Kind, drivers: list[Instance], registers: list[str], clock: str, most: int
 ) -> list[str]:
     """Put ``registers``, by their pin ``clock``, behind new drivers in place of ``drivers``; the names of the new."""
-    points, strongest = np.array([plan.point(name) for name in registers]), kind.cells[-1]
-    for count in range(-(-len(registers) // most), len(registers) + 1):
-        groups = clusters(points, -(-len(registers) // count))
-        middles = [(float(x), float(y)) for x, y in (points[group].mean(axis=0) for group in groups)]
-        ends = [[(registers[k], clock) for k in group] for group in groups]
-        loads = [plan.load(drives, "", [at], sinks) for at, sinks in zip(middles, ends, strict=True)]
-        if max(loads) <= drives.limits[strongest, kind.output]:
-            break
+    ends = [(name, clock) for name in registers]
+    limits = {cell: drives.limits[cell, kind.output] for cell in kind.cells}
+    count = -(-len(ends) // most)
+    groups = _groups(plan, drives, ends, count)
+    while count < len(ends) and max(group.load for group in groups) > max(limits.values()):
+        count += 1
+        groups = _groups(plan, drives, ends, count)
     for driver in drivers:
         plan.rows.give(plan.widths[driver.cell], plan.places.pop(driver.name))
         del plan.instances[driver.name]
     names, first = list[str](), drivers[0]
-    for k, (middle, sinks, load) in enumerate(zip(middles, ends, loads, strict=True)):
-        cell = next((cell for cell in kind.cells if drives.limits[cell, kind.output] >= load), strongest)
+    for k, group in enumerate(groups):
+        cell = next((cell for cell, limit in limits.items() if limit >= group.load), kind.cells[-1])
         name, net = f"{first.name}_{k}", f"{first.pins[kind.output]}_{k}"
-        if not plan.put(Instance(name, cell, first.pins | {kind.output: net}), middle):
-            raise StepError(f"no room in the rows for {name}, which drives the clock of {len(sinks)} registers")
-        for register, _ in sinks:
-            plan.instances[register] = replace(
-                plan.instances[register], pins=plan.instances[register].pins | {clock: net}
-            )
+        if not plan.put(Instance(name, cell, first.pins | {kind.output: net}), group.middle):
+            raise StepError(f"no room in the rows for {name}, which drives the clock of {len(group.ends)} registers")
+        plan.connect(group.ends, net)
         names.append(name)
     return names
+
+
+def _groups(plan: Plan, drives: Drives, ends: Sinks, count: int) -> list[_Group]:
+    """``count`` groups, about, of near ones among ``ends``."""
+    points, made = np.array([plan.point(name) for name, _ in ends]), list[_Group]()
+    for numbers in clusters(points, -(-len(ends) // count)):
+        x, y = points[numbers].mean(axis=0)
+        middle, group = (float(x), float(y)), [ends[int(k)] for k in numbers]
+        made.append(_Group(group, middle, plan.load(drives, "", [middle], group)))
+    return made

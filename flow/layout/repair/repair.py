@@ -57,6 +57,12 @@ class Plan:
             self.instances[instance.name], self.places[instance.name] = instance, found
         return found is not None
 
+    def connect(self, ends: Sinks, net: str) -> None:
+        """Connect pins to a net in place of theirs."""
+        for name, pin in ends:
+            was = self.instances[name]
+            self.instances[name] = replace(was, pins=was.pins | {pin: net})
+
     def load(self, drives: Drives, net: str, points: Sequence[Point], sinks: Sinks) -> float:
         """Load (pF) of a wire over ``points``, the place of the net's port if it is one's, and ``sinks``."""
         ends = [*points, *(self.point(name) for name, _ in sinks)]
@@ -182,8 +188,7 @@ def drive_port(plan: Plan, drives: Drives, net: str, driver: End, load: float) -
     if not plan.put(BUFFER._replace(cell=cell).instance(f"{called}{OWN}", called, net), plan.point(name)):
         return 0
     plan.added += 1
-    was = plan.instances[name]
-    plan.instances[name] = replace(was, pins=was.pins | {pin: called})
+    plan.connect([(name, pin)], called)
     return 1
 
 
@@ -205,8 +210,6 @@ def split(plan: Plan, drives: Drives, net: str, driver: str, sinks: Sinks) -> in
         if not plan.put(BUFFER._replace(cell=cell).instance(name, net, called), (at[0], at[1])):
             continue
         plan.added += 1
-        for owner, pin in ends:
-            was = plan.instances[owner]
-            plan.instances[owner] = replace(was, pins=was.pins | {pin: called})
+        plan.connect(ends, called)
         made += 1
     return made

@@ -1,7 +1,7 @@
 """Late paths made faster net by net: a larger driver, a buffer for the sinks that can wait, a buffer for all."""
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,6 @@ from .repair import BUFFER, BUFFER_NS, NEAR, OWN, End, Plan, Sinks, Slacks, conn
 SLEW_NS = 0.2  # of the input, for a cell's delay
 NEXT = 0.25  # of a slew, which the cell behind it is slower by, about
 GAIN_NS = 0.01  # least that a change is made for
-Nets = dict[str, tuple[str, str, Sinks]]  # as `connected` gives them
 Curve = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]  # loads (pF), ns
 
 
@@ -43,100 +42,109 @@ def quickened(plan: Plan, drives: Drives, delays: Delays, kept: Collection[str],
     drives: limits of buffers that are inserted. kept: nets that stay as they are. The gain is estimated net by net,
     with what the cell before loses by a larger driver.
     """
-    nets = connected(plan.instances)
-    for net in list(nets):
-        if net not in nets:
+    work = _Work(plan, drives, delays, connected(plan.instances))
+    for net in list(work.nets):
+        if net not in work.nets:
             continue  # of a buffer that was taken away
-        driver, pin, sinks = nets[net]
-        cell, at = plan.instances[driver].cell, plan.point(driver)
+        driver, pin, sinks = work.nets[net]
+        cell = plan.instances[driver].cell
         fixed = net in kept or net in plan.outside or not sinks or (cell, pin) not in delays.curves
         if fixed or slacks.get((driver, pin), enough) >= enough:
             continue
-        load = plan.load(drives, net, [at], sinks)
-        now = delays.ns(cell, pin, load)
-        late = [(driver, name) for name in plan.instances[driver].pins if slacks.get((driver, name), enough) < enough]
-        losses = {form: [_lost(plan, drives, delays, nets, end, form) for end in late] for form in drives.sizes[cell]}
-        choices = [(delays.ns(form, pin, load) + max(lost, default=0.0), form) for form, lost in losses.items()]
+        load = work.load(net)
+        inputs = ((driver, name) for name in plan.instances[driver].pins if (cell, name) in drives.inputs)
+        late = [end for end in inputs if slacks.get(end, enough) < enough]
+        choices: list[tuple[float, str | Sinks | None]] = []
+        for form in drives.sizes[cell]:
+            lost = max((work.lost(end, form) for end in late), default=0.0)
+            choices.append((delays.ns(form, pin, load) + lost, form))
         first = min(slacks.get(end, np.inf) for end in sinks)
         waiting = [end for end in sinks if slacks.get(end, np.inf) >= first + BUFFER_NS]
         for group in (waiting, sinks) if waiting else (sinks,):
-            choices.append((_buffered(plan, drives, delays, net, nets[net], group), group))
+            choices.append((work.buffered(net, group), group))
         if driver.endswith(OWN):
-            choices.append((_merged(plan, drives, delays, nets, net), None))
+            choices.append((work.merged(net), None))
         least, chosen = min(choices, key=lambda choice: choice[0])
-        if least > now - GAIN_NS:
+        if least > delays.ns(cell, pin, load) - GAIN_NS:
             continue
         if chosen is None:
-            _remove(plan, nets, net)
+            work.remove(net)
         elif isinstance(chosen, str):
             swap(plan, driver, chosen)
         else:
-            _insert(plan, drives, nets, net, chosen)
+            work.insert(net, chosen)
 
 
-def _insert(plan: Plan, drives: Drives, nets: Nets, net: str, group: Sinks) -> None:
-    """Put buffers before the sinks in ``group``."""
-    before, (driver, pin, sinks) = plan.added, nets[net]
-    split(plan, drives, net, driver, group)
-    made = [f"{net}_{k}" for k in range(before, plan.added)]
-    for called in (net, *made):
-        ends = [(name, end) for name, end in sinks if plan.instances[name].pins[end] == called]
-        nets[called] = (driver, pin, ends) if called == net else (f"{called}{OWN}", BUFFER.output, ends)
-    nets[net][2].extend((f"{called}{OWN}", BUFFER.input) for called in made)
+@dataclass(frozen=True)
+class _Work:
+    """A plan while its nets change. nets: as `connected` gives them, kept up to date."""
 
+    plan: Plan
+    drives: Drives
+    delays: Delays
+    nets: dict[str, tuple[str, str, Sinks]]
 
-def _remove(plan: Plan, nets: Nets, net: str) -> None:
-    """Take the buffer that drives a net away; what drives it drives its sinks."""
-    name, _, sinks = nets.pop(net)
-    buffer = plan.instances.pop(name)
-    plan.rows.give(plan.widths[buffer.cell], plan.places.pop(name))
-    above = buffer.pins[BUFFER.input]
-    for owner, pin in sinks:
-        plan.instances[owner] = replace(plan.instances[owner], pins=plan.instances[owner].pins | {pin: above})
-    nets[above][2].remove((name, BUFFER.input))
-    nets[above][2].extend(sinks)
+    def load(self, net: str) -> float:
+        """Of a net, pF."""
+        driver, _, sinks = self.nets[net]
+        return self.plan.load(self.drives, net, [self.plan.point(driver)], sinks)
 
+    def lost(self, end: End, larger: str) -> float:
+        """How much slower (ns) the net of an input is if its cell is ``larger``."""
+        cell, pins = self.plan.instances[end[0]].cell, self.plan.instances[end[0]].pins
+        driver, output, _ = self.nets.get(pins[end[1]], ("", "", []))
+        before = self.plan.instances[driver].cell if driver else ""
+        if (before, output) not in self.delays.curves:
+            return 0.0
+        load, inputs = self.load(pins[end[1]]), self.drives.inputs
+        more = inputs[larger, end[1]] - inputs[cell, end[1]]
+        return self.delays.ns(before, output, load + more) - self.delays.ns(before, output, load)
 
-def _buffered(
-    plan: Plan, drives: Drives, delays: Delays, net: str, ends: tuple[str, str, Sinks], group: Sinks
-) -> float:
-    """The delay (ns) to all sinks with a buffer before all, in ``group``; to the others where it is not all."""
-    driver, pin, sinks = ends
-    start, points = plan.point(driver), np.array([plan.point(name) for name, _ in group])
-    x, y = np.array(start) + NEAR * (points.mean(axis=0) - start)
-    load, waiting = plan.load(drives, "", [(float(x), float(y))], group), set(group)
-    buffer = drives.best(BUFFER.cell, BUFFER.output, load)
-    direct = [end for end in sinks if end not in waiting]
-    before = plan.load(drives, net, [start, (float(x), float(y))], direct) + drives.inputs[buffer, BUFFER.input]
-    return delays.ns(plan.instances[driver].cell, pin, before) + (
-        0.0 if direct else delays.ns(buffer, BUFFER.output, load)
-    )
+    def buffered(self, net: str, group: Sinks) -> float:
+        """The delay (ns) of a net to its sinks with a buffer before ``group``: to the others, if there are any."""
+        (driver, pin, sinks), waiting, plan = self.nets[net], set(group), self.plan
+        start, points = np.array(plan.point(driver)), np.array([plan.point(name) for name, _ in group])
+        x, y = (float(value) for value in start + NEAR * (points.mean(axis=0) - start))
+        load = plan.load(self.drives, "", [(x, y)], group)
+        buffer = self.drives.best(BUFFER.cell, BUFFER.output, load)
+        direct = [end for end in sinks if end not in waiting]
+        before = plan.load(self.drives, net, [plan.point(driver), (x, y)], direct)
+        first = self.delays.ns(plan.instances[driver].cell, pin, before + self.drives.inputs[buffer, BUFFER.input])
+        return first if direct else first + self.delays.ns(buffer, BUFFER.output, load)
 
+    def merged(self, net: str) -> float:
+        """What a buffer's net would add (ns) to the one before it if that drove its sinks."""
+        buffer, _, sinks = self.nets[net]
+        above = self.plan.instances[buffer].pins[BUFFER.input]
+        driver, pin, ends = self.nets.get(above, ("", "", []))
+        cell = self.plan.instances[driver].cell if driver else ""
+        if (cell, pin) not in self.delays.curves or above in self.plan.outside:
+            return np.inf
+        all_ends = [*(end for end in ends if end[0] != buffer), *sinks]
+        load = self.plan.load(self.drives, above, [self.plan.point(driver)], all_ends)
+        return self.delays.ns(cell, pin, load) - self.delays.ns(cell, pin, self.load(above))
 
-def _merged(plan: Plan, drives: Drives, delays: Delays, nets: Nets, net: str) -> float:
-    """What the net of a buffer would add (ns) to the one before it if that drove its sinks."""
-    buffer, _, sinks = nets[net]
-    above = plan.instances[buffer].pins[BUFFER.input]
-    name, pin, ends = nets.get(above, ("", "", []))
-    if name not in plan.instances or (plan.instances[name].cell, pin) not in delays.curves or above in plan.outside:
-        return np.inf
-    rest = [end for end in ends if end[0] != buffer]
-    now, then = (plan.load(drives, above, [plan.point(name)], found) for found in (ends, [*rest, *sinks]))
-    cell = plan.instances[name].cell
-    return delays.ns(cell, pin, then) - delays.ns(cell, pin, now)
+    def insert(self, net: str, group: Sinks) -> None:
+        """Put buffers before the sinks in ``group``."""
+        before, (driver, pin, sinks) = self.plan.added, self.nets[net]
+        split(self.plan, self.drives, net, driver, group)
+        ends: dict[str, Sinks] = {net: []}
+        for name, end in sinks:
+            ends.setdefault(self.plan.instances[name].pins[end], []).append((name, end))
+        for called in (f"{net}_{k}" for k in range(before, self.plan.added)):
+            self.nets[called] = f"{called}{OWN}", BUFFER.output, ends[called]
+            ends[net].append((f"{called}{OWN}", BUFFER.input))
+        self.nets[net] = driver, pin, ends[net]
 
-
-def _lost(plan: Plan, drives: Drives, delays: Delays, nets: Nets, end: End, larger: str) -> float:
-    """How much slower (ns) the net of an input is if its cell is ``larger``."""
-    name, pin = end
-    instance = plan.instances[name]
-    driver, output, sinks = nets.get(instance.pins[pin], ("", "", []))
-    cell = plan.instances[driver].cell if driver else ""
-    if (cell, output) not in delays.curves or (instance.cell, pin) not in drives.inputs:
-        return 0.0
-    load = plan.load(drives, instance.pins[pin], [plan.point(driver)], sinks)
-    more = drives.inputs[larger, pin] - drives.inputs[instance.cell, pin]
-    return delays.ns(cell, output, load + more) - delays.ns(cell, output, load)
+    def remove(self, net: str) -> None:
+        """Take the buffer that drives a net away; what drives it drives its sinks."""
+        name, _, sinks = self.nets.pop(net)
+        buffer = self.plan.instances.pop(name)
+        self.plan.rows.give(self.plan.widths[buffer.cell], self.plan.places.pop(name))
+        above = buffer.pins[BUFFER.input]
+        self.plan.connect(sinks, above)
+        driver, pin, ends = self.nets[above]
+        self.nets[above] = driver, pin, [*(end for end in ends if end[0] != name), *sinks]
 
 
 def _curve(pin: Group) -> Curve | None:

@@ -119,9 +119,9 @@ class Repair(Step[RepairParameters]):
             quickened(plan, short, delays, kept, slacks, found[-1][0] + window)
         worst, plan, _ = found[-1]
         cells = {instance.name: instance.cell for instance in netlist.instances}
-        counts = {"clock_drivers": added, "estimate_ns": round(worst, 3)}
-        counts["sized"] = sum(i.cell != cells.get(name, i.cell) for name, i in plan.instances.items())
-        return plan, counts | {"buffers": sum(name.endswith(OWN) for name in plan.instances)}
+        sized = sum(instance.cell != cells.get(name, instance.cell) for name, instance in plan.instances.items())
+        counts = {"sized": sized, "buffers": sum(name.endswith(OWN) for name in plan.instances)}
+        return plan, {"clock_drivers": added, "estimate_ns": round(worst, 3), **counts}
 
     def plan(
         self, netlist: Netlist, placement: dict[str, Any], floorplan: dict[str, Any], areas: dict[str, float],
