@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 PY := $(VENV)/bin/python
 READY := $(VENV)/.ready
+VIDEO_READY := $(VENV)/.video-ready
 TESTS_READY := $(VENV)/.tests-ready
 LAYOUT_READY := $(VENV)/.layout-ready
 LINT_READY := $(VENV)/.lint-ready
@@ -31,6 +32,10 @@ help:  ## this list
 
 $(READY): requirements/run.lock pyproject.toml requirements/venv.sh
 	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/run.lock
+	@touch $@
+
+$(VIDEO_READY): $(READY) requirements/video.lock
+	@bash requirements/venv.sh '$(PYTHON)' '$(VENV)' requirements/video.lock
 	@touch $@
 
 $(TESTS_READY): $(READY) requirements/test.lock
@@ -60,9 +65,18 @@ sim: $(READY)  ## a scene through the golden models and the chip's Verilog: buil
 sim-help: $(READY)  ## the arguments of make sim, explained
 	@$(PY) -m talbot sim --help
 
+VIDEO := $(filter %.mp4 %.m4v %.mov %.mkv %.webm %.avi,$(value SCENE))
+.PHONY: sequence
+sequence: $(READY) $(if $(VIDEO),$(VIDEO_READY))  ## SCENE=clip.gif, a folder of frames or a video through one running simulation: build/sequence/<scene>/report.html
+	@$(talbot) sequence
+
 .PHONY: sensor
 sensor: $(READY)  ## the standard sensor as a file to start from: make sensor OUT=sensor.toml, then make sim SENSOR=sensor.toml
 	@$(talbot) sensor
+
+.PHONY: lightfield
+lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth, beside free baselines: build/lightfield/<scene>/ (SCENE=)
+	@$(talbot) lightfield
 
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]

@@ -6,8 +6,9 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import IO
 
 
 class ToolError(RuntimeError):
@@ -38,7 +39,6 @@ def finish(
     then returned as stdout. Raises ToolError when there is no such program, ToolTimeout.
     """
     words = [str(part) for part in command]
-    name = Path(words[0]).name
     output = log.open("w") if log else None
     try:
         child = subprocess.Popen(
@@ -53,7 +53,7 @@ def finish(
             start_new_session=True,
         )
     except FileNotFoundError as error:
-        raise ToolError(f"{name}: not found; install it with: make tools (Debian: apt-get install {name})") from error
+        raise _missing(words[0]) from error
     finally:
         if output:
             output.close()
@@ -62,7 +62,7 @@ def finish(
             out, err = child.communicate(timeout=seconds)
         except subprocess.TimeoutExpired:
             _kill_group(child.pid)
-            raise ToolTimeout(f"{name}: no end after {seconds} s") from None
+            raise ToolTimeout(f"{Path(words[0]).name}: no end after {seconds} s") from None
         except BaseException:
             _kill_group(child.pid)
             raise
@@ -71,9 +71,38 @@ def finish(
     return subprocess.CompletedProcess(words, child.returncode, out, err)
 
 
+def _missing(program: str) -> ToolError:
+    """The error of a program that is not there."""
+    name = Path(program).name
+    return ToolError(f"{name}: not found; install it with: make tools (Debian: apt-get install {name})")
+
+
 def _kill_group(leader: int) -> None:
     with contextlib.suppress(ProcessLookupError):  # it has ended by itself
         os.killpg(leader, signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def started(
+    command: Sequence[object], log: IO[bytes], files: Sequence[int] = ()
+) -> Iterator["subprocess.Popen[bytes]"]:
+    """Start ``command``, a process group of its own, which ends with the context at the latest.
+
+    log: gets both outputs. files: open ones that it keeps. Raises ToolError when there is no such program.
+    """
+    words = [str(part) for part in command]
+    try:
+        child = subprocess.Popen(
+            words, stdin=subprocess.DEVNULL, stdout=log, stderr=log, pass_fds=files, start_new_session=True
+        )
+    except FileNotFoundError as error:
+        raise _missing(words[0]) from error
+    try:
+        yield child
+    finally:
+        if child.poll() is None:
+            _kill_group(child.pid)
+        child.wait()
 
 
 def run(

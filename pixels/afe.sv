@@ -1,7 +1,7 @@
 // The analog front end of a whole frame in real numbers: pixel values, trimmed difference amplifier, and for every
 // lane sample-and-hold, DAC and comparator. The twin of models/afe, sample for sample; see README.md.
 //
-//   +samples=FILE     diode values of every pixel (models/afe/files.py, write_samples)
+//   +samples=FILE     diode values of every pixel (models/afe/files.py, write_samples), one exposure after another
 //   +converter=FILE   gain and imperfections (write_converter)
 /* verilator lint_off DECLFILENAME */      // the module is spelt as the chip's are
 /* verilator lint_off UNUSEDPARAM */        // TILE_ROWS belongs to the geometry that every module is given
@@ -36,15 +36,15 @@ module Afe #(
   real gain, noise_scale, ktc_scale;
   reg [31:0] key;
   reg noisy;
-  integer file, bytes;
+  reg [31:0] exposures;                                 // before this one: each has noise of its own
+  integer file, samples_file, bytes;
   reg [8*512-1:0] name;
   initial begin
     if (!$value$plusargs("samples=%s", name)) $fatal(1, "+samples=FILE is missing");
-    file = $fopen(name, "rb");
-    if (file == 0) $fatal(1, "+samples: cannot be read");
-    bytes = $fread(samples, file);
+    samples_file = $fopen(name, "rb");
+    if (samples_file == 0) $fatal(1, "+samples: cannot be read");
+    bytes = $fread(samples, samples_file);
     if (bytes == 0 || bytes % (8 * FRAME) != 0) $fatal(1, "+samples: not whole taps of ROWS x COLS x 2 words");
-    $fclose(file);
     if (!$value$plusargs("converter=%s", name)) $fatal(1, "+converter=FILE is missing");
     file = $fopen(name, "rb");
     if (file == 0) $fatal(1, "+converter: cannot be read");
@@ -54,9 +54,20 @@ module Afe #(
     gain = $bitstoreal(words[0]);
     noise_scale = $bitstoreal(words[1]);
     ktc_scale = $bitstoreal(words[2]);
+    exposures = 32'd0;
     key = mix(words[3][31:0]);
     noisy = noise_scale != 0.0 || ktc_scale != 0.0;
   end
+
+  // The next exposure, between two frames: all taps of it
+  task next_exposure;
+    begin
+      bytes = $fread(samples, samples_file);
+      if (bytes != 8 * TAPS * FRAME) $fatal(1, "+samples: no further TAPS x ROWS x COLS x 2 words");
+      exposures = exposures + 32'd1;
+      key = mix(words[3][31:0] + exposures);
+    end
+  endtask
 
   // ---- noise: a hash in place of a generator, models/afe/noise.py ----
   function automatic [31:0] mix(input [31:0] seed);

@@ -3,6 +3,7 @@
 import json
 import re
 from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -45,6 +46,14 @@ def add_arguments(parser: ArgumentParser) -> None:
         "a folder, .npy, .npz, or tiles.png:9 of 9 x 9 views (models/scene/README.md)",
     )
     add("--depth", help="depth file for --scene: .npy/.npz in m, or an image (see models/scene/README.md)")
+    add_frame_arguments(parser)
+    add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
+    add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
+
+
+def add_frame_arguments(parser: ArgumentParser) -> None:
+    """Options of the sensor, its camera and a frame."""
+    add = parser.add_argument
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     for name, words in CAMERA.items():
         add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
@@ -69,8 +78,6 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
-    add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
-    add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
 
 
 def run(options: Namespace) -> int:
@@ -82,19 +89,19 @@ def run(options: Namespace) -> int:
     if options.scene == "list":
         print("\n".join(sorted(scenes)))
         return 0
-    typed = _typed(options)
-    options.out = options.out or Path("build/sim") / _name(typed)
-    asked = _request(options)
+    typed = typed_of(options, add_arguments)
+    options.out = options.out or Path("build/sim") / name_of(typed)
+    asked = request_of(options)
     before = _arguments_of(asked.folder)
     with Steps(STEPS) as steps:
         summary = run(asked, steps.note, typed)
     _print_figures(summary, asked.folder)
     if before not in (None, typed):
-        print(f"  replaced there: {_name(before)}")
+        print(f"  replaced there: {name_of(before)}")
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
 
 
-def _typed(options: Namespace) -> dict[str, Any]:
+def typed_of(options: Namespace, add_arguments: Callable[[ArgumentParser], None]) -> dict[str, Any]:
     """The scene, then every argument that is not its default; not the folder."""
     parser = ArgumentParser()
     add_arguments(parser)
@@ -107,7 +114,7 @@ def _typed(options: Namespace) -> dict[str, Any]:
     return {name: own[name] for name in standard if name == "scene" or name != "out" and told(name)}
 
 
-def _name(typed: dict[str, Any]) -> str:
+def name_of(typed: dict[str, Any]) -> str:
     """A folder's name: coins-raw, motorcycle-types=low,high-window=10_40,8_50; a long one ends in a digest."""
     parts = [Path(typed["scene"]).stem]
     for name, value in list(typed.items())[1:]:
@@ -126,8 +133,8 @@ def _arguments_of(folder: Path) -> dict[str, Any] | None:
         return None
 
 
-def _request(a: Namespace) -> "FrameRequest":
-    """The FrameRequest of the options ``a``. Raises ParameterError."""
+def request_of(a: Namespace) -> "FrameRequest":
+    """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError."""
     from .request import request
 
     sensor = read_sensor(a.sensor) if a.sensor else STANDARD

@@ -1,7 +1,8 @@
 """A frame through the Verilog of the whole chip: samples and configuration -> stream and the chip's own status."""
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,8 +12,9 @@ import numpy.typing as npt
 
 from talbot.flow.simulate.build import Build
 from talbot.flow.simulate.frame import FrameRun, Waves, host_script, run_frame
+from talbot.flow.simulate.running import Running, running
 from talbot.flow.simulate.verilator import bench_program
-from talbot.models.afe import FrontEnd, write_converter, write_samples
+from talbot.models.afe import FrontEnd, sample_words, write_converter, write_samples
 from talbot.models.digital.host import command, decode_status, frame_writes, status_transfers, write_transfers
 from talbot.models.parameters import FrameParameters, SensorParameters
 
@@ -53,6 +55,46 @@ def simulate(
         write_samples(analog, samples)
         write_converter(converter, front_end)
         run = run_frame(binary, analog, converter, script, stall=stall, waves=waves, more=more)
+    return _with_status(run, after)
+
+
+class Chip:
+    """The chip in one running simulation (see `chip`): what is in its registers stays from frame to frame."""
+
+    def __init__(self, bench: Running) -> None:
+        self._bench = bench
+        self._written: dict[int, int] = {}
+
+    def frame(
+        self, frame: FrameParameters, samples: npt.NDArray[np.float64], trims: Sequence[int]
+    ) -> Callable[[], HardwareFrame]:
+        """Send the next frame; of its configuration what the chip does not have yet is written.
+
+        samples: (taps, rows, cols, 2), of as many taps as the simulator has. Returns what waits for the frame's end,
+        which raises ToolError where the simulator ends before.
+        """
+        wanted = dict(frame_writes(frame, trims))
+        new = {address: byte for address, byte in wanted.items() if self._written.get(address) != byte}
+        self._written, after = wanted, status_transfers()
+        run = self._bench.frame(sample_words(samples), [*write_transfers(new.items()), command("start")], after)
+        return lambda: _with_status(run.result(), after)
+
+
+@contextmanager
+def chip(program: Path, front_end: FrontEnd, stall: int = 0) -> Iterator[Chip]:
+    """Start the bench ``program`` with the converters of ``front_end``; frame n has the noise of their seed + n.
+
+    Raises ToolError.
+    """
+    with tempfile.TemporaryDirectory(prefix="talbot-") as folder:
+        converter = Path(folder) / "converter"
+        write_converter(converter, front_end)
+        with running(program, converter, stall) as bench:
+            yield Chip(bench)
+
+
+def _with_status(run: FrameRun, after: Sequence[bytes]) -> HardwareFrame:
+    """The run with what the transfers ``after`` its frame brought back, at the end of its SPI bytes."""
     replies, end = [], len(run.miso)
     for transfer in reversed(after):
         replies.insert(0, run.miso[end - len(transfer) : end])

@@ -13,11 +13,12 @@ import numpy.typing as npt
 
 from talbot.base.files import check_folder, staged
 from talbot.flow.simulate.frame import Waves
-from talbot.models.afe import trim_codes, trim_gain
-from talbot.models.capture import Exposure, Region, choose_views, exposed, integrate, moving_currents
+from talbot.models.afe import FrontEnd, trim_codes, trim_gain
+from talbot.models.capture import Exposure, Region, Views, choose_views, exposed, integrate, moving_currents
 from talbot.models.capture import expose as expose_pair
 from talbot.models.chip import front_end_of, golden_frame
 from talbot.models.digital.stream import decode_stream
+from talbot.models.parameters import SensorParameters
 from talbot.models.pixel import measured_gains
 from talbot.models.plan import Plan, plan
 from talbot.models.scene import Sampling, Scene, load
@@ -56,21 +57,45 @@ def see(request: FrameRequest) -> tuple[Scene, Plan]:
     return scene, plan(scene, request.sensor, request.frame)
 
 
-def expose(request: FrameRequest, scene: Scene, todo: Plan) -> Exposed:
-    """Expose ``scene``. The trims come from a frame of a flat field."""
+def expose(
+    request: FrameRequest,
+    scene: Scene,
+    todo: Plan,
+    front_end: FrontEnd | None = None,
+    views: Views | None = None,
+    number: int = 0,
+) -> Exposed:
+    """Expose ``scene``.
+
+    front_end: of an earlier frame of the same chip; None: trimmed to a frame of a flat field. views: None: as many as
+    the request says. number: of the frame in a sequence; each has temporal noise of its own.
+    """
     sensor, frame = request.lit, request.frame
-    trims = trim_codes(measured_gains(flat_field(request), sensor.tile))
-    front_end = front_end_of(sensor, trims)
-    views = choose_views(scene, sensor, frame.exposing, request.views, read=todo.read)
+    front_end = _numbered(front_end or trimmed(request), sensor, number)
+    views = views or choose_views(scene, sensor, frame.exposing, request.views, read=todo.read)
     pairs = moving_currents(scene, sensor, todo, frame.exposing, regions=views.regions)
 
     def samples(noise: float) -> Values:
-        return np.asarray(exposed(pairs, sensor, _exposure(request, noise), trim_gain(trims)), np.float64)
+        exposure = _exposure(request, noise, number)
+        return np.asarray(exposed(pairs, sensor, exposure, trim_gain(front_end.trim)), np.float64)
 
     noisy = samples(request.noise)
     clean = samples(0.0) if request.noise else noisy
     ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
     return Exposed(scene, todo, views, front_end, noisy, ideal)
+
+
+def trimmed(request: FrameRequest) -> FrontEnd:
+    """The sensor's front end; its trims come from a frame of a flat field."""
+    return front_end_of(request.lit, trim_codes(measured_gains(flat_field(request), request.lit.tile)))
+
+
+def _numbered(front_end: FrontEnd, sensor: SensorParameters, number: int) -> FrontEnd:
+    """The front end at a frame of a sequence: its noise has the next seed in each (pixels/afe.sv)."""
+    if front_end.converter is None:
+        return front_end
+    seed = (sensor.converter.seed + number) % (1 << 32)
+    return replace(front_end, converter=replace(front_end.converter, seed=seed))
 
 
 def flat_field(request: FrameRequest) -> Values:
@@ -84,9 +109,9 @@ def flat_field(request: FrameRequest) -> Values:
     return expose_pair(pair, exposure, tap=BENCH) - expose_pair(0 * pair, replace(exposure, noise=0.0))
 
 
-def _exposure(request: FrameRequest, noise: float) -> Exposure:
+def _exposure(request: FrameRequest, noise: float, number: int = 0) -> Exposure:
     sensor = request.lit
-    return Exposure(sensor.electrical, request.frame.exposing, sensor.chip.f_clk, noise, request.seed)
+    return Exposure(sensor.electrical, request.frame.exposing, sensor.chip.f_clk, noise, request.seed, number)
 
 
 def read_out(

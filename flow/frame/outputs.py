@@ -10,7 +10,6 @@ from markupsafe import Markup
 from talbot.base.charts import bars, svg
 from talbot.base.page import Picture, Scale
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
-from talbot.models.reconstruct import white_sum
 
 from . import error_plots, pictures
 from .chip_picture import chip_svg
@@ -152,7 +151,7 @@ def _fields(result: FrameResult, summary: dict[str, Any]) -> list[tuple[str, Val
         out.append(("the scene's light field: what the pixels saw", np.asarray(scene.full_light_field, float)))
     if result.request.frame.mode == "raw":
         found, copied = (decibels(summary[f"light_field_psnr{name}_db"]) for name in ("", "_copied"))
-        field = np.maximum(result.light_field, 0) / white_sum(result.request.sensor, result.request.frame.timing)
+        field = np.maximum(result.light_field, 0)
         caption = f"linear estimate from the decoded diodes: PSNR {found}; the 2-D image in every view has {copied}"
         out.append((caption, field))
     return out

@@ -34,6 +34,13 @@ def signed(values: Values, scale: float) -> Image:
     return pillow.fromarray(np.round(rgb).astype(np.uint8), "RGB")
 
 
+def signed_codes(codes: npt.NDArray[np.integer], scale: float) -> Image:
+    """`signed` of codes -256..255, by a table."""
+    steps = np.arange(-256.0, 256.0)
+    table = np.asarray(signed(steps[None], scale))[0]
+    return pillow.fromarray(table[codes.astype(np.intp) + 256], "RGB")
+
+
 def depth(values: Values, low: float, high: float) -> Image:
     """Values (rows, cols) on the scale of `depth_colours`, ``low`` to ``high``; NaN is gray."""
     unit = np.clip((np.asarray(values, float) - low) / max(high - low, np.finfo(float).tiny), 0, 1)

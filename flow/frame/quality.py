@@ -15,7 +15,7 @@ from talbot.models.capture import cells
 from talbot.models.chip import golden_frame
 from talbot.models.parameters import FrameParameters
 from talbot.models.pixel import depth_of
-from talbot.models.reconstruct import psnr_db, psnr_without_mean_db, sum_image, white_sum
+from talbot.models.reconstruct import psnr_db, psnr_without_mean_db, sum_image
 
 from .result import GoldenResult
 
@@ -152,7 +152,7 @@ def field_quality(result: GoldenResult) -> dict[str, float | None]:
     # Corners that the round pupil does not reach have no light
     part = (cells(result.exposed.scene.views), *part_read(result.golden.read))
     truth = np.asarray(result.exposed.scene.full_light_field, float)[part]
-    field = result.light_field[part] / white_sum(result.request.lit, result.request.frame.exposing)
+    field = result.light_field[part]
     copied = np.broadcast_to(result.image[part[1:]], truth.shape)
     return {"light_field_psnr_db": psnr_db(field, truth), "light_field_psnr_copied_db": psnr_db(copied, truth)}
 

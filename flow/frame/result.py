@@ -14,7 +14,7 @@ from talbot.models.digital.stream.frame import DecodedFrame
 from talbot.models.parameters import SensorParameters
 from talbot.models.pixel.time_of_flight import quadrature
 from talbot.models.plan import Plan
-from talbot.models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image
+from talbot.models.reconstruct import edge_images, light_field_estimate, rebuild, sum_image, white_sum
 from talbot.models.reconstruct.rebuild import Rebuilt
 from talbot.models.scene import Scene
 
@@ -98,10 +98,11 @@ class GoldenResult:
 
     @cached_property
     def light_field(self) -> npt.NDArray[np.float64]:
-        """The linear estimate of the light field from the decoded diodes, in LSB; raw mode only."""
+        """The linear estimate of the light field from the decoded diodes, relative radiance; raw mode only."""
         pair = np.moveaxis(self.decoded.samples.astype(float), 2, 0)
         operator = CaptureOperator(self.sensor, read=self.decoded.read)
-        return np.asarray(light_field_estimate(operator, pair), float)
+        white = white_sum(self.request.lit, self.request.frame.exposing)
+        return np.asarray(light_field_estimate(operator, pair) / white, float)
 
 
 @dataclass(frozen=True, eq=False)

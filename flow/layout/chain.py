@@ -49,7 +49,7 @@ ASSEMBLED = {"repair.netlist": "assemble.netlist"}
 ASSEMBLED |= dict.fromkeys(("repair.placement", "route.placement"), "assemble.placement")
 UTILIZATION_STEP = 0.04  # between two rounds of attempts
 EVEN, UNEVEN = 0.05, 0.3  # variations of density: a round's second attempt has the one that its first has not
-ASPECTS = 1.0, 1.25  # width by height of a round's attempts
+OBLONG = 1.25  # width by height of a round's second attempt, of the square where the first is not
 
 
 def input_files(design: Design, options: Options, folder: Path) -> dict[str, Path]:
@@ -82,11 +82,11 @@ def synthesis_steps(design: Design, options: Options) -> list[Step]:
 def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Place]]:
     """Pairs (floorplan, placement), the smallest area first; in a frame all are as large.
 
-    At every utilization the design's variation of density comes first, in a square, then another one in another shape:
-    Coriolis has no seed, and these are what its result depends on.
+    At every utilization the design's variation of density and shape come first, then others: Coriolis has no seed, and
+    these are what its result depends on.
     """
     places = tuple((macro.instance, DESIGNS[macro.design].top, *macro.at) for macro in design.macros)
-    own = design.density_variation
+    own, other = design.density_variation, OBLONG if design.aspect == 1.0 else 1.0
     begin = min(options.utilization, coriolis_platform(options.pdk).utilization_most)
     if design.frame:
         shape = FloorplanParameters(options.pdk, begin, frame=design.frame)
@@ -94,7 +94,7 @@ def attempts(design: Design, options: Options) -> Iterator[tuple[Floorplan, Plac
             yield (Floorplan(shape), Place(PlaceParameters(options.pdk, design.clock.port, options.effort, variation)))
         return
     for k in range(int((begin - LEAST_UTILIZATION) / UTILIZATION_STEP + 1e-9) + 1):
-        for variation, aspect in zip((own, EVEN if own > EVEN else UNEVEN), ASPECTS, strict=True):
+        for variation, aspect in ((own, design.aspect), (EVEN if own > EVEN else UNEVEN, other)):
             utilization = round(begin - UTILIZATION_STEP * k, 4)
             parameters = PlaceParameters(
                 options.pdk, design.clock.port, options.effort, variation, macros=macro_modules(design)

@@ -58,9 +58,9 @@ class Design:
     top: module that rtl.export writes with ``options``. folder: of the block in rtl/. netlist_names: names under which
     the block's tests build it with these parameters, for `pytest --netlist`; a block whose tests have a size of their
     own is laid out in that size. utilization: where the search for the smallest area begins. density_variation: of the
-    placer. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io: constraints of its ports.
-    asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it ends in _n. frame: a
-    shuttle's outline, see platforms.frame; '' for the smallest that there is.
+    placer. aspect: width by height. divider, n_frac: of the chip in whose frame the block's stimulus is recorded. io:
+    constraints of its ports. asynchronous: inputs that pass synchronizers, a false path. reset: port, active at 0 if it
+    ends in _n. frame: a shuttle's outline, see platforms.frame; '' for the smallest that there is.
     """
 
     name: str
@@ -70,6 +70,7 @@ class Design:
     options: tuple[str, ...] = ()
     utilization: float = 0.88
     density_variation: float = 0.05
+    aspect: float = 1.0
     divider: str = "radix4"
     n_frac: int = 8
     macros: tuple[MacroPlacement, ...] = ()
@@ -120,7 +121,7 @@ DESIGNS = {
         ),
         tile("tt_quad_divider", "tt_um_talbot_divider", netlist_names=("tt_um_talbot_divider",), frame="tt_1x1"),
         tile("tt_amp_ctrl", "tt_um_talbot_amp_ctrl", netlist_names=("tt_um_talbot_amp_ctrl",), frame="tt_1x2"),
-        chip("asp_chip", utilization=0.41),
+        chip("asp_chip", utilization=0.413, aspect=1.5),
         chip("asp_chip_macros", utilization=0.41, density_variation=0.3, macros=TWO),
     )
 }

@@ -1,13 +1,16 @@
-// A frame in the simulator: the chip, the analog front end and a host that plays SPI transfers
+// Frames in the simulator: the chip, the analog front end and a host that plays SPI transfers
 // and takes the byte stream. Everything is synchronous to `clk`, so that the same file runs clocked
 // by main.cpp in Verilator and by clock.sv in Icarus.
 //
 //   +script=FILE   what the host does, bytes:  01          wait for the end of a frame
 //                                              02 n b...   an SPI transfer of n bytes
+//                                              03          the next exposure of +samples
+//                                              04          a line of activity; all that was written can be read
 //                                              00          stop
 //   +miso=FILE     every byte that came back over SPI
 //   +stream=FILE   every byte that left the chip
-//   +activity=FILE how many cycles each pin of the front end was high, and in all; how many each row integrated
+//   +activity=FILE how many cycles each pin of the front end was high, and in all: since the line before, at 04 and 00;
+//                  how many each row integrated
 //   +stall=P       the link is not ready in P of 256 cycles, pseudo-random
 //   +samples=FILE, +converter=FILE   see pixels/afe.sv
 `default_nettype none
@@ -18,7 +21,8 @@ module Bench #(
     input  wire        clk,
     input  wire        reset,
     output reg         done,
-    output wire [9:0]  row
+    output wire [9:0]  row,
+    output wire [31:0] cycles         // since the reset or the last line of activity
 );
   localparam int HALF_BIT = 8;          // cycles of half an SPI clock
 
@@ -56,7 +60,7 @@ module Bench #(
   );
 
   // ---- files ----
-  integer script, miso_file, stream_file;
+  integer script, miso_file, stream_file, activity;
   integer stall;
   reg [8*512-1:0] name;
   initial begin
@@ -69,15 +73,21 @@ module Bench #(
     if (!$value$plusargs("stream=%s", name)) $fatal(1, "+stream=FILE is missing");
     stream_file = $fopen(name, "wb");
     if (stream_file == 0) $fatal(1, "+stream: cannot be written");
+    activity = 0;
+    if ($value$plusargs("activity=%s", name)) begin
+      activity = $fopen(name, "w");
+      if (activity == 0) $fatal(1, "+activity: cannot be written");
+    end
     if (!$value$plusargs("stall=%d", stall)) stall = 0;
   end
 
   // ---- activity ----
   reg [31:0] n_cycles, n_busy, n_reset, n_integrate, n_cm, n_read, n_dark, n_hold, n_bytes;
-  integer activity;
+  reg  reported;
+  assign cycles = n_cycles;
   always @(posedge clk) begin
-    n_cycles <= reset ? 0 : n_cycles + 1;
-    if (reset) begin
+    n_cycles <= reset || reported ? 0 : n_cycles + 1;
+    if (reset || reported) begin
       n_busy <= 0; n_reset <= 0; n_integrate <= 0; n_cm <= 0; n_read <= 0; n_dark <= 0; n_hold <= 0; n_bytes <= 0;
     end else if (busy) begin
       n_busy <= n_busy + 1;
@@ -121,14 +131,13 @@ module Bench #(
   end
 
   task automatic write_activity;
-    if ($value$plusargs("activity=%s", name)) begin
-      activity = $fopen(name, "w");
+    if (activity != 0) begin
       $fwrite(activity, "{\"cycles\": %0d, \"busy\": %0d, \"pixel_reset\": %0d, \"integrate\": %0d, \"cm_reset\": %0d, ",
               n_cycles, n_busy, n_reset, n_integrate, n_cm);
       $fwrite(activity, "\"read\": %0d, \"waiting\": %0d, \"steps\": %0d, \"bytes\": %0d, \"integrated\": [",
               n_read, n_dark, n_hold, n_bytes);
       for (at = 0; at < ROWS; at = at + 1) $fwrite(activity, "%0d%s", integrated[at], at == ROWS - 1 ? "]}\n" : ", ");
-      $fclose(activity);
+      $fflush(activity);
     end
   endtask
 
@@ -166,15 +175,24 @@ module Bench #(
       csn <= 1'b1;
       mosi <= 1'b0;
       done <= 1'b0;
+      reported <= 1'b0;
       left <= 8'd0;
       divider <= 8'd0;
       bits <= 4'd0;
       out <= 8'd0;
       in <= 8'd0;
     end else case (state)
-      FETCH: if (!done) begin
+      FETCH: if (reported) reported <= 1'b0;
+      else if (!done) begin
         code = $fgetc(script);
         if (code == 1) state <= WAIT;
+        else if (code == 3) afe.next_exposure;
+        else if (code == 4) begin
+          $fflush(stream_file);
+          $fflush(miso_file);
+          write_activity;
+          reported <= 1'b1;
+        end
         else if (code == 2) begin
           code = $fgetc(script);
           left <= code[7:0] - 8'd1;

@@ -45,11 +45,17 @@ def host_script(before: Sequence[bytes], after: Sequence[bytes]) -> bytes:
 
     Each item is one transfer of 1..255 bytes.
     """
-
-    def transfers(items: Sequence[bytes]) -> bytes:
-        return b"".join(TRANSFER + bytes([len(item)]) + item for item in items)
-
     return transfers(before) + WAIT + transfers(after) + STOP
+
+
+def transfers(items: Sequence[bytes]) -> bytes:
+    """The part of a script that plays SPI transfers of 1..255 bytes each."""
+    return b"".join(TRANSFER + bytes([len(item)]) + item for item in items)
+
+
+def simulator(program: Path) -> list[object]:
+    """The words that start the bench ``program``: an executable, or .vvp of Icarus."""
+    return ["vvp", program] if program.suffix == ".vvp" else [program]
 
 
 def run_frame(
@@ -68,7 +74,6 @@ def run_frame(
     not ready in this many of 256 cycles. more: further arguments of the program. Raises ToolError when the bench does
     not finish.
     """
-    simulator = ["vvp"] if program.suffix == ".vvp" else []
     with tempfile.TemporaryDirectory(prefix="talbot-") as temporary:
         folder = Path(temporary)
         (folder / "script").write_bytes(script)
@@ -77,7 +82,7 @@ def run_frame(
         if waves:
             arguments += [f"+waves={waves.file}", f"+waves_row0={waves.first_row}", f"+waves_row1={waves.last_row}"]
         start = perf_counter()
-        result = finish([*simulator, program, *arguments, *more])
+        result = finish([*simulator(program), *arguments, *more])
         spent = perf_counter() - start
         if result.returncode or not (folder / "activity").exists():
             reason = " (no frame end)" if result.returncode == NO_FRAME_END else ""

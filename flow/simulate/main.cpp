@@ -24,6 +24,9 @@ static const char* path(VerilatedContext& context, const char* name) {
   return text;
 }
 
+// Verilator's $fread takes a byte a call, for which libc would lock the file: a third of a frame's time.
+extern "C" int fgetc(std::FILE* file) { return getc_unlocked(file); }
+
 // VBench::eval() less its locks around message queues, which one thread does not need and which cost a tenth of the
 // time. The model is part of this translation unit (flow/simulate/verilator.py).
 static void evaluate(VBench& top) {
@@ -53,7 +56,7 @@ int main(int argc, char** argv) {
   top.reset = 1;
   top.eval();       // the initial blocks: reading the frame's files is not part of the clock loop
   const auto start = std::chrono::steady_clock::now();
-  while (!top.done && !context.gotFinish() && cycles < limit) {
+  while (!top.done && !context.gotFinish() && top.cycles < limit) {
     top.clk = 0;
     evaluate(top);
 #ifdef WAVES

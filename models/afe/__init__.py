@@ -4,7 +4,7 @@ The same arithmetic is in real-number Verilog in pixels/afe.sv; both agree sampl
 """
 
 from .converter import Converter
-from .files import write_converter, write_samples
+from .files import sample_words, write_converter, write_samples
 from .front_end import FrontEnd
 from .noise import KTC_DECISION, NOISE_SCALE, noise_counts
 from .trim import TRIM_BITS, trim_codes, trim_gain
@@ -16,6 +16,7 @@ __all__ = [
     "Converter",
     "FrontEnd",
     "noise_counts",
+    "sample_words",
     "trim_codes",
     "trim_gain",
     "write_converter",

@@ -9,6 +9,22 @@ from .converter import Converter
 from .front_end import FrontEnd
 
 
+def sample_words(samples: npt.NDArray[np.float64]) -> memoryview:
+    """Diode values as the bytes of a file.
+
+    Parameters
+    ----------
+    samples : float64 (taps, rows, cols, 2)
+        Word ((tap * rows + row) * cols + col) * 2 + diode.
+
+    Returns
+    -------
+    memoryview
+        The bytes, 8 a word.
+    """
+    return np.ascontiguousarray(samples, ">f8").data.cast("B")
+
+
 def write_samples(path: str | Path, samples: npt.NDArray[np.float64]) -> None:
     """Write diode values.
 
@@ -20,7 +36,7 @@ def write_samples(path: str | Path, samples: npt.NDArray[np.float64]) -> None:
         Word ((tap * rows + row) * cols + col) * 2 + diode.
     """
     with open(path, "wb") as file:
-        file.write(np.ascontiguousarray(samples, ">f8").data)
+        file.write(sample_words(samples))
 
 
 def write_converter(path: str | Path, front_end: FrontEnd) -> None:

@@ -1,7 +1,8 @@
 """From photocurrent to the samples of the analog front end, in SI units, with noise."""
 
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +39,8 @@ class Exposure:
         Factor on the physical noise of every kind, 0..100; 0 is none, 1 physical.
     seed : int
         Seed of the fixed pattern and of the temporal noise, 0..2**32-1; the two use separate random streams.
+    number : int
+        Of the exposure in a sequence, 0..2**32-1: each has temporal noise of its own.
     """
 
     electrical: ElectricalParameters
@@ -45,11 +48,13 @@ class Exposure:
     f_clk: float = 10e6
     noise: float = 1.0
     seed: int = 1
+    number: int = 0
 
     def __post_init__(self) -> None:
         check_real("f_clk", self.f_clk, 1e3, 1e9)
         check_real("noise", self.noise, 0, NOISE_MAX)
         check_int("seed", self.seed, 0, 2**32 - 1)
+        check_int("number", self.number, 0, 2**32 - 1)
 
     @property
     def intervals(self) -> tuple[float, ...]:
@@ -57,7 +62,7 @@ class Exposure:
         return tuple(cycles / self.f_clk for cycles in integration_cycles(self.timing))
 
     def generator(self, stream: int) -> np.random.Generator:
-        """Random generator of one stream.
+        """Random generator of a stream of temporal noise.
 
         Parameters
         ----------
@@ -69,7 +74,32 @@ class Exposure:
         numpy.random.Generator
             In its initial state.
         """
-        return np.random.default_rng([self.seed, stream])
+        return np.random.default_rng([self.seed, stream, self.number])
+
+
+class _Pattern(NamedTuple):
+    """What is the same in every exposure of a chip: gain and offset of the diodes, offset of the columns, electrons."""
+
+    gain: npt.NDArray[np.floating]
+    offset: npt.NDArray[np.floating] | np.floating
+    columns: npt.NDArray[np.float64]
+
+
+@lru_cache(maxsize=2)  # with noise and without
+def _fixed_pattern(
+    electrical: ElectricalParameters, noise: float, seed: int, shape: tuple[int, ...], dtype: np.dtype[Any]
+) -> _Pattern:
+    def _normal(stream: int, rms: float) -> Any:
+        return _draw(np.random.default_rng([seed, stream]), shape, dtype, rms * noise)
+
+    columns = np.random.default_rng([seed, 401]).standard_normal((2, 1, shape[2])) * electrical.column_fpn
+    gain = np.maximum(1 + _normal(0, electrical.gain_fpn), 0)
+    return _Pattern(gain, _normal(101, electrical.offset_fpn), columns)
+
+
+def _draw(generator: np.random.Generator, shape: tuple[int, ...], dtype: np.dtype[Any], rms: float) -> Any:
+    """Normal draws of this RMS, or 0: the streams are separate, so that skipping one changes no other."""
+    return generator.standard_normal(shape, dtype) * dtype.type(rms) if rms else dtype.type(0)
 
 
 def expose(
@@ -108,17 +138,11 @@ def expose(
         raise ParameterError(f"pair = {pair.dtype} {pair.shape}: must be (2, rows, cols), finite and not negative")
     e, n = exposure.electrical, exposure.noise
     dtype = pair.dtype
-    fixed, moving = exposure.generator(0), exposure.generator(1 + tap)
-
-    def _normal(generator: np.random.Generator, rms: float) -> Any:
-        """Draws of this RMS, or 0: the streams are separate, so that skipping one changes no other."""
-        return generator.standard_normal(pair.shape, dtype) * dtype.type(rms * n) if rms and n else dtype.type(0)
-
-    gain = np.maximum(1 + _normal(fixed, e.gain_fpn), 0)
-    offset = _normal(exposure.generator(101), e.offset_fpn)
-    current = pair * dtype.type(e.white_current / ELEMENTARY_CHARGE) * gain + dtype.type(
-        e.dark_current / ELEMENTARY_CHARGE
-    )
+    moving = exposure.generator(1 + tap)
+    pattern = _fixed_pattern(e, n, exposure.seed, pair.shape, dtype)
+    current = pair * dtype.type(e.white_current / ELEMENTARY_CHARGE)
+    current *= pattern.gain
+    current += dtype.type(e.dark_current / ELEMENTARY_CHARGE)
 
     resets = exposure.generator(301 + tap)
     g = dtype.type(1) if balance is None else np.asarray(balance, dtype)
@@ -129,24 +153,33 @@ def expose(
             common = np.minimum(wells[0] / g, wells[1])
             wells[0] -= g * common
             wells[1] -= common
-            wells += _normal(resets, e.ktc_noise)
+            wells += _draw(resets, pair.shape, dtype, e.ktc_noise * n)
         collected = mean
         if n:
-            shot = photon_count(mean, moving.standard_normal(pair.shape, dtype)) - mean
-            collected = np.maximum(mean + dtype.type(n) * shot, 0)
-        np.clip(wells + collected, 0, dtype.type(e.full_well), out=wells)
-    wells += offset + _normal(exposure.generator(201 + tap), e.read_noise)
+            collected = photon_count(mean, moving.standard_normal(pair.shape, dtype))
+            collected -= mean
+            collected *= dtype.type(n)
+            collected += mean
+            np.maximum(collected, 0, out=collected)
+        wells += collected
+        np.clip(wells, 0, dtype.type(e.full_well), out=wells)
+    wells += pattern.offset + _draw(exposure.generator(201 + tap), pair.shape, dtype, e.read_noise * n)
     if n:
-        wells += _columns(exposure, tap, pair.shape).astype(dtype)
-    return np.ascontiguousarray(np.moveaxis(wells / dtype.type(e.lsb_electrons), 0, -1))
+        columns = _flicker(exposure, tap, pair.shape)
+        columns += pattern.columns
+        columns *= n
+        wells += columns.astype(dtype, copy=False)
+    wells /= dtype.type(e.lsb_electrons)
+    return np.ascontiguousarray(np.moveaxis(wells, 0, -1))
 
 
-def _columns(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
-    """Offset and 1/f noise of the columns' amplifiers in electrons, (2, rows, cols)."""
-    e, (_, rows, cols) = exposure.electrical, shape
-    offset = exposure.generator(401).standard_normal((2, 1, cols)) * e.column_fpn
+def _flicker(exposure: Exposure, tap: int, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
+    """1/f noise of the columns' amplifiers in electrons, (2, rows, cols)."""
+    _, rows, cols = shape
     white = np.fft.rfft(exposure.generator(501 + tap).standard_normal((2, 2 * rows, cols)), axis=1)
     shape_ = 1 / np.sqrt(np.maximum(np.arange(rows + 1), 1))  # power falls with 1/f; a frame sees half of the record
     gain = np.sqrt(2 * rows / (2 * np.sum(shape_[1:-1] ** 2) + shape_[0] ** 2 + shape_[-1] ** 2))
-    pink = np.fft.irfft(white * (shape_ * gain)[:, None], 2 * rows, axis=1)[:, :rows]
-    return exposure.noise * (offset + pink * e.flicker_noise)
+    white *= (shape_ * gain)[:, None]
+    pink = np.fft.irfft(white, 2 * rows, axis=1)[:, :rows]
+    pink *= exposure.electrical.flicker_noise
+    return pink

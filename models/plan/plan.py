@@ -88,7 +88,7 @@ def plan(scene: Scene, sensor: SensorParameters, frame: FrameParameters) -> Plan
                 "views",
                 "no angle content: all views are equal",
                 f"{views - 1} of {views} views of {captures} "
-                f"capture passes, {_megabytes((views - 1) * rows * cols * scene.light_field.itemsize)}",
+                f"capture passes, {_megabytes((views - 1) * rows * cols * scene.image.itemsize)}",
             )
         )
     if not polarized:

@@ -152,7 +152,7 @@ def _folder(path: Path) -> LightField:
     if not count:
         raise ParameterError(
             f"scene = {str(path)!r}: must be an image file, not a folder without input_Cam000.png ... "
-            "or out_00_00*.png ..."
+            "or out_00_00*.png ...; talbot sequence takes a folder of frames"
         )
     side = math.isqrt(count)
     check_int("views", side, 1, 31)

@@ -67,7 +67,7 @@ def motorcycle(sampling: Sampling) -> Scene:
     return Scene(
         "motorcycle",
         sampling.views,
-        seen.light_field(),
+        None,
         image[inner].astype(sampling.dtype),
         disparity[inner].copy(),
         1 / crop(inverse_depth, resample.pick)[inner],

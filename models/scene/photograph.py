@@ -12,7 +12,7 @@ from .picture_file import read_luminance
 from .sampling import Sampling
 from .scene import Scene
 from .targets import IN_FOCUS, plane
-from .views import Pictured
+from .views import Pictured, Shifted
 
 PHOTOGRAPHS = ("astronaut", "camera", "chelsea", "coffee", "coins", "moon", "page", "rocket", "text")
 
@@ -33,7 +33,7 @@ def photograph(name: str, sampling: Sampling) -> Scene:
         With constant disparity and depth.
     """
     codes = getattr(data, name)()
-    return _on_depth(name, resample.linear(codes), sampling)
+    return scene_of(name, resample.linear(codes), sampling)
 
 
 def picture(path: str | Path, sampling: Sampling, depth: str | Path | None = None) -> Scene:
@@ -60,21 +60,37 @@ def picture(path: str | Path, sampling: Sampling, depth: str | Path | None = Non
     """
     luminance = read_luminance(path, *sampling.shape)
     metres = None if depth is None else read_depth(depth, sampling, luminance.shape)
-    return _on_depth(Path(path).stem, luminance, sampling, metres)
+    return scene_of(Path(path).stem, luminance, sampling, metres)
 
 
-def _on_depth(
-    name: str, luminance: npt.NDArray[np.float32], sampling: Sampling, depth: npt.NDArray[np.float64] | None = None
+def scene_of(
+    name: str, luminance: npt.NDArray[np.floating], sampling: Sampling, depth: npt.NDArray[np.float64] | None = None
 ) -> Scene:
-    """depth: in m from the camera; None is the plane of pictures without depth."""
+    """Linear luminance as a scene.
+
+    Parameters
+    ----------
+    name : str
+        Name in reports.
+    luminance : array (height, width)
+        0..16, 1 = diffuse white. The largest centred part with the array's proportions is taken.
+    sampling : Sampling
+        Array, views and camera.
+    depth : float64 (rows, cols), optional
+        In m from the camera; None is the plane of pictures without depth.
+
+    Returns
+    -------
+    Scene
+        With disparity and depth.
+    """
     rows, cols = sampling.shape
     height, width = luminance.shape
     image = resample.resize(luminance, rows, cols, resample.centre_box(height, width, rows, cols))
-    image = np.clip(image, 0, 1)  # rounding of the resampling
-    if depth is None:
-        _, depth = plane(sampling)
-    disparity = camera.disparity(depth, sampling)
-    flat = bool(np.abs(disparity).max() * sampling.views < IN_FOCUS)
-    seen = None if flat else Pictured(image, disparity, sampling)
-    field = image[None, None].astype(sampling.dtype) if seen is None else seen.light_field()
-    return Scene(name, sampling.views, field, image.astype(sampling.dtype), disparity, depth, render=seen)
+    image = np.clip(image, 0, max(1.0, float(luminance.max())))  # rounding of the resampling
+    disparity, depth = plane(sampling) if depth is None else (camera.disparity(depth, sampling), depth)
+    shown = image.astype(sampling.dtype)
+    if np.abs(disparity).max() * sampling.views < IN_FOCUS:
+        return Scene(name, sampling.views, shown[None, None], shown, disparity, depth)
+    seen = Pictured(image, disparity, sampling) if np.ptp(disparity) else Shifted(image, float(disparity.flat[0]))
+    return Scene(name, sampling.views, None, shown, disparity, depth, render=seen)

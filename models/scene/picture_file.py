@@ -15,6 +15,7 @@ from .resample import linear
 PIXELS_MAX = 2 * 89_478_485  # Pillow's limit against decompression bombs
 FORMATS = "PNG", "JPEG", "TIFF", "WEBP", "AVIF", "JPEG2000", "GIF", "BMP", "PPM"  # named to users, where built in
 FLOAT_MAX = float(np.finfo(np.float32).max)
+ANIMATED = "GIF", "WEBP", "PNG", "AVIF"  # formats whose further pictures are frames, not pages or previews
 KEEP = 3  # a picture this many times the array is reduced before it is decoded to linear light
 
 
@@ -40,10 +41,40 @@ def read_luminance(path: str | Path, rows: int, cols: int) -> npt.NDArray[np.flo
     ParameterError
         If the file is missing, no image, damaged, too large, or holds NaN or infinity.
     """
-    with _opened(path, "scene") as picture:
+    with opened(path, "scene") as picture:
+        if frames_of(picture, path) > 1:
+            raise ParameterError(
+                f"scene = {str(path)!r}: has {frames_of(picture, path)} frames: must be one picture; "
+                "talbot sequence takes all"
+            )
         picture.draft("RGB", (KEEP * cols, KEEP * rows))  # JPEG: decode at a fraction of the size
-        picture = ImageOps.exif_transpose(_loaded(picture, path, "scene"))
-        return _luminance(picture, path, max(1, min(picture.height // (KEEP * rows), picture.width // (KEEP * cols))))
+        return luminance_of(loaded(picture, path, "scene"), path, rows, cols)
+
+
+def luminance_of(picture: Image.Image, path: str | Path, rows: int, cols: int) -> npt.NDArray[np.float32]:
+    """Linear luminance of a picture.
+
+    Parameters
+    ----------
+    picture : Image
+        The picture, loaded.
+    path : path
+        Its file, for the messages.
+    rows, cols : int
+        Size of the array. A much larger picture is reduced in whole boxes.
+
+    Returns
+    -------
+    float32 (height, width)
+        0..1.
+
+    Raises
+    ------
+    ParameterError
+        If it holds NaN, infinity or values out of range.
+    """
+    picture = ImageOps.exif_transpose(picture)
+    return _luminance(picture, path, max(1, min(picture.height // (KEEP * rows), picture.width // (KEEP * cols))))
 
 
 def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDArray[np.uint16]:
@@ -66,8 +97,8 @@ def read_codes(path: str | Path, field: str) -> npt.NDArray[np.uint8] | npt.NDAr
     ParameterError
         If the file is missing, no image, damaged, too large, or a floating-point picture.
     """
-    with _opened(path, field) as picture:
-        picture = _loaded(picture, path, field)
+    with opened(path, field) as picture:
+        picture = loaded(picture, path, field)
         if picture.mode.startswith("I"):
             codes = np.asarray(picture)
             if codes.min() < 0 or codes.max() > 65535:
@@ -98,8 +129,8 @@ def read_picture(path: str | Path, low: float = 0.0, high: float = 1.0) -> npt.N
     ParameterError
         If the file is missing, no image, damaged, too large, or holds NaN or infinity.
     """
-    with _opened(path, "scene") as picture:
-        picture = ImageOps.exif_transpose(_loaded(picture, path, "scene"))
+    with opened(path, "scene") as picture:
+        picture = ImageOps.exif_transpose(loaded(picture, path, "scene"))
         if picture.mode == "F":
             return _checked_values(np.asarray(picture), path, low, high)
         if picture.mode.startswith("I"):
@@ -107,7 +138,26 @@ def read_picture(path: str | Path, low: float = 0.0, high: float = 1.0) -> npt.N
         return np.asarray(picture.convert("L") if picture.mode in ("1", "L") else _opaque(picture))
 
 
-def _opened(path: str | Path, field: str) -> Image.Image:
+def opened(path: str | Path, field: str) -> Image.Image:
+    """Open an image file.
+
+    Parameters
+    ----------
+    path : path
+        The image.
+    field : str
+        Name in the messages.
+
+    Returns
+    -------
+    Image
+        Its header is read.
+
+    Raises
+    ------
+    ParameterError
+        If the file is missing, no image or too large.
+    """
     path = Path(path)
     if path.is_dir():
         raise ParameterError(f"{field} = {str(path)!r}: must be an image file, not a folder")
@@ -128,7 +178,54 @@ def _opened(path: str | Path, field: str) -> Image.Image:
     return picture
 
 
-def _loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
+def frames_of(picture: Image.Image, path: str | Path) -> int:
+    """Number of frames of an image.
+
+    Parameters
+    ----------
+    picture : Image
+        Result of `opened`.
+    path : path
+        Its file.
+
+    Returns
+    -------
+    int
+        1 where the format is none of ANIMATED.
+
+    Raises
+    ------
+    ParameterError
+        If it is damaged.
+    """
+    try:
+        return int(getattr(picture, "n_frames", 1)) if picture.format in ANIMATED else 1
+    except Exception as error:  # a damaged file may raise nearly anything in a decoder
+        raise ParameterError(f"scene = {str(path)!r}: the image is damaged ({error})") from None
+
+
+def loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
+    """Decode the pixels of an image.
+
+    Parameters
+    ----------
+    picture : Image
+        Result of `opened`, at any of its frames.
+    path : path
+        Its file.
+    field : str
+        Name in the messages.
+
+    Returns
+    -------
+    Image
+        The picture.
+
+    Raises
+    ------
+    ParameterError
+        If it is damaged.
+    """
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # odd metadata is no concern of ours; damaged pixels raise

@@ -7,6 +7,7 @@ from pathlib import Path
 from talbot.models.parameters import ParameterError
 
 from . import targets
+from .clip import VIDEOS
 from .light_field import LightField
 from .light_field_file import named
 from .motorcycle import motorcycle
@@ -65,6 +66,8 @@ def load(scene: str | LightField, sampling: Sampling, depth: str | Path | None =
         return scene.scene(sampling)
     name, colon, number = scene.partition(":")
     if scene not in scenes and not (colon and name in NUMBERS):
+        if Path(scene).suffix.lower() in VIDEOS and Path(scene).is_file():
+            raise ParameterError(f"scene = {scene!r}: must be one picture, not a video; talbot sequence takes it")
         if _looks_like_file(scene):
             return picture(scene, sampling, depth)
         raise ParameterError(f"scene = {scene!r}: must be an image file or one of {', '.join(scenes)}")

@@ -5,6 +5,8 @@ Light fields are arrays l[v, u, y, x] everywhere in this project: view row, view
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -32,9 +34,10 @@ class Scene:
         Name in reports.
     views : int
         Views along each axis that the light field represents, 1..31.
-    light_field : float32 or float64 (views, views, rows, cols)
-        l[v, u, y, x], radiance 0..16 (1 = diffuse white); (1, 1, rows, cols) where all views are equal.
-    image : array (rows, cols)
+    field : float32 or float64 (views, views, rows, cols), or None
+        l[v, u, y, x], radiance 0..16 (1 = diffuse white); (1, 1, rows, cols) where all views are equal; None: what
+        ``render`` gives, when it is asked for.
+    image : float32 or float64 (rows, cols)
         The centre view.
     disparity : array (rows, cols) or None
         Px per view step towards the camera from the focal plane; None if not known. View (v, u) shows at (y, x) what
@@ -44,8 +47,8 @@ class Scene:
     polarization : array (2, rows, cols) or None
         S1/S0 and S2/S0, of degree 0..1; None is unpolarized.
     render : callable or None
-        From the wanted pixels, bool (rows, cols), to a `View` of these between those of the light field; None: there
-        are no others.
+        From the wanted pixels, bool (rows, cols), to a `View` of these, those of the light field and all between; None:
+        there are no others.
     static : bool
         Nothing moves or changes between the taps of a time-of-flight frame.
     moved : callable or None
@@ -61,7 +64,7 @@ class Scene:
 
     name: str
     views: int
-    light_field: npt.NDArray[np.floating]
+    field: npt.NDArray[np.floating] | None
     image: npt.NDArray[np.floating]
     disparity: npt.NDArray[np.floating] | None = None
     depth: npt.NDArray[np.floating] | None = None
@@ -73,14 +76,11 @@ class Scene:
 
     def __post_init__(self) -> None:
         check_int("views", self.views, 1, 31)
-        field = self.light_field
-        check_choice("light_field dtype", str(field.dtype), DTYPES)
-        if field.ndim != 4 or field.shape[:2] not in ((self.views, self.views), (1, 1)) or 0 in field.shape:
-            raise ParameterError(
-                f"light_field shape = {field.shape}: must be (views, views, rows, cols) or "
-                f"(1, 1, rows, cols) with views = {self.views}"
-            )
-        check_values("light_field", field, 0, RADIANCE_MAX)
+        if self.field is not None:
+            self._check_field(self.field)
+        elif self.render is None:
+            raise ParameterError("light_field = None: must be an array, or there must be a function that renders it")
+        check_choice("image dtype", str(self.image.dtype), DTYPES)
         for name, low, high, shape in (
             ("image", 0, RADIANCE_MAX, self.shape),
             ("disparity", -1e4, 1e4, self.shape),
@@ -97,16 +97,36 @@ class Scene:
         if self.polarization is not None:
             check_values("degree of polarization", np.hypot(*self.polarization), 0, 1 + 1e-6)
 
+    def _check_field(self, field: npt.NDArray[np.floating]) -> None:
+        check_choice("light_field dtype", str(field.dtype), DTYPES)
+        if field.ndim != 4 or field.shape[:2] not in ((self.views, self.views), (1, 1)) or 0 in field.shape:
+            raise ParameterError(
+                f"light_field shape = {field.shape}: must be (views, views, rows, cols) or "
+                f"(1, 1, rows, cols) with views = {self.views}"
+            )
+        check_values("light_field", field, 0, RADIANCE_MAX)
+
     @property
     def shape(self) -> tuple[int, int]:
         """Rows and columns."""
-        rows, cols = self.light_field.shape[2:]
+        rows, cols = self.image.shape if self.field is None else self.field.shape[2:]
         return rows, cols
+
+    @cached_property
+    def light_field(self) -> npt.NDArray[np.floating]:
+        """The light field, (views, views, rows, cols), or (1, 1, rows, cols) where all views are equal."""
+        if self.field is not None:
+            return self.field
+        see, steps = self.view(np.ones(self.shape, bool)), np.arange(self.views) - (self.views - 1) / 2
+        field = np.empty((self.views, self.views, *self.shape), self.image.dtype)
+        for (v, dv), (u, du) in product(enumerate(steps), enumerate(steps)):
+            field[v, u] = see(dv, du)[0]
+        return field
 
     @property
     def angular(self) -> bool:
         """Whether the views may differ."""
-        return self.light_field.shape[:2] != (1, 1)
+        return self.field is None or self.field.shape[:2] != (1, 1)
 
     def view(self, wanted: Bools) -> View:
         """Any view of the scene at some pixels.

@@ -1,5 +1,7 @@
 """From a picture with disparity to the whole light field l[v, u, y, x], with occlusion."""
 
+from functools import lru_cache, partial
+
 import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import maximum_filter
@@ -9,6 +11,8 @@ from .sampling import Sampling
 from .scene import RADIANCE_MAX, Bools, View
 
 Floats = npt.NDArray[np.float64]
+
+KEPT = 64 << 20  # bytes of shifted pictures at most
 
 
 class Second:
@@ -156,14 +160,53 @@ class Pictured:
         image, surface = view(self.image, self.disparity, dv, du, self.second, use, wanted)
         return image[self.inner], surface[self.inner]
 
-    def light_field(self) -> npt.NDArray[np.floating]:
-        """All views of the sampling.
+
+class Shifted:
+    """All views of a picture on a plane parallel to the sensor: the picture, shifted.
+
+    The same values as of `Pictured`, in a fraction of its time: what views of one row or column of the pupil have in
+    common is kept.
+
+    Parameters
+    ----------
+    image : float64 (rows, cols)
+        The centre picture.
+    disparity : float
+        Of the plane, px per view step.
+    """
+
+    def __init__(self, image: Floats, disparity: float) -> None:
+        self.image, self.disparity = image, disparity
+        self.surface = np.broadcast_to(disparity, image.shape)
+        self._across = lru_cache(max(1, KEPT // image.nbytes))(partial(_across, image, disparity))
+
+    def __call__(self, wanted: Bools) -> View:
+        """Views at some pixels.
+
+        Parameters
+        ----------
+        wanted : bool (rows, cols)
+            Pixels to compute; the others are undefined.
 
         Returns
         -------
-        array (views, views, rows, cols)
-            l[v, u, y, x] of the sampling's type.
+        View
+            Of any offset.
         """
-        steps = self.sampling.steps
-        seen = self(np.ones(self.sampling.shape, bool))
-        return np.stack([np.stack([seen(dv, du)[0].astype(self.sampling.dtype) for du in steps]) for dv in steps])
+        rows = np.flatnonzero(wanted.any(1))
+        return lambda dv, du: (self._view(dv, du, rows), self.surface)
+
+    def _view(self, dv: float, du: float, rows: npt.NDArray[np.int64]) -> Floats:
+        if dv == 0 and du == 0:
+            return self.image.copy()
+        out = np.zeros(self.image.shape)
+        places = np.arange(len(out), dtype=np.float64) + dv * self.disparity
+        warp.shift_rows(out, self._across(du), places, rows, RADIANCE_MAX)
+        return out
+
+
+def _across(image: Floats, disparity: float, du: float) -> Floats:
+    """A picture shifted along its rows."""
+    out = np.empty_like(image)
+    warp.shift_columns(out, image, np.arange(len(image[0]), dtype=np.float64) + du * disparity)
+    return out

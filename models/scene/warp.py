@@ -159,6 +159,69 @@ def cubic(image: Floats, y: float, x: float) -> float:
 
 
 @njit(cache=True, nogil=True)
+def _taps(place: float, size: int) -> tuple[int, tuple[float, float, float, float]]:
+    """First whole place and weights of `cubic` at a place, 0..size - 1."""
+    place = min(max(place, 0.0), size - 1.0)
+    return int(place), _keys(place - int(place))
+
+
+@njit(cache=True, nogil=True)
+def shift_columns(out: Floats, image: Floats, places: Floats) -> None:
+    """Interpolate along the rows of an image as `cubic` does.
+
+    Parameters
+    ----------
+    out : float64 (rows, cols)
+        Receives the result.
+    image : float64 (rows, n)
+        The image.
+    places : float64 (cols,)
+        Column of the image that each column of the result shows, px.
+    """
+    last = image.shape[1] - 1
+    at, weight = np.empty((4, places.size), np.int64), np.empty((4, places.size))
+    for x in range(places.size):
+        first, weights = _taps(float(places[x]), image.shape[1])
+        for j in range(4):
+            at[j, x], weight[j, x] = min(max(first + j - 1, 0), last), weights[j]
+    for y in range(out.shape[0]):
+        for x in range(places.size):
+            out[y, x] = (
+                weight[0, x] * image[y, at[0, x]]
+                + weight[1, x] * image[y, at[1, x]]
+                + weight[2, x] * image[y, at[2, x]]
+                + weight[3, x] * image[y, at[3, x]]
+            )
+
+
+@njit(cache=True, nogil=True)
+def shift_rows(out: Floats, image: Floats, places: Floats, rows: Places, high: float) -> None:
+    """Interpolate along the columns of an image as `cubic` does, limited as by `fetch`.
+
+    Parameters
+    ----------
+    out : float64 (rows, cols)
+        Receives the result.
+    image : float64 (n, cols)
+        The image.
+    places : float64 (rows,)
+        Row of the image that each row of the result shows, px.
+    rows : int64 (m,)
+        Rows of the result to compute.
+    high : float
+        Largest value; the smallest is 0.
+    """
+    last = image.shape[0] - 1
+    for y in rows:
+        first, (a, b, c, d) = _taps(float(places[y]), image.shape[0])
+        above, at = min(max(first - 1, 0), last), min(max(first, 0), last)
+        below, second = min(first + 1, last), min(first + 2, last)
+        for x in range(out.shape[1]):
+            total = a * image[above, x] + b * image[at, x] + c * image[below, x] + d * image[second, x]
+            out[y, x] = min(max(total, 0.0), high)
+
+
+@njit(cache=True, nogil=True)
 def fetch(
     out: Floats, image: Floats, surface: Floats, wanted: Bools, dv: float, du: float, right: float, high: float
 ) -> None:

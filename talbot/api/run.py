@@ -12,7 +12,6 @@ from talbot.flow.frame.figures import summarize, summarize_golden
 from talbot.flow.frame.result import FrameResult, GoldenResult
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel import depth_of
-from talbot.models.reconstruct import white_sum
 from talbot.models.scene import RADIANCE_MAX
 
 from .image import Image, embedded, png, table
@@ -77,8 +76,7 @@ class Run:
         if disparity is not None and (mode, what) != ("edge", "image"):
             raise ParameterError("disparity = an array: must be left out, it is of an image from edges")
         if what == "light_field":
-            white = white_sum(result.request.lit, result.request.frame.exposing)
-            values = np.clip(result.light_field / white, 0, RADIANCE_MAX)
+            values = np.clip(result.light_field, 0, RADIANCE_MAX)
             return LightField(values, result.exposed.scene.disparity, f"{result.request.name}_estimate")
         if what == "edges":
             return Image.of(result.edges)

@@ -1,8 +1,8 @@
 """A sensor: its parameters by name, and frames through its Verilog and its golden model."""
 
 import inspect
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any, Self, TypedDict, Unpack
 
@@ -14,6 +14,7 @@ from talbot.base.progress import Steps
 from talbot.flow.frame import job
 from talbot.flow.frame.chip_picture import chip_svg
 from talbot.flow.frame.request import CONVERTERS, FrameRequest, request
+from talbot.flow.sequence.job import results as sequence_results
 from talbot.models.parameters import (
     STANDARD,
     AmpTiming,
@@ -31,7 +32,7 @@ from talbot.models.parameters import (
     sensor_text,
 )
 from talbot.models.parameters.sensor_file import keys, nearest
-from talbot.models.scene import LightField
+from talbot.models.scene import LightField, Sampling, open_clip
 from talbot.models.scene import scenes as named_scenes
 
 from .run import Run
@@ -161,6 +162,29 @@ class Sensor:
         """The frame of `simulate` by the golden model alone: the same bytes, no cycles, no energy."""
         with Steps(job.STEPS[:-1]) as steps:
             return Run(job.golden_result(self._request(scene, mode, settings), steps.note))
+
+    def sequence(
+        self, frames: str | Path | Iterable[npt.ArrayLike], mode: str = "edge", **settings: Unpack[Settings]
+    ) -> Iterator[Run]:
+        """Frames one after another through one running simulation: the chip keeps registers and state between them.
+
+            for run in sensor.sequence("clip.gif", threshold=8):
+                show(run.samples)
+
+        frames: a folder of pictures, an animated picture or a video (models/scene/README.md); or arrays (height, width)
+        or (height, width, 3), any iterable of them: uint8 and uint16 are sRGB codes, floats linear radiance, 0..16.
+        All have one size and stand on the plane of pictures without depth. Frames are read, and runs made, as they are
+        asked for. mode and settings: as of `simulate`, without depth. Each frame has temporal noise of its own, and
+        the next frame_number.
+
+        Raises ParameterError, ToolError.
+        """
+        if (depth := settings.get("depth")) is not None:
+            raise ParameterError(f"depth = {str(depth)!r}: must be left out, a sequence has no depth file")
+        asked = self._request("sequence", mode, settings)
+        clip = open_clip(frames, Sampling.of(self.parameters))
+        asked = replace(asked, scene=clip.name)
+        return (Run(shown.result) for shown in sequence_results(asked, clip, job.Clock()))
 
     def _request(self, scene: Seen, mode: str, settings: Settings) -> FrameRequest:
         known = Settings.__annotations__

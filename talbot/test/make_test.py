@@ -11,7 +11,11 @@ from talbot.base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments, variables
 
-READY = [word for name in ("ready", "tests-ready", "layout-ready", "lint-ready") for word in ("-o", f".venv/.{name}")]
+READY = [
+    word
+    for name in ("ready", "video-ready", "tests-ready", "layout-ready", "lint-ready")
+    for word in ("-o", f".venv/.{name}")
+]
 
 
 def make(*words, **environment):
@@ -35,6 +39,9 @@ def make(*words, **environment):
         ("sim PHASE=maybe", "PHASE = 'maybe': must be 1 or 0"),
         ("sim MODE=tof PHASE=0 ROWS=x", "rows = 'x'"),
         ("sim PHASE=1", "phase = True: needs mode 'tof'"),
+        ("sequence SCENES=x.gif", "did you mean SCENE?"),
+        ("sequence SCENE=none.mp4", "scene = 'none.mp4': no such file"),
+        ("sequence", "the following arguments are required: --scene"),
         ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, OUT, PYTHON"),
         ("mutate SEDE=2", "did you mean SEED?"),
         ("layout DESIGN=none UNTIMED=1", "DESIGN = 'none': must be one of "),

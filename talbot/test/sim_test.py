@@ -13,7 +13,7 @@ from PIL import Image
 
 from talbot.base.paths import ROOT
 from talbot.commands import main
-from talbot.flow.frame.command import NAME_MAX, _name
+from talbot.flow.frame.command import NAME_MAX, name_of
 from talbot.flow.frame.outputs import NAMES
 
 SMALL = ("--rows", "13", "--cols", "50", "--lanes", "4")
@@ -120,7 +120,7 @@ def test_a_run_says_what_it_replaced(photograph, tmp_path, capsys):
 
 
 def test_a_name_that_is_too_long_stays_one(tmp_path):
-    names = {_name({"scene": "s", "types": ",".join(map(str, range(24))) + "," + last * 200}) for last in "01"}
+    names = {name_of({"scene": "s", "types": ",".join(map(str, range(24))) + "," + last * 200}) for last in "01"}
     assert len(names) == 2 and {len(name) for name in names} == {NAME_MAX}
 
 

@@ -52,7 +52,10 @@ def test_pictures_have_the_errors_of_the_mode(mode, maps):
 
 def test_every_view_of_a_light_field_and_its_error_are_in_the_slider():
     result, summary = frame("raw")
-    views = outputs._views(outputs._fields(result, summary))
+    fields = outputs._fields(result, summary)
+    scene, estimate = (field.mean() for _, field in fields)
+    assert estimate == pytest.approx(scene, rel=0.2)  # as bright
+    views = outputs._views(fields)
     n = result.exposed.scene.views
     assert [v.columns for v in views] == [n, n, n] and n == 5
     assert {v.sprite.size for v in views} == {(n * 24, n * 16)}

@@ -36,7 +36,8 @@ GATES: dict[str, tuple[str, list[str], Callable[..., int]]] = {
     "$_MUX_": ("ABS", ["1-0 1", "-11 1"], lambda a, b, s: (a & ~s) | (b & s)),
 }
 LANES, RESET_CYCLES = 1 << 16, 4  # of the simulation that finds constant registers and duplicates
-TURNS, SURE = 60, 5  # at most; without a change, the last
+TURNS, SURE = 60, 8  # at most; without a change, the last
+SPARSE = 4  # factors of a random bit, at most: what happens where a dozen bits are 0 has to happen
 ALL = (1 << LANES) - 1
 
 
@@ -116,10 +117,10 @@ class Cut:
     def substitutes(self, missing: Sequence[Bit], present: Collection[Bit], reset: str) -> dict[Bit, Bit]:
         """Find what the registers ``missing`` (Q bits) seem to hold after a reset: '0', '1' or one of ``present``.
 
-        A guess from random states: a constant is a register whose next state is what it holds, a duplicate has the same
-        next state as the other wherever both hold the same; of several the one whose next state comes from most of the
-        same gates, and from the fewest others. One substitute changes what others seem to hold: therefore in turns.
-        Registers without one are left out.
+        A guess from random states, sparse and dense ones too: a constant is a register whose next state is what it
+        holds, a duplicate has the same next state as the other wherever both hold the same; of several the one whose
+        next state comes from most of the same gates, and from the fewest others. One substitute changes what others
+        seem to hold: therefore in turns. Registers without one are left out.
         """
         rng = random.Random(1)
         levels: dict[Bit, int] = {"0": 0, "1": ALL}
@@ -131,8 +132,8 @@ class Cut:
         wrong: dict[Bit, set[Bit]] = {bit: set() for bit in guess}
         kept = 0
         cone = cache(lambda bit: self._fan_in([self.registers[bit]]))
-        for _ in range(TURNS):
-            now = {bit: rng.getrandbits(LANES) for bit in after}
+        for turn in range(TURNS):
+            now = {bit: _random(rng, turn) for bit in after}
             now |= {bit: levels[held] if held in levels else now[held] for bit, held in guess.items() if held}
             then = self._next(now)
             better: dict[Bit, Bit | None] = {}
@@ -233,3 +234,12 @@ def active_low(reset: str) -> bool:
 def _unlike(cone: set[Bit], other: set[Bit]) -> tuple[int, int]:
     """How unlike two cones are: what of ``cone`` is not in the ``other``, then what is in one of them alone."""
     return len(cone - other), len(cone ^ other)
+
+
+def _random(rng: random.Random, turn: int) -> int:
+    """LANES random bits, from turn to turn of another share of ones: a half, a quarter, three quarters, an eighth..."""
+    factors, dense = 1 + turn // 2 % SPARSE, turn % 2
+    bits = ALL
+    for _ in range(factors):
+        bits &= rng.getrandbits(LANES)
+    return bits ^ ALL if dense else bits

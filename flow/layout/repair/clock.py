@@ -12,7 +12,7 @@ from ..netlist.buffering import clusters
 from ..netlist.gating import ClockCells
 from ..netlist.netlist import Instance, is_register
 from .drive import Drives
-from .repair import End, Plan, Point, Sinks, connected
+from .repair import End, Plan, Point, Sinks, connected, swap
 
 
 class _Kind(NamedTuple):
@@ -35,7 +35,8 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
     """Group the registers of each enable, and those without one, anew by their places; how many drivers were added.
 
     Every group has a gate or a buffer in its middle (see `netlist.gating.drive_registers`), is of ``most`` registers at
-    most and no load that is too large for the last of ``sizes``. The tree's leaves get about as many of these each.
+    most and no load that is too large for the last of ``sizes``. The tree's leaves get about as many of these each, and
+    the size that these ask for.
     Raises StepError where a driver has no room.
     """
     gate, buffer = sizes[0].gate, sizes[0].buffer
@@ -58,8 +59,15 @@ def regrouped(plan: Plan, drives: Drives, sizes: Sequence[ClockCells], most: int
     ends = sorted(leaves)
     there = [plan.point(nets[net][0]) if net in nets else plan.ports[net] for net in ends]
     numbers = assigned([plan.point(name) for name, _ in made], there) if made else []
+    loads: dict[str, Sinks] = {}
     for (name, pin), number in zip(made, numbers, strict=True):
         plan.instances[name].pins[pin] = ends[number]
+        loads.setdefault(ends[number], []).append((name, pin))
+    for net, sinks in loads.items():
+        if net in nets:  # the port's is driven from outside
+            driver, pin, _ = nets[net]
+            load = plan.load(drives, net, [plan.point(driver)], sinks)
+            swap(plan, driver, drives.best(plan.instances[driver].cell, pin, load))
     return len(made) - sum(map(len, groups.values()))
 
 

@@ -18,6 +18,7 @@ BUFFER_NS = 0.5  # that a sink behind a buffer is later, about
 OHM_UM, VIAS_OHM = 0.5, 30.0  # of a net: a um of wire, its vias
 NEAR, HALF = 0.1, 0.5  # of the way from a driver to the middle of its sinks: its only buffer, one of many
 FULL = 0.9  # of what the largest buffer drives, at most, in a group of sinks
+MORE = 0.06  # of a net's length for each pin beyond two: the chip's capacitances as estimated, and as extracted
 OWN = "_repair"  # ends the name of a buffer that is inserted here
 Point = tuple[float, float]  # um
 End = tuple[str, str]  # instance and pin
@@ -95,11 +96,11 @@ class Plan:
 
 
 def length(points: list[Point]) -> float:
-    """Estimated length (um) of a net: half of its box's perimeter, more for more than three pins."""
+    """Estimated length (um) of a net: half of its box's perimeter, more for more than two pins."""
     if len(points) < 2:
         return 0.0
     x, y = zip(*points, strict=True)
-    return (max(x) - min(x) + max(y) - min(y)) * (1.0 + 0.03 * max(0, len(points) - 3))
+    return (max(x) - min(x) + max(y) - min(y)) * (1.0 + MORE * (len(points) - 2))
 
 
 def clock_nets(instances: Collection[Instance]) -> set[str]:

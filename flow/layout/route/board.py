@@ -40,8 +40,8 @@ class Board:
     [(name of a layer of ``rules``, Box in nm), ...]. fixed: what is left, and on level 0 the cells' own vias above
     their pins; the owner of a box is FIXED or the number of the only net that may touch it. routed: the metal of all
     nets, and where nets CONTENDED. grid: both as places, of middles of segments within ``area`` (nm; default: wherever
-    there is something). present: see PRESENT. diodes: by net and number of a diode's pin that of the gate's. jumpers:
-    by net the numbers of pins that are met from the highest layer alone.
+    there is something). present: see PRESENT. weights: of nets, see `price`. diodes: by net and number of a diode's pin
+    that of the gate's. jumpers: by net the numbers of pins that are met from the highest layer alone.
     """
 
     def __init__(
@@ -61,6 +61,7 @@ class Board:
         self.grid = Grid(area, rules)
         self.rows: dict[str, tuple[Rows, Links]] = {}
         self.present = PRESENT
+        self.weights: defaultdict[str, int] = defaultdict(lambda: 1)
         self.accesses: dict[str, dict[int, Any]] = {}  # by net and pin, see access
         self.diodes: defaultdict[str, dict[int, int]] = defaultdict(dict)
         self.jumpers: defaultdict[str, set[int]] = defaultdict(set)
@@ -111,7 +112,7 @@ class Board:
         made = [(self.levels[name], *box) for name, box in self.boxes[net] if name in self.levels]
         rows = as_rows(made, self.numbers[net])
         self.rows[net] = rows, self.routed.insert(rows)
-        self.grid.use(rows[rows[:, 0] > 0], self.present)
+        self.grid.use(rows[rows[:, 0] > 0], self.price(net))
 
     def add_history(self, places: Iterable[tuple[int, Box]]) -> None:
         """Raise the history cost of ``places``, pairs (level, Box)."""
@@ -122,9 +123,13 @@ class Board:
     def charge(self, present: int) -> None:
         """Let places that nets have cost others so much, at most PRESENT_MOST."""
         more = min(present, PRESENT_MOST) - self.present
-        for rows, _ in self.rows.values():
-            self.grid.use(rows[rows[:, 0] > 0], more)
+        for net, (rows, _) in self.rows.items():
+            self.grid.use(rows[rows[:, 0] > 0], more * self.weights[net])
         self.present += more
+
+    def price(self, net: str) -> int:
+        """What a place of ``net`` costs others: as much more as its weight."""
+        return self.present * self.weights[net]
 
     def conflict(self) -> int:
         """What a conflict adds to the cost of a place."""
@@ -134,12 +139,13 @@ class Board:
         """Take the shapes of ``net`` off the board."""
         rows, numbers = self.rows[net]
         self.routed.remove(numbers)
-        self.grid.use(rows[rows[:, 0] > 0], -self.present)
+        self.grid.use(rows[rows[:, 0] > 0], -self.price(net))
         self.boxes[net], self.rows[net] = [], (rows[:0], numbers[:0])
 
-    def put(self, net: str, route: Route) -> None:
-        """Let the shapes of ``net`` be those of ``route``."""
+    def put(self, net: str, route: Route, weight: int | None = None) -> None:
+        """Let the shapes of ``net`` be those of ``route``, its weight (`price`) ``weight``, as before without it."""
         self.rip_up(net)
+        self.weights[net] = weight or self.weights[net]
         for level, made in route.segments.items():
             self.boxes[net] += [(self.rules.layers[level].name, box) for box in made]
         for level, points in route.vias.items():

@@ -26,6 +26,7 @@ PATIENCE = 6  # evicted nets for every one that is to be routed, at most
 TRIES = 3  # of a net without a path, while others move
 HASTY_TRIES = 3  # of a net, which look for a path nearby alone
 WHOLE = 4  # every such try of a net begins without the legs that nothing is in the way of
+EASY = 4  # times that a net is routed before it costs others twice, and so on: those with other ways move
 JOBS = 2  # in which the whole layout is checked
 ROUNDS = 12  # of checks: a net that is evicted for another may get an antenna
 TOLD = 100  # nets in a turn that takes seconds, of which a line is printed
@@ -86,7 +87,7 @@ def negotiate(board: Board, wanted: Collection[str], state: Routed | None = None
                 state.legs[other] = clear_of(state.legs.get(other, ()), found.route, board)
                 board.put(other, Route.of(leg.route for leg in state.legs[other]))
             board.add_history(found.places)
-            board.put(net, found.route)
+            board.put(net, found.route, 1 + state.tries[net] // EASY)
             state.routes[net], state.legs[net] = found.route, found.legs
             evicted += sorted(found.evicted)
         waiting = list(dict.fromkeys(evicted))

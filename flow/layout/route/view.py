@@ -55,7 +55,8 @@ class NetView:
         """Cost of others' segments, and of conflicts before, nearer to ``box`` (nm) than the least space."""
         owners = self.board.routed.touching(level, self.reach(level, box))[:, -1]
         nets = np.unique(owners[(owners >= 0) & (owners != self.net)])
-        return len(nets) * self.board.present + int((owners == CONTENDED).sum()) * self.board.conflict()
+        taken = sum(self.board.price(self.board.nets[number]) for number in nets)
+        return taken + int((owners == CONTENDED).sum()) * self.board.conflict()
 
     def conflicts(self, route: Route) -> tuple[set[str], list[tuple[int, Box]]]:
         """Return the board's nets that are nearer to ``route`` than the least space, and (level, box) of where."""

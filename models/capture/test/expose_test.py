@@ -163,3 +163,14 @@ def test_columns_have_offsets_and_pink_noise():
     pink = out - out.mean(0)
     power = (np.abs(np.fft.rfft(pink, axis=0)) ** 2).mean(1)
     assert 10 < pink.std() <= 21 and power[2:6].mean() > 8 * power[60:].mean()
+
+
+def test_exposures_of_a_sequence_have_the_pattern_in_common():
+    quiet = {"read_noise": 0.0, "flicker_noise": 0.0, "dark_current": 0.0}
+    electrical = replace(ElectricalParameters(), gain_fpn=0.05, offset_fpn=40.0, **quiet)
+    pair = np.full((2, 30, 40), 0.5)
+    several = [expose(pair, Exposure(electrical, AmpTiming(), number=n)) for n in range(30)]
+    np.testing.assert_array_equal(several[0], expose(pair, Exposure(electrical, AmpTiming())))
+    each = np.std(several, axis=0).mean()
+    assert each > 0.1 and np.mean(several, axis=0).std() > 5 * each / np.sqrt(30)
+    assert np.corrcoef((several[0] - several[1]).ravel(), (several[2] - several[3]).ravel())[0, 1] < 0.1

@@ -101,18 +101,18 @@ def test_depth_file_beside_a_named_scene_is_refused():
 
 def _scene(**changes):
     image = np.full((4, 6), 0.5)
-    return Scene(**{"name": "t", "views": 3, "light_field": np.full((3, 3, 4, 6), 0.5), "image": image, **changes})
+    return Scene(**{"name": "t", "views": 3, "field": np.full((3, 3, 4, 6), 0.5), "image": image, **changes})
 
 
 @pytest.mark.parametrize(
     "changes,field",
     [
-        ({"light_field": np.full((3, 3, 4), 0.5)}, "light_field shape"),
-        ({"light_field": np.full((5, 5, 4, 6), 0.5)}, "light_field shape"),
-        ({"light_field": np.full((3, 3, 4, 6), np.nan)}, "light_field = nan"),
-        ({"light_field": np.full((3, 3, 4, 6), np.inf)}, "light_field = inf"),
-        ({"light_field": np.full((3, 3, 4, 6), -0.1)}, "light_field = -0.1"),
-        ({"light_field": np.full((3, 3, 4, 6), 1)}, "light_field dtype"),
+        ({"field": np.full((3, 3, 4), 0.5)}, "light_field shape"),
+        ({"field": np.full((5, 5, 4, 6), 0.5)}, "light_field shape"),
+        ({"field": np.full((3, 3, 4, 6), np.nan)}, "light_field = nan"),
+        ({"field": np.full((3, 3, 4, 6), np.inf)}, "light_field = inf"),
+        ({"field": np.full((3, 3, 4, 6), -0.1)}, "light_field = -0.1"),
+        ({"field": np.full((3, 3, 4, 6), 1)}, "light_field dtype"),
         ({"image": np.full((4, 5), 0.5)}, "image shape"),
         ({"depth": np.zeros((4, 6))}, "depth = 0"),
         ({"polarization": np.full((2, 4, 6), 0.9)}, "degree of polarization"),

@@ -1,10 +1,11 @@
 """Light fields from a picture with disparity: sub-pixel places, occlusion, the second picture."""
 
 import numpy as np
+import pytest
 from skimage.data import stereo_motorcycle
 
-from talbot.models.scene import Sampling, load, resample, warp
-from talbot.models.scene.views import Pictured, Second, view
+from talbot.models.scene import Sampling, Scene, load, resample, warp
+from talbot.models.scene.views import Pictured, Second, Shifted, view
 
 
 def _ramp(rows, cols):
@@ -84,7 +85,8 @@ def test_holes_without_any_surface_are_filled():
 
 def test_light_field_cuts_its_margin_off():
     image = _ramp(26, 36)
-    whole = Pictured(image, np.full((26, 36), 1.0), Sampling(20, 30), margin=3).light_field()
+    seen = Pictured(image, np.full((26, 36), 1.0), Sampling(20, 30), margin=3)
+    whole = Scene("plane", 5, None, image[3:23, 3:33], render=seen).light_field
     assert whole.shape == (5, 5, 20, 30)
     np.testing.assert_allclose(whole[2, 4], image[3:23, 5:35], atol=1e-12)
     np.testing.assert_allclose(whole[0, 2], image[1:21, 3:33], atol=1e-12)
@@ -99,3 +101,16 @@ def test_some_pixels_of_a_view_are_those_of_the_whole():
     for dv, du in ((0.0, 0.0), (1.3, -2.4), (2.4, 2.4), (0.0, -1.0)):
         for part, whole in zip(seen(wanted)(dv, du), seen(wanted | ~wanted)(dv, du), strict=True):
             np.testing.assert_array_equal(part[wanted], whole[wanted])
+
+
+@pytest.mark.parametrize("disparity", [0.37, -1.0, 2.6, 30.0])
+def test_a_plane_is_the_picture_shifted(disparity):
+    rng = np.random.default_rng(1)
+    image = rng.random((13, 37)) * rng.choice([0, 1, 16], (13, 37))  # the interpolation overshoots both ends
+    shifted = Shifted(image, disparity)(np.ones(image.shape, bool))
+    for dv in (-2.0, -0.5, 0.0, 1.7):
+        for du in (-1.25, 0.0, 2.0):
+            seen, surface = shifted(dv, du)
+            want, _ = view(image, np.full(image.shape, disparity), dv, du)
+            np.testing.assert_array_equal(seen, want)
+            assert (surface == disparity).all()

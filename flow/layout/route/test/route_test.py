@@ -215,6 +215,26 @@ def test_a_net_in_the_way_is_evicted():
     assert first == second != third == fourth
 
 
+@pytest.mark.parametrize("light", ["w2", "w3"])
+def test_of_two_nets_in_the_way_the_lighter_one_is_evicted(light):
+    """A wall with two gaps, each filled by a net; the one that was routed more often costs more."""
+    layout, top = empty()
+    pins = {"w1": [pin(layout, top, 5_000, 20_000), pin(layout, top, 35_020, 20_000)]}
+    gaps = {"w2": 12_000, "w3": 28_000}
+    for net, y in gaps.items():
+        pins[net] = [pin(layout, top, x, y) for x in (15_015, 25_030)]
+    for level in (1, 2, 3, 4):
+        for bottom, end in ((0, 11_000), (13_000, 27_000), (29_000, SIDE)):
+            draw(layout, top, level, 20_000, bottom, 20_400, end)
+    shapes = {net: {"segments": [], "vias": [], "pins": list(map(um, made))} for net, made in pins.items()}
+    board = Board(layout, RULES, shapes)
+    for net, y in gaps.items():
+        rows = [(19_000, at - 150, 21_000, at + 150) for at in range(y - 600, y + 601, 600)]
+        board.put(net, Route(dict.fromkeys((1, 2, 3, 4), rows), {}), 1 if net == light else 5)
+    assert {net: board.price(net) for net in gaps} == {net: board.present * (1 if net == light else 5) for net in gaps}
+    assert route_net(board, "w1", False).evicted == {light}
+
+
 def test_a_board_draws_what_it_lifted():
     layout, top = empty()
     pins = [pin(layout, top, 5_000, 5_000), pin(layout, top, 30_015, 20_000)]

@@ -1,0 +1,1 @@
+"""Light field and depth from a raw frame of the chip: `talbot lightfield`."""

@@ -1,0 +1,116 @@
+"""What a raw frame gives by every method, with its figures, beside what costs nothing."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.flow.frame.figures import mismatches
+from talbot.flow.frame.result import FrameResult, GoldenResult
+from talbot.models.capture import CaptureOperator, cells
+from talbot.models.parameters import ParameterError
+from talbot.models.reconstruct import psnr_db, white_sum
+from talbot.models.reconstruct.bayes import Estimate, FieldEstimator, FieldPrior
+from talbot.models.scene import Sampling
+from talbot.models.scene.camera import depth as depth_of_disparity
+
+from .methods import METHODS, Found, figures, measure
+
+Values = npt.NDArray[np.floating]
+BEST = "mixture"  # the method that has a disparity, too
+PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
+SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
+
+
+@dataclass(frozen=True, eq=False)
+class Fields:
+    """What one raw frame gives. found: by method. best: by `BEST`."""
+
+    result: GoldenResult
+    truth: Values
+    found: Mapping[str, Found]
+    best: Estimate
+    summary: dict[str, Any]
+
+
+def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], None] = lambda text: None) -> Fields:
+    """Every method on the samples of a raw frame, and on the same samples without noise and converter.
+
+    Raises ParameterError for a frame that does not read all of the array.
+    """
+    if not result.decoded.read.all():
+        raise ParameterError("window, types, decimation = a part of the array: must be all, for a light field")
+    scene, sensor = result.exposed.scene, result.sensor
+    truth = np.asarray(scene.full_light_field, np.float32)
+    white = white_sum(result.request.lit, result.request.frame.exposing)
+    sent, ideal = (
+        np.moveaxis(np.asarray(samples, float), 2, 0) / white
+        for samples in (result.decoded.samples, result.exposed.ideal)
+    )
+    pupil = scene.views if scene.render is None else PUPIL
+    estimator = FieldEstimator(sensor, scene.views, prior, pupil)
+    operator = CaptureOperator(sensor)
+    reached = cells(scene.views)[..., None, None]  # corners that the round pupil does not reach have no light
+    found, figured = {}, {}
+    for name in METHODS:
+        note(name)
+        got, seconds = measure(name, estimator, operator, sent)
+        float_got = measure(name, estimator, operator, ideal)[0]
+        found[name] = got._replace(light_field=got.light_field * reached)
+        figured[name] = figures(got.light_field * reached, truth * reached, result.image) | seconds
+        figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, truth * reached)
+    summary = {
+        "scene": result.request.name,
+        "rows": truth.shape[2],
+        "cols": truth.shape[3],
+        "views": scene.views,
+        "noise": result.request.noise,
+        "seed": result.request.seed,
+        "chip": isinstance(result, FrameResult),
+        "stream_mismatches": mismatches(result.stream, result.golden.stream),
+        "decoded_mismatches": int((result.decoded.samples != result.golden.sent).sum()),
+        "methods": figured,
+        "baselines": baselines(result.image, truth * reached),
+    }
+    field, disparity, spread = found[BEST]
+    assert disparity is not None and spread is not None
+    best = Estimate(field, disparity, spread)
+    return Fields(result, truth, found, best, summary | depth_figures(result, best))
+
+
+def baselines(image: Values, truth: Values) -> dict[str, float | None]:
+    """What costs nothing: the sum image in every view, and the mean of it."""
+    gray = np.full(truth.shape, image.mean(), np.float32)
+    copied = np.broadcast_to(image, truth.shape)
+    return {"sum_image_psnr_db": psnr_db(copied, truth), "gray_psnr_db": psnr_db(gray, truth)}
+
+
+def depth_figures(result: GoldenResult, found: Estimate) -> dict[str, float | None]:
+    """Error of disparity and depth where the method is sure of them, beside that of one value for all.
+
+    range_m: from the nearest to the farthest of the scene. sure: share of the pixels.
+    """
+    scene = result.exposed.scene
+    names = ("disparity_rms_px", "disparity_median_px", "disparity_rms_constant_px", "depth_rms_m")
+    out: dict[str, float | None] = dict.fromkeys((*names, "depth_rms_constant_m", "range_m", "depth_sure"))
+    sure = found.spread <= SURE
+    out["depth_sure"] = float(sure.mean())
+    if scene.disparity is None or not sure.any():
+        return out
+    error = np.abs(found.disparity - scene.disparity)[sure]
+    out["disparity_rms_px"] = float(np.sqrt(np.mean(error**2)))
+    out["disparity_median_px"] = float(np.median(error))
+    out["disparity_rms_constant_px"] = float(np.std(scene.disparity[sure]))
+    if scene.depth is not None:
+        depth = depth_map(result, found)
+        out["depth_rms_m"] = float(np.sqrt(np.mean((depth - scene.depth)[sure] ** 2)))
+        out["depth_rms_constant_m"] = float(np.std(scene.depth[sure]))
+        out["range_m"] = float(np.ptp(scene.depth))
+    return out
+
+
+def depth_map(result: GoldenResult, found: Estimate) -> Values:
+    """Depth from the camera in m, (rows, cols)."""
+    return depth_of_disparity(found.disparity, Sampling.of(result.sensor))

@@ -1,0 +1,137 @@
+"""The files of a light field: its page, pictures, a moving picture and the arrays."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.base import page
+from talbot.base.page import Picture, Scale, Tile
+from talbot.flow.frame import pictures
+from talbot.flow.frame.report import Views, decibels
+from talbot.models.reconstruct.refocus import refocus
+
+from .fields import BEST, SURE, Fields, depth_map
+
+Values = npt.NDArray[np.floating]
+NAMES = ("lightfield.html", "summary.json", "lightfield.npz", "views.webp")
+FRAME_MS = 90  # of the moving picture
+VIEW = 256  # px, width of a view on the page at most
+SHEET = 1600  # px, width of all views at most
+
+
+def write(folder: Path, fields: Fields) -> None:
+    """Write everything but summary.json into ``folder``, which exists."""
+    best = fields.best
+    np.savez(folder / "lightfield.npz", light_field=best.light_field, disparity=best.disparity, spread=best.spread)
+    top = _top(fields.truth)
+    _moving(folder / "views.webp", best.light_field, top)
+    shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
+    groups = [("Depth", _depth(fields)), ("Refocused, by the mixture", _refocused(fields, top))]
+    s = fields.summary
+    by = "the chip's Verilog" if s["chip"] else "the golden model"
+    text = page.render(
+        Path(__file__).with_name("page.html"),
+        f"{s['scene']}: the light field of a raw frame",
+        picture=groups[1][1][0].image,
+        about=f"{s['rows']} x {s['cols']} pixels, {s['views']} x {s['views']} views, noise {s['noise']:g}, by {by}",
+        tiles=headline(s),
+        head=("", "PSNR", "gain", "SSIM", "slope", "correlation", "PSNR, float", "seconds", "once"),
+        rows=table(s),
+        views=[_view(caption, field, top) for caption, field in shown],
+        groups=[group for group in groups if group[1]],
+    )
+    (folder / "lightfield.html").write_text(text)
+
+
+def headline(s: dict[str, Any]) -> list[Tile]:
+    """The figures of the summary ``s`` to see first."""
+    right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
+    linear, best = s["methods"]["linear"], s["methods"][BEST]
+    free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
+    return [
+        Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
+        Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
+        Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
+        Tile("byte for byte" if right else "differs", "chip against golden model", "good" if right else "bad"),
+        Tile(number(s["disparity_rms_px"]), f"px per view step, error of disparity RMS (one for all: {constant})"),
+    ]
+
+
+def table(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table: baselines, then methods. Worse than the copied image is said."""
+    rows = []
+    for name, key in (("sum image in every view", "sum_image_psnr_db"), ("gray", "gray_psnr_db")):
+        rows.append((name, decibels(s["baselines"][key]), "", "", "0", "", "", "", ""))
+    for name, m in s["methods"].items():
+        note = "" if m["gain_db"] is None or m["gain_db"] > 0 else ": no better than the sum image"
+        shape = (number(m[key]) for key in ("ssim", "slope", "correlation"))
+        times = f"{m['seconds']:.2f}", f"{m['seconds_once']:.1f}"
+        figures = decibels(m["psnr_db"]), decibels(m["gain_db"]), *shape, decibels(m["psnr_db_float"]), *times
+        rows.append((name + note, *figures))
+    return rows
+
+
+def number(value: float | None) -> str:
+    """A figure of two decimals."""
+    return "-" if value is None else f"{value:.2f}"
+
+
+def _view(caption: str, field: Values, top: float) -> Views:
+    width = min(VIEW, SHEET // len(field))
+    sheets = [[pictures.gray(view, high=top) for view in row] for row in field]
+    return Views(caption, len(field), pictures.sprite(sheets, width))
+
+
+def _top(values: Values) -> float:
+    return max(float(np.quantile(values, 0.999)), 1e-6)
+
+
+def _depth(fields: Fields) -> list[Picture]:
+    """True and found disparity, gray where it is not sure, and depth."""
+    best, scene = fields.best, fields.result.exposed.scene
+    found = np.where(best.spread <= SURE, best.disparity, np.nan)
+    known = best.disparity if scene.disparity is None else np.asarray(scene.disparity, float)
+    low, high = float(known.min()), float(known.max())
+    low, high = low - 0.1, high + 0.1
+    scale = Scale(pictures.depth_colours(), low, high, "px per view step")
+    out = []
+    if scene.disparity is not None:
+        out.append(Picture("true", "", "disparity of the scene", pictures.depth(known, low, high), scale))
+    s = fields.summary
+    caption = f"disparity from the samples, gray where its standard deviation is above {SURE:g} px"
+    if s["disparity_rms_px"] is not None:
+        caption += f": {s['disparity_rms_px']:.2f} px RMS (one for all: {s['disparity_rms_constant_px']:.2f})"
+    out.append(Picture("disparity", "", caption, pictures.depth(found, low, high), scale))
+    if scene.depth is not None and s["depth_rms_m"] is not None:
+        depth = np.where(np.isnan(found), np.nan, depth_map(fields.result, best))
+        near, far = float(scene.depth.min()), float(scene.depth.max()) + 1e-3
+        caption = f"depth: {100 * s['depth_rms_m']:.3g} cm RMS of {100 * s['range_m']:.3g} cm"
+        caption += f" (one depth for all: {100 * s['depth_rms_constant_m']:.3g} cm)"
+        scale = Scale(pictures.depth_colours(), near, far, "m")
+        out.append(Picture("depth", "", caption, pictures.depth(depth, near, far), scale))
+    return out
+
+
+def _refocused(fields: Fields, top: float) -> list[Picture]:
+    """The middle view, and pictures focused far, at the focal plane and near."""
+    best = fields.best
+    middle = len(best.light_field) // 2
+    image = pictures.gray(best.light_field[middle, middle], high=top)
+    out = [Picture("all", "", "all in focus: the middle view", image)]
+    ends = np.quantile(best.disparity, (0.05, 0.5, 0.95))
+    for name, disparity in zip(("far", "middle", "near"), ends, strict=True):
+        image = refocus(best.light_field, float(disparity))
+        caption = f"focused {name}: what has {disparity:+.2f} px a view step is sharp"
+        out.append(Picture(name, "", caption, pictures.gray(image, high=top)))
+    return out
+
+
+def _moving(path: Path, field: Values, top: float) -> None:
+    """The outermost views one after the other, round the pupil, as an animated WebP."""
+    last = len(field) - 1
+    around = [(0, u) for u in range(last)] + [(v, last) for v in range(last)]
+    around += [(last, u) for u in range(last, 0, -1)] + [(v, 0) for v in range(last, 0, -1)]
+    first, *rest = (pictures.gray(field[v, u], high=top) for v, u in around or [(0, 0)])
+    first.save(path, "WEBP", save_all=True, append_images=rest, duration=FRAME_MS, loop=0, quality=80)

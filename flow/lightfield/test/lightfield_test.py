@@ -1,0 +1,83 @@
+"""A light field from a raw frame of the chip's Verilog, and what the command refuses."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from talbot.commands import main
+from talbot.flow.frame.job import golden_result
+from talbot.flow.frame.request import request
+from talbot.flow.lightfield import page
+from talbot.flow.lightfield.fields import read_back
+from talbot.flow.lightfield.methods import figures, parallax
+from talbot.models.parameters import ParameterError
+from talbot.models.reconstruct.bayes import FieldPrior
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory):
+    """Folder and summary of a small frame through the Verilog."""
+    folder = tmp_path_factory.mktemp("lightfield")
+    words = ["lightfield", "--scene=tilted", "--rows=40", "--cols=48", "--disparities=9", f"--out={folder}"]
+    assert main(words) == 0
+    return folder, json.loads((folder / "summary.json").read_text())
+
+
+def test_every_method_stands_beside_the_free_baselines(done):
+    _, s = done
+    free = s["baselines"]["sum_image_psnr_db"]
+    assert s["chip"] and s["stream_mismatches"] == s["decoded_mismatches"] == 0
+    for m in s["methods"].values():
+        assert m["gain_db"] == pytest.approx(m["psnr_db"] - free)
+    assert s["methods"]["linear"]["gain_db"] > 3 and s["methods"]["mixture"]["gain_db"] > 6
+    assert abs(s["methods"]["direct"]["slope"]) < 0.1 < s["methods"]["linear"]["slope"] < 1
+    assert s["methods"]["mixture"]["slope"] > s["methods"]["linear"]["slope"]
+    assert s["methods"]["linear"]["psnr_db_float"] > s["methods"]["linear"]["psnr_db"]
+    assert s["disparity_rms_px"] < 0.5 * s["disparity_rms_constant_px"]
+    assert s["depth_rms_m"] < s["depth_rms_constant_m"] < s["range_m"]
+
+
+def test_files(done):
+    folder, s = done
+    assert {path.name for path in folder.iterdir()} == {*page.NAMES}
+    with np.load(folder / "lightfield.npz") as found:
+        assert found["light_field"].shape == (5, 5, 40, 48) and found["disparity"].shape == (40, 48)
+    with Image.open(folder / "views.webp") as moving:
+        assert moving.n_frames == 16
+    text = (folder / "lightfield.html").read_text()
+    assert f"{s['methods']['mixture']['psnr_db']:.1f} dB" in text and "direct: no better than the sum image" in text
+
+
+def test_a_scene_without_parallax_has_no_slope():
+    fields = read_back(golden_result(request(scene="flat", rows=8, cols=12, mode="raw")), FieldPrior(disparities=3))
+    s = fields.summary
+    assert s["methods"]["mixture"]["slope"] is None and s["disparity_rms_px"] is None and s["depth_sure"] == 0
+    assert s["methods"]["mixture"]["psnr_db"] > 35
+
+
+def test_a_part_of_the_array_is_refused():
+    with pytest.raises(ParameterError, match="window, types, decimation"):
+        read_back(golden_result(request(scene="flat", rows=8, cols=12, mode="raw", mask=0xFF)), FieldPrior())
+
+
+def test_parallax_of_the_truth_is_one():
+    truth = np.random.default_rng(1).random((5, 5, 9, 9))
+    assert parallax(truth, truth) == pytest.approx((1, 1))
+    assert parallax(np.broadcast_to(truth[2, 2], truth.shape), truth) == (0, 0)
+    assert figures(truth, truth, truth[2, 2])["psnr_db"] is None
+
+
+@pytest.mark.parametrize(
+    "word, message",
+    [
+        ("--far=3", "near = '2.5': must be a number in \\[3.0, 20\\]"),
+        ("--disparities=0", "disparities = '0': must be an integer in 1..500"),
+        ("--scene=nothing", "scene = 'nothing'"),
+    ],
+)
+def test_bad_arguments(word, message, capsys, tmp_path):
+    assert main(["lightfield", word, f"--out={tmp_path / 'out'}"]) == 2
+    assert re.search(message, capsys.readouterr().err) and not (tmp_path / "out").exists()

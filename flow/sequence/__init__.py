@@ -1,0 +1,1 @@
+"""A sequence of pictures through one running simulation of the chip: `talbot sequence`."""

@@ -1,0 +1,108 @@
+"""Covariances of samples and of the light field that they are to give back, for one disparity.
+
+A sample i at pixel x is the sum of W[i, v] I(x + v d) over the pupil, with I a plane of texture whose covariance is the
+prior's. Two samples at a distance D then have the covariance  sum over s of G[s, i, j] C(D + s d),  with G the
+correlation of their weights over the pupil: a table over distances and pairs of diodes is all that every window needs.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .prior import FieldPrior
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+class Tables(NamedTuple):
+    """Covariances for one disparity, or their mean over several.
+
+    Attributes
+    ----------
+    samples : float64 (2 height - 1, 2 width - 1, diodes, diodes)
+        Of two samples, at their distance.
+    field : float64 (2 height - 1, 2 width - 1, views * views, diodes)
+        Of a pixel's views with a sample, at the distance from the pixel to the sample.
+    """
+
+    samples: Floats
+    field: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Covariances:
+    """Makes the tables.
+
+    Attributes
+    ----------
+    weights : float64 (diodes, pupil, pupil)
+        Weights of all diodes of a tile over the pupil.
+    views : int
+        Of the light field that is to be given back, along the pupil's diameter.
+    height, width : int
+        Window in px.
+    prior : FieldPrior
+        The prior.
+    """
+
+    weights: Floats
+    views: int
+    height: int
+    width: int
+    prior: FieldPrior
+
+    @cached_property
+    def _correlations(self) -> Floats:
+        """G, (shifts, diodes * diodes)."""
+        diodes, pupil, _ = self.weights.shape
+        size = 2 * pupil - 1
+        waves = np.fft.fft2(self.weights, (size, size))
+        pairs = np.fft.ifft2(np.conj(waves)[:, None] * waves[None]).real
+        return np.ascontiguousarray(np.fft.fftshift(pairs, (2, 3)).reshape(diodes**2, size**2).T)
+
+    def of(self, disparity: float) -> Tables:
+        """Tables for a disparity.
+
+        Parameters
+        ----------
+        disparity : float
+            In px per view step.
+
+        Returns
+        -------
+        Tables
+            The covariances.
+        """
+        diodes, pupil, _ = self.weights.shape
+        step = disparity * self.views / pupil
+        dy, dx = (np.arange(1 - n, n, dtype=float) for n in (self.height, self.width))
+        shift = np.arange(1 - pupil, pupil) * step
+        samples = self._planes(dy[:, None] + shift, dx[:, None] + shift) @ self._correlations
+        seen = (np.arange(pupil) - (pupil - 1) / 2) * step
+        given = (np.arange(self.views) - (self.views - 1) / 2) * disparity
+        ahead = (seen - given[:, None]).ravel()
+        field = self._planes(dy[:, None] + ahead, dx[:, None] + ahead)
+        field = field.reshape(-1, self.views, pupil, self.views, pupil).transpose(0, 1, 3, 2, 4).reshape(-1, pupil**2)
+        field = field @ self.weights.reshape(diodes, -1).T
+        shape = len(dy), len(dx)
+        return Tables(samples.reshape(*shape, diodes, diodes), field.reshape(*shape, self.views**2, diodes))
+
+    def _planes(self, y: Floats, x: Floats) -> Floats:
+        """Covariance at all places y (n, a) by x (m, b): (n * m, a * b)."""
+        out = self.prior.covariance(y[:, None, :, None], x[None, :, None, :])
+        return out.reshape(len(y) * len(x), -1)
+
+    def mean(self) -> Tables:
+        """Tables of a light field whose disparity is any of the prior's, each as likely.
+
+        Returns
+        -------
+        Tables
+            The covariances.
+        """
+        every = [self.of(float(d)) for d in self.prior.grid]
+        return Tables(sum(t.samples for t in every) / len(every), sum(t.field for t in every) / len(every))  # type: ignore

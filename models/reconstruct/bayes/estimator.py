@@ -1,0 +1,307 @@
+"""A light field from samples: the most likely one for any disparity, or with each window's own disparity.
+
+For every disparity, samples and light field of a window are Gaussian, with the covariances of `covariance`. The linear
+estimate is the best one where the disparity may be any. How well the samples of a window fit to each disparity is the
+evidence for it; the mixture is the mean of the estimates, each as probable as its disparity [Levin2008].
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.linalg import cholesky, solve_triangular
+from scipy.ndimage import maximum_filter
+
+from talbot.models.parameters import ParameterError, SensorParameters
+from talbot.models.pixel.weights import view_weights
+
+from .covariance import Covariances, Tables
+from .prior import FieldPrior
+from .windows import Axis, Group, even
+
+Floats = npt.NDArray[np.floating]
+UNLIKELY = 1e-3  # probability below which a disparity is left out of a mixture
+PLAIN = 2.0  # times the noise's variance: windows that differ less from a uniform one show no disparity
+FLOOR = 0.05  # of a whitened sample's variance, below which windows count as equally well explained
+
+
+class Whitener(NamedTuple):
+    """From the samples of a window to its differences made white, given its sums.
+
+    Attributes
+    ----------
+    matrix : float32 (differences, samples)
+        Sums come first in the samples.
+    log_determinant : float
+        Of the differences' covariance, given the sums.
+    """
+
+    matrix: Floats
+    log_determinant: float
+
+
+class Component(NamedTuple):
+    """What one disparity needs, for every group of windows.
+
+    Attributes
+    ----------
+    filters : list of float32 (pixels * views**2, samples)
+        From samples to the views of a block.
+    whiteners : list of Whitener
+        For the evidence.
+    """
+
+    filters: list[Floats]
+    whiteners: list[Whitener]
+
+
+class Estimate(NamedTuple):
+    """What a frame shows, by the mixture.
+
+    Attributes
+    ----------
+    light_field : float32 (views, views, rows, cols)
+        l[v, u, y, x], 1 = white.
+    disparity : float32 (rows, cols)
+        Mean of the disparity's probability, px per view step.
+    spread : float32 (rows, cols)
+        Its standard deviation: 0 is certain.
+    """
+
+    light_field: Floats
+    disparity: Floats
+    spread: Floats
+
+
+class FieldEstimator:
+    """Estimates light fields from frames of one sensor.
+
+    Parameters
+    ----------
+    sensor : SensorParameters
+        The sensor; its lens counts as telecentric.
+    views : int
+        Of the light field along the pupil's diameter.
+    prior : FieldPrior
+        What is known before.
+    pupil : int, optional
+        Points of the pupil at which the samples are taken to see the scene, along its diameter; None is as the views.
+    measured : bool (types,), optional
+        Pixel types that are read; None is all.
+    """
+
+    def __init__(
+        self,
+        sensor: SensorParameters,
+        views: int,
+        prior: FieldPrior = FieldPrior(),
+        pupil: int | None = None,
+        measured: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
+        tile = sensor.tile
+        self.prior, self.views, self.shape, self.tile = prior, views, sensor.shape, tile
+        self.y, self.x = (Axis.of(*ends, prior.margin) for ends in zip(sensor.shape, (tile.rows, tile.cols)))
+        weights = view_weights(tile, replace(sensor.optics, views=pupil or views))
+        self.measured = np.ones(tile.n_types, bool) if measured is None else np.asarray(measured, bool)
+        if not self.measured.any():
+            raise ParameterError("measured = no pixel type: must be at least one")
+        weights = np.stack([weights[:, 0] + weights[:, 1], weights[:, 0] - weights[:, 1]], 1) / np.sqrt(2)
+        weights = weights.reshape(-1, *weights.shape[2:])
+        self.covariances = Covariances(weights, views, self.y.window, self.x.window, prior)
+
+    def linear(self, pair: Floats) -> Floats:
+        """Best linear estimate.
+
+        Parameters
+        ----------
+        pair : array (2, rows, cols)
+            Both diodes of every pixel, 1 = the average diode in a flat white scene.
+
+        Returns
+        -------
+        float32 (views, views, rows, cols)
+            l[v, u, y, x], 1 = white.
+
+        Raises
+        ------
+        ParameterError
+            For a wrong shape.
+        """
+        turned = self._turned(pair)
+        out = np.zeros((self.views, self.views, *self.shape), np.float32)
+        for (down, across), filters in zip(self._groups(), self.filters, strict=True):
+            self._place(out, filters @ self._samples(turned, down, across), down, across)
+        return out
+
+    @cached_property
+    def filters(self) -> list[Floats]:
+        """Of each group of windows, from its samples to the views of its block, made once a sensor."""
+        return self._filters(self.covariances.mean())[0]
+
+    @cached_property
+    def components(self) -> list[Component]:
+        """For each disparity, made once a sensor."""
+        return [Component(*self._filters(self.covariances.of(float(d)))) for d in self.prior.grid]
+
+    def mixture(self, pair: Floats) -> Estimate:
+        """Mean over the disparities, each as probable as the samples make it.
+
+        Parameters
+        ----------
+        pair : array (2, rows, cols)
+            As in `linear`.
+
+        Returns
+        -------
+        Estimate
+            Light field and disparity.
+
+        Raises
+        ------
+        ParameterError
+            For a wrong shape.
+        """
+        turned = self._turned(pair)
+        groups = [(d, a, self._samples(turned, d, a)) for d, a in self._groups()]
+        grid, (level, plain) = self.prior.grid, self._uniform(groups)
+        chance = self._probability(np.stack([self._score(c, groups) for c in self.components]))
+        chance[:, plain] = 1 / len(grid)
+        mean = np.tensordot(grid, chance, 1)
+        spread = np.sqrt(np.maximum(np.tensordot(grid**2, chance, 1) - mean**2, 0))
+        down, across = self.y.spread(), self.x.spread()
+        chance[:, plain] = 0  # no disparity is needed: all views are equal
+        flat = (down @ (plain * level) @ across.T).astype(np.float32)
+        out = np.tile(flat, (self.views, self.views, 1, 1))
+        for part, component in zip(chance, self.components, strict=True):
+            near = maximum_filter(part, 3) > 0  # each pixel is between the middles of at most 2 x 2 blocks
+            if near.any():
+                out += self._estimate(component, groups, near) * (down @ part @ across.T).astype(np.float32)
+        return Estimate(out, *((down @ values @ across.T).astype(np.float32) for values in (mean, spread)))
+
+    def _uniform(
+        self, groups: Sequence[tuple[Group, Group, Floats]]
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.bool_]]:
+        """Radiance of the uniform scene that is nearest to each window, and whether the noise explains the rest.
+
+        Both (block rows, block cols).
+        """
+        level = np.zeros((len(self.y.blocks), len(self.x.blocks)))
+        plain = np.zeros(level.shape, bool)
+        totals = self.covariances.weights.sum((1, 2))
+        for down, across, samples in groups:
+            white = totals[self._diodes(down, across)[2]].astype(np.float32)
+            found = white @ samples / (white @ white)
+            rest = np.square(samples - white[:, None] * found).mean(0)
+            place = down.blocks, across.blocks
+            level[place] = found.reshape(level[place].shape)
+            plain[place] = (rest < PLAIN * self.prior.noise**2).reshape(level[place].shape)
+        return level, plain
+
+    def _score(self, component: Component, groups: Sequence[tuple[Group, Group, Floats]]) -> Floats:
+        """How badly each window fits to a disparity: -2 log p(differences | sums), (block rows, block cols).
+
+        Given the sums, since these alone would call every smooth surface a blurred one. Of an unknown contrast: a
+        Gaussian whose variance is unknown, too, is a Student's t.
+        """
+        out = np.zeros((len(self.y.blocks), len(self.x.blocks)), np.float32)
+        for (down, across, samples), whitener in zip(groups, component.whiteners, strict=True):
+            white = whitener.matrix @ samples
+            count = len(white)
+            fit = count * np.log(np.einsum("nb,nb->b", white, white) + FLOOR * count) + whitener.log_determinant
+            part = out[down.blocks, across.blocks]
+            part[:] = fit.reshape(part.shape)
+        return out
+
+    def _probability(self, score: Floats) -> Floats:
+        """Probabilities of the disparities from their scores, (disparities, ...): of sum 1, 0 below `UNLIKELY`."""
+        chance = np.exp(-self.prior.trust / 2 * (score - score.min(0)))
+        chance[chance < UNLIKELY * chance.sum(0)] = 0
+        return chance / chance.sum(0)
+
+    def _estimate(
+        self, component: Component, groups: Sequence[tuple[Group, Group, Floats]], wanted: npt.NDArray[np.bool_]
+    ) -> Floats:
+        """The light field for one disparity in the blocks that are wanted; 0 in the others."""
+        out = np.zeros((self.views, self.views, *self.shape), np.float32)
+        for (down, across, samples), filters in zip(groups, component.filters, strict=True):
+            some = np.flatnonzero(wanted[down.blocks, across.blocks])
+            if len(some):
+                found = np.zeros((len(filters), samples.shape[1]), np.float32)
+                found[:, some] = filters @ samples[:, some]
+                self._place(out, found, down, across)
+        return out
+
+    def _turned(self, pair: Floats) -> Floats:
+        """Sum and difference of each pair, scaled so that the noise of both is that of a diode."""
+        if pair.shape != (2, *self.shape):
+            raise ParameterError(f"pair shape = {pair.shape}: must be {(2, *self.shape)}")
+        return np.stack([pair[0] + pair[1], pair[0] - pair[1]]).astype(np.float32) / np.float32(np.sqrt(2))
+
+    def _filters(self, tables: Tables) -> tuple[list[Floats], list[Whitener]]:
+        """Filters and whiteners of every group."""
+        made, filters, whiteners = {}, [], []
+        for down, across in self._groups():
+            key = down.phase, across.phase
+            if key not in made:
+                inverse = self._whiten(tables, down, across)
+                half = len(inverse) // 2
+                determinant = -2 * float(np.log(np.diag(inverse)[half:]).sum())
+                made[key] = inverse, Whitener(inverse[half:].astype(np.float32), determinant)
+            inverse, whitener = made[key]
+            filters.append((self._field(tables, down, across) @ inverse.T @ inverse).astype(np.float32))
+            whiteners.append(whitener)
+        return filters, whiteners
+
+    def _groups(self) -> Iterator[tuple[Group, Group]]:
+        return ((down, across) for down in self.y.groups() for across in self.x.groups())
+
+    def _diodes(self, down: Group, across: Group) -> tuple[npt.NDArray[np.int64], ...]:
+        """Row, column and number (2 type + 0 for sums, 1 for differences) of every sample of a window, sums first."""
+        high, wide = self.y.window, self.x.window
+        period = self.tile.type_map(self.tile.rows, self.tile.cols)
+        lines = (down.phase + np.arange(high)) % self.tile.rows
+        kinds = period[np.ix_(lines, (across.phase + np.arange(wide)) % self.tile.cols)]
+        diode = (2 * kinds + np.arange(2)[:, None, None]).ravel()
+        y, x = (np.tile(p.ravel(), 2) for p in np.indices((high, wide)))
+        used = self.measured[diode // 2]
+        return y[used], x[used], diode[used]
+
+    def _samples(self, pair: Floats, down: Group, across: Group) -> Floats:
+        """Samples of all windows of a group, (samples, windows)."""
+        windows = sliding_window_view(pair, (self.y.window, self.x.window), (1, 2))
+        windows = windows[:, down.windows, across.windows].transpose(0, 3, 4, 1, 2)
+        out = np.ascontiguousarray(windows, np.float32).reshape(-1, windows.shape[3] * windows.shape[4])
+        if self.measured.all():
+            return out
+        y, x, diode = self._diodes(down, across)
+        return out[((diode % 2) * self.y.window + y) * self.x.window + x]
+
+    def _whiten(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
+        """Matrix that makes the samples of a window white: the inverse of their covariance's Cholesky factor."""
+        y, x, diode = self._diodes(down, across)
+        places = y - y[:, None] + self.y.window - 1, x - x[:, None] + self.x.window - 1
+        shared = tables.samples[*places, diode[:, None], diode]
+        shared[np.diag_indices(len(shared))] += self.prior.noise**2
+        unit = np.eye(len(shared))
+        return solve_triangular(cholesky(shared, lower=True), unit, lower=True)
+
+    def _field(self, tables: Tables, down: Group, across: Group) -> npt.NDArray[np.float64]:
+        """Covariance of the views of a block with the samples of its window, (pixels * views**2, samples)."""
+        y, x, diode = self._diodes(down, across)
+        own = np.indices((self.y.block, self.x.block)).reshape(2, -1, 1)
+        dy, dx = y - own[0] - down.offset, x - own[1] - across.offset
+        out = tables.field[dy + self.y.window - 1, dx + self.x.window - 1, :, diode]  # (pixels, samples, views)
+        return out.transpose(0, 2, 1).reshape(-1, len(diode))
+
+    def _place(self, out: Floats, values: Floats, down: Group, across: Group) -> None:
+        """Write the blocks of a group into the light field."""
+        first, count = self.y.blocks[down.blocks], self.x.blocks[across.blocks]
+        part = values.reshape(self.y.block, self.x.block, self.views, self.views, len(first), len(count))
+        lines, columns = even(first), even(count)
+        for i, j in np.ndindex(self.y.block, self.x.block):
+            rows = slice(lines.start + i, lines.stop + i, lines.step)
+            out[:, :, rows, columns.start + j : columns.stop + j : columns.step] = part[i, j]

@@ -1,0 +1,82 @@
+"""What is known of a light field before it is measured: planes of random texture, each at one disparity."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.models.parameters import ParameterError, check_int, check_real
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FieldPrior:
+    """Gaussian prior of a window of the light field, given its disparity, and the disparities that are tried.
+
+    Attributes
+    ----------
+    level : float
+        Standard deviation of a window's mean radiance, 0.01..100.
+    contrast : float
+        Standard deviation of the radiance within, 0.001..100.
+    length : float
+        Distance at which its correlation falls to 1/e, 0.1..1000 px.
+    noise : float
+        Standard deviation of a sample, of white = 1: 1e-5..10.
+    far, near : float
+        Ends of the disparities in px per view step, -20..20.
+    disparities : int
+        How many are tried from far to near, 1..500.
+    margin : int
+        Pixels around a block that its estimate uses, 0..16.
+    trust : float
+        Share of the evidence for a disparity that counts, 0.001..1: a scene is not the prior's texture.
+
+    References
+    ----------
+    [Levin2008].
+    """
+
+    level: float = 0.5
+    contrast: float = 0.25
+    length: float = 30.0
+    noise: float = 0.006
+    far: float = -2.5
+    near: float = 2.5
+    disparities: int = 21
+    margin: int = 4
+    trust: float = 0.1
+
+    def __post_init__(self) -> None:
+        check_real("level", self.level, 0.01, 100)
+        check_real("contrast", self.contrast, 1e-3, 100)
+        check_real("length", self.length, 0.1, 1000)
+        check_real("noise", self.noise, 1e-5, 10)
+        check_real("far", self.far, -20, 20)
+        check_real("near", self.near, -20, 20)
+        check_int("disparities", self.disparities, 1, 500)
+        check_int("margin", self.margin, 0, 16)
+        check_real("trust", self.trust, 1e-3, 1)
+        if self.far > self.near:
+            raise ParameterError(f"near = {self.near:g}: must be in [{self.far:g}, 20], far and more")
+
+    @property
+    def grid(self) -> Floats:
+        """The disparities that are tried, (disparities,), from far to near."""
+        return np.linspace(self.far, self.near, self.disparities)
+
+    def covariance(self, dy: Floats, dx: Floats) -> Floats:
+        """Covariance of two points of a plane.
+
+        Parameters
+        ----------
+        dy, dx : array
+            Their distance in px; broadcastable.
+
+        Returns
+        -------
+        float64 array
+            Of the common shape.
+        """
+        return self.contrast**2 * np.exp(-np.hypot(dy, dx) / self.length) + self.level**2

@@ -1,0 +1,116 @@
+"""Where blocks of pixels and the windows around them are: a window at the border is moved inside."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+
+class Group(NamedTuple):
+    """Blocks along an axis whose windows begin at the same place in a tile, and are placed alike around the block.
+
+    Attributes
+    ----------
+    phase : int
+        First pixel of the windows, in the tile.
+    offset : int
+        First pixel of the blocks, in their windows.
+    blocks : slice
+        Index of each block.
+    windows : slice
+        First pixel of each window.
+    """
+
+    phase: int
+    offset: int
+    blocks: slice
+    windows: slice
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Blocks and windows along one axis.
+
+    Attributes
+    ----------
+    length : int
+        Pixels of the array.
+    period : int
+        Pixels of a tile.
+    block, window : int
+        Pixels of a block, and of the window around it.
+    """
+
+    length: int
+    period: int
+    block: int
+    window: int
+
+    @classmethod
+    def of(cls, length: int, period: int, margin: int) -> "Axis":
+        """Blocks of a tile.
+
+        Parameters
+        ----------
+        length, period : int
+            Pixels of the array and of a tile.
+        margin : int
+            Pixels of a window on each side of its block.
+
+        Returns
+        -------
+        Axis
+            No window is longer than the array.
+        """
+        block = min(period, length)
+        return cls(length, period, block, min(block + 2 * margin, length))
+
+    @property
+    def blocks(self) -> npt.NDArray[np.int64]:
+        """First pixel of each block; the last ends with the array."""
+        return np.minimum(np.arange(0, self.length, self.block), self.length - self.block)
+
+    def spread(self) -> npt.NDArray[np.float64]:
+        """Make the matrix from values at the middles of the blocks to values at the pixels, linear between.
+
+        Returns
+        -------
+        float64 (length, blocks)
+            Rows of sum 1.
+        """
+        middles = self.blocks + (self.block - 1) / 2
+        return np.stack([np.interp(np.arange(self.length), middles, unit) for unit in np.eye(len(middles))], 1)
+
+    def groups(self) -> Iterator[Group]:
+        """Find the groups.
+
+        Yields
+        ------
+        Group
+            Every block is in one.
+        """
+        first = np.clip(self.blocks - (self.window - self.block) // 2, 0, self.length - self.window)
+        # The last block may begin out of step; a group is evenly spaced
+        keys = np.stack([first % self.period, self.blocks - first, self.blocks % self.block], 1)
+        for key in np.unique(keys, axis=0):
+            members = np.flatnonzero((keys == key).all(1))
+            yield Group(int(key[0]), int(key[1]), even(members), even(first[members]))
+
+
+def even(places: npt.NDArray[np.int64]) -> slice:
+    """Make the slice of some places.
+
+    Parameters
+    ----------
+    places : int64 (n,)
+        At least one, evenly spaced, rising.
+
+    Returns
+    -------
+    slice
+        Of these places.
+    """
+    step = int(places[1] - places[0]) if len(places) > 1 else 1
+    return slice(int(places[0]), int(places[-1]) + 1, step)
