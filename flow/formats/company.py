@@ -5,11 +5,14 @@ import zlib
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+import imagecodecs
 import numpy as np
+import numpy.typing as npt
 import pillow_jpls  # noqa: F401  (gives Pillow its JPEG-LS)
 import zstandard
 from PIL import Image
 
+from talbot.flow.frame.codecs import JPEGXL_EFFORT
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import FrameParameters, TileParameters, Window
 from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
@@ -32,10 +35,18 @@ def _zstd(codes: Codes) -> int:
     return len(zstandard.ZstdCompressor(level=19).compress(codes.astype(np.int8).tobytes()))
 
 
+def _picture(codes: Codes) -> npt.NDArray[np.uint8]:
+    return (codes + 128).astype(np.uint8)
+
+
 def _jpeg_ls(codes: Codes) -> int:
     file = io.BytesIO()
-    Image.fromarray((codes + 128).astype(np.uint8)).save(file, "JPEG-LS")
+    Image.fromarray(_picture(codes)).save(file, "JPEG-LS")
     return len(file.getvalue())
+
+
+def _jpeg_xl(codes: Codes) -> int:
+    return len(imagecodecs.jpegxl_encode(_picture(codes), lossless=True, effort=JPEGXL_EFFORT))
 
 
 def _rice(codes: Codes) -> int:
@@ -50,6 +61,7 @@ CODERS: dict[str, Callable[[Codes], int]] = {
     "zlib -9": _zlib,
     "zstd -19": _zstd,
     "JPEG-LS": _jpeg_ls,
+    "JPEG XL": _jpeg_xl,
     "Golomb-Rice": _rice,
 }
 
@@ -66,7 +78,7 @@ def compare(name: str, codes: Codes, thresholds: Sequence[int] = LEVELS) -> list
     """A dict for each threshold: bytes of the entropy, the stream and every coder.
 
     codes: of the scene ``name`` without a threshold, (rows, cols). The coders get the codes row after row or in the
-    stream's order, whichever takes fewer bytes (JPEG-LS: as a picture, or a row of it type by type).
+    stream's order, whichever takes fewer bytes (JPEG-LS, JPEG XL: as a picture, or a row of it type by type).
     """
     order = np.stack(segments_of(CHIP, *codes.shape))
     rows = []

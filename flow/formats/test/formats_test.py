@@ -150,9 +150,9 @@ def test_golomb_rice_of_a_known_frame():
 
 def test_the_tables_of_the_coders():
     row = {"scene": "a", "threshold": 10, "samples": 1000, "not_zero": 0.5, "entropy": 100, "stream": 130}
-    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300, "Golomb-Rice": 400}]
+    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300, "JPEG XL": 350, "Golomb-Rice": 400}]
     rows += [rows[0] | {"scene": "b", "stream": 520}, rows[0] | {"threshold": 4}]
     text = lines(company.tables(rows, 10))
-    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 400 |" in text
-    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 800 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
-    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 400 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
+    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 350 | 400 |" in text
+    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 700 | 800 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
+    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 350 | 400 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
