@@ -15,7 +15,7 @@ JPEGXL_EFFORT = 7  # libjxl's default
 
 
 class Codec(NamedTuple):
-    """encode: a gray picture (rows, cols) and a quality 1..100 to bytes. decode: the way back."""
+    """A way to bytes and back. encode: takes a gray picture (rows, cols) and a quality of 1..100."""
 
     encode: Callable[[Picture, int], bytes]
     decode: Callable[[bytes], Picture]

@@ -344,18 +344,18 @@ class TestRunLengthFL:
     @pytest.mark.parametrize("order", [1, 2, 3])
     def test_the_longest_token_behind_seven_bits(self, order):
         """It ends at the end of the gathering register: after runs of 2^11 zeros, the value of most bits."""
-        pick = random.Random(order)
+        pick, header = random.Random(order), header_of(threshold=1)
         while True:
             codes, state, sent = [], START, 0
             start = [pick.choice((-40, -9, -1, 1, 2, 9)) for _ in range(pick.randrange(12))]
             while start or state[0] < 11:
                 codes.append(start.pop() if start else 0)
-                _, length, *state = code_sample(codes[-1], 1, *state)
+                _, length, *state = code_sample(codes[-1], header.threshold, *state)
                 sent += length
             if (sent % 8, state[1] // 2, state[2]) == (7, order, 0):
                 break
         rows = [(0, [*codes, -128, 127])]
-        header = header_of()
+        assert code_sample(-128, header.threshold, *state)[1] == 28 - order
         assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_the_largest_order_of_the_values_stays(self):
