@@ -125,24 +125,16 @@ module StreamProof (
     end
   end
 
-  reg first = 1, was_reset, was_val, was_rdy, was_busy;
+  reg first = 1, was_reset, was_val, was_rdy;
   reg [7:0] was_msg;
-  wire [127:0] choice = {resync, exposure, n_cm, t_int, calibration, mode, phase, row0, row1, col0, col1, decimation,
-                         mask, threshold, frame_number};
-  reg [127:0] was_choice;
   reg [4:0] quiet;
-  wire busy = part != IDLE;
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_val <= send__val; was_rdy <= send__rdy; was_msg <= send__msg;
-    was_busy <= busy || taken && kind == FRAME; was_choice <= choice;
     quiet <= reset || put || recv__rdy || !send__rdy || part == DRAIN ? 0 : quiet + !(&quiet);
   end
 
   always @* begin
     if (first) a_reset: assume (reset);
-    else begin
-      a_config: assume (!(busy && was_busy) || choice == was_choice);
-    end
     if (!first && !was_reset) begin
       p_octet: assert (!put || (part == HEADER || part == TRAILER || part == MARK || payload) && octet == wanted);
       p_whole: assert (!(put && part == MARK && !payload) || \dut.packer.count == 0);
