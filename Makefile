@@ -136,7 +136,7 @@ stability: $(READY)  ## stiff and extreme cases: bound against measured
 	@$(talbot) stability
 
 .PHONY: formats
-formats: $(READY)  ## stream formats and scan orders compared: build/formats/
+formats: $(TESTS_READY)  ## stream formats, scan orders and general coders compared: build/formats/
 	@$(talbot) formats --document docs/stream.md
 
 .PHONY: document

@@ -8,7 +8,7 @@ compile() { uv pip compile --quiet --universal --python-version 3.11 --generate-
 lock() { compile ../pyproject.toml "$@"; }
 lock --extra setup --output-file run.lock
 lock --extra setup --extra video --constraint run.lock --output-file video.lock
-lock --extra setup --extra test --extra verify --extra document --extra video --constraint run.lock --output-file test.lock
+lock --extra setup --extra test --extra verify --extra document --extra video --extra codecs --constraint run.lock --output-file test.lock
 lock --extra setup --extra layout --constraint test.lock --output-file layout.lock
 compile --group ../pyproject.toml:lint --constraint layout.lock --output-file lint.lock
 printf '%s\n' librelane==3.0.17 pyosys==0.70 | compile - --output-file librelane.lock

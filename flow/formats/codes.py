@@ -15,12 +15,12 @@ from talbot.models.parameters import ParameterError
 Codes = npt.NDArray[np.int16]
 
 
-def default_codes() -> tuple[Codes, npt.NDArray[np.float64]]:
-    """Edge codes of the default scene without a threshold, and their analog values in LSB, both (rows, cols).
+def codes_of(name: str = "motorcycle") -> tuple[Codes, npt.NDArray[np.float64]]:
+    """Edge codes of a scene without a threshold, and their analog values in LSB, both (rows, cols).
 
     The values are those of the same exposure without noise, ahead of the converter.
     """
-    asked = request()
+    asked = request(scene=name)
     scene, todo = job.see(asked)
     exposed = job.expose(asked, scene, todo)
     golden = golden_frame(exposed.samples, asked.sensor, replace(asked.frame, threshold=0), exposed.front_end)

@@ -1,9 +1,10 @@
-"""Token formats and scan orders of the byte stream compared: build/formats/."""
+"""Token formats and scan orders of the byte stream compared, and the stream with general coders: build/formats/."""
 
 import sys
 import tempfile
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
+from typing import Any
 
 from tqdm import tqdm
 
@@ -15,9 +16,10 @@ from talbot.flow.sizes.measure import YOSYS_MISSING, yosys_installed
 from talbot.flow.sizes.measure import measure as size_of
 from talbot.rtl.verilog import export_verilog
 
-from .codes import default_codes, load_codes
+from . import company
+from .codes import codes_of, load_codes
 from .measure import THRESHOLDS, growth, measure
-from .table import chart, markdown, page, tables
+from .table import chart, lines, markdown, page, tables
 from .tokens import FORMATS
 
 DEFAULT_THRESHOLD = 10
@@ -33,20 +35,28 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Measure every format in every order, write and print the tables."""
-    codes, ideal = load_codes(options.codes) if options.codes else default_codes()
+    codes, ideal = load_codes(options.codes) if options.codes else codes_of()
     source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
     rows = measure(codes, ideal, THRESHOLDS, lambda every: tqdm(every, desc="threshold", disable=None))
     growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
     found = tables(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD)
+    beside: list[dict[str, Any]] = []
+    for name in [] if options.codes else tqdm(company.SCENES, desc="scene", disable=None):
+        beside += company.compare(name, codes_of(name)[0])
+    in_company = company.tables(beside, DEFAULT_THRESHOLD) if beside else []
     text = markdown(found, source)
     with staged(options.out) as part:
         write_csv(part / "formats.csv", rows)
-        (part / "formats.md").write_text(text)
+        if beside:
+            write_csv(part / "company.csv", beside)
+        (part / "formats.md").write_text(f"# Token formats and scan orders\n\n{text}\n{lines(in_company)}")
         save(chart(rows), part / "formats.png")
-        (part / "report.html").write_text(page(found, chart(rows), source))
+        (part / "report.html").write_text(page([*found, *in_company], chart(rows), source))
     if options.document:
-        insert(options.document, "formats", text.split("\n", 2)[2].strip() + "\n")
-    print(text, end="")
+        insert(options.document, "formats", text)
+        if beside:
+            insert(options.document, "company", lines(in_company))
+    print(text, lines(in_company), sep="\n", end="")
     print(f"look at {options.out / 'report.html'}", file=sys.stderr)
     return 0
 

@@ -11,6 +11,7 @@ from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
 from talbot.models.reconstruct.psnr import psnr_db
 
 from .codes import Codes, entropy_bytes, thresholded
+from .company import stream_bytes
 from .orders import MARK_BYTES, ORDERS, Indices, segments_of
 from .tokens import FORMATS, Encoder
 
@@ -35,14 +36,20 @@ def measure(
     """One dict for each threshold, scan order and format.
 
     codes, ideal: (rows, cols), of a converter without threshold and ahead of it. progress: wraps the thresholds.
-    psnr_db: of what is sent against ``ideal``, peak 255 codes. ratio: a byte a sample over bytes.
+    stream: bytes of the chip's stream. psnr_db: of what is sent against ``ideal``, peak 255 codes. ratio: a byte a
+    sample over bytes.
     """
     cut = {name: segments_of(name, *codes.shape) for name in ORDERS}
     rows = []
     for threshold in progress(thresholds):
         sent = thresholded(codes, threshold)
         quality = {"psnr_db": psnr_db(sent, ideal, 255), "not_zero": float((sent != 0).mean())}
-        known = {"threshold": threshold, **quality, "entropy_ratio": codes.size / entropy_bytes(sent)}
+        known = {
+            "threshold": threshold,
+            "stream": stream_bytes(sent, threshold),
+            **quality,
+            "entropy_ratio": codes.size / entropy_bytes(sent),
+        }
         for order, segments in cut.items():
             for name, (encoder, _) in FORMATS.items():
                 size = frame_bytes(sent, threshold, encoder, segments)

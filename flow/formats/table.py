@@ -45,20 +45,21 @@ def tables(
         for name in FORMATS
     ]
     thresholds = [
-        [r["threshold"], f"{r['psnr_db']:.2f}", share(r), f"{r['bytes']:,}"]
-        + [f"{r['ratio']:.2f}", f"{r['entropy_ratio']:.2f}"]
+        [r["threshold"], f"{r['psnr_db']:.2f}", share(r), f"{r['stream']:,}"]
+        + [f"{r['ratio'] * r['bytes'] / r['stream']:.2f}", f"{r['entropy_ratio']:.2f}"]
         for r in chosen
     ]
     about = (
         f"Threshold {threshold}: {at[0]['psnr_db']:.1f} dB, {share(at[0])} of the samples are "
         f"not zero, and their zero-order entropy allows {at[0]['entropy_ratio']:.2f} : 1. Compression (a byte a "
-        "sample over all bytes of the frame), what random codes grow by, and gates of the packer:"
+        "sample over all bytes of the frame, a mark after every part that the order cuts it into), what random codes "
+        "grow by, and gates of the packer:"
     )
     return [
         Table(about, ["format", *ORDERS, "noise grows", "gates"], formats),
         Table("", ["order", "must be held", "a wrong byte costs"], [[n, o.buffer, o.lost] for n, o in ORDERS.items()]),
         Table(
-            f"{CHOSEN[0].upper()}{CHOSEN[1:]}, {CHIP}:",
+            "The chip's stream, with its default segments:",
             ["threshold", "PSNR, dB", "not zero", "bytes", "compression", "entropy allows"],
             thresholds,
         ),
@@ -66,15 +67,17 @@ def tables(
 
 
 def markdown(found: Sequence[Table], source: str) -> str:
-    """The tables as Markdown. source: what was measured, in words."""
-    out = ["# Token formats and scan orders", "", f"Measured on {source}, by `talbot formats`."]
-    for table in found:
-        out += ["", *table.markdown()]
-    return "\n".join(out) + "\n"
+    """The tables of the formats as Markdown. source: what was measured, in words."""
+    return f"Measured on {source}, by `talbot formats`.\n\n{lines(found)}"
+
+
+def lines(found: Sequence[Table]) -> str:
+    """Tables as Markdown."""
+    return "\n".join("\n".join([*table.markdown(), ""]) for table in found)
 
 
 def page(found: Sequence[Table], drawn: Figure, source: str) -> str:
-    """The tables and their chart as a page."""
+    """The tables and the chart of the formats as a page."""
     sections = [Section(charts=[svg(drawn)])]
     for table in found:
         rows = [list(map(str, row)) for row in table.rows]

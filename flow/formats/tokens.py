@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from talbot.models.digital.stream.payload import encode_row
+from talbot.models.digital.stream.payload import encode_segment
 
 from .codes import Codes
 
@@ -110,7 +110,7 @@ def adaptive_rice(codes: Codes, base: int, out: Bytes) -> int:
 
 def payload(codes: Codes, base: int, out: Bytes) -> int:
     """The stream's payload: adaptive runs, exp-Golomb codes of adaptive order, literals that bound its growth."""
-    return encode_row(codes, True, base, out, 0)
+    return encode_segment(codes, True, base, out)[0]
 
 
 # name -> (encoder, its packer in rtl/run_length)

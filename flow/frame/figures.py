@@ -13,7 +13,7 @@ from talbot.models.afe.trim import TRIM_MAX, TRIM_MIN
 from talbot.models.digital.exposure import integration_cycles, slot_cycles
 from talbot.models.parameters import ELEMENTARY_CHARGE, EnergyParameters, LightParameters
 from talbot.models.parameters.energy import DECISIONS, WINDOW, Events
-from talbot.models.parameters.stream_format import HEADER_BYTES, TRAILER_BYTES
+from talbot.models.parameters.stream_format import HEADER_BYTES, MARK, TRAILER_BYTES
 
 from .quality import decoding_error, ideal_samples, quality
 from .result import FrameResult, GoldenResult
@@ -222,12 +222,12 @@ def summarize_golden(result: GoldenResult) -> dict[str, Any]:
     """
     asked, golden, decoded = result.request, result.golden, result.decoded
     sensor, frame = asked.sensor, asked.frame
-    ideal, marks = result.exposed.ideal, 2 * int(golden.read.any(1).sum())
+    ideal, marks = result.exposed.ideal, MARK.size * decoded.segments
     sent, size = golden.read.sum() * golden.sent.shape[2], len(result.stream)
     span = np.ptp(ideal_samples(ideal, frame)[golden.read]) if golden.read.any() else 0.0
     error = decoding_error(decoded.samples, ideal, golden.read, frame)
     rest = size - HEADER_BYTES - TRAILER_BYTES - marks
-    parts = {"header": HEADER_BYTES, "samples": rest, "row marks": marks, "trailer": TRAILER_BYTES}
+    parts = {"header": HEADER_BYTES, "samples": rest, "marks": marks, "trailer": TRAILER_BYTES}
     ratio = float(sent) / max(size, 1)
     return (
         {"scene": asked.name, "mode": frame.mode, "rows": sensor.array.rows, "cols": sensor.array.cols}

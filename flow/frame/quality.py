@@ -3,12 +3,10 @@
 Defined in docs/figures.md. None where a figure has no meaning: no such samples, no error at all, too few pixels.
 """
 
-import io
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from PIL import Image
 from skimage.metrics import structural_similarity
 
 from talbot.models.capture import cells
@@ -17,12 +15,11 @@ from talbot.models.parameters import FrameParameters
 from talbot.models.pixel import depth_of
 from talbot.models.reconstruct import psnr_db, psnr_without_mean_db, sum_image
 
+from .codecs import CODECS, absent, coded
 from .result import GoldenResult
 
 Codes, Values = npt.NDArray[np.integer], npt.NDArray[np.float64]
 TURN = 256  # codes of a phase
-CODECS = {"jpeg": ("JPEG", {}), "avif": ("AVIF", {"speed": 8})}
-GAMMA = 2.2  # of the pictures that the codecs get
 SSIM_WINDOW = 7  # px
 
 
@@ -89,14 +86,17 @@ def _edges(sent: Codes, ideal: Values, frame: FrameParameters) -> dict[str, floa
     return {name: part / whole if whole else None for name, (part, whole) in zip(names, parts, strict=True)}
 
 
-def image_quality(result: GoldenResult) -> dict[str, float | None]:
-    """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes."""
+def image_quality(result: GoldenResult) -> dict[str, float | str | None]:
+    """Of the 2-D image against the scene's centre view: PSNR and SSIM, of flat gray, of codecs at as many bytes.
+
+    image_jpegxl_absent: why JPEG XL has no figure here; None where it has.
+    """
     part = part_read(result.golden.read)
     truth = np.asarray(result.exposed.scene.image, float)[part]
     seen, size = coded_sum(result)[part], len(result.stream)
     images = {"": result.image[part], "_gray": np.zeros_like(truth), "_sum": seen}
     images |= {f"_{name}": coded(seen, name, size) for name in CODECS}
-    out: dict[str, float | None] = {}
+    out: dict[str, float | str | None] = {"image_jpegxl_absent": absent("jpegxl")}
     for name, image in images.items():
         out[f"image_psnr{name}_db"] = None if image is None else psnr_without_mean_db(image, truth)
         out[f"image_ssim{name}"] = None if image is None else ssim(image, truth)
@@ -127,22 +127,6 @@ def coded_sum(result: GoldenResult) -> Values:
     half = 2.0 if asked.frame.mode == "tof" else 1.0
     read = result.golden.read
     return np.asarray(sum_image(half * sums.codes[..., 0].astype(float), asked.lit, read, asked.frame.exposing), float)
-
-
-def coded(image: Values, codec: str, size: int) -> Values | None:
-    """An image through a codec at its best quality of at most ``size`` bytes; None where even the worst is larger."""
-    top = max(float(image.max()), 1e-9)
-    picture = Image.fromarray(np.rint(255 * (image / top) ** (1 / GAMMA)).astype(np.uint8))
-    kind, options = CODECS[codec]
-    best, low, high = None, 1, 100
-    while low <= high:
-        quality, file = (low + high) // 2, io.BytesIO()
-        picture.save(file, kind, quality=quality, **options)
-        if file.tell() <= size:
-            best, low = file, quality + 1
-        else:
-            high = quality - 1
-    return None if best is None else top * (np.asarray(Image.open(best).convert("L")) / 255.0) ** GAMMA
 
 
 def field_quality(result: GoldenResult) -> dict[str, float | None]:

@@ -51,11 +51,13 @@ def agreement(differ: int, unit: str = "values", of: str = "") -> Tile:
 
 
 def against(s: dict[str, Any]) -> str:
-    """PSNR of the 2-D image beside that of flat gray and of JPEG."""
-    own, gray, jpeg = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg"))
+    """PSNR of the 2-D image beside that of flat gray, of JPEG and of JPEG XL."""
+    own, gray, jpeg, jpegxl = (decibels(s[f"image_psnr{name}_db"]) for name in ("", "_gray", "_jpeg", "_jpegxl"))
     found, nothing = s["image_psnr_db"], s["image_psnr_gray_db"]  # None: no error at all
     note = ", no better than gray" if found is not None and (nothing is None or found <= nothing) else ""
-    return f"PSNR {own}{note}; flat gray {gray}; a JPEG of as many bytes {jpeg}"
+    if s["image_jpegxl_absent"]:
+        jpegxl = f"not compared ({s['image_jpegxl_absent']})"
+    return f"PSNR {own}{note}; flat gray {gray}; as many bytes of JPEG {jpeg}, of JPEG XL {jpegxl}"
 
 
 def headline(s: dict[str, Any]) -> list[Tile]:

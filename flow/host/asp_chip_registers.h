@@ -34,6 +34,7 @@
     FIELD(phase, PHASE) \
     FIELD(test_pattern, TEST_PATTERN) \
     FIELD(loop_enable, LOOP_ENABLE) \
+    FIELD(resync, RESYNC) \
     FIELD(mode, MODE) \
     FIELD(decimation, DECIMATION) \
     FIELD(threshold, THRESHOLD) \
@@ -45,6 +46,7 @@
     FIELD(col1, COL1) \
     FIELD(frame_number, FRAME_NUMBER) \
     FIELD(n_cm, N_CM) \
+    FIELD(calibration, CALIBRATION) \
     FIELD(t_reset, T_RESET) \
     FIELD(t_int, T_INT) \
     FIELD(t_cm, T_CM) \
@@ -71,7 +73,7 @@
 #define ASP_VERSION_ADDRESS 0x01u
 #define ASP_VERSION_SHIFT 0u
 #define ASP_VERSION_WIDTH 8u
-#define ASP_VERSION_DEFAULT 0x3u
+#define ASP_VERSION_DEFAULT 0x4u
 #define ASP_VERSION_MASK 0xffu
 
 /* start (wo): 1 starts a frame; refused while one runs, while `loop_enable` is set and together with `abort`. */
@@ -160,6 +162,14 @@
 #define ASP_LOOP_ENABLE_DEFAULT 0x0u
 #define ASP_LOOP_ENABLE_MASK 0x08u
 
+/* resync (rw): A mark follows the first row that ends 64 times this many bytes, or more, behind the mark before */
+/* (0: every row). */
+#define ASP_RESYNC_ADDRESS 0x04u
+#define ASP_RESYNC_SHIFT 4u
+#define ASP_RESYNC_WIDTH 2u
+#define ASP_RESYNC_DEFAULT 0x2u
+#define ASP_RESYNC_MASK 0x30u
+
 /* mode (rw): What a frame converts and sends: 0 edge (difference of the diodes), 1 image (their sum), 2 raw */
 /* (both diodes), 3 tof (four taps). */
 #define ASP_MODE_ADDRESS 0x05u
@@ -236,6 +246,13 @@ enum asp_mode { ASP_MODE_EDGE = 0, ASP_MODE_IMAGE = 1, ASP_MODE_RAW = 2, ASP_MOD
 #define ASP_N_CM_WIDTH 8u
 #define ASP_N_CM_DEFAULT 0x0u
 #define ASP_N_CM_MASK 0xffu
+
+/* calibration (rw): The host's number for its trims, gain and clock; it goes into the frame's header. */
+#define ASP_CALIBRATION_ADDRESS 0x13u
+#define ASP_CALIBRATION_SHIFT 0u
+#define ASP_CALIBRATION_WIDTH 8u
+#define ASP_CALIBRATION_DEFAULT 0x0u
+#define ASP_CALIBRATION_MASK 0xffu
 
 /* t_reset (rw): Pixel reset, cycles, 1..65535. */
 #define ASP_T_RESET_ADDRESS 0x14u
@@ -324,7 +341,7 @@ enum asp_amp_state { ASP_AMP_STATE_IDLE = 0, ASP_AMP_STATE_GUARD = 1, ASP_AMP_ST
 enum asp_seq_state { ASP_SEQ_STATE_IDLE = 0, ASP_SEQ_STATE_CHECK = 1, ASP_SEQ_STATE_WAIT = 2, ASP_SEQ_STATE_DRAIN = 3, ASP_SEQ_STATE_FRAME = 4, ASP_SEQ_STATE_ROW = 5, ASP_SEQ_STATE_SAMPLE = 6, ASP_SEQ_STATE_END = 7 };
 
 /* encoder_state (ro): Encoder. 0 idle (no frame), 1 header (sends the header), 2 rows (sends samples), 3 mark */
-/* (sends a row mark), 4 trailer (sends the trailer), 5 drain (the last bytes wait). */
+/* (sends a mark), 4 trailer (sends the trailer), 5 drain (the last bytes wait). */
 #define ASP_ENCODER_STATE_ADDRESS 0x71u
 #define ASP_ENCODER_STATE_SHIFT 0u
 #define ASP_ENCODER_STATE_WIDTH 3u

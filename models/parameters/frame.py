@@ -94,6 +94,10 @@ class FrameParameters:
         0..65535.
     timing : AmpTiming
         Durations of the amplifier's phases.
+    resync : int
+        A mark follows the first row that ends 64 * resync bytes or more behind the mark before, 0..3 (0: every row).
+    calibration : int
+        The host's number for its trims, gain and clock, 0..255; the stream carries it.
     """
 
     window: Window
@@ -107,6 +111,8 @@ class FrameParameters:
     test_pattern: bool = False
     frame_number: int = 0
     timing: AmpTiming = AmpTiming()
+    resync: int = 2
+    calibration: int = 0
 
     def __post_init__(self) -> None:
         check_choice("mode", self.mode, MODES)
@@ -115,6 +121,8 @@ class FrameParameters:
         check_int("decimation", self.decimation, 0, 3)
         check_int("noise_floor", self.noise_floor, 0, 255)
         check_int("frame_number", self.frame_number, 0, 65535)
+        check_int("resync", self.resync, 0, 3)
+        check_int("calibration", self.calibration, 0, 255)
         if self.phase and self.mode != "tof":
             raise ParameterError(f"phase = True: needs mode 'tof', not {self.mode!r}")
 

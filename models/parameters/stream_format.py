@@ -3,12 +3,14 @@
 import struct
 
 MAGIC = b"TLBT"
-VERSION = 1
+VERSION = 2
 
-HEADER_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sH")
+HEADER_FIELDS = struct.Struct(">4sBBBBBHHBBBB3sHHBHB")
 CRC = struct.Struct(">I")
 FIELD_BYTES = HEADER_FIELDS.size
 HEADER_BYTES = FIELD_BYTES + CRC.size
+
+SEGMENT_BYTES = 64  # bytes of payload that a step of `resync` lets a segment have before its last row ends
 
 MARK = struct.Struct(">H")
 COUNTS = struct.Struct(">II")

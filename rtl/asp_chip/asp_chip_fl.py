@@ -1,5 +1,6 @@
 """AspChip at functional level: registers and golden frames at the chip's pins."""
 
+from dataclasses import replace
 from typing import Any
 
 from pymtl3 import Component, Wire, connect, update, update_ff
@@ -37,6 +38,8 @@ def frame_of(cfg: Any) -> FrameParameters:
         bool(cfg.overlap),
         bool(cfg.test_pattern),
         int(cfg.frame_number),
+        resync=int(cfg.resync),
+        calibration=int(cfg.calibration),
     )
 
 
@@ -75,7 +78,8 @@ class AspChipFL(Component):
             cfg = s.regs.cfg
             try:
                 s.run = GoldenRun(s.sensor, frame_of(cfg), trims_of(cfg))
-                AmpTiming(*(int(getattr(cfg, name)) for name in TIMING))
+                timing = AmpTiming(*(int(getattr(cfg, name)) for name in (*TIMING, "exposure")))
+                s.run = replace(s.run, frame=replace(s.run.frame, timing=timing))
             except ParameterError as error:
                 return True, str(error).startswith("t_")
             s.job = s.run.cycles(lambda: int(s.comparator), lambda: s.link_rdy)

@@ -1,11 +1,13 @@
 """AspChip: the whole digital chip. It connects the blocks, which have their own folders."""
 
 from pymtl3 import Component, Wire, connect, update
+from pymtl3.stdlib.stream.queues import PipeQueue1EntryRTL
 
 from talbot.models.parameters.registers import register_map
 from talbot.rtl.adc_bank import AdcBank
 from talbot.rtl.amp_ctrl import AmpCtrl
 from talbot.rtl.amp_ctrl.ports import SLOT, TIMING
+from talbot.rtl.messages import ScanMsg
 from talbot.rtl.phase_path import PhasePath
 from talbot.rtl.readout_seq import ReadoutSeq
 from talbot.rtl.reg_file import RegFile
@@ -47,6 +49,7 @@ class AspChip(Component):
             s.seq = ReadoutSeq(rows, cols, lanes, order, tile_rows, tile_cols)
             s.bank = AdcBank(lanes)
             s.phase = PhasePath(lanes, divider, n_frac, iterations)
+            s.scan = PipeQueue1EntryRTL(ScanMsg)  # ends the longest path: divider, phase, token
             s.encoder = RunLength(rows, cols, lanes, tile_rows, tile_cols)
             s.generator = Pattern(lanes)
             s.balancer = Balance(order, tile_rows, tile_cols, trims.width, 8 * trims.size)
@@ -117,12 +120,13 @@ class AspChip(Component):
         s.phase.recv //= s.bank.scan
         s.phase.on //= s.phase_on
         s.phase.noise_floor //= cfg.noise_floor
-        s.phase.send //= s.encoder.recv
+        s.phase.send //= s.scan.recv
+        s.scan.send //= s.encoder.recv
 
         s.encoder.phase //= s.phase_on
         s.encoder.made //= s.bank.made
         s.encoder.left_out //= s.bank.left_out
-        for name in (*WINDOW, "threshold", "frame_number"):
+        for name in (*WINDOW, "threshold", "frame_number", "resync", "exposure", "n_cm", "t_int", "calibration"):
             connect(getattr(s.encoder, name), getattr(cfg, name))
 
         s.link.loop_enable //= cfg.loop_enable

@@ -1,12 +1,13 @@
 """RunLengthCtrl at RTL: the part of the frame that is sent, and the effect of the next message."""
 
-from pymtl3 import Bits2, Bits3, Bits5, Component, InPort, OutPort, Wire, update, update_ff
+from pymtl3 import Bits2, Bits3, Bits5, Bits8, Component, InPort, OutPort, Wire, update, update_ff
 
 from talbot.models.parameters.stream_format import COUNT_BYTES, COUNTED_BYTES, FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
 
 IDLE, HEADER, ROWS, MARK, TRAILER, DRAIN = range(6)
 HEADER_FIELDS, COUNTS, COUNTED = FIELD_BYTES, COUNT_BYTES, COUNTED_BYTES  # names in the Verilog
+HEADER_LAST, TRAILER_LAST = HEADER_BYTES - 1, TRAILER_BYTES - 1
 
 
 class RunLengthCtrl(Component):
@@ -19,13 +20,14 @@ class RunLengthCtrl(Component):
         s.packer_val = InPort()  # a byte of the payload is complete, and is sent first
         s.queue_ready = InPort()
         s.queue_last = InPort()
+        s.resync = InPort(Bits2)
         s.start = OutPort()  # a frame starts
         s.first_row = OutPort()  # the message's row is the first
-        s.next_row = OutPort()  # the message's row follows the mark of the row before
+        s.next_row = OutPort()  # the message's row comes after another
         s.push = OutPort()
         s.flush = OutPort()
-        s.restart = OutPort()  # of the row's coder and its CRC
-        s.marked = OutPort()  # a row's mark is sent
+        s.restart = OutPort()  # of the segment's coder and its CRC
+        s.marked = OutPort()  # a segment's mark is sent
         s.put = OutPort()  # a byte goes into the queue
         s.put_crc16 = OutPort()
         s.put_crc32 = OutPort()
@@ -35,6 +37,8 @@ class RunLengthCtrl(Component):
 
         # Components
         s.open = Wire()  # a row has started
+        s.size = Wire(Bits8)  # bytes of the segment's payload in the queue; it stays at 192
+        s.grown = Wire(Bits8)  # ... after this cycle
         s.ending = Wire()  # END is taken
         s.go = Wire()
         s.finish = Wire()  # the frame's END is taken
@@ -51,16 +55,19 @@ class RunLengthCtrl(Component):
             s.first_row @= s.go & (s.state == ROWS) & (s.kind == ROW) & ~s.open
             s.next_row @= s.go & (s.state == ROWS) & (s.kind == ROW) & s.open
             s.finish @= s.go & (s.state == ROWS) & (s.kind == END)
-            s.flush @= s.next_row | (s.finish & s.open)
+            s.flush @= (s.next_row & (s.grown[6:8] >= s.resync)) | (s.finish & s.open)
 
         @update
         def next_byte():
+            s.grown @= s.size
+            if s.queue_ready & s.packer_val & (s.size[6:8] != 3):
+                s.grown @= s.size + 1
             s.step @= s.queue_ready & ~s.packer_val & ((s.state == HEADER) | (s.state == MARK) | (s.state == TRAILER))
             s.put @= s.step | (s.queue_ready & s.packer_val)
             s.last @= s.step & (
-                ((s.state == HEADER) & (s.index == HEADER_BYTES - 1))
+                ((s.state == HEADER) & (s.index == HEADER_LAST))
                 | ((s.state == MARK) & s.index[0])
-                | (s.index == TRAILER_BYTES - 1) & (s.state == TRAILER)
+                | (s.index == TRAILER_LAST) & (s.state == TRAILER)
             )
             s.marked @= s.last & (s.state == MARK)
             s.restart @= s.first_row | s.marked | (s.finish & ~s.open)
@@ -77,9 +84,11 @@ class RunLengthCtrl(Component):
                 s.state <<= IDLE
                 s.index <<= 0
                 s.open <<= 0
+                s.size <<= 0
                 s.ending <<= 0
                 s.frame_sync <<= 0
             else:
+                s.size <<= Bits8(0) if s.restart else s.grown
                 if s.last:
                     s.index <<= 0
                 elif s.step:

@@ -1,6 +1,6 @@
 """HeaderBytes at RTL: the header's fields, byte by byte (docs/stream.md, Header)."""
 
-from pymtl3 import Bits1, Bits2, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update
+from pymtl3 import Bits1, Bits5, Bits8, Bits32, Component, InPort, OutPort, Wire, concat, update, zext
 
 from talbot.models.parameters.stream_format import MAGIC, VERSION
 
@@ -42,7 +42,7 @@ class HeaderBytes(Component):
             elif s.index == 4:
                 s.octet @= VERSION
             elif s.index == 5:
-                s.octet @= concat(Bits2(0), s.decimation, Bits1(0), s.phase, s.mode)
+                s.octet @= concat(s.resync, s.decimation, Bits1(0), s.phase, s.mode)
             elif s.index == 6:
                 s.octet @= concat(Bits1(0), s.threshold)
             elif s.index == 7:
@@ -73,8 +73,20 @@ class HeaderBytes(Component):
                 s.octet @= s.mask[0:8]
             elif s.index == 20:
                 s.octet @= s.frame_number[8:16]
-            else:
+            elif s.index == 21:
                 s.octet @= s.frame_number[0:8]
+            elif s.index == 22:
+                s.octet @= zext(s.exposure[8:10], 8)
+            elif s.index == 23:
+                s.octet @= s.exposure[0:8]
+            elif s.index == 24:
+                s.octet @= s.n_cm
+            elif s.index == 25:
+                s.octet @= s.t_int[8:16]
+            elif s.index == 26:
+                s.octet @= s.t_int[0:8]
+            else:
+                s.octet @= s.calibration
 
     def line_trace(s):
         return f"{s.index}:{s.octet}"

@@ -1,15 +1,15 @@
-"""PayloadPacker at RTL: a row's samples in, the bytes of its payload out."""
+"""PayloadPacker at RTL: a segment's samples in, the bytes of its payload out."""
 
-from pymtl3 import Bits5, Bits7, Bits8, Bits31, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
+from pymtl3 import Bits6, Bits7, Bits8, Bits35, Component, InPort, OutPort, Wire, concat, update, update_ff, zext
 
 from .token_rtl import TokenCoder
 
 
 def declare_packer_ports(s) -> None:
     """Give the component ``s`` the ports of a packer."""
-    s.restart = InPort()  # a row starts: empty but for the coder's state
+    s.restart = InPort()  # a segment starts: empty but for the coder's state
     s.push = InPort()  # the sample is taken; only while `ready`
-    s.flush = InPort()  # the row ends: fill up its last byte; only while `ready`
+    s.flush = InPort()  # the segment ends: fill up its last byte; only while `ready`
     s.ready = OutPort()
     s.coded = InPort()  # edge mode; else a sample is a byte
     s.threshold = InPort(Bits7)
@@ -20,7 +20,7 @@ def declare_packer_ports(s) -> None:
 
 
 class PayloadPacker(Component):
-    """A register of 31 bits gathers tokens, from the top: up to 7 bits that wait, and a token of 24 at most.
+    """A register of 35 bits gathers tokens, from the top: up to 7 bits that wait, and a token of 28 at most.
 
     Eight bits or more are a byte to send."""
 
@@ -33,12 +33,12 @@ class PayloadPacker(Component):
 
         # Components
         s.coder = s.new_coder()
-        s.gathered = Wire(Bits31)
-        s.count = Wire(Bits5)
+        s.gathered = Wire(Bits35)
+        s.count = Wire(Bits6)
 
         s.take = Wire()
-        s.moved = Wire(Bits31)  # `gathered` after the byte is taken, and with the next token
-        s.behind = Wire(Bits5)  # bits after the next token; at most 7 of them are before it
+        s.moved = Wire(Bits35)  # `gathered` after the byte is taken, and with the next token
+        s.behind = Wire(Bits6)  # bits after the next token; at most 7 of them are before it
 
         # Connections
         s.coder.restart //= s.restart
@@ -46,20 +46,20 @@ class PayloadPacker(Component):
         s.coder.coded //= s.coded
         s.coder.threshold //= s.threshold
         s.coder.code //= s.code
-        s.octet //= s.gathered[23:31]
+        s.octet //= s.gathered[27:35]
 
         # Logic
         @update
         def handshake():
-            s.val @= s.count[3:5] != 0
+            s.val @= s.count[3:6] != 0
             s.take @= s.val & s.rdy
-            s.ready @= (s.count[3:5] == 0) | ((s.count[3:5] == 1) & s.rdy)
-            s.behind @= zext(s.count[0:3], 5) + s.coder.length
+            s.ready @= (s.count[3:6] == 0) | ((s.count[3:6] == 1) & s.rdy)
+            s.behind @= zext(s.count[0:3], 6) + zext(s.coder.length, 6)
             s.moved @= s.gathered
             if s.take:
-                s.moved @= concat(s.gathered[0:23], Bits8(0))
+                s.moved @= concat(s.gathered[0:27], Bits8(0))
             if s.push:
-                s.moved @= s.moved | (zext(s.coder.bits, 31) << zext(Bits5(31) - s.behind, 31))
+                s.moved @= s.moved | (zext(s.coder.bits, 35) << zext(Bits6(35) - s.behind, 35))
 
         @update_ff
         def gather():
@@ -74,7 +74,7 @@ class PayloadPacker(Component):
                 if s.push | s.take:
                     s.gathered <<= s.moved
                 if s.flush:
-                    s.count <<= Bits5(8) if (s.count[0:3] != 0) | s.coder.open else Bits5(0)
+                    s.count <<= Bits6(8) if (s.count[0:3] != 0) | s.coder.open else Bits6(0)
 
     def line_trace(s):
         return f"{s.coder.line_trace()}b{s.count}"

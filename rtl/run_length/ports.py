@@ -1,6 +1,6 @@
 """RunLength's ports, the same at every level (README.md)."""
 
-from pymtl3 import Bits2, Bits7, Bits8, Bits16, Bits24, Bits32, InPort, OutPort
+from pymtl3 import Bits2, Bits7, Bits8, Bits10, Bits16, Bits24, Bits32, InPort, OutPort
 from pymtl3.stdlib.stream.ifcs import RecvIfcRTL, SendIfcRTL
 
 from talbot.rtl.messages import ScanMsg
@@ -16,6 +16,11 @@ HEADER_PORTS = {
     "mask": Bits24,
     "threshold": Bits7,
     "frame_number": Bits16,
+    "resync": Bits2,
+    "exposure": Bits10,
+    "n_cm": Bits8,
+    "t_int": Bits16,
+    "calibration": Bits8,
 }
 
 

@@ -64,7 +64,7 @@ class RunLengthCL(Component):
             s.body += bytes(s.payload) + bytes(s.part)
         byte = s.part.popleft()
         if not s.part:
-            s.start_trailer() if s.counts else s.start_row(s.following)
+            s.start_trailer() if s.counts else s.start_segment(s.following)
         return byte
 
     def take(s, chip, kind, data):
@@ -77,13 +77,13 @@ class RunLengthCL(Component):
         elif kind == SAMPLE and s.row is not None:
             s.push(data)
         elif kind == ROW and s.row is None:
-            s.start_row(data)
-        elif kind == ROW:
+            s.start_segment(data)
+        elif kind == ROW and len(s.payload) >= s.header.segment:
             s.following = data
-            s.end_row()
+            s.end_segment()
         elif kind == END:
             s.counts = int(s.made), int(s.left_out)
-            s.start_trailer() if s.row is None else s.end_row()
+            s.start_trailer() if s.row is None else s.end_segment()
 
     def push(s, data):
         if s.header.edge:
@@ -93,10 +93,10 @@ class RunLengthCL(Component):
             bits, length = data & 0xFF, 8
         s.bits += f"{bits:0{length}b}" if length else ""
 
-    def start_row(s, row):
+    def start_segment(s, row):
         s.state, s.row, s.coder, s.payload = ROWS, row, START, []
 
-    def end_row(s):
+    def end_segment(s):
         if s.bits or s.coder[2]:
             s.bits = s.bits.ljust(8, "0")
         s.state = MARK

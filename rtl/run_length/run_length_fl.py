@@ -4,7 +4,7 @@ from collections import deque
 
 from pymtl3 import Component, update_ff
 
-from talbot.models.digital.stream import StreamHeader, encode_marked_row
+from talbot.models.digital.stream import StreamHeader, encode_marked, whole_bytes
 from talbot.models.digital.stream.trailer import trailer
 from talbot.models.parameters import MODES, Window
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE
@@ -28,11 +28,16 @@ def header_of(s, rows: int, cols: int, lanes: int, tile_rows: int, tile_cols: in
         int(s.mask),
         int(s.threshold),
         int(s.frame_number),
+        int(s.resync),
+        int(s.exposure),
+        int(s.n_cm),
+        int(s.t_int),
+        int(s.calibration),
     )
 
 
 class RunLengthFL(Component):
-    """The ports and parameters of RunLength. A row's bytes are sent when its last sample is known."""
+    """The ports and parameters of RunLength. A segment's bytes are sent when its last sample is known."""
 
     def construct(s, *chip):
         declare_ports(s)
@@ -67,7 +72,10 @@ class RunLengthFL(Component):
             s.codes.append(data - (data & 0x80) * 2 if s.header.edge else data)
         if kind not in (ROW, END):
             return b""
-        sent = b"" if s.row is None else encode_marked_row(s.row, s.codes, s.header.edge, s.header.threshold)
+        coder = s.header.edge, s.header.threshold
+        if kind == ROW and s.row is not None and whole_bytes(s.codes, *coder) < s.header.segment:
+            return b""
+        sent = b"" if s.row is None else encode_marked(s.row, s.codes, *coder)
         s.body += sent
         s.row, s.codes = data, []
         if kind == END:

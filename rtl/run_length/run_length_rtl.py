@@ -26,8 +26,8 @@ class RunLength(Component):
         s.crc16 = Crc16()
         s.crc32 = Crc32()
         s.queue = ByteQueue()
-        s.row = Wire(Bits10)
-        s.following = Wire(Bits10)  # the row after this one's mark
+        s.row = Wire(Bits10)  # the segment's first
+        s.following = Wire(Bits10)  # the row after this segment's mark
         s.mark = Wire(Bits16)
         s.word = Wire(Bits32)  # a count or the CRC-32
         s.place = Wire(Bits2)  # of the byte in it, 0 on top
@@ -42,6 +42,7 @@ class RunLength(Component):
         s.control.rdy //= s.recv.rdy
         s.control.packer_ready //= s.packer.ready
         s.control.packer_val //= s.packer.val
+        s.control.resync //= s.resync
         s.control.queue_ready //= s.queue.ready
         s.control.queue_last //= s.queue.last
         s.control.frame_sync //= s.frame_sync
@@ -69,10 +70,12 @@ class RunLength(Component):
         @update
         def select_word():
             s.word @= s.crc32.crc
-            s.place @= s.control.index[0:2] ^ 2  # the CRC-32s start at an index of 2 modulo 4
-            if (s.control.state == TRAILER) & (s.control.index < COUNTS):
-                s.word @= s.left_out if s.control.index[2] else s.made
-                s.place @= s.control.index[0:2]
+            s.place @= s.control.index[0:2]
+            if s.control.state == TRAILER:
+                if s.control.index < COUNTS:
+                    s.word @= s.left_out if s.control.index[2] else s.made
+                else:
+                    s.place @= s.control.index[0:2] ^ 2  # the mark is before the CRC-32
 
         @update
         def select():

@@ -1,4 +1,4 @@
-"""TokenCoder at RTL: the state of a row's coder, and the bits of the next sample (docs/stream.md, Payload)."""
+"""TokenCoder at RTL: the state of a segment's coder, and the bits of the next sample (docs/stream.md, Payload)."""
 
 from pymtl3 import (
     Bits1,
@@ -9,7 +9,9 @@ from pymtl3 import (
     Bits7,
     Bits8,
     Bits9,
-    Bits24,
+    Bits11,
+    Bits12,
+    Bits28,
     Component,
     InPort,
     OutPort,
@@ -24,23 +26,23 @@ from pymtl3 import (
 class TokenCoder(Component):
     def construct(s):
         # Interface
-        s.restart = InPort()  # a row starts
+        s.restart = InPort()  # a segment starts
         s.push = InPort()  # the sample is taken
         s.coded = InPort()
         s.threshold = InPort(Bits7)
         s.code = InPort(Bits8)
-        s.bits = OutPort(Bits24)  # right-aligned
+        s.bits = OutPort(Bits28)  # right-aligned
         s.length = OutPort(Bits5)
         s.open = OutPort()  # zeros wait for their token
 
         # Components: k, r2, run and credit as in models.digital.stream.payload
-        s.k = Wire(Bits3)
+        s.k = Wire(Bits4)
         s.r2 = Wire(Bits4)
-        s.run = Wire(Bits7)
+        s.run = Wire(Bits11)
         s.credit = Wire(Bits8)
 
         s.r = Wire(Bits3)
-        s.span = Wire(Bits8)  # 2**k
+        s.span = Wire(Bits12)  # 2**k
         s.full = Wire()
         s.distance = Wire(Bits9)  # of the magnitude from the smallest one coded
         s.zero = Wire()
@@ -49,7 +51,7 @@ class TokenCoder(Component):
         s.top = Wire(Bits3)  # place of the value's leading one
         s.prefix = Wire(Bits3)
         s.width = Wire(Bits4)  # of the value in its token
-        s.token = Wire(Bits24)
+        s.token = Wire(Bits28)
         s.after = Wire(Bits9)  # the credit after the token
 
         # Connections
@@ -59,8 +61,8 @@ class TokenCoder(Component):
         @update
         def classify():
             s.open @= s.run != 0
-            s.span @= Bits8(1) << zext(s.k, 8)
-            s.full @= (zext(s.run, 8) + 1) == s.span
+            s.span @= Bits12(1) << zext(s.k, 12)
+            s.full @= (zext(s.run, 12) + 1) == s.span
             s.literal @= ~s.coded | (~s.open & ((zext(s.credit[2:8], 7) + zext(s.r, 7)) < (zext(s.k, 7) + 17)))
             s.distance @= ((zext(~s.code, 9) + 1) if s.code[7] else zext(s.code, 9)) - zext(s.threshold, 9)
             if s.threshold == 0:
@@ -76,7 +78,7 @@ class TokenCoder(Component):
                     s.top @= Bits3(i)
             s.prefix @= s.top - s.r
             s.width @= concat(s.top, Bits1(1)) - zext(s.r, 4)
-            s.token @= zext(concat(s.span | zext(s.run, 8), s.code[7]), 24) << zext(s.width, 24)
+            s.token @= zext(concat(s.span | zext(s.run, 12), s.code[7]), 28) << zext(s.width, 28)
 
         @update
         def choose():
@@ -85,11 +87,11 @@ class TokenCoder(Component):
             if s.literal:
                 s.length @= 8
                 if ~(s.coded & s.zero):
-                    s.bits @= zext(s.code, 24)
+                    s.bits @= zext(s.code, 28)
             elif s.zero:
                 s.length @= zext(s.full, 5)
             else:
-                s.bits @= s.token | zext(s.value, 24)
+                s.bits @= s.token | zext(s.value, 28)
                 s.length @= zext(s.width, 5) + zext(s.k, 5) + 2
             s.after @= zext(s.credit, 9) + 33 - concat(Bits2(0), s.length, Bits2(0))
 
@@ -106,10 +108,10 @@ class TokenCoder(Component):
                 else:
                     s.run <<= 0
                     s.credit <<= Bits8(255) if s.after[8] else s.after[0:8]
-                if ~s.literal & s.zero & s.full & (s.k != 7):
+                if ~s.literal & s.zero & s.full & (s.k != 11):
                     s.k <<= s.k + 1
                 elif ~s.literal & ~s.zero:
-                    s.k <<= Bits3(0) if s.k < 2 else s.k - 2
+                    s.k <<= Bits4(0) if s.k < 2 else s.k - 2
                     if (s.prefix == 0) & (s.r2 != 0):
                         s.r2 <<= s.r2 - 1
                     elif (s.prefix > 1) & (s.r2 != 12):

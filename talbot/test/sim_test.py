@@ -48,6 +48,8 @@ KEYS = {
     "image_psnr_db",
     "image_psnr_gray_db",
     "image_psnr_jpeg_db",
+    "image_psnr_jpegxl_db",
+    "image_jpegxl_absent",
     "energy_uj",
     "left_out",
     "wall_s",

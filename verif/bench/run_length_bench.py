@@ -28,6 +28,8 @@ def random_header():
         random.randrange(4),
         mode == "tof" and random.random() < 0.5,
         frame_number=random.randrange(1 << 16),
+        resync=random.randrange(4),
+        calibration=random.randrange(1 << 8),
     )
     return StreamHeader.from_frame(ROWS, COLS, LANES, frame)
 
@@ -60,6 +62,11 @@ class RunLengthBench(Bench):
             "mask": header.mask,
             "threshold": header.threshold,
             "frame_number": header.frame_number,
+            "resync": header.resync,
+            "exposure": header.exposure,
+            "n_cm": header.n_cm,
+            "t_int": header.t_int,
+            "calibration": header.calibration,
             "made": made,
             "left_out": left_out,
         }.items():

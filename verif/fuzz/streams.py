@@ -61,6 +61,8 @@ def random_header(rng: Rng) -> tuple[StreamHeader, TileParameters]:
             int(rng.integers(0, 4)),
             mode == "tof" and rng.random() < 0.5,
             frame_number=int(rng.integers(0, 65536)),
+            resync=int(rng.integers(0, 4)),
+            calibration=int(rng.integers(0, 256)),
         )
         header = StreamHeader.from_frame(rows, cols, LANES[rng.integers(len(LANES))], frame, tile)
         try:

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from talbot.base.command import main
-from talbot.flow.formats import command
+from talbot.flow.formats import command, company
 from talbot.flow.formats.codes import entropy_bytes, load_codes, thresholded
 from talbot.flow.formats.measure import frame_bytes, growth, measure
 from talbot.flow.formats.orders import CHIP, ORDERS, segments_of
+from talbot.flow.formats.table import lines
 from talbot.flow.formats.tokens import CHOSEN, FORMATS
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import FrameParameters, ParameterError, Window
@@ -39,7 +40,7 @@ def test_tiles_follow_each_other():
 
 @pytest.mark.parametrize("threshold", [0, 12])
 def test_the_chosen_format_in_the_chip_s_order_is_the_stream(codes, threshold):
-    header = StreamHeader.from_frame(22, 45, 8, FrameParameters(Window(0, 5, 0, 7), threshold=threshold))
+    header = StreamHeader.from_frame(22, 45, 8, FrameParameters(Window(0, 5, 0, 7), threshold=threshold, resync=0))
     sent = thresholded(codes[0], threshold)
     assert frame_bytes(sent, threshold, FORMATS[CHOSEN][0], segments_of(CHIP, 22, 45)) == len(
         encode_frame(header, sent[..., None], 0, 0)
@@ -121,3 +122,37 @@ def test_bad_files_are_one_line_and_status_2(tmp_path, capsys):
         error = capsys.readouterr().err
         assert name in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("share", [0.0, 1e-4, 1e-3, 0.01])
+def test_sparse_frames_are_near_their_entropy_and_ahead_of_zstd(share):
+    """Values at random places: nothing to gain from their neighbours."""
+    rng = np.random.default_rng(3)
+    magnitude = np.minimum(rng.geometric(0.15, (384, 384)) + 9, 127)
+    codes = np.where(rng.random((384, 384)) < share, magnitude * rng.choice([-1, 1], (384, 384)), 0).astype(np.int16)
+    (row,) = company.compare("random", codes, [10])
+    assert row["entropy"] == round(entropy_bytes(codes)) and row["samples"] == 384 * 384
+    assert row["stream"] <= company.GOAL * row["entropy"] + company.FIXED
+    assert row["stream"] <= min(row[coder] for coder in company.CODERS)
+
+
+def test_noise_grows_by_less_than_a_sixteenth():
+    noise = np.random.default_rng(4).integers(-128, 128, (64, 384)).astype(np.int16)
+    assert company.stream_bytes(noise, 0) <= noise.size * 17 / 16
+
+
+def test_golomb_rice_of_a_known_frame():
+    """36 times 0, 1, 3 and 4 after the folding; parameter 1: 2, 2, 3 and 4 bits."""
+    codes = np.array([[0, 9], [10, -10]], np.int16)
+    (row,) = company.compare("known", np.tile(codes, (6, 6)), [9])
+    assert row["Golomb-Rice"] == company.FRAME + -(-36 * (2 + 2 + 3 + 4) // 8)
+
+
+def test_the_tables_of_the_coders():
+    row = {"scene": "a", "threshold": 10, "samples": 1000, "not_zero": 0.5, "entropy": 100, "stream": 130}
+    rows = [row | {"zlib -9": 200, "zstd -19": 260, "JPEG-LS": 300, "JPEG XL": 350, "Golomb-Rice": 400}]
+    rows += [rows[0] | {"scene": "b", "stream": 520}, rows[0] | {"threshold": 4}]
+    text = lines(company.tables(rows, 10))
+    assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 350 | 400 |" in text
+    assert "| 10 | 200 | 650 | 400 | 520 | 600 | 700 | 800 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
+    assert "| 4 | 100 | 130 | 200 | 260 | 300 | 350 | 400 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text

@@ -1,11 +1,13 @@
+import sys
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from talbot.flow.frame.codecs import CODECS, coded
 from talbot.flow.frame.figures import depth_line, energy_line, mismatches, psnr, trims_at_end, trims_line
 from talbot.flow.frame.job import expose, flat_field, see, simulate_frame
-from talbot.flow.frame.quality import coded, decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
+from talbot.flow.frame.quality import decoding_error, depth_quality, ideal_samples, image_quality, snr, ssim
 from talbot.flow.frame.report import against
 from talbot.flow.frame.request import request
 from talbot.models.parameters import CameraParameters, FrameParameters, Window
@@ -66,6 +68,7 @@ def test_depth_of_a_scene_before_the_lens(phase):
 
 def test_an_image_no_better_than_gray_is_said():
     row = {"image_psnr_db": 12.0, "image_psnr_gray_db": 14.0, "image_psnr_jpeg_db": None}
+    row |= {"image_psnr_jpegxl_db": 20.0, "image_jpegxl_absent": None}
     assert "no better than gray" in against(row) and "no better" not in against(row | {"image_psnr_db": 15.0})
     assert "no better" not in against(row | {"image_psnr_db": None})
 
@@ -110,13 +113,21 @@ def test_snr_of_sending_nothing_is_zero():
     assert snr(0 * signal, signal) is None
 
 
-@pytest.mark.parametrize("codec", ["jpeg", "avif"])
+@pytest.mark.parametrize("codec", CODECS)
 def test_codecs_keep_to_their_bytes_and_gain_with_them(codec):
     y, x = np.mgrid[:96, :96] / 96
     image = 0.5 + 0.4 * np.sin(12 * x * y) * np.cos(9 * y)
     errors = [np.abs(coded(image, codec, size) - image).mean() for size in (800, 6000)]
     assert errors[1] < errors[0] < 0.1
     assert coded(image, codec, 20) is None
+
+
+def test_a_codec_that_is_not_installed_is_said(monkeypatch):
+    monkeypatch.setitem(sys.modules, "imagecodecs", None)
+    figures = image_quality(simulate_frame(request(48, 48, mode="image")))
+    assert figures["image_psnr_jpeg_db"] is not None and figures["image_psnr_jpegxl_db"] is None
+    assert figures["image_ssim_jpegxl"] is None and "'talbot[codecs]'" in figures["image_jpegxl_absent"]
+    assert f"of JPEG XL not compared ({figures['image_jpegxl_absent']})" in against(figures)
 
 
 def test_ssim_is_one_for_the_truth_whatever_its_mean():

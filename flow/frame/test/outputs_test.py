@@ -67,6 +67,6 @@ def test_every_view_of_a_light_field_and_its_error_are_in_the_slider():
 @pytest.mark.parametrize("mode", ["edge", "raw"])
 def test_words_of_the_bytes(mode):
     _, summary = frame(mode)
-    assert list(summary["bytes"]) == ["header", "samples", "row marks", "trailer"]
+    assert list(summary["bytes"]) == ["header", "samples", "marks", "trailer"]
     assert sum(summary["bytes"].values()) == summary["stream_bytes"]
     assert report.FIRST[-1] == "image"

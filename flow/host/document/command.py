@@ -1,4 +1,4 @@
-"""Write the documents for a host: docs/registers.md, docs/registers.html, the tables of docs/host.md, the C header.
+"""Write the documents for a host: docs/registers.*, the tables of host.md, chip.md and stream.md, the C header.
 
 For other tools, by PeakRDL: build/registers/ with a site (html/index.html), IP-XACT and a C header of structs.
 """
@@ -18,7 +18,7 @@ HEADER = Path(__file__).parents[1] / "asp_chip_registers.h"
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot document`."""
-    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of the documents, with a host.md")
+    parser.add_argument("--out", type=Path, default=ROOT / "docs", help="folder of host.md, chip.md and stream.md")
     parser.add_argument("--header", type=Path, default=HEADER, help="the C header")
     parser.add_argument("--exports", type=Path, default=RESULTS / "registers", help="folder of the map for other tools")
 
@@ -32,4 +32,6 @@ def run(options: Namespace) -> int:
     exports.export(options.exports)
     for mark, table in tables.TABLES.items():
         insert(options.out / "host.md", mark, table())
+    for name in ("chip.md", "stream.md"):
+        insert(options.out / name, "tile", tables.tile_order())
     return 0

@@ -1,7 +1,7 @@
 """The byte stream that leaves the chip: golden encoder, decoder, and the command that decodes a file."""
 
 from .decode import decode_stream, iterate_frames
-from .encode import encode_frame, encode_marked_row, encode_payload
+from .encode import encode_frame, encode_marked, encode_payload, segments, whole_bytes
 from .file import decode_file
 from .frame import DecodedFrame
 from .header import StreamError, StreamHeader
@@ -13,7 +13,9 @@ __all__ = [
     "decode_file",
     "decode_stream",
     "encode_frame",
-    "encode_marked_row",
+    "encode_marked",
     "encode_payload",
     "iterate_frames",
+    "segments",
+    "whole_bytes",
 ]

@@ -27,21 +27,22 @@ class Body:
 
     def __init__(self, view: npt.NDArray[np.uint8], frame: DecodedFrame, sent: bytes, start: int | None = None) -> None:
         header, layout = frame.header, frame.layout
-        longest = int(layout.counts.max())
+        samples = int(layout.counts.sum())
         self.view, self.frame, self.sent = view, frame, sent
-        self.coder = header.edge, base_of(header.threshold), np.empty(longest, np.int32), np.empty(longest, np.int16)
+        found = np.empty(samples, np.int32), np.empty(samples, np.int16)
+        self.coder = header.edge, base_of(header.threshold), header.segment, *found
         self.rows = frame.samples.reshape(header.rows, -1)
         self.first = (frame.start if start is None else start) + HEADER_BYTES
         self.total = layout.rows.size
         self.ends = np.zeros(self.total, np.int64)
 
     def decode(self, ordinal: int, at: int, whole: bool = True) -> tuple[int, int, Trailer | None]:
-        """Decode rows, and the trailer after the last, until one does not fit.
+        """Decode segments, and the trailer after the last, until one does not fit.
 
         Parameters
         ----------
         ordinal : int
-            Number of the first row.
+            Number of the first row, with which a segment begins.
         at : int
             Its position.
         whole : bool
@@ -50,16 +51,15 @@ class Body:
         Returns
         -------
         ordinal : int
-            Number of the row that does not fit, or the number of rows.
+            Number of the first row of the segment that does not fit, or the number of rows.
         at : int
-            Position of that row or of the trailer.
+            Position of that segment or of the trailer.
         trailer : Trailer or None
             None if a row or the trailer does not fit.
         """
         layout, view = self.frame.layout, self.view
-        ordinal, at = decode_rows(
-            view, at, ordinal, layout.rows, layout.kind, layout.places, layout.start, *self.coder, self.rows, self.ends
-        )
+        places = layout.rows, layout.counts, layout.kind, layout.places, layout.start
+        ordinal, at = decode_rows(view, at, ordinal, *places, *self.coder, self.rows, self.ends)
         if ordinal < self.total:
             return ordinal, at, None
         crc = frame_crc(self.sent, view[self.first : at].data) if whole else None
@@ -98,6 +98,7 @@ class Body:
             if trailer and start + at + TRAILER_BYTES == stop:
                 row = int(np.searchsorted(corrected.ends, HEADER_BYTES + position, "right"))
                 self._report(self.first + position, row)
+                self.ends = corrected.ends
                 return trailer
         if found:
             self.rows[:] = 0
@@ -105,5 +106,5 @@ class Body:
         return None
 
     def _report(self, position: int, ordinal: int) -> None:
-        place = f"row {self.frame.layout.rows[ordinal]}" if ordinal < self.total else "the trailer"
+        place = f"row {self.frame.layout.rows[ordinal]} or one before it" if ordinal < self.total else "the trailer"
         self.frame.errors.append(f"byte {position}: byte of {place} corrected")

@@ -16,7 +16,7 @@ from .resync import Search
 from .trailer import Trailer
 
 MEMORY_MAX = 1 << 30  # bytes of samples that decode_stream returns at most
-SEARCH_MAX = 1 << 28, 64  # samples decoded on trial to find rows again, at most: a constant, and for each byte
+SEARCH_MAX = 1 << 28, 64  # tokens decoded on trial to find segments again, at most: a constant, and for each byte
 
 
 def decode_stream(data: bytes, tile: TileParameters = TileParameters()) -> list[DecodedFrame]:
@@ -136,7 +136,7 @@ def _good_header(data: bytes, start: int, stop: int) -> int:
 
 
 def _decode_frame(data: bytes, frame: DecodedFrame, sent: bytes, tile: TileParameters, limit: int) -> int:
-    """Fill in a frame from its ``start`` on; returns the rest of the samples that may be decoded on trial."""
+    """Fill in a frame from its ``start`` on; returns the rest of the tokens that may be decoded on trial."""
     body, stop = Body(np.frombuffer(data, np.uint8), frame, sent), len(data)
     ordinal, at, tail = body.decode(0, body.first)
     if tail is None:
@@ -148,6 +148,7 @@ def _decode_frame(data: bytes, frame: DecodedFrame, sent: bytes, tile: TileParam
             ordinal, at, tail = body.total, stop - TRAILER_BYTES, corrected
         else:
             ordinal, at, tail, limit = _decode_around(body, frame, ordinal, at, stop, limit)
+    frame.segments = np.unique(body.ends[body.ends > 0]).size
     trailer_end = min(at + TRAILER_BYTES, len(data))
     if tail:
         frame.made, frame.left_out, notes = tail
@@ -165,10 +166,10 @@ def _decode_frame(data: bytes, frame: DecodedFrame, sent: bytes, tile: TileParam
 def _decode_around(
     body: Body, frame: DecodedFrame, ordinal: int, at: int, stop: int, limit: int
 ) -> tuple[int, int, Trailer | None, int]:
-    """Go on after each damaged row: returns (ordinal, position, trailer or None, limit) where no more is found."""
+    """Go on after each damaged segment: returns (ordinal, position, trailer or None, limit) where no more is found."""
     search, bad, tail = Search(body.view, stop, limit, frame.layout, *body.coder), [], None
     while tail is None:
-        found = search.next_row(ordinal, at)
+        found = search.next_segment(ordinal, at)
         bad += range(ordinal, found[1] if found else body.total)
         if not found:
             break

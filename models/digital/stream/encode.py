@@ -1,12 +1,14 @@
 """The golden encoder: from one frame's samples to bytes. The RTL's stream equals it byte for byte."""
 
+from collections.abc import Iterable, Sequence
+
 import numpy as np
 import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError, TileParameters
 
 from .header import StreamHeader
-from .payload import base_of, encode_row, encode_rows, row_bytes_max
+from .payload import base_of, encode_rows, encode_segment, row_bytes_max
 from .trailer import row_mark, trailer
 
 
@@ -50,18 +52,19 @@ def encode_frame(
     counts = layout.counts
     size = sum(row_bytes_max(int(n), header.edge) + 2 for n in counts)
     out = np.empty(size, np.uint8)
-    end = encode_rows(codes.astype(np.int16), layout.rows, counts, header.edge, base_of(header.threshold), out)
+    coder = header.edge, base_of(header.threshold), header.segment
+    end = encode_rows(codes.astype(np.int16), layout.rows, counts, *coder, out)
     sent, body = header.to_bytes(), out[:end].tobytes()
     return sent + body + trailer(sent, body, made, left_out)
 
 
 def encode_payload(codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
-    """Payload of one row, without its mark.
+    """Payload of one segment, without its mark.
 
     Parameters
     ----------
     codes : array of int (n,)
-        Samples in the order of the stream.
+        Samples of its rows in the order of the stream.
     edge : bool
         Run-length coded signed codes; else plain bytes.
     threshold : int
@@ -72,20 +75,45 @@ def encode_payload(codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
     bytes
         At most row_bytes_max(n, edge).
     """
+    return _encode(codes, edge, threshold)[0]
+
+
+def whole_bytes(codes: npt.ArrayLike, edge: bool, threshold: int) -> int:
+    """Bytes of a segment that are complete before it is closed: their number decides whether it is.
+
+    Parameters
+    ----------
+    codes : array of int (n,)
+        Samples of its rows so far.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+    threshold : int
+        0..127.
+
+    Returns
+    -------
+    int
+        0 or more.
+    """
+    return _encode(codes, edge, threshold)[1]
+
+
+def _encode(codes: npt.ArrayLike, edge: bool, threshold: int) -> tuple[bytes, int]:
     codes = np.asarray(codes, np.int16)
     out = np.empty(row_bytes_max(codes.size, edge) + 1, np.uint8)
-    return out[: encode_row(codes, edge, base_of(threshold), out, 0)].tobytes()
+    end, whole = encode_segment(codes, edge, base_of(threshold), out)
+    return out[:end].tobytes(), whole
 
 
-def encode_marked_row(row: int, codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
-    """Payload and mark of one row.
+def encode_marked(row: int, codes: npt.ArrayLike, edge: bool, threshold: int) -> bytes:
+    """Payload and mark of one segment.
 
     Parameters
     ----------
     row : int
-        Row index.
+        Index of its first row.
     codes : array of int (n,)
-        Samples in the order of the stream.
+        Samples of its rows in the order of the stream.
     edge : bool
         Run-length coded signed codes; else plain bytes.
     threshold : int
@@ -98,3 +126,29 @@ def encode_marked_row(row: int, codes: npt.ArrayLike, edge: bool, threshold: int
     """
     payload = encode_payload(codes, edge, threshold)
     return payload + row_mark(payload, row)
+
+
+def segments(header: StreamHeader, rows: Iterable[tuple[int, Sequence[int]]]) -> list[tuple[int, list[int], int]]:
+    """Rows gathered to segments.
+
+    Parameters
+    ----------
+    header : StreamHeader
+        Of their frame.
+    rows : iterable of (int, sequence of int)
+        Index and samples of each row, in the order of the stream.
+
+    Returns
+    -------
+    list of (int, list of int, int)
+        Index of the first row, the samples, and the number of rows of each segment.
+    """
+    out: list[tuple[int, list[int], int]] = []
+    full = True
+    for row, codes in rows:
+        if full:
+            out.append((row, [], 0))
+        first, gathered, many = out[-1]
+        out[-1] = first, [*gathered, *codes], many + 1
+        full = whole_bytes(out[-1][1], header.edge, header.threshold) >= header.segment
+    return out

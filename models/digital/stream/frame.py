@@ -29,6 +29,8 @@ class DecodedFrame:
         Rows that are damaged or missing, ascending.
     made, left_out : int or None
         Conversions; None when the trailer is lost.
+    segments : int
+        Segments, each with a mark, that are decoded.
     errors : list of str
         One line for each error, corrected or not.
     """
@@ -41,6 +43,7 @@ class DecodedFrame:
     bad_rows: list[int] = field(default_factory=list)
     made: int | None = None
     left_out: int | None = None
+    segments: int = 0
     errors: list[str] = field(default_factory=list)
 
     @property

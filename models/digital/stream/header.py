@@ -15,6 +15,7 @@ from talbot.models.parameters import (
     MODES,
     ROWS_MAX,
     SAMPLES_PER_PIXEL,
+    AmpTiming,
     FrameParameters,
     ParameterError,
     TileParameters,
@@ -22,7 +23,15 @@ from talbot.models.parameters import (
     check_choice,
     check_int,
 )
-from talbot.models.parameters.stream_format import CRC, FIELD_BYTES, HEADER_BYTES, HEADER_FIELDS, MAGIC, VERSION
+from talbot.models.parameters.stream_format import (
+    CRC,
+    FIELD_BYTES,
+    HEADER_BYTES,
+    HEADER_FIELDS,
+    MAGIC,
+    SEGMENT_BYTES,
+    VERSION,
+)
 
 from .crc import one_byte_errors
 
@@ -43,8 +52,10 @@ class StreamHeader:
         Converters, a power of two in 1..32.
     tile_rows, tile_cols : int
         Size of the tile in pixels, 1..4 and 1..6.
-    window, mode, phase, decimation, mask, threshold, frame_number
+    window, mode, phase, decimation, mask, threshold, frame_number, resync, calibration
         As in FrameParameters.
+    exposure, n_cm, t_int : int
+        Lead of the reset pointer in rows, common-mode resets of a row and cycles of each integration, as in AmpTiming.
 
     Raises
     ------
@@ -64,6 +75,11 @@ class StreamHeader:
     mask: int
     threshold: int
     frame_number: int
+    resync: int
+    exposure: int
+    n_cm: int
+    t_int: int
+    calibration: int
 
     def __post_init__(self) -> None:
         check_int("rows", self.rows, 1, ROWS_MAX)
@@ -108,6 +124,11 @@ class StreamHeader:
             frame.mask,
             frame.threshold,
             frame.frame_number,
+            frame.resync,
+            frame.timing.exposure,
+            frame.timing.n_cm,
+            frame.timing.t_int,
+            frame.calibration,
         )
 
     @property
@@ -121,12 +142,20 @@ class StreamHeader:
             self.decimation,
             self.phase,
             frame_number=self.frame_number,
+            resync=self.resync,
+            calibration=self.calibration,
+            timing=AmpTiming(n_cm=self.n_cm, t_int=self.t_int, exposure=self.exposure),
         )
 
     @property
     def edge(self) -> bool:
         """True when the rows are run-length coded signed codes; else they are plain bytes 0..255."""
         return self.mode == "edge"
+
+    @property
+    def segment(self) -> int:
+        """Bytes of payload that a segment has at least, unless the frame ends."""
+        return SEGMENT_BYTES * self.resync
 
     @property
     def subs(self) -> int:
@@ -136,7 +165,7 @@ class StreamHeader:
     def to_bytes(self) -> bytes:
         """Encoded header with its CRC-32: HEADER_BYTES bytes."""
         w = self.window
-        flags = self.decimation << 4 | self.phase << 2 | MODES.index(self.mode)
+        flags = self.resync << 6 | self.decimation << 4 | self.phase << 2 | MODES.index(self.mode)
         fields = HEADER_FIELDS.pack(
             MAGIC,
             VERSION,
@@ -152,6 +181,10 @@ class StreamHeader:
             w.col1,
             self.mask.to_bytes(3, "big"),
             self.frame_number,
+            self.exposure,
+            self.n_cm,
+            self.t_int,
+            self.calibration,
         )
         return fields + CRC.pack(zlib.crc32(fields))
 
@@ -292,15 +325,14 @@ def read_header(data: bytes) -> ReceivedHeader:
     if found is None:
         raise StreamError("header CRC-32 does not fit, and no change of one byte corrects it")
     sent, position = found
-    (magic, version, flags, threshold, lanes, tile, rows, cols, row0, row1, col0, col1, mask, frame_number) = (
-        HEADER_FIELDS.unpack_from(sent)
-    )
+    magic, version, flags, threshold, lanes, tile, rows, cols, *fields = HEADER_FIELDS.unpack_from(sent)
+    row0, row1, col0, col1, mask, frame_number, exposure, n_cm, t_int, calibration = fields
     if magic != MAGIC:
         raise StreamError(f"starts with {magic!r}: a frame starts with {MAGIC!r}")
     if version != VERSION:
         raise StreamError(f"version {version}: this decoder reads version {VERSION}")
-    if flags & 0xC8:
-        raise StreamError(f"flags = {flags:#04x}: reserved bits are set")
+    if flags & 0x08:
+        raise StreamError(f"flags = {flags:#04x}: the reserved bit is set")
     try:
         header = StreamHeader(
             rows,
@@ -315,6 +347,11 @@ def read_header(data: bytes) -> ReceivedHeader:
             int.from_bytes(mask, "big"),
             threshold,
             frame_number,
+            flags >> 6,
+            exposure,
+            n_cm,
+            t_int,
+            calibration,
         )
     except ParameterError as error:
         raise StreamError(f"header: {error}") from None

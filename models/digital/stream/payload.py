@@ -1,4 +1,4 @@
-"""Rows as bytes: samples to bits and back, row after row (docs/stream.md, Payload).
+"""Segments of rows as bytes: samples to bits and back (docs/stream.md, Payload).
 
 `code_sample` is the coder: the packing around it, the hardware's cycle model and the decoder only move its bits.
 All that Numba compiles is in this one file, since its cache on disk does not notice a change of a function in
@@ -15,9 +15,9 @@ from talbot.models.parameters.stream_format import COUNTED_BYTES, COUNTS, MAGIC,
 
 from .crc import CRC16_AFTER, CRC16_START, CRC32_BACK, CRC32_TABLE
 
-START = (3, 4, 0, 128)  # k, r2, run, credit at the start of a row
-K_MAX, R2_MAX, CREDIT_MAX = 7, 12, 255
-TOKEN_MAX = 24  # bits of the longest token
+START = (3, 4, 0, 128)  # k, r2, run, credit at the start of a segment
+K_MAX, R2_MAX, CREDIT_MAX = 11, 12, 255
+TOKEN_MAX = 28  # bits of the longest token
 
 # Change of r2 by the number of zeros before a value's leading one; that number by the value's top byte.
 R2_STEP = np.array([-1, 0] + [1] * 7)
@@ -50,12 +50,12 @@ def base_of(threshold: int) -> int:
 
 
 def row_bytes_max(count: int, edge: bool) -> int:
-    """Largest payload of a row: 8.25 bits a sample and 4 bytes in edge mode.
+    """Largest payload of a segment: 8.25 bits a sample and 4 bytes in edge mode.
 
     Parameters
     ----------
     count : int
-        Samples of the row.
+        Samples of the segment.
     edge : bool
         Run-length coded signed codes; else plain bytes.
 
@@ -107,7 +107,7 @@ def crc16_span(data: Bytes, start: int, stop: int) -> int:
 def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) -> tuple[int, int, int, int, int, int]:
     """Encode one sample of edge mode.
 
-    A run that is still open at the end of a row is closed by one more 0 bit.
+    A run that is still open at the end of a segment is closed by one more 0 bit.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) ->
     Returns
     -------
     bits, length : int
-        Token, 0..24 bits.
+        Token, 0..28 bits.
     k, r2, run, credit : int
         State after it.
     """
@@ -148,34 +148,16 @@ def code_sample(code: int, base: int, k: int, r2: int, run: int, credit: int) ->
 
 
 @njit(cache=True)
-def encode_row(codes: Codes, edge: bool, base: int, out: Bytes, at: int) -> int:
-    """Append the payload of a row.
-
-    Parameters
-    ----------
-    codes : int16 (n,)
-        Samples in the order of the stream.
-    edge : bool
-        Run-length coded signed codes; else plain bytes.
-    base : int
-        See `base_of`.
-    out : uint8
-        Receives the bytes.
-    at : int
-        Position of the first byte.
-
-    Returns
-    -------
-    int
-        Position after the payload.
-    """
+def _append(
+    codes: Codes, edge: bool, base: int, out: Bytes, at: int, state: tuple[int, int, int, int, int, int]
+) -> tuple[int, tuple[int, int, int, int, int, int]]:
+    """Append whole bytes of a row. state: of the coder, then the bits that wait and their number."""
+    k, r2, run, credit, hold, held = state
     if not edge:
         for code in codes:
             out[at] = code & 0xFF
             at += 1
-        return at
-    k, r2, run, credit = START
-    hold, held = 0, 0
+        return at, state
     for code in codes:
         bits, length, k, r2, run, credit = code_sample(code, base, k, r2, run, credit)
         hold = hold << length | bits
@@ -185,6 +167,13 @@ def encode_row(codes: Codes, edge: bool, base: int, out: Bytes, at: int) -> int:
             out[at] = hold >> held & 0xFF
             at += 1
         hold &= (1 << held) - 1
+    return at, (k, r2, run, credit, hold, held)
+
+
+@njit(cache=True)
+def _close(out: Bytes, at: int, state: tuple[int, int, int, int, int, int]) -> int:
+    """Append the rest of a segment."""
+    _, _, run, _, hold, held = state
     held += run > 0
     hold <<= run > 0
     if held:
@@ -193,8 +182,37 @@ def encode_row(codes: Codes, edge: bool, base: int, out: Bytes, at: int) -> int:
     return at
 
 
+_FRESH = (*START, 0, 0)
+
+
 @njit(cache=True)
-def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, out: Bytes) -> int:
+def encode_segment(codes: Codes, edge: bool, base: int, out: Bytes) -> tuple[int, int]:
+    """Payload of a segment.
+
+    Parameters
+    ----------
+    codes : int16 (n,)
+        Samples in the order of the stream, of all its rows.
+    edge : bool
+        Run-length coded signed codes; else plain bytes.
+    base : int
+        See `base_of`.
+    out : uint8
+        Receives the bytes.
+
+    Returns
+    -------
+    end : int
+        Bytes of the payload.
+    whole : int
+        Those that are complete before the segment is closed.
+    """
+    whole, state = _append(codes, edge, base, out, 0, _FRESH)
+    return _close(out, whole, state), whole
+
+
+@njit(cache=True)
+def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, segment: int, out: Bytes) -> int:
     """Encode rows with their marks.
 
     Parameters
@@ -207,6 +225,8 @@ def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, o
         Run-length coded signed codes; else plain bytes.
     base : int
         See `base_of`.
+    segment : int
+        Bytes of payload after which a row is a segment's last.
     out : uint8
         Receives the bytes.
 
@@ -215,21 +235,33 @@ def encode_rows(codes: Codes, rows: Ints, counts: Ints, edge: bool, base: int, o
     int
         Bytes written.
     """
-    at, first = 0, 0
+    at, start, first, row, state = 0, 0, 0, 0, _FRESH
     for i in range(rows.size):
-        end = encode_row(codes[first : first + counts[i]], edge, base, out, at)
-        mark = crc16_span(out, at, end) ^ rows[i]
-        out[end], out[end + 1] = mark >> 8, mark & 0xFF
-        at = end + 2
+        at, state = _append(codes[first : first + counts[i]], edge, base, out, at, state)
         first += counts[i]
+        if at - start >= segment or i == rows.size - 1:
+            at = _close(out, at, state)
+            mark = crc16_span(out, start, at) ^ rows[row]
+            out[at], out[at + 1] = mark >> 8, mark & 0xFF
+            at += 2
+            start, row, state = at, i + 1, _FRESH
     return at
 
 
 @njit(cache=True)
-def decode_row(
-    data: Bytes, at: int, stop: int, count: int, edge: bool, base: int, where: Ints, value: Codes
-) -> tuple[int, int]:
-    """Decode the payload of a row from data[at:stop].
+def decode_segment(
+    data: Bytes,
+    at: int,
+    stop: int,
+    ordinal: int,
+    counts: Ints,
+    edge: bool,
+    base: int,
+    segment: int,
+    where: Ints,
+    value: Codes,
+) -> tuple[int, int, int, int]:
+    """Decode the payload of a segment from data[at:stop].
 
     Parameters
     ----------
@@ -237,30 +269,57 @@ def decode_row(
         Bytes of the stream.
     at, stop : int
         Span.
-    count : int
-        Samples of the row.
+    ordinal : int
+        Number of the segment's first row.
+    counts : int32 (R,)
+        Samples of each row.
     edge : bool
         Run-length coded signed codes; else plain bytes, which are the samples themselves.
     base : int
         See `base_of`.
-    where : int32 (count or more,)
-        Receives the index in the row of each non-zero sample of edge mode, ascending.
-    value : int16 (count or more,)
+    segment : int
+        Bytes of payload after which a row is the last.
+    where : int32 (samples of the frame or more,)
+        Receives the index in the segment of each non-zero sample of edge mode, ascending.
+    value : int16 (as many,)
         Receives these samples.
 
     Returns
     -------
     end : int
         Position after the payload; -1 when no encoder writes these bits or they run past ``stop``.
+    rows : int
+        Rows of the segment.
     found : int
         Non-zero samples of edge mode.
+    work : int
+        Tokens, or rows of plain bytes, that were decoded.
     """
+    row, row_end = ordinal, int64(counts[ordinal])
     if not edge:
-        return at + count if at + count <= stop else -1, 0
+        while row_end < segment and row < counts.size - 1:
+            row += 1
+            row_end += counts[row]
+        end = at + row_end
+        return end if end <= stop else -1, row + 1 - ordinal, 0, row + 1 - ordinal
     k, r2, run, credit = START
     hold, held = np.uint64(0), 0  # the next bits, from the top
-    here, found, i = at, 0, 0
-    while i < count:
+    here, found, i, work, frame_end = at, 0, 0, 0, int64(0)
+    for count in counts[ordinal:]:
+        frame_end += count
+    while True:
+        full = (8 * (here - at) - held) >> 3 >= segment
+        while row < counts.size and row_end == i:
+            row += 1
+            if full or row == counts.size:
+                here -= held >> 3
+                pad = held & 7
+                if pad and data[here - 1] & ((1 << pad) - 1):
+                    return -1, 0, 0, work
+                return here, row - ordinal, found, work
+            row_end += counts[row]
+        top = row_end if full else frame_end  # a run ends here at the latest
+        work += 1
         if held < TOKEN_MAX and here + 4 <= stop:
             hold |= np.uint64(_word(data, here) << 16 | _word(data, here + 2)) << np.uint64(32 - held)
             here += 4
@@ -277,14 +336,14 @@ def decode_row(
             credit = min(credit + 1, CREDIT_MAX)
             if code != 0:
                 if abs(code) < base:
-                    return -1, 0
+                    return -1, 0, 0, work
                 where[found] = i
                 value[found] = code
                 found += 1
             i += 1
         elif int64(hold) >= 0:
             length = 1
-            i += 1 << k
+            i = min(i + (1 << k), top)
             k = min(k + 1, K_MAX)
             credit = min(credit + 29, CREDIT_MAX)
         else:
@@ -296,8 +355,8 @@ def decode_row(
             prefix = PREFIX[token >> (left - 8)]
             size = 2 * prefix + r + 1
             magnitude = (token >> max(left - size, 0)) - (1 << r) + base
-            if prefix > 7 - r or i >= count or magnitude > 127 - sign:
-                return -1, 0
+            if prefix > 7 - r or i >= top or magnitude > 127 - sign:
+                return -1, 0, 0, work
             where[found] = i
             value[found] = (magnitude ^ sign) - sign
             found += 1
@@ -308,39 +367,46 @@ def decode_row(
             credit = min(credit + 33 - 4 * length, CREDIT_MAX)
         held -= length
         if held < 0:
-            return -1, 0
+            return -1, 0, 0, work
         hold <<= np.uint64(length)
-    here -= held >> 3
-    pad = held & 7
-    if pad and data[here - 1] & ((1 << pad) - 1):
-        return -1, 0
-    return here, found
+        while row_end < i:  # rows that end within the token
+            row += 1
+            row_end += counts[row]
 
 
 @njit(cache=True)
-def check_row(
-    data: Bytes, at: int, stop: int, count: int, edge: bool, base: int, where: Ints, value: Codes
-) -> tuple[int, int, int]:
-    """Decode a row and its mark from data[at:stop].
+def check_segment(
+    data: Bytes,
+    at: int,
+    stop: int,
+    ordinal: int,
+    counts: Ints,
+    edge: bool,
+    base: int,
+    segment: int,
+    where: Ints,
+    value: Codes,
+) -> tuple[int, int, int, int, int]:
+    """Decode a segment and its mark from data[at:stop].
 
     Parameters
     ----------
-    data, at, stop, count, edge, base, where, value
-        As in `decode_row`.
+    data, at, stop, ordinal, counts, edge, base, segment, where, value
+        As in `decode_segment`.
 
     Returns
     -------
     end : int
         Position after the mark; -1 when the payload or the mark does not fit.
     row : int
-        Row index of the mark; a random number when the row is damaged.
-    found : int
-        Non-zero samples of edge mode.
+        Row index of the mark; a random number when the segment is damaged.
+    rows, found, work : int
+        As in `decode_segment`.
     """
-    end, found = decode_row(data, at, stop, count, edge, base, where, value)
+    end, rows, found, work = decode_segment(data, at, stop, ordinal, counts, edge, base, segment, where, value)
     if end < 0 or end + 2 > stop:
-        return -1, 0, 0
-    return end + 2, crc16_span(data, at, end) ^ _word(data, end), found
+        return -1, 0, 0, 0, work
+    return end + 2, crc16_span(data, at, end) ^ _word(data, end), rows, found, work
 
 
 @njit(cache=True)
@@ -349,53 +415,61 @@ def decode_rows(
     at: int,
     ordinal: int,
     rows: Ints,
+    counts: Ints,
     kind: Ints,
     places: Ints,
     start: Ints,
     edge: bool,
     base: int,
+    segment: int,
     where: Ints,
     value: Codes,
     out: Codes,
     ends: Places,
 ) -> tuple[int, int]:
-    """Decode rows until one does not fit.
+    """Decode segments until one does not fit.
 
     Parameters
     ----------
     data : uint8
         Bytes of the stream.
     at, ordinal : int
-        Position and number of the first row.
-    rows, kind, places, start
+        Position of the first segment, and the number of its first row.
+    rows, counts, kind, places, start
         As in Layout.
-    edge, base, where, value
-        As in `decode_row`.
+    edge, base, segment, where, value
+        As in `decode_segment`.
     out : int16 (rows, cols * subs)
         Receives the samples.
     ends : int64 (R,)
-        Receives the end of each row.
+        Receives the end of the segment of each row.
 
     Returns
     -------
     ordinal : int
-        Number of the row that does not fit, or the number of rows.
+        Number of the first row of the segment that does not fit, or the number of rows.
     at : int
         Its position.
     """
     while ordinal < rows.size:
-        first = int64(start[kind[ordinal]])
-        count = int64(start[kind[ordinal] + 1]) - first
-        end, row, found = check_row(data, at, data.size, count, edge, base, where, value)
+        end, row, many, found, _ = check_segment(
+            data, at, data.size, ordinal, counts, edge, base, segment, where, value
+        )
         if end < 0 or row != rows[ordinal]:
             break
-        for i in range(found):
-            out[row, places[first + where[i]]] = value[i]
-        if not edge:
-            for i in range(count):
-                out[row, places[first + i]] = data[at + i]
-        ends[ordinal] = at = end
-        ordinal += 1
+        first, n = 0, 0
+        for this in range(ordinal, ordinal + many):
+            place = int64(start[kind[this]])
+            while n < found and where[n] < first + counts[this]:
+                out[rows[this], places[place + where[n] - first]] = value[n]
+                n += 1
+            if not edge:
+                for i in range(counts[this]):
+                    out[rows[this], places[place + i]] = data[at + first + i]
+            first += counts[this]
+            ends[this] = end
+        at = end
+        ordinal += many
     return ordinal, at
 
 
@@ -445,7 +519,7 @@ def frame_ends(data: Bytes, at: int, stop: int) -> bool:
 
 
 @njit(cache=True)
-def row_fits(
+def segment_fits(
     data: Bytes,
     at: int,
     stop: int,
@@ -454,10 +528,11 @@ def row_fits(
     counts: Ints,
     edge: bool,
     base: int,
+    segment: int,
     where: Ints,
     value: Codes,
 ) -> bool:
-    """Whether a row, or the trailer after the last, is at a position.
+    """Whether a segment, or the trailer after the last, is at a position.
 
     Parameters
     ----------
@@ -466,11 +541,11 @@ def row_fits(
     at, stop : int
         Position, and end of the bytes.
     ordinal : int
-        Number of the row; the number of rows is the trailer.
+        Number of its first row; the number of rows is the trailer.
     rows, counts : int32 (R,)
         Index and samples of each row.
-    edge, base, where, value
-        As in `decode_row`.
+    edge, base, segment, where, value
+        As in `decode_segment`.
 
     Returns
     -------
@@ -479,12 +554,12 @@ def row_fits(
     """
     if ordinal == rows.size:
         return counts_fit(data, at, stop)
-    end, row, _ = check_row(data, at, stop, int64(counts[ordinal]), edge, base, where, value)
+    end, row, _, _, _ = check_segment(data, at, stop, ordinal, counts, edge, base, segment, where, value)
     return end >= 0 and row == rows[ordinal]
 
 
 @njit(cache=True)
-def find_row(
+def find_segment(
     data: Bytes,
     start: int,
     stop: int,
@@ -496,10 +571,11 @@ def find_row(
     number: Ints,
     edge: bool,
     base: int,
+    segment: int,
     where: Ints,
     value: Codes,
 ) -> tuple[int, int, int]:
-    """Search data[start:stop] for one of some rows.
+    """Search data[start:stop] for the start of one of some segments.
 
     Parameters
     ----------
@@ -508,49 +584,78 @@ def find_row(
     start, stop : int
         Span.
     limit : int
-        Samples that may be decoded on trial.
+        Tokens that may be decoded on trial.
     first, last : int
-        Numbers of the rows, both included; the number of rows is the trailer.
+        Numbers of the rows that it may begin with, both included; the number of rows is the trailer.
     rows, counts : int32 (R,)
         Index and samples of each row.
     number : int32 (ROWS_MAX,)
         Number of a row index, or -1.
-    edge, base, where, value
-        As in `decode_row`.
+    edge, base, segment, where, value
+        As in `decode_segment`.
 
     Returns
     -------
     at : int
         Position, or -1.
     ordinal : int
-        Number of the row there.
+        Number of the first row there.
     limit : int
-        Samples that may still be decoded on trial.
+        Tokens that may still be decoded on trial.
     """
     for at in range(start, stop):
         if last == rows.size and counts_fit(data, at, stop) and frame_ends(data, at + _TRAILER, stop):
-            return at, rows.size, limit
-        previous = -1
+            return _last_segment(data, start, at, limit, first, rows, counts, number, edge, base, segment, where, value)
+        # of four rows that follow each other one has the samples of any other, and of the rows after it
         for ordinal in range(first, min(last, rows.size - 1, first + 3) + 1):
-            # rows of the same number of samples look alike until their mark; four numbers follow each other
-            count = int64(counts[ordinal])
-            if count == previous:
-                continue
-            previous = count
-            limit -= count
+            end, row, _, _, work = check_segment(data, at, stop, ordinal, counts, edge, base, segment, where, value)
+            limit -= work
             if limit < 0:
                 return -1, 0, 0
-            end, row, _ = check_row(data, at, stop, count, edge, base, where, value)
             if end < 0 or row >= number.size:
                 continue
             found = number[row]
+            if not first <= found <= last:
+                continue
+            end, same, many, _, work = check_segment(data, at, stop, found, counts, edge, base, segment, where, value)
+            limit -= work
             if (
-                first <= found <= last
-                and counts[found] == count
-                and row_fits(data, end, stop, found + 1, rows, counts, edge, base, where, value)
+                end >= 0
+                and same == row
+                and segment_fits(data, end, stop, found + many, rows, counts, edge, base, segment, where, value)
             ):
                 return at, found, limit
     return -1, 0, limit
+
+
+@njit(cache=True)
+def _last_segment(
+    data: Bytes,
+    start: int,
+    stop: int,
+    limit: int,
+    first: int,
+    rows: Ints,
+    counts: Ints,
+    number: Ints,
+    edge: bool,
+    base: int,
+    segment: int,
+    where: Ints,
+    value: Codes,
+) -> tuple[int, int, int]:
+    """The segment that the frame's end cuts off, right before the trailer at ``stop``; the trailer if there is none."""
+    for at in range(start, stop - 1):
+        limit -= stop - at
+        if limit < 0:
+            break
+        row = crc16_span(data, at, stop - 2) ^ _word(data, stop - 2)
+        found = number[row] if row < number.size else -1
+        if found >= first:
+            end, _, many, _, _ = check_segment(data, at, stop, found, counts, edge, base, segment, where, value)
+            if end == stop and found + many == rows.size:
+                return at, found, limit
+    return stop, rows.size, limit
 
 
 @njit(cache=True)

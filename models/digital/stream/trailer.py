@@ -34,14 +34,14 @@ class Trailer(NamedTuple):
 
 
 def row_mark(payload: bytes, row: int) -> bytes:
-    """Mark of a row.
+    """Mark of a segment.
 
     Parameters
     ----------
     payload : bytes
-        Payload of the row.
+        Payload of the segment.
     row : int
-        Row index, 0..65535.
+        Index of its first row, 0..65535.
 
     Returns
     -------

@@ -19,7 +19,7 @@ module AspChipWires (
   (* hierconn *) wire \dut.encoder.reset , \dut.generator.reset , \dut.frame_status.reset , \dut.resets.reset ;
 
   // RegFile's bits: in the order of the register map, trims in the lowest bits
-  localparam TRIMS = 384, CONFIGURATION = TRIMS + 209;
+  localparam TRIMS = 384, CONFIGURATION = TRIMS + 219;
   (* hierconn *) wire [CONFIGURATION - 1:0] \dut.regs.cfg ;
   (* hierconn *) wire [63:0] \dut.regs.cycles , \dut.regs.conversions_made , \dut.regs.conversions_left_out ;
   (* hierconn *) wire [63:0] \dut.seq.cycles ;
@@ -33,7 +33,10 @@ module AspChipWires (
   (* hierconn *) wire [23:0] \dut.seq.mask , \dut.encoder.mask ;
   (* hierconn *) wire [7:0] \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ;
   (* hierconn *) wire [7:0] \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ;
-  (* hierconn *) wire [15:0] \dut.encoder.frame_number , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ;
+  (* hierconn *) wire [1:0] \dut.encoder.resync ;
+  (* hierconn *) wire [9:0] \dut.encoder.exposure ;
+  (* hierconn *) wire [7:0] \dut.encoder.n_cm , \dut.encoder.calibration ;
+  (* hierconn *) wire [15:0] \dut.encoder.t_int , \dut.encoder.frame_number , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ;
   (* hierconn *) wire [15:0] \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard ;
   (* hierconn *) wire [TRIMS - 1:0] \dut.balancer.trims ;
   (* hierconn *) wire \dut.phase.on , \dut.encoder.phase ;
@@ -50,6 +53,8 @@ module AspChipWires (
   (* hierconn *) wire \dut.seq.step__val , \dut.bank.step__val , \dut.seq.step__rdy , \dut.bank.step__rdy ;
   (* hierconn *) wire [11:0] \dut.bank.scan__msg , \dut.phase.recv__msg , \dut.phase.send__msg , \dut.encoder.recv__msg ;
   (* hierconn *) wire \dut.bank.scan__val , \dut.phase.recv__val , \dut.bank.scan__rdy , \dut.phase.recv__rdy ;
+  (* hierconn *) wire [11:0] \dut.scan.recv__msg , \dut.scan.send__msg ;
+  (* hierconn *) wire \dut.scan.recv__val , \dut.scan.recv__rdy , \dut.scan.send__val , \dut.scan.send__rdy ;
   (* hierconn *) wire \dut.phase.send__val , \dut.encoder.recv__val , \dut.phase.send__rdy , \dut.encoder.recv__rdy ;
   (* hierconn *) wire \dut.encoder.frame_sync , \dut.frame_status.frame_sync , \dut.link.send__val , \dut.gate.low ;
   (* hierconn *) wire [3:0] \dut.regs.status , \dut.frame_status.status ;
@@ -74,14 +79,17 @@ module AspChipWires (
 
   always @* begin
     p_configuration: assert (cfg == {
-        \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.seq.mode , \dut.seq.decimation ,
+        \dut.seq.overlap , phase, \dut.generator.on , loop_enable, \dut.encoder.resync , \dut.seq.mode , \dut.seq.decimation ,
         \dut.bank.threshold , \dut.phase.noise_floor , \dut.seq.mask , \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 ,
-        \dut.seq.col1 , \dut.encoder.frame_number , \dut.amp.n_cm , \dut.amp.t_reset , \dut.amp.t_int , \dut.amp.t_cm ,
-        \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.seq.exposure , \dut.balancer.trims });
+        \dut.seq.col1 , \dut.encoder.frame_number , \dut.amp.n_cm , \dut.encoder.calibration , \dut.amp.t_reset ,
+        \dut.amp.t_int , \dut.amp.t_cm , \dut.amp.t_settle , \dut.amp.t_read , \dut.amp.t_guard , \dut.seq.exposure ,
+        \dut.balancer.trims });
     p_header: assert ({\dut.encoder.mode , \dut.encoder.decimation , \dut.encoder.threshold , \dut.encoder.mask ,
-                       \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 } ==
+                       \dut.encoder.row0 , \dut.encoder.row1 , \dut.encoder.col0 , \dut.encoder.col1 ,
+                       \dut.encoder.exposure , \dut.encoder.n_cm , \dut.encoder.t_int } ==
                       {\dut.seq.mode , \dut.seq.decimation , \dut.bank.threshold , \dut.seq.mask ,
-                       \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 });
+                       \dut.seq.row0 , \dut.seq.row1 , \dut.seq.col0 , \dut.seq.col1 ,
+                       \dut.seq.exposure , \dut.amp.n_cm , \dut.amp.t_int });
     p_mode: assert (\dut.bank.mode == \dut.seq.mode && mode == \dut.seq.mode
                     && \dut.phase.on == (phase && mode == 3) && \dut.encoder.phase == \dut.phase.on );
     p_counts: assert (\dut.regs.cycles == \dut.seq.cycles
@@ -99,8 +107,10 @@ module AspChipWires (
                        {\dut.seq.step__msg , \dut.seq.step__val , \dut.bank.step__rdy } &&
                        {\dut.phase.recv__msg , \dut.phase.recv__val , \dut.bank.scan__rdy } ==
                        {\dut.bank.scan__msg , \dut.bank.scan__val , \dut.phase.recv__rdy } &&
-                       {\dut.encoder.recv__msg , \dut.encoder.recv__val , \dut.phase.send__rdy } ==
-                       {\dut.phase.send__msg , \dut.phase.send__val , \dut.encoder.recv__rdy });
+                       {\dut.scan.recv__msg , \dut.scan.recv__val , \dut.phase.send__rdy } ==
+                       {\dut.phase.send__msg , \dut.phase.send__val , \dut.scan.recv__rdy } &&
+                       {\dut.encoder.recv__msg , \dut.encoder.recv__val , \dut.scan.send__rdy } ==
+                       {\dut.scan.send__msg , \dut.scan.send__val , \dut.encoder.recv__rdy });
     p_rows: assert ({\dut.amp.start , \dut.amp.four_tap , \dut.amp.hold_free , \dut.seq.amp_done , \dut.seq.amp_err ,
                      \dut.seq.bank_idle , \dut.seq.start , \dut.amp.slot_resets , \dut.amp.slot_reads ,
                      \dut.amp.slot_opens } ==

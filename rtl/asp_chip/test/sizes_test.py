@@ -4,6 +4,7 @@ import pytest
 
 from talbot.models.parameters import TileParameters
 from talbot.rtl.asp_chip import AspChip
+from talbot.rtl.messages import ScanMsg
 
 SIZES = {  # array, lanes, tile; divider, n_frac, iterations
     "small": (8, 13, 2, 4, 6, "radix4", 8, 10),
@@ -38,6 +39,7 @@ def test_the_blocks_have_the_size_of_the_chip(name):
         "seq": (rows, cols, lanes, order, *tile),
         "bank": (lanes,),
         "phase": (lanes, divider, n_frac, iterations),
+        "scan": (ScanMsg,),
         "encoder": (rows, cols, lanes, *tile),
         "generator": (lanes,),
         "balancer": (order, *tile, 10, 16),

@@ -10,7 +10,7 @@ module RowProof (input clk);
   reg first = 1;  // one reset, to begin with: the proof is bounded from there
   always @(posedge clk) first <= 0;
   wire reset = first;
-  localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, HEADER = 26, TAKEN = 3 * `SAMPLES + 4;
+  localparam FRAME = 0, ROW = 1, SAMPLE = 2, END = 3, HEADER = 32, TAKEN = 3 * `SAMPLES + 4;
 
   // The messages in order: FRAME, ROW, the samples, END
   reg [3:0] turn = 0;
@@ -23,7 +23,8 @@ module RowProof (input clk);
   RunLength dut (.clk(clk), .reset(reset), .recv__val(recv__val), .recv__rdy(recv__rdy), .recv__msg(recv__msg),
                  .send__val(send__val), .send__rdy(1'b1), .send__msg(send__msg), .frame_sync(frame_sync),
                  .threshold(threshold), .mode(2'd0), .phase(1'b0), .row0(8'd0), .row1(8'd0), .col0(8'd0), .col1(8'd0),
-                 .decimation(2'd0), .mask(24'd1), .frame_number(16'd0), .made(32'd0), .left_out(32'd0));
+                 .decimation(2'd0), .mask(24'd1), .frame_number(16'd0), .resync(2'd0), .exposure(10'd0), .n_cm(8'd0),
+                 .t_int(16'd0), .calibration(8'd0), .made(32'd0), .left_out(32'd0));
 
   // The bytes after the header, the first on top
   reg [5:0] came = 0;
@@ -43,20 +44,21 @@ module RowProof (input clk);
   // The decoder: `at` bits are read, `have` samples are known
   reg [7:0] at;
   reg [3:0] have;
-  reg [2:0] k;
+  reg [3:0] k;
   reg [3:0] r2;
   reg [7:0] credit;
   wire [8 * TAKEN - 1:0] rest = bytes << at;
   wire literal, zeros_only, valid;
-  wire [7:0] zeros, value, credit_next;
+  wire [11:0] zeros;
+  wire [7:0] value, credit_next;
   wire [4:0] length;
-  wire [2:0] k_next;
+  wire [3:0] k_next;
   wire [3:0] r2_next;
-  TokenDecoder decoder (.window(rest[8 * TAKEN - 1 -: 24]), .k(k), .r2(r2), .credit(credit), .threshold(threshold),
+  TokenDecoder decoder (.window(rest[8 * TAKEN - 1 -: 28]), .k(k), .r2(r2), .credit(credit), .threshold(threshold),
                         .literal(literal), .zeros_only(zeros_only), .zeros(zeros), .value(value), .length(length),
                         .k_next(k_next), .r2_next(r2_next), .credit_next(credit_next), .valid(valid));
-  wire decodes = have < `SAMPLES && came >= HEADER + 3 && 8 * (came - HEADER) >= at + 24;
-  wire [8:0] reaches = have + zeros + !zeros_only;
+  wire decodes = have < `SAMPLES && came >= HEADER + 4 && 8 * (came - HEADER) >= at + 28;
+  wire [12:0] reaches = have + zeros + !zeros_only;
   always @(posedge clk) begin
     if (reset) begin
       at <= 0; have <= 0; k <= 3; r2 <= 4; credit <= 128;

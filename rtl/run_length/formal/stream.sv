@@ -1,11 +1,12 @@
 // RunLength puts the bytes of docs/stream.md into its queue, frame after frame of any length, with any stalls: header,
-// each row's payload from the packer and its mark, trailer. `payload` proves the packer, `byte_queue` the queue; their
-// assumptions about the control are asserted here (p_packer, p_queue).
+// each segment's payload from the packer and its mark, trailer. `tokens` and `payload` prove the packer, `byte_queue` the
+// queue; their assumptions about the control are asserted here (p_packer, p_queue).
 
 module StreamProof (
   input clk, input reset, input [11:0] recv__msg, input recv__val, input send__rdy,
   input [1:0] mode, input phase, input [7:0] row0, input [7:0] row1, input [7:0] col0, input [7:0] col1,
   input [1:0] decimation, input [23:0] mask, input [6:0] threshold, input [15:0] frame_number,
+  input [1:0] resync, input [9:0] exposure, input [7:0] n_cm, input [15:0] t_int, input [7:0] calibration,
   input [31:0] made, input [31:0] left_out
 );
   wire recv__rdy, send__val, frame_sync;
@@ -28,11 +29,12 @@ module StreamProof (
   (* hierconn *) wire [7:0] \dut.packer.octet ;
   (* hierconn *) wire [7:0] \dut.packer.code ;
   (* hierconn *) wire [6:0] \dut.packer.threshold ;
-  (* hierconn *) wire [4:0] \dut.packer.count ;
-  (* hierconn *) wire [6:0] \dut.packer.coder.run ;
+  (* hierconn *) wire [5:0] \dut.packer.count ;
+  (* hierconn *) wire [10:0] \dut.packer.coder.run ;
   (* hierconn *) wire [2:0] \dut.control.state ;
   (* hierconn *) wire [4:0] \dut.control.index ;
   (* hierconn *) wire \dut.control.open ;
+  (* hierconn *) wire [7:0] \dut.control.size ;
   (* hierconn *) wire \dut.control.ending ;
   (* hierconn *) wire [9:0] \dut.row ;
   (* hierconn *) wire [9:0] \dut.following ;
@@ -64,20 +66,23 @@ module StreamProof (
   reg [4:0] n;
   reg open, ending;
   reg [9:0] row, following;
+  reg [10:0] size;  // bytes of the segment's payload that are in the queue, up to 1024
+  wire [10:0] grown = size + (put && payload && size < 1024);
+  wire closes = grown >= 64 * resync;
   reg [15:0] short_crc;
   reg [31:0] long_crc;
   wire taken = recv__val && recv__rdy;
   wire [1:0] kind = recv__msg[11:10];
   wire in_rows = taken && part == ROWS;
-  wire [175:0] header = {"TLBT", 8'd1, 2'b0, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
-                         col1, mask, frame_number};
+  wire [223:0] header = {"TLBT", 8'd2, resync, decimation, 1'b0, phase, mode, 1'b0, threshold, CHIP, row0, row1, col0,
+                         col1, mask, frame_number, 6'b0, exposure, n_cm, t_int, calibration};
   wire [31:0] long_value = ~long_crc;
-  wire [207:0] header_bytes = {header, long_value};
+  wire [255:0] header_bytes = {header, long_value};
   wire [111:0] trailer_bytes = {made, left_out, short_crc ^ 16'hFFFF, long_value};
   wire [15:0] mark = short_crc ^ {6'b0, row};
   wire payload = due && (part == ROWS || part == MARK);
   wire [7:0] wanted = payload ? \dut.packer.octet
-                      : part == HEADER ? header_bytes[8 * (25 - n) +: 8]
+                      : part == HEADER ? header_bytes[8 * (31 - n) +: 8]
                       : part == MARK ? (n == 0 ? mark[15:8] : mark[7:0]) : trailer_bytes[8 * (13 - n) +: 8];
   always @(posedge clk) begin
     if (reset) begin
@@ -88,27 +93,28 @@ module StreamProof (
       end
       if (in_rows && kind == ROW) begin
         open <= 1;
-        if (open) begin
+        if (!open) begin
+          row <= recv__msg[9:0]; short_crc <= 16'hFFFF; size <= 0;
+        end else if (closes) begin
           part <= MARK; following <= recv__msg[9:0];
-        end else begin
-          row <= recv__msg[9:0]; short_crc <= 16'hFFFF;
         end
       end
       if (in_rows && kind == END) begin
         open <= 0; ending <= 1; part <= open ? MARK : TRAILER;
         if (!open) short_crc <= 16'hFFFF;
       end
+      if (open && !(in_rows && kind == ROW && !open)) size <= grown;
       if (put) begin
         // The header's CRC-32 and the last one are in no check; the marks are not in the CRC-16
-        if (!(part == HEADER && n >= 22) && !(part == TRAILER && n >= 10)) long_crc <= crc32(long_crc, octet);
+        if (!(part == HEADER && n >= 28) && !(part == TRAILER && n >= 10)) long_crc <= crc32(long_crc, octet);
         if (payload || part == TRAILER && n < 8) short_crc <= crc16(short_crc, octet);
         if (!payload) begin
           n <= n + 1;
-          if (part == HEADER && n == 25) begin
+          if (part == HEADER && n == 31) begin
             part <= ROWS; n <= 0;
           end
           if (part == MARK && n == 1) begin
-            part <= ending ? TRAILER : ROWS; n <= 0; short_crc <= 16'hFFFF; row <= following;
+            part <= ending ? TRAILER : ROWS; n <= 0; short_crc <= 16'hFFFF; row <= following; size <= 0;
           end
           if (part == TRAILER && n == 13) begin
             part <= DRAIN; n <= 0;
@@ -119,34 +125,26 @@ module StreamProof (
     end
   end
 
-  reg first = 1, was_reset, was_val, was_rdy, was_busy, ended, fresh;
+  reg first = 1, was_reset, was_val, was_rdy;
   reg [7:0] was_msg;
-  wire [83:0] choice = {mode, phase, row0, row1, col0, col1, decimation, mask, threshold, frame_number};
-  reg [83:0] was_choice;
   reg [4:0] quiet;
-  wire busy = part != IDLE;
   always @(posedge clk) begin
     first <= 0; was_reset <= reset; was_val <= send__val; was_rdy <= send__rdy; was_msg <= send__msg;
-    was_busy <= busy || taken && kind == FRAME; was_choice <= choice;
-    ended <= !reset && (flush || ended && !restart);
-    fresh <= reset || restart || fresh && !push && !flush;
     quiet <= reset || put || recv__rdy || !send__rdy || part == DRAIN ? 0 : quiet + !(&quiet);
   end
 
   always @* begin
     if (first) a_reset: assume (reset);
-    else begin
-      a_config: assume (!(busy && was_busy) || choice == was_choice);
-    end
     if (!first && !was_reset) begin
       p_octet: assert (!put || (part == HEADER || part == TRAILER || part == MARK || payload) && octet == wanted);
       p_whole: assert (!(put && part == MARK && !payload) || \dut.packer.count == 0);
       p_push: assert (push == (in_rows && open && kind == SAMPLE) && flush == (in_rows && open && (kind == ROW
-              || kind == END)));
+              && closes || kind == END)));
+      p_restart: assert (restart == (in_rows && !open && (kind == ROW || kind == END)
+              || put && !payload && part == MARK && n == 1));
       p_code: assert (\dut.packer.code == recv__msg[7:0] && \dut.packer.threshold == threshold
                       && \dut.packer.coded == (mode == 0));
-      p_packer: assert (push + flush + restart <= 1 && (\dut.packer.ready || !push && !flush)
-                        && ({mode, threshold} == {was_choice[83:82], was_choice[22:16]} || ended || fresh));
+      p_packer: assert (push + flush <= 1 && (\dut.packer.ready || !push && !flush));
       p_queue: assert (!put || \dut.queue.count < 2);
       p_sync: assert (!send__val || frame_sync);
       p_sync_low: assert (!frame_sync || part != IDLE);
@@ -156,20 +154,19 @@ module StreamProof (
     if (!first) begin
       inv_part: assert (\dut.control.state == part && part <= DRAIN && \dut.control.index == n
               && \dut.control.open == open);
-      inv_index: assert (part == HEADER ? n < 26 : part == MARK ? n < 2 : part == TRAILER ? n < 14 : n == 0);
+      inv_index: assert (part == HEADER ? n < 32 : part == MARK ? n < 2 : part == TRAILER ? n < 14 : n == 0);
       inv_ending: assert (part != MARK && part != TRAILER || \dut.control.ending == ending && ending == !open);
       inv_rows: assert (part != HEADER && part != ROWS || !\dut.control.ending && !ending);
       inv_trailing: assert (part != TRAILER || ending && !open);
       inv_open: assert (part == ROWS || part == MARK || !open);
       inv_row: assert (!(open || part == MARK) || \dut.row == row);
       inv_following: assert (part != MARK || ending || \dut.following == following);
+      inv_size: assert (!(part == ROWS && open) || \dut.control.size == (size < 192 ? size : 192) && size <= 1024);
       inv_short: assert (!(open || part == MARK || part == TRAILER) || \dut.crc16.crc == short_crc);
       inv_long: assert (part == IDLE || \dut.crc32.state == long_crc);
       inv_packer: assert (part == ROWS && open || part == MARK || \dut.packer.count == 0);
       inv_flushed: assert (part != MARK || \dut.packer.count [2:0] == 0);
       inv_marked: assert (!(part == MARK && n == 1) || \dut.packer.count == 0);
-      inv_fresh: assert (fresh || part != IDLE && part != HEADER && part != TRAILER && part != DRAIN);
-      inv_ended: assert (ended == (part == MARK));
       inv_queue: assert (\dut.queue.count <= 2 && (part != IDLE && !(part == HEADER && n == 0)
               || \dut.queue.count == 0));
       inv_sync: assert (frame_sync == !(part == IDLE || part == HEADER && n == 0));
@@ -177,7 +174,7 @@ module StreamProof (
   end
 
   always @* if (!first && !was_reset) begin
-    c_header: cover (put && part == HEADER && n == 25);
+    c_header: cover (put && part == HEADER && n == 31);
     c_row: cover (put && payload);
     c_frame: cover (part == DRAIN && !open && send__val);
   end

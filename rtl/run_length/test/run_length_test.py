@@ -11,11 +11,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from talbot.models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked_row
+from talbot.models.digital.stream import StreamHeader, decode_stream, encode_frame, encode_marked, segments
+from talbot.models.digital.stream.payload import START, code_sample
 from talbot.models.digital.stream.test.frames import samples_of
 from talbot.models.digital.stream.trailer import trailer
 from talbot.models.parameters import LANES as LANE_COUNTS
-from talbot.models.parameters import MODES, FrameParameters, Window
+from talbot.models.parameters import MODES, AmpTiming, FrameParameters, Window
+from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 from talbot.rtl.harness.reset import outputs_after_reset
 from talbot.rtl.harness.testbench import build
 from talbot.rtl.messages import END, FRAME, ROW, SAMPLE, ScanMsg
@@ -58,7 +60,8 @@ def scan_of(rows):
 def stream_of(header, rows, made, left_out):
     """The golden bytes of such a frame."""
     first = header.to_bytes()
-    body = b"".join(encode_marked_row(row, codes, header.edge, header.threshold) for row, codes in rows)
+    coder = header.edge, header.threshold
+    body = b"".join(encode_marked(row, codes, *coder) for row, codes, _ in segments(header, rows))
     return first + body + trailer(first, body, made, left_out)
 
 
@@ -87,6 +90,11 @@ class Bench:
             "mask": header.mask,
             "threshold": header.threshold,
             "frame_number": header.frame_number,
+            "resync": header.resync,
+            "exposure": header.exposure,
+            "n_cm": header.n_cm,
+            "t_int": header.t_int,
+            "calibration": header.calibration,
         }
         for name, value in values.items():
             port = getattr(self.sim, name)
@@ -157,6 +165,9 @@ def any_header(pick):
         threshold=pick.choice((0, 1, pick.randint(0, 127), 127)),
         decimation=pick.randint(0, 3),
         frame_number=pick.getrandbits(16),
+        resync=pick.randint(0, 3),
+        calibration=pick.getrandbits(8),
+        timing=AmpTiming(n_cm=pick.getrandbits(8), t_int=pick.randint(1, 65535), exposure=pick.getrandbits(10)),
     )
 
 
@@ -174,6 +185,8 @@ def frames(draw):
         threshold=draw(st.integers(0, 127)),
         decimation=draw(st.integers(0, 3)),
         frame_number=draw(st.integers(0, 65535)),
+        resync=draw(st.integers(0, 3)),
+        calibration=draw(st.integers(0, 255)),
     )
     count = st.integers(0, 2**32 - 1)
     samples = samples_of(header, draw(st.integers(0, 999)), draw(st.floats(0, 1)), draw(st.sampled_from([3, 30, 300])))
@@ -231,7 +244,7 @@ class TestRunLengthFL:
         layout, samples = wide.layout(), np.zeros((3, 384, 1), int)
         for i in range(3):
             samples[i, layout.places_of(i), 0] = row
-        assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
+        assert got[HEADER_BYTES:-TRAILER_BYTES] == encode_frame(wide, samples, 0, 0)[HEADER_BYTES:-TRAILER_BYTES]
 
     def test_frame_sync_is_low_between_frames(self):
         header = header_of(threshold=3, frame_number=77)
@@ -262,16 +275,22 @@ class TestRunLengthFL:
     def test_a_frame_without_rows(self):
         got = self.bench(header_of(), 1, 2).run([ScanMsg(FRAME, 0), ScanMsg(END, 0)])
         (frame,) = decode_stream(got)
-        assert len(got) == 40 and (frame.made, frame.left_out) == (1, 2) and len(frame.bad_rows) == ROWS
+        assert (
+            len(got) == HEADER_BYTES + TRAILER_BYTES
+            and (frame.made, frame.left_out) == (1, 2)
+            and len(frame.bad_rows) == ROWS
+        )
 
     def test_rows_without_samples(self):
-        """A mark each: the CRC of nothing, and the row."""
+        """A mark each where rows are marked: the CRC of nothing, and the row."""
         rows = 4, 0x3FF, 0, 0x155, 0x2AA, 0
-        got = self.bench(header_of()).run([ScanMsg(FRAME, 0), *(ScanMsg(ROW, row) for row in rows), ScanMsg(END, 0)])
-        assert got[26:-14] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
+        messages = [ScanMsg(FRAME, 0), *(ScanMsg(ROW, row) for row in rows), ScanMsg(END, 0)]
+        got = self.bench(header_of(resync=0)).run(messages)
+        assert got[HEADER_BYTES:-TRAILER_BYTES] == b"".join((0xFFFF ^ row).to_bytes(2, "big") for row in rows)
+        assert self.bench(header_of()).run(messages)[HEADER_BYTES:-TRAILER_BYTES] == (0xFFFF ^ 4).to_bytes(2, "big")
 
     def test_the_longest_tokens(self):
-        """The runs' order rises to its end, then the largest value follows: a token of 22 to 24 bits at every place.
+        """The runs' order rises to its end, then the largest value follows: a token of 22 to 28 bits at every place.
 
         What a row begins with brings the runs' order to 0, and the token to its place.
         """
@@ -293,18 +312,51 @@ class TestRunLengthFL:
             (1, 4, 9, 9),
             (1, 1, 4, 4),
         )
-        runs = 127, 85, 42, 8, 119, 64, 1, 100, 85, 42, 21, 3, 127, 85, 42, 90
-        rows = len(begins)
-        wide = StreamHeader.from_frame(rows, 384, 1, FrameParameters(Window(0, rows // 4 - 1, 0, 63), threshold=1))
-        layout, samples, messages = wide.layout(), np.zeros((rows, 384, 1), int), [ScanMsg(FRAME, 0)]
-        for row, (begin, run) in enumerate(zip(begins, runs)):
-            codes = np.zeros(384, int)
-            codes[: len(begin)] = begin
-            codes[len(begin) + 127 + run] = -128
-            samples[row, layout.places_of(row), 0] = codes
-            messages += [ScanMsg(ROW, row), *(ScanMsg(SAMPLE, int(code) & 0xFF) for code in codes)]
-        got = self.bench(header_of(threshold=1)).run([*messages, ScanMsg(END, 0)])
-        assert got[26:-14] == encode_frame(wide, samples, 0, 0)[26:-14]
+        runs = 2047, 1365, 682, 1032, 119, 64, 1, 100, 85, 42, 21, 3, 127, 85, 42, 90
+        rises = [2047] * 4 + [127] * 12  # zeros that raise the order from 0 to 11, and to 7
+        rows = [
+            (row, [*begin, *[0] * (rise + run), -128])
+            for row, (begin, rise, run) in enumerate(zip(begins, rises, runs))
+        ]
+        header = header_of(threshold=1, resync=0)
+        assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
+
+    def test_segments(self):
+        """Rows up to a mark: none, some and all of them, ends on a byte and in one, in runs and between them."""
+        pick = random.Random(5)
+        for resync, mode in product(range(4), ("edge", "raw")):
+            rows = [
+                (row, [pick.choice((0, 0, 0, 9, -40)) & (0xFF if mode == "raw" else -1) for _ in range(size)])
+                for row, size in enumerate(pick.choice((0, 1, 5, 30, 63, 64, 65, 100)) for _ in range(24))
+            ]
+            header = header_of(mode, threshold=1, resync=resync)
+            marks = [first for first, _, _ in segments(header, rows)]
+            assert (len(marks) == len(rows)) == (resync == 0) and len(marks) > 1
+            got = self.bench(header).run(scan_of(rows), taken=pick.choice((ALWAYS, [True, False, True])))
+            assert got == stream_of(header, rows, 0, 0)
+
+    def test_a_run_goes_on_over_rows(self):
+        header, zeros = header_of(resync=3), [(row, [0] * 36) for row in range(20)]
+        rows = [*zeros, (20, [0, 0, 77]), *zeros[:3]]
+        got = self.bench(header).run(scan_of(rows))
+        assert got == stream_of(header, rows, 0, 0) and len(got) < HEADER_BYTES + TRAILER_BYTES + 8
+
+    @pytest.mark.parametrize("order", [1, 2, 3])
+    def test_the_longest_token_behind_seven_bits(self, order):
+        """It ends at the end of the gathering register: after runs of 2^11 zeros, the value of most bits."""
+        pick, header = random.Random(order), header_of(threshold=1)
+        while True:
+            codes, state, sent = [], START, 0
+            start = [pick.choice((-40, -9, -1, 1, 2, 9)) for _ in range(pick.randrange(12))]
+            while start or state[0] < 11:
+                codes.append(start.pop() if start else 0)
+                _, length, *state = code_sample(codes[-1], header.threshold, *state)
+                sent += length
+            if (sent % 8, state[1] // 2, state[2]) == (7, order, 0):
+                break
+        rows = [(0, [*codes, -128, 127])]
+        assert code_sample(-128, header.threshold, *state)[1] == 28 - order
+        assert self.bench(header).run(scan_of(rows)) == stream_of(header, rows, 0, 0)
 
     def test_the_largest_order_of_the_values_stays(self):
         """Values that raise their order half a bit at a time to its end and go on."""
@@ -351,7 +403,7 @@ class TestRunLengthFL:
         header = header_of(threshold=3)
         samples = samples_of(header, 6)
         messages = messages_of(header, samples)
-        for cycles, stalled in ((27, 50), (36, 50), (100, 0)):  # a link that stalls: bytes wait everywhere
+        for cycles, stalled in ((31, 50), (40, 50), (104, 0)):  # a link that stalls: bytes wait everywhere
             self.bench(header).run(messages, taken=[True] * cycles + [False] * 50, most=cycles + stalled)
             assert self.bench(header).run(messages) == encode_frame(header, samples, 0, 0)
 
@@ -377,7 +429,7 @@ class TestRunLengthCL(TestRunLengthFL):
             bench = self.bench(header)
             bench.run(messages)
             samples = len(messages) - 2 - ROWS
-            assert 0 <= sum(state[3] for state in bench.log) - (26 + samples + 14) <= 5 * ROWS + 2
+            assert 0 <= sum(state[3] for state in bench.log) - (HEADER_BYTES + samples + 14) <= 5 * ROWS + 2
 
 
 class TestRunLength(TestRunLengthCL):
@@ -390,9 +442,11 @@ class TestRunLength(TestRunLengthCL):
     def test_all_bits_of_the_header(self):
         """Any values at the ports of the header; the other levels accept valid frames only."""
         pick, bench = random.Random(6), self.bench(header_of())
-        fixed = int.from_bytes(header_of().to_bytes()[:22], "big")
-        places = dict(decimation=132, phase=130, mode=128, threshold=120, row0=64, row1=56, col0=48, col1=40, mask=16)
-        places["frame_number"] = 0  # of the fields' lowest bits, from the end of the frame number
+        fixed = int.from_bytes(header_of().to_bytes()[:FIELD_BYTES], "big")
+        places = dict(
+            resync=182, decimation=180, phase=178, mode=176, threshold=168, row0=112, row1=104, col0=96, col1=88
+        )
+        places |= dict(mask=64, frame_number=48, exposure=32, n_cm=24, t_int=8, calibration=0)  # from the end
         for turn in range(20):
             expected = fixed
             for name, low in places.items():
@@ -402,7 +456,7 @@ class TestRunLength(TestRunLengthCL):
                 port @= value
                 expected = expected & ~(ones << low) | value << low
             got = bench.run([ScanMsg(FRAME, 0), ScanMsg(END, 0)], rest=1)
-            assert got[:22] == expected.to_bytes(22, "big")
+            assert got[:FIELD_BYTES] == expected.to_bytes(FIELD_BYTES, "big")
 
 
 class TestRunLengthVerilog(TestRunLength):

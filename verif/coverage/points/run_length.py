@@ -62,6 +62,7 @@ POINTS: Points = {
     "threshold_zero": lambda p: _sample(p) & (p.mode == 0) & (p.threshold == 0),
     "threshold_highest": lambda p: _sample(p) & (p.mode == 0) & (p.threshold == 127),
     "long_run_of_zeros": _long_run_of_zeros,
+    **{f"resync_{n}": lambda p, n=n: _sample(p) & (p.resync == n) for n in range(4)},
     "a_sample_a_cycle": lambda p: _sample(p) & (p.was(_sample(p)) == 1),
     "a_byte_a_cycle": lambda p: _out(p) & (p.was(_out(p)) == 1),
     "message_waits": lambda p: (p.recv__val == 1) & (p.recv__rdy == 0) & (p.frame_sync == 1),

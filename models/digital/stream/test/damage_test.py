@@ -1,5 +1,5 @@
-"""One wrong byte is corrected, a damaged row costs that row alone, and the decoder never crashes, hangs or reports
-wrong samples.
+"""One wrong byte is corrected, a damaged segment costs that segment alone, and the decoder never crashes, hangs or
+reports wrong samples.
 """
 
 import zlib
@@ -9,17 +9,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from talbot.models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked_row
-from talbot.models.digital.stream.payload import check_row
+from talbot.models.digital.stream import StreamError, decode_stream, encode_frame, encode_marked, segments
+from talbot.models.digital.stream.payload import check_segment
 from talbot.models.digital.stream.test.frames import header_of, headers, samples_of
 from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES, TRAILER_BYTES
 
 FRAMES = {
-    "edge": header_of(12, 30, threshold=4),
-    "rough": header_of(9, 20, threshold=0),
-    "raw": header_of(7, 13, mode="raw"),
-    "phase": header_of(5, 18, mode="tof", phase=True),
-    "masked": header_of(16, 36, mask=0x00F0F1, threshold=6),
+    "edge": header_of(12, 30, threshold=4, resync=0),
+    "segments": header_of(40, 30, threshold=4, resync=1),
+    "rough": header_of(9, 20, threshold=0, resync=0),
+    "raw": header_of(7, 13, mode="raw", resync=0),
+    "long raw": header_of(20, 13, mode="raw", resync=1),
+    "phase": header_of(5, 18, mode="tof", phase=True, resync=0),
+    "masked": header_of(16, 36, mask=0x00F0F1, threshold=6, resync=0),
+    "few rows": header_of(60, 36, mask=0x0000F1, threshold=2, resync=1),
 }
 
 
@@ -35,13 +38,17 @@ def changed(data, position, change):
     return bytes(data)
 
 
-def row_starts(header, samples):
-    """Where each row starts in the frame, and where the trailer does."""
-    layout, at = header.layout(), [HEADER_BYTES]
-    for i, row in enumerate(layout.rows):
-        codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
-        at.append(at[-1] + len(encode_marked_row(int(row), codes, header.edge, header.threshold)))
-    return at
+def starts_of(header, samples):
+    """Where each segment starts in the frame, and the trailer; and the segments' rows."""
+    layout, at, rows = header.layout(), [HEADER_BYTES], []
+    lines = samples.reshape(header.rows, -1)
+    for row, codes, many in segments(
+        header, ((row, lines[row, layout.places_of(i)]) for i, row in enumerate(layout.rows))
+    ):
+        at.append(at[-1] + len(encode_marked(int(row), codes, header.edge, header.threshold)))
+        first = layout.rows.tolist().index(row)
+        rows.append(layout.rows[first : first + many].tolist())
+    return at, rows
 
 
 def check_rows_lost(frame, header, samples, bad):
@@ -68,17 +75,16 @@ def test_one_wrong_byte_anywhere_is_corrected(name):
 
 
 @pytest.mark.parametrize("name", FRAMES)
-def test_two_wrong_bytes_anywhere_in_a_row_cost_that_row(name):
+def test_two_wrong_bytes_anywhere_in_a_segment_cost_that_segment(name):
     header, samples, data = sent(name)
-    starts = row_starts(header, samples)
-    assert starts[-1] == len(data) - TRAILER_BYTES
-    rows = header.layout().rows.tolist()
+    starts, rows = starts_of(header, samples)
+    assert starts[-1] == len(data) - TRAILER_BYTES and len(rows) > 2
     rng = np.random.default_rng(1)
-    for row, start, stop in zip(rows, starts, starts[1:], strict=False):
+    for lost, start, stop in zip(rows, starts, starts[1:], strict=False):
         for position in range(start, stop - 1):
             for first, second in rng.integers(1, 256, (4, 2)).tolist():
                 (frame,) = decode_stream(changed(changed(data, position, first), position + 1, second))
-                check_rows_lost(frame, header, samples, [row])
+                check_rows_lost(frame, header, samples, lost)
                 assert frame.stop == len(data)
 
 
@@ -88,7 +94,7 @@ def test_one_wrong_byte_costs_a_row_where_the_frame_has_no_known_end():
     (After the last row only the trailer can be found, which is not enough to accept it.)
     """
     header, samples, data = sent("edge")
-    starts = row_starts(header, samples)
+    starts, _ = starts_of(header, samples)
     for position in range(HEADER_BYTES, starts[-2]):
         (frame,) = decode_stream(changed(data, position, 0x99) + bytes(20))
         check_rows_lost(frame, header, samples, [int(np.searchsorted(starts, position, "right")) - 1])
@@ -104,17 +110,18 @@ def test_wrong_byte_between_frames_keeps_the_frames_around():
 
 def test_a_mark_that_fits_by_chance_is_seen_through():
     """A wrong byte may change a row's length and still leave a mark that fits: 1 in 65536 does, found here."""
-    header = header_of(80, 60, threshold=0)
+    header = header_of(80, 60, threshold=0, resync=0)
     samples = samples_of(header, 2, 0.5)
     data = encode_frame(header, samples, 1000, 2000)
-    starts = row_starts(header, samples)
+    starts, _ = starts_of(header, samples)
+    counts = np.full(80, 60, np.int32)
     where, value, cases = np.empty(60, np.int32), np.empty(60, np.int16), 0
     for row, (start, stop) in enumerate(zip(starts, starts[1:], strict=False)):
         view = np.frombuffer(bytearray(data), np.uint8)
         for position in range(start, stop):
             for change in range(1, 256):
                 view[position] ^= change
-                end, index, _ = check_row(view, start, view.size, 60, True, 1, where, value)
+                end, index, *_ = check_segment(view, start, view.size, row, counts, True, 1, 0, where, value)
                 if end >= 0 and index == row:
                     assert end != stop
                     check_rows_lost(decode_stream(view.tobytes())[0], header, samples, [])
@@ -127,14 +134,14 @@ def test_a_mark_that_fits_by_chance_is_seen_through():
 def test_cut_short_anywhere(name):
     """Whatever is whole is kept; only a file without a whole header is hopeless."""
     header, samples, data = sent(name)
-    starts, rows = row_starts(header, samples), header.layout().rows
+    (starts, groups), rows = starts_of(header, samples), header.layout().rows
     for length in range(len(data)):
         if length < HEADER_BYTES:
             with pytest.raises(StreamError):
                 decode_stream(data[:length])
             continue
         (frame,) = decode_stream(data[:length])
-        whole = sum(stop <= length for stop in starts[1:])
+        whole = sum(len(s) for s, stop in zip(groups, starts[1:]) if stop <= length)
         assert frame.bad_rows == rows[whole:].tolist() and frame.errors and frame.stop == length
         assert np.array_equal(frame.samples[rows[:whole]], samples[rows[:whole]])
         assert (frame.made is None) == (length < len(data) - 4)
@@ -152,9 +159,9 @@ def test_trailer_damaged_worse(kind):
 
 def test_bytes_lost_or_put_in():
     """The rows after a gap are found again."""
-    header = header_of(48, 60, threshold=4)
+    header = header_of(48, 60, threshold=4, resync=0)
     samples = samples_of(header, 3)
-    data, starts = encode_frame(header, samples, 1000, 2000), row_starts(header, samples)
+    data, (starts, _) = encode_frame(header, samples, 1000, 2000), starts_of(header, samples)
     for first, last, more in ((10, 10, b""), (10, 13, b""), (20, 20, bytes(50)), (20, 20, b"\xff"), (5, 40, b"abc")):
         cut = data[: starts[first] + 2] + more + data[starts[last] + 5 :]
         (frame,) = decode_stream(cut)
@@ -167,9 +174,9 @@ def test_bytes_lost_or_put_in():
 @pytest.mark.parametrize("mode, step", [("raw", 2), ("edge", 3)])
 def test_many_damaged_rows(mode, step):
     """Rows of plain bytes are good or bad one by one; a run-length coded one is found by the row after it."""
-    header = header_of(200, 60, mode=mode, threshold=0)
+    header = header_of(200, 60, mode=mode, threshold=0, resync=0)
     samples = samples_of(header, 3)
-    data, starts = bytearray(encode_frame(header, samples, 1000, 2000)), row_starts(header, samples)
+    data, (starts, _) = bytearray(encode_frame(header, samples, 1000, 2000)), starts_of(header, samples)
     for start in starts[1:-1:step]:
         data[start + 5] ^= 0x10
         data[start + 6] ^= 0x01
@@ -192,7 +199,7 @@ def with_crc(fields):
     "position, value, message",
     [
         (0, 0x55, "starts with"),
-        (4, 2, "version 2"),
+        (4, 1, "version 1"),
         (5, 0x08, "reserved"),
         (5, 0x04, "phase"),
         (6, 128, "threshold"),

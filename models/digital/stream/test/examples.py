@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from talbot.models.digital.stream import StreamHeader, encode_frame, encode_marked_row
+from talbot.models.digital.stream import StreamHeader, encode_frame, encode_marked
 from talbot.models.digital.stream.payload import START, base_of, code_sample
 from talbot.models.parameters import FrameParameters, Window
 from talbot.models.parameters.stream_format import FIELD_BYTES, HEADER_BYTES
@@ -22,6 +22,10 @@ FIELDS = (
     ("col1", 1),
     ("mask", 3),
     ("frame number", 2),
+    ("exposure", 2),
+    ("n_cm", 1),
+    ("t_int", 2),
+    ("calibration", 1),
     ("CRC-32", 4),
 )
 
@@ -44,7 +48,7 @@ def token_lines(codes, threshold):
             text = " ".join(filter(None, (text[0], text[1 : 1 + k], text[1 + k], text[2 + k :])))
         lines.append(_token(k, r2, credit, said, text))
     k, r2, run, credit = state
-    return lines + [_token(k, r2, credit, f"{run} zeros, the row ends", "0")] * (run > 0)
+    return lines + [_token(k, r2, credit, f"{run} zeros, the end", "0")] * (run > 0)
 
 
 def _token(k, r2, credit, said, text):
@@ -53,9 +57,9 @@ def _token(k, r2, credit, said, text):
 
 def row_example(row, codes, threshold):
     """A row of edge mode, token by token, and its bytes."""
-    sent = encode_marked_row(row, codes, True, threshold)
+    sent = encode_marked(row, codes, True, threshold)
     return [
-        f"row {row}, threshold {threshold}, {len(codes)} samples:",
+        f"a segment from row {row} on, threshold {threshold}, {len(codes)} samples:",
         "  " + " ".join(map(str, codes)),
         "tokens:",
         *token_lines(codes, threshold),
@@ -75,7 +79,7 @@ def frame_example(header, samples, made, left_out):
     layout = header.layout()
     for i, row in enumerate(layout.rows.tolist()):
         codes = samples.reshape(header.rows, -1)[row, layout.places_of(i)]
-        size = len(encode_marked_row(row, codes, header.edge, header.threshold))
+        size = len(encode_marked(row, codes, header.edge, header.threshold))
         payload, mark = data[at : at + size - 2], data[at + size - 2 : at + size]
         lines.append(f"{f'row {row}':14}{payload.hex(' ')}   mark {mark.hex(' ')}")
         at += size
@@ -98,7 +102,9 @@ def noise():
 
 def small_frame():
     """A raw frame of 2 x 6 pixels, type 3 masked."""
-    frame = FrameParameters(Window(0, 0, 0, 0), "raw", mask=0xFFFFF7, threshold=10, frame_number=258)
+    frame = FrameParameters(
+        Window(0, 0, 0, 0), "raw", mask=0xFFFFF7, threshold=10, frame_number=258, resync=0, calibration=7
+    )
     header = StreamHeader.from_frame(2, 6, 1, frame)
     return frame_example(header, np.arange(24).reshape(2, 6, 2) * 10, 22, 0)
 

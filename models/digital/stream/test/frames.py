@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import strategies as st
 
 from talbot.models.digital.stream import StreamHeader
-from talbot.models.parameters import LANES, MODES, FrameParameters, ParameterError, Window
+from talbot.models.parameters import LANES, MODES, AmpTiming, FrameParameters, ParameterError, Window
 
 
 def header_of(rows, cols, lanes=8, **frame):
@@ -52,6 +52,11 @@ def headers(draw):
             decimation=draw(st.integers(0, 3)),
             phase=mode == "tof" and draw(st.booleans()),
             frame_number=draw(st.integers(0, 65535)),
+            resync=draw(st.integers(0, 3)),
+            calibration=draw(st.integers(0, 255)),
+            timing=AmpTiming(
+                n_cm=draw(st.integers(0, 255)), t_int=draw(st.integers(1, 65535)), exposure=draw(st.integers(0, 1023))
+            ),
         )
         try:
             header.layout()

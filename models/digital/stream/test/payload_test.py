@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from talbot.models.digital.stream import encode_payload
-from talbot.models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_row, row_bytes_max
+from talbot.models.digital.stream.payload import START, TOKEN_MAX, base_of, code_sample, decode_segment, row_bytes_max
 
 CODES = st.lists(st.one_of(st.just(0), st.integers(-128, 127), st.integers(-3, 3)), max_size=300)
 
@@ -13,7 +13,8 @@ def decoded(payload, count, edge, threshold, lead=3):
     """Decode a payload between other bytes: (bytes used, codes)."""
     data = np.frombuffer(b"\xa5" * lead + payload + b"\x5a" * 7, np.uint8)
     where, value = np.empty(count, np.int32), np.empty(count, np.int16)
-    end, found = decode_row(data, lead, data.size, count, edge, base_of(threshold), where, value)
+    coder = edge, base_of(threshold), 0, where, value
+    end, _, found, _ = decode_segment(data, lead, data.size, 0, np.array([count], np.int32), *coder)
     codes = np.zeros(count, int)
     codes[where[:found]] = value[:found]
     return end - lead, codes.tolist()
@@ -76,4 +77,4 @@ def test_payload_that_no_encoder_writes_is_refused():
     assert decoded(payload[:-1] + bytes([payload[-1] | 1]), 30, True, 0)[0] < 0
     where, value = np.empty(30, np.int32), np.empty(30, np.int16)
     data = np.frombuffer(payload, np.uint8)
-    assert decode_row(data, 0, data.size - 1, 30, True, 1, where, value)[0] < 0
+    assert decode_segment(data, 0, data.size - 1, 0, np.array([30], np.int32), True, 1, 0, where, value)[0] < 0

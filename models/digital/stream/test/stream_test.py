@@ -55,10 +55,11 @@ def test_codes_under_the_threshold_are_zeros():
     assert np.array_equal(frame.samples, np.where(abs(samples) < 5, 0, samples))
 
 
-def test_a_frame_of_zeros_is_a_few_bytes_a_row():
-    header = header_of(384, 384)
-    data = encode_frame(header, np.zeros((384, 384, 1), int), 0, 0)
-    assert len(data) == HEADER_BYTES + 384 * 3 + TRAILER_BYTES
+@pytest.mark.parametrize("resync, size", [(0, 384 * 3), (1, 10 + 2), (3, 10 + 2)])
+def test_a_frame_of_zeros(resync, size):
+    """A byte and a mark each row, or ten bytes and one mark."""
+    data = encode_frame(header_of(384, 384, resync=resync), np.zeros((384, 384, 1), int), 0, 0)
+    assert len(data) == HEADER_BYTES + size + TRAILER_BYTES
 
 
 @pytest.mark.parametrize(
