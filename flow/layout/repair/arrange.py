@@ -8,7 +8,7 @@ from coloquinte import CellOrientation, CellRowPolarity, ColoquinteParameters, R
 from ..netlist.placed import MIRRORED
 from .repair import Plan, length
 
-FULL = 0.95  # of the rows, at most: cells, and what is kept free beside each
+FULL = 0.95  # of the rows, at most: cells, and what is kept free beside each, by its pins
 SEED = 1
 
 
@@ -30,8 +30,8 @@ def arranged(plan: Plan, fixed: Collection[str], effort: int, spread: float) -> 
 
     circuit = coloquinte.Circuit(len(names) + len(held))
     points = [*(plan.point(name) for name in names), *held]
-    circuit.cell_width = [*widths, *(0 for _ in held)]
-    circuit.cell_height = [*(tall for _ in names), *(0 for _ in held)]
+    zeros = [0 for _ in held]
+    circuit.cell_width, circuit.cell_height = [*widths, *zeros], [*(tall for _ in names), *zeros]
     sizes = list(zip(circuit.cell_width, circuit.cell_height, strict=True))
     circuit.cell_x = [round(x / site) - wide // 2 for (x, _), (wide, _) in zip(points, sizes, strict=True)]
     circuit.cell_y = [round(y / height * tall) - high // 2 for (_, y), (_, high) in zip(points, sizes, strict=True)]
@@ -46,12 +46,13 @@ def arranged(plan: Plan, fixed: Collection[str], effort: int, spread: float) -> 
     for ends in nets.values():
         which = [end if isinstance(end, int) else numbers[end] for end in ends]
         circuit.add_net(which, *([size // 2 for size in axis] for axis in zip(*(sizes[k] for k in which), strict=True)))
-    there = tall * sum(end - begin for spans in plan.rows.rows.values() for begin, end in spans)
-    used = sum(wide * high for wide, high in sizes) / there
+    there = sum(end - begin for spans in plan.rows.rows.values() for begin, end in spans)
+    ends = [len(plan.instances[name].pins) for name in names]
+    beside = spread * max(0.0, FULL * there - sum(widths)) / sum(ends)
+    circuit.cell_width = [*(wide + round(beside * many) for wide, many in zip(widths, ends, strict=True)), *zeros]
     parameters = ColoquinteParameters(effort, SEED)
-    circuit.expand_cells_to_density(used + spread * max(0.0, FULL - used))
     circuit.place_global(parameters)
-    circuit.cell_width = [wide for wide, _ in sizes]
+    circuit.cell_width = [*widths, *zeros]
     circuit.legalize(parameters)
     circuit.place_detailed(parameters)
     for name, x, low in zip(names, circuit.cell_x, circuit.cell_y, strict=False):
