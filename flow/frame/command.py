@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.cache import digest
 from talbot.base.progress import Steps
+from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, STANDARD, CameraParameters, read_sensor
 
 from . import arguments as text
@@ -49,6 +50,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_frame_arguments(parser)
     add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
     add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
+    add("--waves-format", default=WAVES[0], help="vcd, or fst: smaller, needs the headers of zlib and lz4 to compile")
 
 
 def add_frame_arguments(parser: ArgumentParser) -> None:
@@ -145,7 +147,8 @@ def request_of(a: Namespace) -> "FrameRequest":
     rows = numbers.get("rows", sensor.array.rows)
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
-    plain = {name: typed[name] for name in ("scene", "depth", "mode", "phase", "out", "converter") if name in typed}
+    names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
+    plain = {name: typed[name] for name in names if name in typed}
     exposure = None if a.exposure == "auto" else text.integer("exposure", a.exposure, 0, EXPOSURE_MAX, also=" or auto")
     lux = text.real("lux", a.lux, 1e-3, 1e6)
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
+from talbot.flow.simulate.frame import WAVES
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -27,7 +28,7 @@ def run(options: Namespace) -> int:
 
     typed = typed_of(options, _with_scene)
     options.out = options.out or Path("build/sequence") / name_of(typed)
-    options.depth = options.waves = None
+    options.depth, options.waves, options.waves_format = None, None, WAVES[0]
     asked = request_of(options)
     clip = open_clip(options.scene, Sampling.of(asked.sensor))
     with Frames(clip.count) as progress:
