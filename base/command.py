@@ -14,11 +14,14 @@ from types import ModuleType
 from typing import Any, NoReturn
 
 from talbot.models.parameters import ParameterError
+from talbot.models.parameters.sensor_file import nearest
 
 from .tools import ToolError
 
 # A value too long to be read in an error's line, quoted or a word: its beginning, the rest
 LONG = re.compile(r"""('[^']{80})[^']{80,}(?=')|("[^"]{80})[^"]{80,}(?=")|(\S{160})\S{160,}?(?=:?(?:\s|$))""")
+
+LIKE = 0.6  # how like an unknown word the nearest known one must be, 0..1
 
 
 class HelpFormatter(argparse.RawDescriptionHelpFormatter, argparse.ArgumentDefaultsHelpFormatter):
@@ -39,6 +42,22 @@ class Parser(argparse.ArgumentParser):
     def actions(self) -> list[argparse.Action]:
         """The parser's own arguments, without --help."""
         return [action for action in self._actions if not isinstance(action, argparse._HelpAction)]
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+        """Refuse what is left over, with the nearest option."""
+        found, rest = super().parse_known_args(args, namespace)
+        if rest:
+            options = [name for action in self.actions for name in action.option_strings]
+            self.error(f"unrecognized arguments: {' '.join(rest)}{_near(rest[0].partition('=')[0], options)}")
+        return found, rest
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse what is not a choice: the nearest is named, or all."""
+        choices = list(action.choices or ())
+        if choices and value not in choices:
+            near = _near(str(value), [str(choice) for choice in choices])
+            every = "" if near else f" (choose from {', '.join(map(str, choices))})"
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}{every}")
 
     def error(self, message: str) -> NoReturn:
         """Print the line and exit with status 2."""
@@ -95,6 +114,12 @@ def failures(lines: Iterable[str]) -> int:
     for line in found:
         print(line, file=sys.stderr, flush=True)
     return int(bool(found))
+
+
+def _near(word: str, known: Sequence[str]) -> str:
+    """'; did you mean ...?', or nothing."""
+    found = nearest(word, known, LIKE)
+    return found if found.startswith(";") else ""
 
 
 def _report(program: str, message: str) -> None:

@@ -180,6 +180,8 @@ def test_a_decoded_file(photograph, tmp_path, capsys):
         ("sim --depth d.npy", "depth = 'd.npy': must be left out"),
         (f"sim --out {__file__}", "must be a folder"),
         ("sim --nothing", "unrecognized arguments: --nothing"),
+        ("sim --scnee coins", "unrecognized arguments: --scnee coins; did you mean --scene?"),
+        ("simm", "invalid choice: 'simm'; did you mean sim?"),
         ("sim --sce coins", "unrecognized arguments: --sce coins"),
         ("sim --scene /tmp", "scene = '/tmp': must be an image file, not a folder"),
         (f"sim --scene {__file__}", "Pillow reads, PNG, JPEG, TIFF, "),
