@@ -15,7 +15,8 @@ from talbot.models.reconstruct.refocus import refocus
 from .fields import BEST, SURE, Fields, depth_map
 
 Values = npt.NDArray[np.floating]
-NAMES = ("lightfield.html", "summary.json", "lightfield.npz", "views.webp")
+MOVING = "views.webp"
+NAMES = ("lightfield.html", "summary.json", "lightfield.npz", MOVING)
 FRAME_MS = 90  # of the moving picture
 VIEW = 256  # px, width of a view on the page at most
 SHEET = 1600  # px, width of all views at most
@@ -26,7 +27,7 @@ def write(folder: Path, fields: Fields) -> None:
     best = fields.best
     np.savez(folder / "lightfield.npz", light_field=best.light_field, disparity=best.disparity, spread=best.spread)
     top = _top(fields.truth)
-    _moving(folder / "views.webp", best.light_field, top)
+    _moving(folder / MOVING, best.light_field, top)
     shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
     groups = [("Depth", _depth(fields)), ("Refocused, by the mixture", _refocused(fields, top))]
     s = fields.summary
