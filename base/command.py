@@ -10,12 +10,14 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
 from talbot.models.parameters import ParameterError
 from talbot.models.parameters.sensor_file import nearest
 
+from .files import check_folder
 from .tools import ToolError
 
 # A value too long to be read in an error's line, quoted or a word: its beginning, the rest
@@ -66,10 +68,14 @@ class Parser(argparse.ArgumentParser):
 
 
 def add_command(parser: argparse.ArgumentParser, command: ModuleType) -> None:
-    """Give ``parser`` the description, arguments and ``run`` of ``command``."""
+    """Give ``parser`` the description, arguments and ``run`` of ``command``.
+
+    An option --out that has a default is a folder, which `execute` checks.
+    """
     parser.description = command.__doc__
     command.add_arguments(parser)
-    parser.set_defaults(run=command.run)
+    folder = next((a.dest for a in parser._actions if a.dest == "out" and isinstance(a.default, Path)), None)
+    parser.set_defaults(run=command.run, writes_in=folder)
 
 
 def main(command: ModuleType, argv: Sequence[str] | None = None) -> int:
@@ -85,6 +91,8 @@ def execute(parser: Parser, argv: Sequence[str] | None = None) -> int:
     options = parser.parse_args(argv)
     run: Callable[[argparse.Namespace], int] = options.run
     try:
+        if options.writes_in:
+            check_folder(options.writes_in, getattr(options, options.writes_in))
         return run(options)
     except KeyboardInterrupt:
         message = "interrupted; nothing was left half-written"

@@ -30,6 +30,13 @@ def check_folder(field: str, path: Path | str) -> None:
         ) from None
 
 
+def check_file(field: str, path: Path) -> None:
+    """Raise ParameterError unless ``path`` is, or can become, a file that this user may write."""
+    if path.is_dir():
+        raise ParameterError(f"{field} = {str(path)!r}: must be a file, not a folder")
+    check_folder(field, path.parent)
+
+
 @contextlib.contextmanager
 def part_folder(folder: Path) -> Iterator[Path]:
     """Yield a temporary folder in ``folder``, removed at the end; what killed processes left there goes, too."""

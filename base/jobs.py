@@ -3,6 +3,7 @@
 joblib schedules: all cores by default, a Dask cluster where SCHEDULER=tcp://host:port is set.
 """
 
+import argparse
 import contextlib
 import json
 import os
@@ -43,6 +44,14 @@ class Job:
     def file(self, store: Path) -> Path:
         """The file of the kept result in the folder ``store``."""
         return store / f"{self.name}.{self.digest}.json"
+
+
+def worker_count(text: str) -> int:
+    """A number of processes from an argument: 1 or more, or -1 for all cores."""
+    count = int(text) if text.lstrip("-").isdecimal() else 0
+    if count < 1 and count != -1:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be 1 or more, or -1 for all cores")
+    return count
 
 
 def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -> list[Any]:

@@ -8,8 +8,7 @@ from typing import Any, Self, TypeVar
 from tqdm import tqdm
 
 T = TypeVar("T")
-INTERVAL = 2.0  # s between the lines of `Frames`
-QUICK = 0.5  # s: what ends sooner has no line of its own
+INTERVAL = 2.0  # s between the lines of `Frames` and of `each`
 
 
 def line(text: str) -> None:
@@ -32,7 +31,7 @@ def each(
             yield item
             bar.update()
             spent = monotonic() - began
-            if bar.disable and (spent >= QUICK or number == total):
+            if bar.disable and (spent >= INTERVAL or number == total):
                 words = " ".join(f"{title} {name(item)}".split())
                 print(f"{number:>3}/{of} {words}: {spent:.1f} s", file=sys.stderr, flush=True)
                 began = monotonic()

@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from talbot.base.cases import write_page
-from talbot.base.files import check_folder
 from talbot.base.paths import RESULTS
 from talbot.base.progress import each
 from talbot.cells import sources
@@ -152,7 +151,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of all cases and write it as a page; 1 where a bound is missed."""
-    check_folder("out", options.out)
     print(table(found := cases()))
     write_page(options.out, "Stiff and extreme cases of the characterizer", "make cells-stability", found)
     return 0 if all(case.ok for case in found) else 1

@@ -50,7 +50,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of all cases and write it as a page; 1 where a bound is missed."""
-    check_folder("out", options.out)
     if options.json:
         check_folder("json", options.json.parent)
     cases = all_cases()

@@ -121,3 +121,15 @@ def test_bad_files_are_one_line_and_status_2(tmp_path, capsys):
         error = capsys.readouterr().err
         assert name in error and error.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("what", ["an array", "nothing", "no samples"])
+def test_codes_that_are_none(what, tmp_path):
+    path = tmp_path / "codes.npz"
+    with path.open("wb") as file:
+        if what == "an array":
+            np.save(file, np.zeros((2, 2)))
+        elif what == "no samples":
+            np.savez(file, codes=np.zeros((0, 3), np.int16), ideal=np.zeros((0, 3)))
+    with pytest.raises(ParameterError, match="codes = .*must "):
+        load_codes(path)
