@@ -45,9 +45,9 @@ class Parser(argparse.ArgumentParser):
         """The parser's own arguments, without --help."""
         return [action for action in self._actions if not isinstance(action, argparse._HelpAction)]
 
-    def parse_known_args(self, args: Any = None, namespace: Any = None) -> tuple[Any, list[str]]:
+    def parse_known_args(self, *given: Any, **named: Any) -> tuple[Any, list[str]]:
         """Refuse what is left over, with the nearest option."""
-        found, rest = super().parse_known_args(args, namespace)
+        found, rest = super().parse_known_args(*given, **named)
         if rest:
             options = [name for action in self.actions for name in action.option_strings]
             self.error(f"unrecognized arguments: {' '.join(rest)}{_near(rest[0].partition('=')[0], options)}")

@@ -49,13 +49,17 @@ def write(folder: Path, fields: Fields) -> None:
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
     right = s["stream_mismatches"] == 0 and s["decoded_mismatches"] == 0
+    found, kind = ("byte for byte", "good") if right else ("differs", "bad")
+    against = (
+        Tile(found, "chip against golden model", kind) if s["chip"] else Tile("not run", "the chip's Verilog", "none")
+    )
     linear, best = s["methods"]["linear"], s["methods"][BEST]
     free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
         Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
         Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
         Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
-        Tile("byte for byte" if right else "differs", "chip against golden model", "good" if right else "bad"),
+        against,
         Tile(number(s["disparity_rms_px"]), f"px per view step, error of disparity RMS (one for all: {constant})"),
     ]
 
