@@ -191,7 +191,7 @@ handoff: $(LAYOUT_READY)  ## one archive of a finished layout, the same to the b
 
 .PHONY: bench
 bench: $(TESTS_READY)  ## speed and memory (pytest-benchmark)
-	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py'
+	@$(PY) -m pytest --benchmark-only --benchmark-disable-gc -p no:xdist -o python_files='*_bench_test.py' -vv --durations=0
 
 .PHONY: cells
 cells: $(LAYOUT_READY) have-tools  ## a cell library from transistors: build/cells/<LIB>/<CORNER>.lib

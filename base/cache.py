@@ -8,12 +8,14 @@ contents of their input files.
 import contextlib
 import hashlib
 import json
+import os
 from collections.abc import Callable
 from pathlib import Path
 
 from .files import part_folder
 
-CONTENT = ".content.json"  # digest of each file in a kept folder
+CONTENT = ".content.json"  # digest of each file in a kept folder, and RUNS for a program
+RUNS = "+x"
 
 
 def digest(*parts: object) -> str:
@@ -46,7 +48,7 @@ def cached(folder: Path | str, make: Callable[[Path], object]) -> Path:
         return folder
     with part_folder(folder.parent) as part:
         make(part)
-        files = {name: digest(part / name) for name in _names(part)}
+        files = {name: _state(part / name) for name in _names(part)}
         (part / CONTENT).write_text(json.dumps(files, indent=0))
         if folder.exists() and not _sound(folder):
             with part_folder(folder.parent) as damaged, contextlib.suppress(FileNotFoundError):
@@ -65,10 +67,15 @@ def _names(folder: Path) -> list[str]:
     return sorted(str(path.relative_to(folder)) for path in files)
 
 
+def _state(file: Path) -> str:
+    """The digest of a file, and whether it can be run."""
+    return digest(file) + RUNS * os.access(file, os.X_OK)
+
+
 def _sound(folder: Path) -> bool:
     """Whether every file that was made in ``folder`` is as it was; what was added later does not count."""
     try:
         files = json.loads((folder / CONTENT).read_text())
-        return all(digest(folder / name) == kept for name, kept in files.items())
+        return all(kept in (state := _state(folder / name), state.removesuffix(RUNS)) for name, kept in files.items())
     except (OSError, ValueError, AttributeError):
         return False

@@ -10,15 +10,20 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from types import ModuleType
 from typing import Any, NoReturn
 
 from talbot.models.parameters import ParameterError
+from talbot.models.parameters.sensor_file import nearest
 
+from .files import check_folder
 from .tools import ToolError
 
 # A value too long to be read in an error's line, quoted or a word: its beginning, the rest
 LONG = re.compile(r"""('[^']{80})[^']{80,}(?=')|("[^"]{80})[^"]{80,}(?=")|(\S{160})\S{160,}?(?=:?(?:\s|$))""")
+
+LIKE = 0.6  # how like an unknown word the nearest known one must be, 0..1
 
 
 class HelpFormatter(argparse.RawDescriptionHelpFormatter, argparse.ArgumentDefaultsHelpFormatter):
@@ -40,6 +45,22 @@ class Parser(argparse.ArgumentParser):
         """The parser's own arguments, without --help."""
         return [action for action in self._actions if not isinstance(action, argparse._HelpAction)]
 
+    def parse_known_args(self, *given: Any, **named: Any) -> tuple[Any, list[str]]:
+        """Refuse what is left over, with the nearest option."""
+        found, rest = super().parse_known_args(*given, **named)
+        if rest:
+            options = [name for action in self.actions for name in action.option_strings]
+            self.error(f"unrecognized arguments: {' '.join(rest)}{_near(rest[0].partition('=')[0], options)}")
+        return found, rest
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse what is not a choice: the nearest is named, or all."""
+        choices = list(action.choices or ())
+        if choices and value not in choices:
+            near = _near(str(value), [str(choice) for choice in choices])
+            every = "" if near else f" (choose from {', '.join(map(str, choices))})"
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}{every}")
+
     def error(self, message: str) -> NoReturn:
         """Print the line and exit with status 2."""
         _report(self.prog.split()[0], f"{message} (see {self.prog} --help)")
@@ -47,10 +68,14 @@ class Parser(argparse.ArgumentParser):
 
 
 def add_command(parser: argparse.ArgumentParser, command: ModuleType) -> None:
-    """Give ``parser`` the description, arguments and ``run`` of ``command``."""
+    """Give ``parser`` the description, arguments and ``run`` of ``command``.
+
+    An option --out that has a default is a folder, which `execute` checks.
+    """
     parser.description = command.__doc__
     command.add_arguments(parser)
-    parser.set_defaults(run=command.run)
+    folder = next((a.dest for a in parser._actions if a.dest == "out" and isinstance(a.default, Path)), None)
+    parser.set_defaults(run=command.run, writes_in=folder)
 
 
 def main(command: ModuleType, argv: Sequence[str] | None = None) -> int:
@@ -66,6 +91,8 @@ def execute(parser: Parser, argv: Sequence[str] | None = None) -> int:
     options = parser.parse_args(argv)
     run: Callable[[argparse.Namespace], int] = options.run
     try:
+        if options.writes_in:
+            check_folder(options.writes_in, getattr(options, options.writes_in))
         return run(options)
     except KeyboardInterrupt:
         message = "interrupted; nothing was left half-written"
@@ -95,6 +122,12 @@ def failures(lines: Iterable[str]) -> int:
     for line in found:
         print(line, file=sys.stderr, flush=True)
     return int(bool(found))
+
+
+def _near(word: str, known: Sequence[str]) -> str:
+    """'; did you mean ...?', or nothing."""
+    found = nearest(word, known, LIKE)
+    return found if found.startswith(";") else ""
 
 
 def _report(program: str, message: str) -> None:

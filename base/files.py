@@ -21,8 +21,20 @@ def check_folder(field: str, path: Path | str) -> None:
     there = next(p for p in (path.absolute(), *path.absolute().parents) if os.path.lexists(p))
     if not there.is_dir():
         raise ParameterError(f"{field} = {str(path)!r}: must be a folder; {there} is a file")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise ParameterError(f"{field} = {str(path)!r}: must be a folder that you may write")
+    try:  # more than the permissions decide: /proc, a medium that is read-only
+        with part_folder(there):
+            pass
+    except OSError as error:
+        raise ParameterError(
+            f"{field} = {str(path)!r}: must be a folder that you may write ({error.strerror})"
+        ) from None
+
+
+def check_file(field: str, path: Path) -> None:
+    """Raise ParameterError unless ``path`` is, or can become, a file that this user may write."""
+    if path.is_dir():
+        raise ParameterError(f"{field} = {str(path)!r}: must be a file, not a folder")
+    check_folder(field, path.parent)
 
 
 @contextlib.contextmanager

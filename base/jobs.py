@@ -3,6 +3,7 @@
 joblib schedules: all cores by default, a Dask cluster where SCHEDULER=tcp://host:port is set.
 """
 
+import argparse
 import contextlib
 import json
 import os
@@ -13,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 import joblib
-from tqdm import tqdm
 
 from talbot.models.parameters import ParameterError
 
 from .cache import digest
 from .files import write
+from .progress import each
 from .sources import code
 
 
@@ -45,6 +46,14 @@ class Job:
         return store / f"{self.name}.{self.digest}.json"
 
 
+def worker_count(text: str) -> int:
+    """A number of processes from an argument: 1 or more, or -1 for all cores."""
+    count = int(text) if text.lstrip("-").isdecimal() else 0
+    if count < 1 and count != -1:
+        raise argparse.ArgumentTypeError(f"{text!r}: must be 1 or more, or -1 for all cores")
+    return count
+
+
 def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -> list[Any]:
     """Return the results of ``jobs`` in their order.
 
@@ -59,14 +68,14 @@ def run(jobs: Iterable[Job], store: Path | str, title: str, workers: int = -1) -
         raise ParameterError(f"jobs = {title}: two have one name")
     files = [job.file(store) for job in jobs]
     todo = [(job, file) for job, file in zip(jobs, files, strict=True) if not file.exists()]
-    with tqdm(total=len(jobs), initial=len(jobs) - len(todo), desc=title, disable=None) as bar, _backend(workers):
+    with _backend(workers):
         calls = (joblib.delayed(_keep)(job, file) for job, file in todo)
         with warnings.catch_warnings():  # joblib restarts a process that has grown, and warns
             warnings.filterwarnings("ignore", "A worker stopped while some jobs", UserWarning)
             # joblib has no types: pyright takes those of its defaults
             parallel = joblib.Parallel(return_as="generator_unordered", batch_size=1)  # pyright: ignore[reportArgumentType]
-            for _ in parallel(calls):
-                bar.update()
+            for _ in each(parallel(calls), title, str, len(todo)):
+                pass
     return [json.loads(file.read_text()) for file in files]
 
 
@@ -87,6 +96,8 @@ def _backend(workers: int) -> Iterator[None]:
         yield
 
 
-def _keep(job: Job, file: Path) -> None:
+def _keep(job: Job, file: Path) -> str:
+    """Run a job and keep its result; returns its name."""
     result = json.dumps(job.call(*job.arguments), indent=1, allow_nan=False, default=asdict)
     write(file, result + "\n")
+    return job.name

@@ -1,19 +1,45 @@
 """Progress: a bar on a terminal, a line for each long step elsewhere."""
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator, Sized
 from time import monotonic
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 from tqdm import tqdm
 
-INTERVAL = 2.0  # s between the lines of `Frames`
+T = TypeVar("T")
+INTERVAL = 2.0  # s between the lines of `Frames` and of `each`
 
 
 def line(text: str) -> None:
     """Print a line about a long part of a step, where no terminal shows a bar."""
     if not sys.stderr.isatty():
         print(f"        {text}", file=sys.stderr, flush=True)
+
+
+def each(
+    items: Iterable[T], title: str, name: Callable[[T], object] = lambda item: "", total: int | None = None
+) -> Iterator[T]:
+    """The items; a bar on a terminal, elsewhere a line as one ends, with the seconds since the line before.
+
+    Items that take no time share a line. total: how many, where ``items`` does not tell.
+    """
+    total = len(items) if isinstance(items, Sized) else total
+    began, of = monotonic(), total or "-"
+    with tqdm(total=total, desc=title, file=sys.stderr, disable=None) as bar:
+        for number, item in enumerate(items, 1):
+            yield item
+            bar.update()
+            spent = monotonic() - began
+            if bar.disable and (spent >= INTERVAL or number == total):
+                words = " ".join(f"{title} {name(item)}".split())
+                print(f"{number:>3}/{of} {words}: {spent:.1f} s", file=sys.stderr, flush=True)
+                began = monotonic()
+
+
+def ended(step: str, seconds: float) -> str:
+    """A line about a step that ended."""
+    return f"{step}: {seconds:.1f} s"
 
 
 class Steps:
@@ -39,11 +65,14 @@ class Steps:
         self.bar.close()
 
     def note(self, text: str) -> None:
-        """Show ``text``: a step's name, which moves the bar, or a line about the step."""
+        """Show ``text``: a step's name, which moves the bar, or a line about the step; of one that ended, `ended`."""
+        number = self.bar.n
         if text in self.names:
-            self.bar.n = self.names.index(text)
+            number = self.bar.n = self.names.index(text)
+        elif (step := text.rpartition(": ")[0]) in self.names:
+            number = self.names.index(step)
         if self.bar.disable and (self.lines or text not in self.names):
-            print(f"{self.bar.n + 1:>3}/{len(self.names)} {text}", file=sys.stderr, flush=True)
+            print(f"{number + 1:>3}/{len(self.names)} {text}", file=sys.stderr, flush=True)
         self.bar.set_description_str(text)
 
 

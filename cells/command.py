@@ -4,6 +4,7 @@ import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
+from talbot.base.jobs import worker_count
 from talbot.base.paths import RESULTS
 from talbot.cells import sources
 from talbot.cells.characterize.conditions import Conditions
@@ -21,7 +22,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     netlists = "what is simulated: with parasitics, with capacitances, transistors as laid out, or the schematic"
     add("--netlist", default="extracted", choices=sources.NETLISTS, help=netlists)
     add("--reference", type=Path, help="folder of <cell>.lib.json to compare with")
-    add("--workers", type=int, default=-1, help="processes; -1: all cores")
+    add("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     add("--out", type=Path, default=RESULTS / "cells", help="folder of the libraries")
 
 

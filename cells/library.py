@@ -8,12 +8,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-from tqdm import tqdm
-
 from talbot.base import jobs
 from talbot.base.files import staged, write
 from talbot.base.liberty.group import Group
 from talbot.base.liberty.write import text
+from talbot.base.progress import each
 from talbot.cells import sources
 from talbot.cells.characterize.conditions import Conditions
 from talbot.cells.characterize.job import cell_of, job
@@ -39,8 +38,8 @@ def characterize_library(
         raise ParameterError(f"cells = {', '.join(unknown)}: must be of {library}")
     known = reference.folder(against, corner) if against else None
     names = sorted(wanted or sources.names(library))
-    found = [sources.source(library, name, netlist) for name in tqdm(names, "netlists", disable=None)]
-    cells = [cell_of(source, process) for source in tqdm(found, "functions", disable=None)]
+    found = [sources.source(library, name, netlist) for name in each(names, "netlists", str)]
+    cells = [cell_of(source, process) for source in each(found, "functions", lambda source: source.name)]
     for cell in cells:
         _has_models(cell, process, c)
     folder, longest_first = out / title, sorted(found, key=lambda source: -len(source.netlist))

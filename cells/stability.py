@@ -1,6 +1,5 @@
 """Stiff and extreme cases of the characterizer, bound against measured."""
 
-import sys
 import time
 from argparse import ArgumentParser, Namespace
 from collections.abc import Callable, Iterable, Iterator
@@ -10,11 +9,10 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from tqdm import tqdm
 
 from talbot.base.cases import write_page
-from talbot.base.files import check_folder
 from talbot.base.paths import RESULTS
+from talbot.base.progress import each
 from talbot.cells import sources
 from talbot.cells.characterize import delay, tristate
 from talbot.cells.characterize.bench import Bench
@@ -37,7 +35,14 @@ def cases() -> list[Case]:
     todo += [partial(fit_at_corner, corner) for corner in FOUNDRY]
     corners = product(PROCESSES, (1.2, 1.95), (-40, 150))
     todo += [partial(corner_case, Corner(process, celsius, supply)) for process, supply, celsius in corners]
-    return [case for call in tqdm(todo, desc="cases", file=sys.stderr, disable=None) for case in call()]
+    return [case for call in each(todo, "cases", _title) for case in call()]
+
+
+def _title(call: Callable[[], Iterable[Case]]) -> str:
+    """The name of a group of cases, and its corner."""
+    if isinstance(call, partial):
+        return f"{_title(call.func)} {call.args[0].name}"
+    return getattr(call, "__name__", "").replace("_", " ")
 
 
 def cell(name: str) -> Cell:
@@ -146,7 +151,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of all cases and write it as a page; 1 where a bound is missed."""
-    check_folder("out", options.out)
     print(table(found := cases()))
     write_page(options.out, "Stiff and extreme cases of the characterizer", "make cells-stability", found)
     return 0 if all(case.ok for case in found) else 1

@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from collections.abc import Iterable
 from pathlib import Path
 
-from talbot.base.files import atomic, check_folder
+from talbot.base.files import atomic, check_file
 from talbot.models.digital.stream import decode_file
 from talbot.models.digital.stream.frame import DecodedFrame
 from talbot.models.parameters import ParameterError, TileParameters, read_sensor
@@ -20,11 +20,9 @@ def add_arguments(parser: ArgumentParser) -> None:
 def run(options: Namespace) -> int:
     """Decode the file and print a line for each frame; 1 where a frame is damaged, corrected or not."""
     out = options.out or options.file.with_suffix(".npz")
-    if out.is_dir():
-        raise ParameterError(f"out = {str(out)!r}: must be a file, not a folder")
+    check_file("out", out)
     if out.exists() and options.file.exists() and out.samefile(options.file):
         raise ParameterError(f"out = {str(out)!r}: must not be the stream itself")
-    check_folder("out", out.parent)
     tile = read_sensor(options.sensor).tile if options.sensor else TileParameters()
     frames = decode_to(options.file, out, tile)
     for frame in frames:

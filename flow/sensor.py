@@ -3,7 +3,7 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from talbot.base.files import write
+from talbot.base.files import check_file, write
 from talbot.models.parameters import STANDARD, read_sensor, sensor_text
 
 
@@ -17,6 +17,8 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print or write the sensor with every key."""
+    if options.out:
+        check_file("out", options.out)
     text = sensor_text(read_sensor(options.file) if options.file else STANDARD)
     if options.out:
         write(options.out, text)

@@ -4,18 +4,18 @@ Every case runs with NumPy's warnings raised as errors; the digital ones go thro
 """
 
 import json
-import sys
 import warnings
 from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tqdm import tqdm
 
 from talbot.base.cases import write_page
 from talbot.base.files import check_folder, staged
 from talbot.base.paths import RESULTS
+from talbot.base.progress import each
 from talbot.flow.frame import job
 from talbot.flow.frame.figures import summarize
 from talbot.flow.frame.request import request
@@ -50,7 +50,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the table of all cases and write it as a page; 1 where a bound is missed."""
-    check_folder("out", options.out)
     if options.json:
         check_folder("json", options.json.parent)
     cases = all_cases()
@@ -63,11 +62,12 @@ def run(options: Namespace) -> int:
 
 
 def all_cases() -> list[Case]:
-    """Measure all cases: minutes when the simulators are not cached; shows a progress bar."""
+    """Measure all cases: minutes when the simulators are not cached; shows progress."""
     with warnings.catch_warnings(), np.errstate(all="raise", under="ignore"):
         warnings.simplefilter("error")
-        frames = tqdm(FRAMES, desc="frames", file=sys.stderr, disable=None)
-        return [*optical_cases(), *divider_cases(), *(frame_case(*frame) for frame in frames)]
+        groups: list[tuple[str, Callable[[], list[Case]]]] = [("optics", optical_cases), ("divider", divider_cases)]
+        groups += [(name, lambda name=name, asked=asked: [frame_case(name, asked)]) for name, asked in FRAMES]
+        return [case for _, measure in each(groups, "cases", lambda group: group[0]) for case in measure()]
 
 
 def frame_case(name: str, arguments: dict[str, Any]) -> Case:

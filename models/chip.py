@@ -10,7 +10,7 @@ import numpy.typing as npt
 from talbot.models.afe import Converter, FrontEnd
 from talbot.models.digital.pattern import PatternEnd
 from talbot.models.digital.phase import phase_samples
-from talbot.models.digital.scan import Scan
+from talbot.models.digital.scan import pixels_read
 from talbot.models.digital.stream import StreamHeader, encode_frame
 from talbot.models.parameters import ConverterParameters, FrameParameters, SensorParameters
 
@@ -116,7 +116,7 @@ def golden_frame(
     ParameterError
         For samples of a wrong shape or a window outside the array.
     """
-    read = Scan(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile).read
+    read = pixels_read(sensor.array.rows, sensor.array.cols, sensor.chip.lanes, frame, sensor.tile)
     done = front_end.convert(samples, frame.mode, frame.threshold)
     codes = np.moveaxis(done.codes, 0, 2) * read[..., None]
     converted = np.moveaxis(done.converted, 0, 2) & read[..., None]

@@ -17,6 +17,7 @@ import joblib
 
 from talbot.base.cache import cached, digest
 from talbot.base.paths import ROOT
+from talbot.base.progress import ended
 from talbot.base.sources import code, modules
 
 from .alone import alone
@@ -76,6 +77,7 @@ class Runner:
                 "inputs": hashes,
             }
             (part / RECORD).write_text(json.dumps(record, indent=1, default=str) + "\n")
+            self.note(ended(step.name, record["wall_s"]))
 
         made = cached((self.shared if step.shared else self.folder) / f"{step.name}.{key}", make)
         for name, file in step.outputs.items():

@@ -52,6 +52,7 @@ def test_what_a_killed_process_left_goes_and_what_is_being_made_stays(tmp_path):
     [
         lambda kept: (kept / "bin" / "program").unlink(),
         lambda kept: (kept / "bin" / "program").write_bytes(b"half"),
+        lambda kept: (kept / "bin" / "program").chmod(0o600),
         lambda kept: (kept / "library").write_text(""),
         lambda kept: (kept / CONTENT).unlink(),
         lambda kept: (kept / CONTENT).write_text('{"library": '),
@@ -66,6 +67,7 @@ def test_what_is_damaged_is_made_again(tmp_path, damage):
         made.append(part)
         (part / "bin").mkdir()
         (part / "bin" / "program").write_text("whole")
+        (part / "bin" / "program").chmod(0o755)
         (part / "library").write_text("whole")
 
     kept = cached(tmp_path / "kept", make)

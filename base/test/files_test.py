@@ -1,6 +1,6 @@
 import pytest
 
-from talbot.base.files import _exchange, staged
+from talbot.base.files import _exchange, check_folder, staged
 from talbot.models.parameters import ParameterError
 
 
@@ -60,3 +60,11 @@ def test_a_folder_replaces_the_one_before(tmp_path):
             for name in names:
                 (part / "folder" / name).write_text(names)
     assert [path.read_text() for path in sorted((tmp_path / "folder").iterdir())] == ["bc"] * 2
+
+
+def test_a_folder_that_cannot_be_made_is_refused_before_the_work(tmp_path):
+    check_folder("out", tmp_path / "a" / "b")
+    assert not list(tmp_path.iterdir())
+    for path in ("/proc/out", __file__, f"{__file__}/out"):  # permissions let root write in /proc, which has no room
+        with pytest.raises(ParameterError, match=f"out = '{path}': must be a folder"):
+            check_folder("out", path)

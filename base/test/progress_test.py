@@ -2,7 +2,8 @@
 
 import pytest
 
-from talbot.base.progress import Steps
+from talbot.base import progress
+from talbot.base.progress import Steps, each, ended
 
 
 def test_lines_without_a_terminal(capsys: pytest.CaptureFixture[str]) -> None:
@@ -18,3 +19,18 @@ def test_of_short_steps_only_lines_about_them(capsys: pytest.CaptureFixture[str]
         steps.note("setup")
         steps.note("capture of 40 views")
     assert capsys.readouterr().err == "  1/2 capture of 40 views\n"
+
+
+def test_the_time_of_a_step_that_ended_beside_others(capsys: pytest.CaptureFixture[str]) -> None:
+    with Steps(["drc", "lvs"], lines=True) as steps:
+        steps.note("drc")
+        steps.note("lvs")
+        steps.note(ended("drc", 1.26))
+    assert capsys.readouterr().err == "  1/2 drc\n  2/2 lvs\n  1/2 drc: 1.3 s\n"
+
+
+def test_each_is_a_line_as_it_ends(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    now = iter([0.0, 2.5, 2.5, 2.6, 4.0, 4.0])  # the second takes no time
+    monkeypatch.setattr(progress, "monotonic", lambda: next(now))
+    assert list(each(["inv", "nand", "nor"], "cells", str)) == ["inv", "nand", "nor"]
+    assert capsys.readouterr().err == "  1/3 cells inv: 2.5 s\n  3/3 cells nor: 1.5 s\n"

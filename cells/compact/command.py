@@ -5,7 +5,6 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from talbot.base.command import failures
-from talbot.base.files import check_folder
 from talbot.cells.compact.make import NoLayout
 from talbot.cells.compact.write import written
 
@@ -20,7 +19,6 @@ def run(options: Namespace) -> int:
     """Draw the library and print what its checks find; 1 where a cell has no layout or fails."""
     from talbot.cells.compact.check import check
 
-    check_folder("out", options.out)
     try:
         gds = written(options.out)
     except NoLayout as error:

@@ -10,6 +10,7 @@ from dataclasses import astuple
 
 from talbot.base import jobs
 from talbot.base.files import write
+from talbot.base.jobs import worker_count
 from talbot.cells.compact.canvas import Canvas
 from talbot.cells.compact.catalogue import schematics
 from talbot.cells.compact.make import RECIPES, choose, recipe
@@ -27,7 +28,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--seeds", default="0:24", help="first:last")
     parser.add_argument("--from-scratch", action="store_true", help="do not compare with the recipes that are kept")
     parser.add_argument("--cells", help="names with commas between (default: all)")
-    parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
+    parser.add_argument("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
 
 
 def run(options: Namespace) -> int:

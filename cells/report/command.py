@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from talbot.base.files import staged
+from talbot.base.jobs import worker_count
 from talbot.base.liberty.read import read
 from talbot.base.page import render
 from talbot.base.paths import RESULTS
@@ -32,7 +33,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--netlists", action="store_true", help="also other models and netlists: whose error it is")
     parser.add_argument("--corner", default="tt_025C_1v80", help="of the reference")
     parser.add_argument("--models", default="fitted", help="set of device models of the comparison")
-    parser.add_argument("--workers", type=int, default=-1, help="processes; -1: all cores")
+    parser.add_argument("--workers", type=worker_count, default=-1, help="processes; -1: all cores")
     parser.add_argument("--out", type=Path, default=RESULTS / "cells" / "report", help="folder of the page")
 
 

@@ -32,9 +32,10 @@ def load_codes(path: Path) -> tuple[Codes, npt.NDArray[np.float64]]:
     try:
         with np.load(path) as file:
             codes, ideal = file["codes"], file["ideal"]
-    except (ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
         raise ParameterError(f"codes = {path}: must be an npz file with codes and ideal ({error})") from None
-    if codes.ndim != 2 or codes.shape != ideal.shape or codes.dtype.kind != "i" or abs(codes.astype(int)).max() > 128:
+    right = codes.ndim == 2 and codes.size and codes.shape == ideal.shape and codes.dtype.kind == "i"
+    if not right or abs(codes.astype(int)).max() > 128:
         raise ParameterError(f"codes = {path}: must hold codes -128..127 and ideal, both (rows, cols)")
     return codes.astype(np.int16), ideal.astype(float)
 

@@ -6,11 +6,10 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from tqdm import tqdm
-
 from talbot.base.charts import save
 from talbot.base.files import insert, staged
 from talbot.base.paths import RESULTS
+from talbot.base.progress import each
 from talbot.base.table import write_csv
 from talbot.flow.sizes.measure import YOSYS_MISSING, yosys_installed
 from talbot.flow.sizes.measure import measure as size_of
@@ -37,7 +36,7 @@ def run(options: Namespace) -> int:
     """Measure every format in every order, write and print the tables."""
     codes, ideal = load_codes(options.codes) if options.codes else codes_of()
     source = f"`{options.codes.name}`" if options.codes else "the edge codes of the default scene"
-    rows = measure(codes, ideal, THRESHOLDS, lambda every: tqdm(every, desc="threshold", disable=None))
+    rows = measure(codes, ideal, THRESHOLDS, lambda every: each(every, "threshold", str))
     growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
     found = tables(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD)
     beside: list[dict[str, Any]] = []

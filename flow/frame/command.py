@@ -3,7 +3,7 @@
 import json
 import re
 from argparse import ArgumentParser, Namespace
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from talbot.base.cache import digest
 from talbot.base.progress import Steps
+from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, STANDARD, CameraParameters, read_sensor
 
 from . import arguments as text
@@ -49,11 +50,21 @@ def add_arguments(parser: ArgumentParser) -> None:
     add_frame_arguments(parser)
     add("--out", help="folder for the results (default: build/sim/<scene>, and what is not the default: coins-raw)")
     add("--waves", help="also write waves.vcd of these rows, first:last (1 = the first four rows)")
+    add("--waves-format", default=WAVES[0], help="vcd, or fst: smaller, needs the headers of zlib and lz4 to compile")
 
 
-def add_frame_arguments(parser: ArgumentParser) -> None:
-    """Options of the sensor, its camera and a frame."""
-    add = parser.add_argument
+def add_frame_arguments(parser: ArgumentParser, fixed: Mapping[str, Any] | None = None) -> None:
+    """Options of the sensor, its camera and a frame.
+
+    fixed: value by name, of options of `talbot sim` that the command does not have.
+    """
+    fixed = fixed or {}
+    parser.set_defaults(**fixed)
+
+    def add(option: str, **rest: Any) -> None:
+        if option[2:].replace("-", "_") not in fixed:
+            parser.add_argument(option, **rest)
+
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     for name, words in CAMERA.items():
         add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
@@ -92,12 +103,11 @@ def run(options: Namespace) -> int:
     typed = typed_of(options, add_arguments)
     options.out = options.out or Path("build/sim") / name_of(typed)
     asked = request_of(options)
-    before = _arguments_of(asked.folder)
+    before = arguments_of(asked.folder)
     with Steps(STEPS) as steps:
         summary = run(asked, steps.note, typed)
     _print_figures(summary, asked.folder)
-    if before not in (None, typed):
-        print(f"  replaced there: {name_of(before)}")
+    tell_replaced(before, typed)
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
 
 
@@ -124,7 +134,13 @@ def name_of(typed: dict[str, Any]) -> str:
     return text if len(text) <= NAME_MAX else f"{text[: NAME_MAX - 17]}-{digest(text)}"
 
 
-def _arguments_of(folder: Path) -> dict[str, Any] | None:
+def tell_replaced(before: dict[str, Any] | None, typed: dict[str, Any]) -> None:
+    """Print which run was in the folder before, where it had other arguments. before: of `arguments_of`."""
+    if before is not None and before != typed:
+        print(f"  replaced there: {name_of(before)}")
+
+
+def arguments_of(folder: Path) -> dict[str, Any] | None:
     """The arguments of the run whose results are in ``folder``, None where there is none."""
     try:
         found = json.loads((folder / "summary.json").read_text())["arguments"]
@@ -145,7 +161,8 @@ def request_of(a: Namespace) -> "FrameRequest":
     rows = numbers.get("rows", sensor.array.rows)
     views = None if a.views == "auto" else text.integer("views", a.views, 1, 31, also=" or auto")
     waves = (0, min(3, rows - 1)) if a.waves == "1" else text.span("waves", a.waves, 0, rows - 1) if a.waves else None
-    plain = {name: typed[name] for name in ("scene", "depth", "mode", "phase", "out", "converter") if name in typed}
+    names = ("scene", "depth", "mode", "phase", "out", "waves_format", "converter")
+    plain = {name: typed[name] for name in names if name in typed}
     exposure = None if a.exposure == "auto" else text.integer("exposure", a.exposure, 0, EXPOSURE_MAX, also=" or auto")
     lux = text.real("lux", a.lux, 1e-3, 1e6)
     mask, noise = text.pixel_types(a.types), text.real("noise", a.noise, 0, 100)

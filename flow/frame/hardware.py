@@ -27,9 +27,12 @@ class HardwareFrame(FrameRun):
 
 
 def program(
-    sensor: SensorParameters, taps: int, waves: bool = False, note: Callable[[str], None] = lambda text: None
+    sensor: SensorParameters, taps: int, waves: str = "", note: Callable[[str], None] = lambda text: None
 ) -> Path:
-    """The compiled bench for ``sensor`` and frames of ``taps`` sub-frames, 1 or 4. Raises ToolError."""
+    """The compiled bench for ``sensor`` and frames of ``taps`` sub-frames, 1 or 4. Raises ToolError.
+
+    waves: as of Build.
+    """
     return bench_program(Build.of(sensor, taps, waves), note)
 
 

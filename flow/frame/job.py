@@ -172,9 +172,10 @@ def run(
     clock = Clock(note=note)
     exposed = _exposed(request, clock)
     with clock.step("build"):
-        program = hardware.program(request.sensor, exposed.plan.taps, bool(request.waves), note)
+        kind = request.waves_format if request.waves else ""
+        program = hardware.program(request.sensor, exposed.plan.taps, kind, note)
     with staged(request.folder, outputs.NAMES) as folder:
-        waves = Waves(folder / "waves.vcd", *request.waves) if request.waves else None
+        waves = Waves(folder / f"waves.{request.waves_format}", *request.waves) if request.waves else None
         result = read_out(request, exposed, program, clock, waves)
         with clock.step("report"):
             summary = summarize(result)

@@ -9,6 +9,7 @@ from markupsafe import Markup
 
 from talbot.base.charts import bars, svg
 from talbot.base.page import Picture, Scale
+from talbot.flow.simulate.frame import WAVES
 from talbot.models.parameters import EnergyParameters, LightParameters, sensor_text, sources
 
 from . import error_plots, pictures
@@ -22,7 +23,8 @@ from .result import FrameResult, GoldenResult
 PICTURES = ("overview", "scene", "differences", "image", "conversions", "depth", "edges", "views", "views_decoded")
 PICTURES += ("differences_error", "image_error", "depth_error", "phase")
 NAMES = (
-    *("stream.bin", "decoded.npz", "sensor.toml", "report.html", "summary.json", "waves.vcd"),
+    *("stream.bin", "decoded.npz", "sensor.toml", "report.html", "summary.json"),
+    *(f"waves.{name}" for name in WAVES),
     *(f"{name}.png" for name in PICTURES),
 )
 

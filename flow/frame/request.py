@@ -6,6 +6,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from talbot.flow.simulate.frame import WAVES
 from talbot.models import parameters
 from talbot.models.parameters import (
     ALL_TYPES,
@@ -35,7 +36,7 @@ class FrameRequest:
     views: of the capture along the pupil's diameter, 1..31, or None for as many as it needs.
     room: the light of all modes but time of flight, whose light is its source's alone (`lit`).
     noise: 0..100, times the physical noise. seed: 0..2**32-1. waves: (first row, last row) or None.
-    out: folder for the results, or None for build/sim/<scene>.
+    waves_format: one of WAVES. out: folder for the results, or None for build/sim/<scene>.
     """
 
     sensor: SensorParameters
@@ -47,6 +48,7 @@ class FrameRequest:
     seed: int = 1
     views: int | None = None
     waves: tuple[int, int] | None = None
+    waves_format: str = WAVES[0]
     out: Path | None = None
 
     def __post_init__(self) -> None:
@@ -55,6 +57,9 @@ class FrameRequest:
         parameters.check_int("seed", self.seed, 0, 2**32 - 1)
         if self.views is not None:
             parameters.check_int("views", self.views, 1, 31)
+        parameters.check_choice("waves_format", self.waves_format, WAVES)
+        if self.waves_format != WAVES[0] and not self.waves:
+            raise ParameterError(f"waves_format = {self.waves_format!r}: must be with waves")
         if self.waves and self.waves[1] >= self.sensor.array.rows:
             first, last = self.waves
             raise ParameterError(f"waves = {first}:{last}: rows must be in 0..{self.sensor.array.rows - 1}")

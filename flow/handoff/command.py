@@ -4,7 +4,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from talbot.base.command import failures
-from talbot.base.files import check_folder, staged
+from talbot.base.files import staged
 from talbot.base.paths import RESULTS
 from talbot.flow.layout.design import DESIGNS, design, folder_name
 from talbot.models.parameters import check_choice
@@ -26,7 +26,6 @@ def run(options: Namespace) -> int:
     """Write the archive and print its hash; 1 where the layout breaks a rule that is not waived."""
     chosen = design(options.design)
     check_choice("pdk", options.pdk, PROCESSES)
-    check_folder("out", options.out)
     name = folder_name(chosen, options.pdk)
     try:
         files, substitutes = contents(chosen, options.layouts / name, waived(chosen))

@@ -1,5 +1,6 @@
 """Verilog to a layout with all its checks, in build/layout/<design>/."""
 
+import json
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from .chain import all_steps
 from .design import DESIGNS, Design, design, folder_name, macro_designs
 from .options import Options
 from .report.metrics import broken
+from .report.page import closing
 from .sensor.die import CHIP, SENSOR, die_steps, lay_out_sensor
 
 
@@ -33,7 +35,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(arguments: Namespace) -> int:
-    """Lay out a design and print the path of its summary; 1 where a limit is broken."""
+    """Lay out a design and print what came of it; 1 where a limit is broken."""
     check_choice("DESIGN", arguments.design, (*DESIGNS, SENSOR))
     check_choice("backend", arguments.backend, ("coriolis",))
     chosen = design(CHIP if arguments.design == SENSOR else arguments.design)
@@ -46,7 +48,8 @@ def run(arguments: Namespace) -> int:
             summary, lines = lay_out_sensor(chosen, options, arguments.analog, arguments.out, bar.note)
     else:
         summary, lines = block(chosen, options, arguments)
-    print(summary)
+    print(f"{arguments.design}: laid out")
+    print(closing(json.loads(summary.read_text()), lines, summary.with_name("report.html")))
     return failures(f"{arguments.design}: {line}" for line in lines)
 
 

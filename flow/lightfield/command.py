@@ -6,9 +6,12 @@ from typing import Any
 
 from talbot.base.progress import Steps
 from talbot.flow.frame import arguments as text
-from talbot.models.parameters import STANDARD, read_sensor
+from talbot.flow.frame.command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
+from talbot.flow.simulate.frame import WAVES
 
-QUIET = 0.5  # of the default noise: what rounding to codes leaves without any other
+# A light field is read back from all of a raw frame
+FIXED = {"mode": "raw", "threshold": "0", "phase": False, "types": "all", "window": "full", "decimation": "0"}
+FIXED |= {"waves": None, "waves_format": WAVES[0]}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -16,51 +19,31 @@ def add_arguments(parser: ArgumentParser) -> None:
     add = parser.add_argument
     add("--scene", default="motorcycle", help="name of a scene, an image, or a light field, as for talbot sim")
     add("--depth", help="depth file for --scene (models/scene/README.md)")
-    add("--sensor", help="sensor file; talbot sensor prints one to start from")
-    add("--rows", help="pixels, 1..1024 (default: of the sensor)")
-    add("--cols", help="pixels, 1..1536 (default: of the sensor)")
-    add("--noise", default="1.0", help="times the physical noise, 0..100")
-    add("--seed", default="1", help="of every random draw, 0..4294967295")
+    add_frame_arguments(parser, FIXED)
     add("--far", default="-2.5", help="farthest disparity that is tried, -20..20 px per view step")
     add("--near", default="2.5", help="nearest disparity that is tried, far..20 px per view step")
     add("--disparities", default="21", help="how many are tried, 1..500")
     add("--golden", action="store_true", help="by the golden chip alone, without its Verilog")
-    add("--out", help="folder for the results (default: build/lightfield/<scene>)")
+    add("--out", help="folder for the results (default: build/lightfield/<scene>, as of sim)")
 
 
 def run(options: Namespace) -> int:
     """Read one frame back and print the figures; 1 where the chip and the golden model differ."""
-    from talbot.flow.frame.request import request
-    from talbot.models.reconstruct.bayes import FieldPrior
-
+    from .fields import prior_of
     from .job import STEPS, run
 
-    numbers: dict[str, Any] = {}
-    for name, high in (("rows", 1024), ("cols", 1536)):
-        if getattr(options, name) is not None:
-            numbers[name] = text.integer(name, getattr(options, name), 1, high)
+    typed = typed_of(options, add_arguments)
+    options.out = options.out or Path("build/lightfield") / name_of(typed)
     far = text.real("far", options.far, -20, 20)
-    noise = text.real("noise", options.noise, 0, 100)
-    prior = FieldPrior(
-        noise=FieldPrior.noise * max(noise, QUIET),
-        far=far,
-        near=text.real("near", options.near, far, 20),
-        disparities=text.integer("disparities", options.disparities, 1, 500),
-    )
-    asked = request(
-        scene=options.scene,
-        depth=options.depth,
-        sensor=read_sensor(options.sensor) if options.sensor else STANDARD,
-        converter=None if options.sensor else "typical",
-        mode="raw",
-        noise=noise,
-        seed=text.integer("seed", options.seed, 0, 2**32 - 1),
-        out=options.out or Path("build/lightfield") / Path(options.scene).stem,
-        **numbers,
-    )
+    near = text.real("near", options.near, far, 20)
+    count = text.integer("disparities", options.disparities, 1, 500)
+    asked = request_of(options)
+    prior = prior_of(asked.noise, far=far, near=near, disparities=count)
+    before = arguments_of(asked.folder)
     with Steps(STEPS, lines=True) as steps:
-        summary = run(asked, prior, steps.note, options.golden)
+        summary = run(asked, prior, steps.note, options.golden, typed)
     _print(summary, asked.folder)
+    tell_replaced(before, typed)
     return 1 if summary["stream_mismatches"] or summary["decoded_mismatches"] else 0
 
 

@@ -21,6 +21,7 @@ from .methods import METHODS, Found, figures, measure
 Values = npt.NDArray[np.floating]
 BEST = "mixture"  # the method that has a disparity, too
 PUPIL = 7  # points across the pupil at which the estimators take a scene that can be seen from anywhere
+QUIET = 0.5  # of the physical noise: what rounding to codes leaves without any other
 SURE = 0.5  # px per view step: a disparity of a larger standard deviation is none
 
 
@@ -40,19 +41,10 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
 
     Raises ParameterError for a frame that does not read all of the array.
     """
-    if not result.decoded.read.all():
-        raise ParameterError("window, types, decimation = a part of the array: must be all, for a light field")
-    scene, sensor = result.exposed.scene, result.sensor
+    estimator, scene = _estimator(result, prior), result.exposed.scene
     truth = np.asarray(scene.full_light_field, np.float32)
-    white = white_sum(result.request.lit, result.request.frame.exposing)
-    sent, ideal = (
-        np.moveaxis(np.asarray(samples, float), 2, 0) / white
-        for samples in (result.decoded.samples, result.exposed.ideal)
-    )
-    pupil = scene.views if scene.render is None else PUPIL
-    estimator = FieldEstimator(sensor, scene.views, prior, pupil)
-    operator = CaptureOperator(sensor)
-    reached = cells(scene.views)[..., None, None]  # corners that the round pupil does not reach have no light
+    sent, ideal = (_pair(result, samples) for samples in (result.decoded.samples, result.exposed.ideal))
+    operator, reached = CaptureOperator(result.sensor), _reached(result)
     seen = truth * reached
     free, found, figured = baselines(result.image, seen), {}, {}
     for name in METHODS:
@@ -79,6 +71,39 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
     assert disparity is not None and spread is not None
     best = Estimate(field, disparity, spread)
     return Fields(result, truth, found, best, summary | depth_figures(result, best))
+
+
+def estimate(result: GoldenResult, method: str = BEST, prior: FieldPrior | None = None) -> Found:
+    """The light field of a raw frame by a method, one of `METHODS`. prior: by default `prior_of` the frame's noise.
+
+    Raises ParameterError as `read_back`.
+    """
+    estimator = _estimator(result, prior or prior_of(result.request.noise))
+    found = measure(method, estimator, CaptureOperator(result.sensor), _pair(result, result.decoded.samples))[0]
+    return found._replace(light_field=found.light_field * _reached(result))
+
+
+def prior_of(noise: float, **rest: Any) -> FieldPrior:
+    """The prior of frames with ``noise`` times the physical one. rest: fields of FieldPrior."""
+    return FieldPrior(noise=FieldPrior.noise * max(noise, QUIET), **rest)
+
+
+def _estimator(result: GoldenResult, prior: FieldPrior) -> FieldEstimator:
+    if not result.decoded.read.all():
+        raise ParameterError("window, types, decimation = a part of the array: must be all, for a light field")
+    scene = result.exposed.scene
+    return FieldEstimator(result.sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+
+
+def _pair(result: GoldenResult, samples: npt.NDArray[Any]) -> Values:
+    """Samples (rows, cols, 2) as (2, rows, cols), 1 = the average diode in a flat white scene."""
+    white = white_sum(result.request.lit, result.request.frame.exposing)
+    return np.moveaxis(np.asarray(samples, float), 2, 0) / white
+
+
+def _reached(result: GoldenResult) -> npt.NDArray[np.bool_]:
+    """Corners that the round pupil does not reach have no light."""
+    return cells(result.exposed.scene.views)[..., None, None]
 
 
 def baselines(image: Values, truth: Values) -> dict[str, float | None]:

@@ -1,7 +1,7 @@
 """Scene -> chip's Verilog in raw mode -> stream -> light field and depth -> page."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from talbot.base.files import check_folder, staged
@@ -16,12 +16,16 @@ STEPS = ("setup", "capture", "build", "rtl", "decode", *METHODS, "report")
 
 
 def run(
-    request: FrameRequest, prior: FieldPrior, note: Callable[[str], None] = lambda text: None, golden: bool = False
+    request: FrameRequest,
+    prior: FieldPrior,
+    note: Callable[[str], None] = lambda text: None,
+    golden: bool = False,
+    arguments: Mapping[str, object] | None = None,
 ) -> dict[str, Any]:
     """Run everything and write the page and summary.json into ``request.folder``; returns the summary.
 
     note: called with the name of each of `STEPS` as it starts. golden: by the golden chip alone, without Verilog.
-    Raises ParameterError, ToolError, OSError.
+    arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
     """
     from . import page  # Matplotlib: not before it is needed
 
@@ -30,5 +34,6 @@ def run(
     note("report")
     with staged(request.folder, page.NAMES) as folder:
         page.write(folder, fields)
-        (folder / "summary.json").write_text(json.dumps(fields.summary, indent=1, allow_nan=False) + "\n")
-    return fields.summary
+        summary = fields.summary | {"arguments": dict(arguments or {})}
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    return summary

@@ -15,7 +15,8 @@ from talbot.models.reconstruct.refocus import refocus
 from .fields import BEST, SURE, Fields, depth_map
 
 Values = npt.NDArray[np.floating]
-NAMES = ("lightfield.html", "summary.json", "lightfield.npz", "views.webp")
+MOVING = "views.webp"
+NAMES = ("lightfield.html", "summary.json", "lightfield.npz", MOVING)
 FRAME_MS = 90  # of the moving picture
 
 
@@ -24,7 +25,7 @@ def write(folder: Path, fields: Fields) -> None:
     best = fields.best
     np.savez(folder / "lightfield.npz", light_field=best.light_field, disparity=best.disparity, spread=best.spread)
     top = pictures.brightest(fields.truth)
-    _moving(folder / "views.webp", best.light_field, top)
+    _moving(folder / MOVING, best.light_field, top)
     shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
     groups = [("Depth", _depth(fields)), ("Refocused, by the mixture", _refocused(fields, top))]
     s = fields.summary
@@ -45,13 +46,16 @@ def write(folder: Path, fields: Fields) -> None:
 
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
+    against = agreement(s["stream_mismatches"] or s["decoded_mismatches"])
+    if not s["chip"]:
+        against = Tile("not run", "the chip's Verilog", "none")
     linear, best = s["methods"]["linear"], s["methods"][BEST]
     free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
         Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
         Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
         Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
-        agreement(s["stream_mismatches"] or s["decoded_mismatches"]),
+        against,
         Tile(number(s["disparity_rms_px"]), f"px per view step, error of disparity RMS (one for all: {constant})"),
     ]
 

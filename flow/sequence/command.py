@@ -4,7 +4,10 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 from typing import Any
 
-from talbot.flow.frame.command import add_frame_arguments, name_of, request_of, typed_of
+from talbot.flow.frame.command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
+from talbot.flow.simulate.frame import WAVES
+
+FIXED = {"depth": None, "waves": None, "waves_format": WAVES[0]}
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -14,7 +17,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         required=True,
         help="a folder of frames, an animated GIF, WebP, PNG or AVIF, or a video (models/scene/README.md)",
     )
-    add_frame_arguments(parser)
+    add_frame_arguments(parser, FIXED)
     parser.add_argument("--out", help="folder for the results (default: build/sequence/<scene>, as of sim)")
 
 
@@ -27,19 +30,19 @@ def run(options: Namespace) -> int:
 
     typed = typed_of(options, _with_scene)
     options.out = options.out or Path("build/sequence") / name_of(typed)
-    options.depth = options.waves = None
     asked = request_of(options)
-    clip = open_clip(options.scene, Sampling.of(asked.sensor))
+    clip, before = open_clip(options.scene, Sampling.of(asked.sensor)), arguments_of(asked.folder)
     with Frames(clip.count) as progress:
         summary = run(asked, clip, progress, typed)
     _print_figures(summary, asked.folder)
+    tell_replaced(before, typed)
     return 1 if summary["frames_that_differ"] else 0
 
 
 def _with_scene(parser: ArgumentParser) -> None:
     """The options with a default for each, for what of them is typed."""
     parser.add_argument("--scene")
-    add_frame_arguments(parser)
+    add_frame_arguments(parser, FIXED)
 
 
 def _print_figures(s: dict[str, Any], folder: Path) -> None:

@@ -13,7 +13,7 @@ class Build:
     """The chip's constants and the size of the front end's memory.
 
     order: pixel type of each position in a tile, row by row. taps: sub-frames of a frame, 1 or 4.
-    waves: whether the program can write a VCD.
+    waves: format of the waves that the program can write, of frame.WAVES, or "" for none.
     """
 
     rows: int
@@ -26,10 +26,10 @@ class Build:
     tile_cols: int
     order: tuple[int, ...]
     taps: int
-    waves: bool
+    waves: str
 
     @classmethod
-    def of(cls, sensor: SensorParameters, taps: int = 1, waves: bool = False) -> "Build":
+    def of(cls, sensor: SensorParameters, taps: int = 1, waves: str = "") -> "Build":
         """The Build of a sensor."""
         array, chip, tile = sensor.array, sensor.chip, sensor.tile
         iterations = chip.cordic_iterations

@@ -10,6 +10,7 @@ from time import perf_counter
 from talbot.base.tools import ToolError, finish
 
 WAIT, TRANSFER, STOP = b"\x01", b"\x02", b"\x00"
+WAVES = ("vcd", "fst")  # formats of waves
 NO_FRAME_END = 4  # exit status of the bench
 
 
@@ -33,7 +34,7 @@ class FrameRun:
 
 @dataclass(frozen=True)
 class Waves:
-    """Rows whose cycles go to a VCD file."""
+    """Rows whose cycles go to a file of waves, in the format for which the program was built."""
 
     file: Path
     first_row: int

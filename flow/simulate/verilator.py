@@ -6,7 +6,8 @@ from pathlib import Path
 from talbot.base.cache import cached, digest
 from talbot.base.paths import BUILD, PACKAGE
 from talbot.base.sources import code
-from talbot.base.verilator import FAST, compile_program, runtime, verilate, verilator_version
+from talbot.base.tools import ToolError
+from talbot.base.verilator import FAST, compile_program, has_headers, runtime, verilate, verilator_version
 
 from .build import Build
 
@@ -14,6 +15,7 @@ FRAME = Path(__file__).parent
 
 # No fused multiply-add: the front end's arithmetic must round as NumPy's does, on every processor.
 CXX_FLAGS = ("-O2", "-ffp-contract=off")
+PACKED = ("zlib.h", "lz4.h")  # headers of what packs an FST
 VERILATOR_FLAGS = (*FAST, "-fno-split", "--output-split", "0", "-Wno-fatal")
 
 
@@ -22,7 +24,7 @@ def bench_program(build: Build, note: Callable[[str], None] = lambda text: None)
 
     note: called with a line of text before each long step. Raises ToolError.
     """
-    options = [*build.parameters("-G"), *(["--trace"] if build.waves else [])]
+    options = [*build.parameters("-G"), *([f"--trace-{build.waves}"] if build.waves else [])]
     sources = [PACKAGE / "pixels" / "afe.sv", FRAME / "bench.sv"]
     return _cached(build, "Bench", options, sources, FRAME / "main.cpp", note)
 
@@ -52,13 +54,23 @@ def _cached(
     key = digest(code(__name__), *sources, main, build, top, options, cxx, verilator_version())
 
     def make(work: Path) -> None:
+        if build.waves == "fst" and not has_headers(PACKED):
+            raise ToolError(
+                f"waves_format = 'fst': needs {' and '.join(PACKED)} (Debian: zlib1g-dev, liblz4-dev); or vcd"
+            )
         note("exporting the chip's Verilog")
         chip = build.chip_verilog(work)
         note("translating it with Verilator")
         model = verilate(work / "obj", top, [chip, *sources], [*VERILATOR_FLAGS, *options])
         note("compiling the simulator")
-        traced = ["-DWAVES", "-DVM_TRACE=1", "-DVM_TRACE_VCD=1"] if build.waves else []
-        objects = [*runtime(), *(runtime(["verilated_vcd_c"]) if build.waves else [])]
-        compile_program(work / "program", [*model, main], [*CXX_FLAGS, *cxx, *traced, *objects])
+        compile_program(work / "program", [*model, main], [*CXX_FLAGS, *cxx, *runtime(), *_tracing(build.waves)])
 
     return cached(BUILD / "simulator" / key, make) / "program"
+
+
+def _tracing(waves: str) -> list[object]:
+    """Options of g++ for a program that writes waves in a format, "" for none."""
+    if not waves:
+        return []
+    defined = "-DWAVES", f"-DWAVES_{waves.upper()}", "-DVM_TRACE=1", f"-DVM_TRACE_{waves.upper()}=1"
+    return [*defined, *runtime([f"verilated_{waves}_c"]), *(["-lz", "-llz4"] if waves == "fst" else [])]

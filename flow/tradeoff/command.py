@@ -3,8 +3,6 @@
 from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
-from talbot.base.files import check_folder
-
 from .sweeps import SWEEPS, run_sweeps
 
 
@@ -16,7 +14,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Run the sweeps and print where their page is."""
-    check_folder("out", options.out)
     run_sweeps(options.out, options.only.split(",") if options.only is not None else None)
     print(f"look at {options.out / 'tradeoff.html'}")
     return 0

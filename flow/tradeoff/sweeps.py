@@ -1,17 +1,16 @@
 """The registry of sweeps, and the run of one after the other: table, plot and a page of all."""
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
 from matplotlib.figure import Figure
 from PIL import Image
-from tqdm import tqdm
 
 from talbot.base.charts import save, svg
 from talbot.base.files import staged
 from talbot.base.page import TABLES, Section, render
+from talbot.base.progress import each
 from talbot.base.table import read_csv, write_csv
 from talbot.models.parameters import check_choice
 
@@ -49,8 +48,7 @@ SWEEPS: dict[str, Sweep] = {
 
 def measured(name: str, quick: bool = False) -> list[dict[str, Any]]:
     """The rows of a sweep."""
-    points = tqdm(SWEEPS[name].points(quick), desc=f"{name:10s}", file=sys.stderr, leave=True, disable=None)
-    return [SWEEPS[name].measure(point) for point in points]
+    return [SWEEPS[name].measure(point) for point in each(SWEEPS[name].points(quick), name)]
 
 
 def run_sweeps(out: Path, only: Sequence[str] | None = None, quick: bool = False) -> dict[str, list[dict[str, Any]]]:

@@ -1,6 +1,6 @@
 """The scan: the pixels that a frame reads, and their order (docs/chip.md, Scan order)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -161,6 +161,40 @@ class Scan:
             Sub-sample; with ``frame.phase`` 0 is the phase and 1 the amplitude.
         """
         return _row_samples(self, row % self.tile.rows)
+
+
+@lru_cache(maxsize=32)
+def pixels_read(
+    rows: int, cols: int, lanes: int, frame: FrameParameters, tile: TileParameters
+) -> npt.NDArray[np.bool_]:
+    """Pixels that a frame reads, the same array in all frames of a sequence.
+
+    Parameters
+    ----------
+    rows, cols : int
+        Size of the array in pixels.
+    lanes : int
+        Converters.
+    frame : FrameParameters
+        Configuration of the frame.
+    tile : TileParameters
+        The tile.
+
+    Returns
+    -------
+    bool (rows, cols)
+        As `Scan.read`; it cannot be written.
+
+    Raises
+    ------
+    ParameterError
+        As `Scan`.
+    """
+    if frame.frame_number:
+        return pixels_read(rows, cols, lanes, replace(frame, frame_number=0), tile)
+    read = Scan(rows, cols, lanes, frame, tile).read
+    read.setflags(write=False)
+    return read
 
 
 @lru_cache(maxsize=64)

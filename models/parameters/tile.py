@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Self
 
 import numpy as np
@@ -163,7 +164,15 @@ class TileParameters:
         Returns
         -------
         int64 (rows, cols)
-            Index into `types`.
+            Index into `types`; it cannot be written.
         """
-        tile = np.reshape(self.order, (self.rows, self.cols))
-        return tile[np.arange(rows)[:, None] % self.rows, np.arange(cols)[None, :] % self.cols]
+        return _type_map(self.order, self.cols, rows, cols)
+
+
+@lru_cache(maxsize=16)
+def _type_map(order: tuple[int, ...], width: int, rows: int, cols: int) -> npt.NDArray[np.int64]:
+    """``order`` over all of an array, from a tile of this width."""
+    tile = np.reshape(order, (-1, width))
+    out = tile[np.arange(rows)[:, None] % len(tile), np.arange(cols)[None, :] % width]
+    out.setflags(write=False)
+    return out

@@ -10,14 +10,16 @@ import numpy.typing as npt
 from talbot.flow.frame import outputs, pictures
 from talbot.flow.frame.figures import summarize, summarize_golden
 from talbot.flow.frame.result import FrameResult, GoldenResult
-from talbot.models.parameters import ParameterError
+from talbot.flow.lightfield.fields import SURE, estimate
+from talbot.flow.lightfield.methods import METHODS
+from talbot.models.parameters import ParameterError, check_choice
 from talbot.models.pixel import depth_of
 from talbot.models.scene import RADIANCE_MAX
 
 from .image import Image, embedded, png, table
 from .light_field import LightField
 
-WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field")} | {
+WHAT = {"edge": ("image", "edges"), "image": ("image",), "raw": ("image", "edges", "light_field", "disparity")} | {
     "tof": ("image", "depth")
 }
 SHOWN = ("scene", "mode", "rows", "cols", "stream_bytes", "raw_bytes", "conversions_made", "conversions_left_out") + (
@@ -59,14 +61,19 @@ class Run:
         result = self.result
         return summarize(result) if isinstance(result, FrameResult) else summarize_golden(result)
 
-    def reconstruct(self, what: str = "image", *, disparity: npt.ArrayLike | None = None) -> Image | LightField:
+    def reconstruct(
+        self, what: str = "image", *, disparity: npt.ArrayLike | None = None, method: str | None = None
+    ) -> Image | LightField:
         """What the samples show.
 
         image: 2-D, relative radiance, Image (rows, cols); in edge mode rebuilt from the differences, of mean 0.
         edges (edge and raw mode): one image of differences a pixel type, in codes, Image (types, tile rows, tile cols).
-        light_field (raw mode): the linear estimate, LightField of linear radiance in as many views as the scene has.
+        light_field (raw mode): LightField of linear radiance in as many views as the scene has.
+        disparity (raw mode): px of the array per view step, Image (rows, cols), NaN where the mixture is not sure.
         depth (tof mode): in m, Image (rows, cols), NaN where there is no amplitude.
 
+        method: of a light field, as in `make lightfield`: direct (the thesis's; the default), linear or mixture, by
+        Bayes' rule (models/reconstruct/bayes).
         disparity: (rows, cols), px of the array per view step, for an image from edges; by default the scene's own.
         Raises ParameterError.
         """
@@ -75,8 +82,17 @@ class Run:
             raise ParameterError(f"what = {what!r}: must be one of {', '.join(WHAT[mode])} in {mode} mode")
         if disparity is not None and (mode, what) != ("edge", "image"):
             raise ParameterError("disparity = an array: must be left out, it is of an image from edges")
+        if method is not None and what != "light_field":
+            raise ParameterError(f"method = {method!r}: must be left out, it is of a light field")
+        if what == "disparity":
+            found = estimate(result)
+            if found.disparity is None or found.spread is None:
+                raise AssertionError("the mixture has a disparity")
+            return Image.of(np.where(found.spread <= SURE, found.disparity, np.nan))
         if what == "light_field":
-            values = np.clip(result.light_field, 0, RADIANCE_MAX)
+            check_choice("method", method, (None, *METHODS))
+            field = result.light_field if method in (None, "direct") else estimate(result, method).light_field
+            values = np.clip(field, 0, RADIANCE_MAX)
             return LightField(values, result.exposed.scene.disparity, f"{result.request.name}_estimate")
         if what == "edges":
             return Image.of(result.edges)

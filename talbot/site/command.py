@@ -11,7 +11,7 @@ from argparse import ArgumentParser, Namespace
 from pathlib import Path
 
 from talbot.base.command import failures
-from talbot.base.files import check_folder, staged
+from talbot.base.files import staged
 from talbot.base.paths import RESULTS, ROOT
 from talbot.base.progress import Steps
 from talbot.models.parameters import ParameterError
@@ -48,7 +48,6 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Build the site and print where it is; 1 where a link leads nowhere or Sphinx warns."""
-    check_folder("out", options.out)
     if not (ROOT / "pyproject.toml").is_file():
         raise ParameterError(f"root = {ROOT}: must be the repository, whose documents the site is made of")
     for package in PACKAGES:

@@ -11,6 +11,7 @@ import pytest
 import talbot
 from talbot.base.paths import ROOT
 from talbot.commands import main
+from talbot.flow.lightfield.methods import METHODS
 from talbot.models.parameters import AmpTiming
 
 
@@ -142,3 +143,17 @@ def test_a_tradeoff_is_a_table_and_a_plot():
     found = talbot.tradeoff("views", quick=True)
     assert len(found.rows) == 8 and found.rows[0]["views"] == 3
     assert found._repr_png_().startswith(b"\x89PNG") and "<table>" in found._repr_html_()
+
+
+def test_a_light_field_by_every_method():
+    run = talbot.Sensor(rows=40, cols=48).golden("tilted", mode="raw")
+    truth = run.result.exposed.scene.full_light_field
+    error = {name: np.std(run.reconstruct("light_field", method=name).values - truth) for name in METHODS}
+    assert error["mixture"] < error["linear"] < error["direct"]
+    assert (run.reconstruct("light_field").values == run.reconstruct("light_field", method="direct").values).all()
+    found = run.reconstruct("disparity")
+    sure = ~np.isnan(found)
+    assert sure.mean() > 0.5 and np.abs(found - run.result.exposed.scene.disparity)[sure].mean() < 0.2
+    for what, method in (("light_field", "best"), ("image", "linear")):
+        with pytest.raises(talbot.ParameterError, match="method = "):
+            run.reconstruct(what, method=method)

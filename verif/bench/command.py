@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from talbot.base.jobs import Job
+from talbot.base.jobs import Job, worker_count
 from talbot.base.jobs import run as run_jobs
 from talbot.base.records import from_json
 from talbot.rtl.harness.icarus import MISSING, installed
@@ -104,7 +104,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--simulator", action="append", choices=SIMULATORS, help="default: both")
     parser.add_argument("--seed", type=int, default=SEED, help="of the tests' random numbers")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of bench.json and of the kept results")
-    parser.add_argument("--workers", type=int, default=-1, help="processes, -1 for all cores")
+    parser.add_argument("--workers", type=worker_count, default=-1, help="processes, -1 for all cores")
 
 
 def run(options: Namespace) -> int:

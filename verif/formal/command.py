@@ -12,6 +12,7 @@ from pathlib import Path
 
 from talbot.base.command import failures
 from talbot.base.jobs import run as run_jobs
+from talbot.base.jobs import worker_count
 from talbot.base.records import from_json
 from talbot.base.tools import located
 from talbot.models.parameters import ParameterError
@@ -165,7 +166,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--only", action="append", metavar="BLOCK", choices=TOPS, help="a block (may be repeated)")
     parser.add_argument("--proof", action="append", metavar="NAME", help="a proof by its name (may be repeated)")
     parser.add_argument("--out", type=Path, default=OUT, help="folder of formal.json")
-    parser.add_argument("--workers", type=int, default=-1, help="processes; default: all cores")
+    parser.add_argument("--workers", type=worker_count, default=-1, help="processes; default: all cores")
 
 
 def run(options: Namespace) -> int:

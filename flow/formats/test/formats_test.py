@@ -156,3 +156,15 @@ def test_the_tables_of_the_coders():
     assert "| a | 50.00 % | 100 | 130 | 200 | 260 | 300 | 350 | 400 |" in text
     assert "| 10 | 200 | 650 | 400 | 520 | 600 | 700 | 800 | 2.00 (b) | 2.00 (b) | 0.52 (b) |" in text
     assert "| 4 | 100 | 130 | 200 | 260 | 300 | 350 | 400 | 0.50 (a) | 0.50 (a) | 0.13 (a) |" in text
+
+
+@pytest.mark.parametrize("what", ["an array", "nothing", "no samples"])
+def test_codes_that_are_none(what, tmp_path):
+    path = tmp_path / "codes.npz"
+    with path.open("wb") as file:
+        if what == "an array":
+            np.save(file, np.zeros((2, 2)))
+        elif what == "no samples":
+            np.savez(file, codes=np.zeros((0, 3), np.int16), ideal=np.zeros((0, 3)))
+    with pytest.raises(ParameterError, match="codes = .*must "):
+        load_codes(path)

@@ -61,7 +61,7 @@ def write_report(
     (part / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     shown = {"layout": layout, "pictures": pictures, "history": table(runs)}
     tables = {"corners": _corners(summary), "blocks": _blocks(summary), "table": _table(summary)}
-    tables |= {"tiles": _tiles(summary, broken), "figures": _figures(summary), "attempts": _attempts(summary)}
+    tables |= {"tiles": tiles(summary, broken), "figures": _figures(summary), "attempts": _attempts(summary)}
     tables["steps"] = [(step, f"{s:,.1f}", f"{summary['peak_mib'][step]:,}") for step, s in summary["wall_s"].items()]
     page = render(
         Path(__file__).with_name("page.html"),
@@ -75,14 +75,29 @@ def write_report(
     (part / "report.html").write_text(page)
 
 
-def _tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
-    """What a reader looks for first."""
+def closing(summary: dict[str, Any], broken: Sequence[str], report: Path) -> str:
+    """What a reader looks for first, as a table for a terminal; of what was not run it says so.
+
+    broken: lines of `metrics.broken`. report: the page.
+    """
+    rows = [(tile.label, tile.value) for tile in tiles(summary, broken)]
+    rows += [("limits", f"{len(broken)} broken" if broken else "all kept"), ("look at", str(report))]
+    return "\n".join(f"  {label:<24}{value}" for label, value in rows)
+
+
+def tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
+    """What a reader looks for first; broken: lines of `metrics.broken`."""
 
     def tile(value: Any, label: str, rule: str | None = None) -> Tile:
         bad = rule and any(line.startswith(rule) for line in broken)
         if value is None:
             return Tile("not run", label, "bad" if bad else "none")
         return Tile(str(value), label, "bad" if bad else "good" if rule else "")
+
+    def worst(name: str) -> str | None:
+        found = s.get(name) or {}
+        corner = min(found, key=lambda one: found[one], default=None)
+        return corner and f"{found[corner]:.3f} ns ({corner})"
 
     tests = s["gate_tests"] or {}
     return [
@@ -94,6 +109,8 @@ def _tiles(s: dict[str, Any], broken: Sequence[str]) -> list[Tile]:
         tile({True: "match", False: "differ"}.get(s["lvs_match"]), "LVS", "lvs_match"),
         tile(s["equivalence"], "equivalence", "equivalence"),
         tile(tests.get("passed"), "netlist tests passed", "gate_tests"),
+        tile(worst("wns_ns"), "setup slack", "wns_ns"),
+        tile(worst("whs_ns"), "hold slack", "whs_ns"),
         tile(s["f_max_mhz"] and f"{s['f_max_mhz']:.1f} MHz", "highest clock"),
         tile(s["antenna_violations"], "antennas", "antenna_violations"),
     ]

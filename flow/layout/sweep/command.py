@@ -7,8 +7,8 @@ from itertools import product
 from pathlib import Path
 
 from talbot.base.charts import save
-from talbot.base.files import check_folder, staged
-from talbot.base.jobs import Job
+from talbot.base.files import staged
+from talbot.base.jobs import Job, worker_count
 from talbot.base.jobs import run as run_jobs
 from talbot.base.paths import RESULTS
 from talbot.flow.layout.design import flat_design
@@ -30,7 +30,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--design", default="quad_divider", help="of effort")
     utilizations = ", ".join(map(str, UTILIZATIONS))
     add("--utilization", type=float, action="append", help=f"of effort (again for more; default: {utilizations})")
-    add("--workers", type=int, default=1, help="layouts at a time, -1 for all cores")
+    add("--workers", type=worker_count, default=1, help="layouts at a time, -1 for all cores")
     add("--out", type=Path, default=RESULTS / "layout" / "sweep", help="folder of the tables and plots")
 
 
@@ -58,7 +58,6 @@ def jobs(options: Namespace) -> list[Job]:
 
 def run(options: Namespace) -> int:
     """Lay out the points, write their table and plot, and print the plot's path."""
-    check_folder("out", options.out)
     for path in options.liberty:
         if not path.is_file():
             raise ParameterError(f"liberty = {path}: no such file")

@@ -11,7 +11,7 @@ from talbot.commands import main
 from talbot.flow.frame.job import golden_result
 from talbot.flow.frame.request import request
 from talbot.flow.lightfield import page
-from talbot.flow.lightfield.fields import read_back
+from talbot.flow.lightfield.fields import estimate, prior_of, read_back
 from talbot.flow.lightfield.methods import figures, parallax
 from talbot.models.parameters import ParameterError
 from talbot.models.reconstruct.bayes import FieldPrior
@@ -81,3 +81,22 @@ def test_parallax_of_the_truth_is_one():
 def test_bad_arguments(word, message, capsys, tmp_path):
     assert main(["lightfield", word, f"--out={tmp_path / 'out'}"]) == 2
     assert re.search(message, capsys.readouterr().err) and not (tmp_path / "out").exists()
+
+
+def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    words = ["lightfield", "--scene=flat", "--rows=8", "--cols=12", "--disparities=3", "--golden"]
+    assert main([*words, "--lux=400"]) == 0
+    page_of = tmp_path / "build/lightfield/flat-rows=8-cols=12-lux=400-disparities=3-golden/lightfield.html"
+    text = page_of.read_text()
+    assert "not run" in text and "byte for byte" not in text  # of the chip nothing is known
+    for lux in (400, 300):
+        assert main([*words, f"--lux={lux}", "--out=same"]) == 0
+    assert "replaced there: flat-rows=8-cols=12-lux=400-disparities=3-golden" in capsys.readouterr().out
+
+
+def test_an_estimate_alone_is_that_of_the_page():
+    result = golden_result(request(scene="tilted", rows=24, cols=24, mode="raw"))
+    fields = read_back(result, prior_of(1.0))
+    for name, found in fields.found.items():
+        np.testing.assert_array_equal(estimate(result, name).light_field, found.light_field)

@@ -44,13 +44,12 @@ def encode_frame(
     if samples.shape != shape or samples.dtype.kind not in "iu":
         raise ParameterError(f"samples = {samples.dtype} array {samples.shape}: must be integers, shape {shape}")
     layout = header.layout(tile)
-    rows = samples.reshape(header.rows, -1)
-    codes = np.concatenate([rows[row, layout.places_of(i)] for i, row in enumerate(layout.rows)])
+    codes = samples.reshape(-1)[layout.order]
     low, high = (-128, 127) if header.edge else (0, 255)
     if codes.min() < low or codes.max() > high:
         raise ParameterError(f"samples = {codes.min()}..{codes.max()}: must be in {low}..{high} in {header.mode} mode")
     counts = layout.counts
-    size = sum(row_bytes_max(int(n), header.edge) + 2 for n in counts)
+    size = sum(row_bytes_max(n, header.edge) + 2 for n in counts.tolist())
     out = np.empty(size, np.uint8)
     coder = header.edge, base_of(header.threshold), header.segment
     end = encode_rows(codes.astype(np.int16), layout.rows, counts, *coder, out)

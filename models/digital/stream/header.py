@@ -230,6 +230,8 @@ class Layout:
         For each kind the samples' index col * subs + sub in their row, one list after the other.
     start : int32 (kinds + 1,)
         Start of each list in ``places``.
+    order : int64 (samples of a frame,)
+        Index of each in an array (rows, cols, subs), row after row.
     """
 
     rows: npt.NDArray[np.int32]
@@ -237,6 +239,7 @@ class Layout:
     counts: npt.NDArray[np.int32]
     places: npt.NDArray[np.int32]
     start: npt.NDArray[np.int32]
+    order: npt.NDArray[np.int64]
 
     def places_of(self, ordinal: int) -> npt.NDArray[np.int32]:
         """Samples of one row in the order of the stream.
@@ -265,7 +268,8 @@ def _layout(rows: int, cols: int, lanes: int, frame: FrameParameters, subs: int,
         lists.append((columns * subs + sub).astype(np.int32))
     start = np.cumsum([0] + [places.size for places in lists]).astype(np.int32)
     kind = index % tile.rows
-    return Layout(index, kind, np.diff(start)[kind], np.concatenate(lists), start)
+    order = np.concatenate([row * cols * subs + lists[k] for row, k in zip(index.astype(np.int64), kind, strict=True)])
+    return Layout(index, kind, np.diff(start)[kind], np.concatenate(lists), start, order)
 
 
 def _correct(data: bytes) -> tuple[bytes, int | None] | None:

@@ -2,19 +2,22 @@
 
 import re
 import shlex
+import shutil
 import xml.etree.ElementTree as xml
 
 import pytest
+from PIL import Image
 
 from talbot.base.command import Parser, add_command
 from talbot.base.command import main as run_command
+from talbot.base.page import index
 from talbot.base.paths import ROOT
 from talbot.commands import command
 from talbot.make import arguments
 from talbot.models.parameters import SensorParameters
 from talbot.rtl.amp_ctrl.ports import SLOT
 from talbot.rtl.tops import build_top
-from talbot.site import api, architecture, collect, diagrams
+from talbot.site import api, architecture, collect, diagrams, gallery
 from talbot.site import command as site
 
 PYTHON = re.compile(r"(?ms)^```python\n(.*?)^```")
@@ -126,3 +129,17 @@ def test_a_bad_folder_is_one_line(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     assert run_command(site, ["--out", str(tmp_path / "file")]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_the_gallery_moves(tmp_path):
+    gallery.clip(tmp_path / "clip.webp")
+    shutil.copyfile(tmp_path / "clip.webp", tmp_path / "edges.webp")
+    still = "data:image/webp;base64,AAAA"
+    for folder, name in ((".", "moves"), ("elsewhere", "stands")):
+        gallery.picture(index.Card("", folder, "", "", [], still), tmp_path, tmp_path / name)
+    with Image.open(tmp_path / "moves") as moving:
+        assert moving.n_frames == gallery.FRAMES and moving.size == (gallery.SIDE, gallery.SIDE)
+        first = moving.convert("RGB").tobytes()
+        moving.seek(1)
+        assert moving.convert("RGB").tobytes() != first
+    assert (tmp_path / "stands").read_bytes() == bytes(3)
