@@ -40,7 +40,7 @@ def run(options: Namespace) -> int:
     growths = {name: growth(encoder) for name, (encoder, _) in FORMATS.items()}
     found = tables(rows, gates_of_packers(), growths, DEFAULT_THRESHOLD)
     beside: list[dict[str, Any]] = []
-    for name in [] if options.codes else tqdm(company.SCENES, desc="scene", disable=None):
+    for name in [] if options.codes else each(company.SCENES, "scene", str):
         beside += company.compare(name, codes_of(name)[0])
     in_company = company.tables(beside, DEFAULT_THRESHOLD) if beside else []
     text = markdown(found, source)
