@@ -11,7 +11,7 @@ from ..netlist.placed import MIRRORED
 from .repair import MORE, Plan, length
 
 FULL = 0.95  # of the rows, at most: cells, and what is kept free beside each
-SEED, TURNS = 1, 3  # the room beside a cell follows from the wires of the turn before
+SEED, TURNS = 1, 2  # the room beside a cell follows from the wires of the turn before
 BIN = 8  # rows: side of a square in which wires are counted
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

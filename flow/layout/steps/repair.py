@@ -39,7 +39,7 @@ class RepairParameters:
 
     pdk: str = "sky130"
     corner: str = ""
-    slew_ns: float = field(default=1.1, metadata={"unit": "ns"})
+    slew_ns: float = field(default=1.05, metadata={"unit": "ns"})
     load_pf: float = field(default=0.0, metadata={"unit": "pF"})
 
     def __post_init__(self) -> None:
