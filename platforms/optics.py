@@ -40,14 +40,17 @@ class Film:
 class OpticalStack:
     """A process above its photodiodes, where no metal is drawn; light comes through air.
 
-    metals: from the lowest. films: of the dielectrics, from the silicon up; metals lie inside them. grid_um: of what
-    is drawn. heights: name of the table of heights.
+    metals: from the lowest. films: of the dielectrics, from the silicon below the field oxide up, which is height 0;
+    metals lie inside them. surface_um: height of the silicon of active areas, where photodiodes are. finger_um: minimum
+    width of a diffusion, and space between two. grid_um: of what is drawn. heights: name of the table of heights.
     """
 
     process: str
     heights: str
     metals: tuple[Metal, ...]
     films: tuple[Film, ...]
+    surface_um: float
+    finger_um: tuple[float, float]
     grid_um: float = 0.005
 
     def metal(self, field: str, name: str) -> Metal:

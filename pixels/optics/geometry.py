@@ -56,6 +56,7 @@ class PixelGeometry:
         if self.kind == "interleaved":
             if self.analyzer is not None:
                 raise ParameterError(f"analyzer = {self.analyzer!r}: must be None for an interleaved pixel")
+            _check_period(2 * sum(stack.finger_um), "two diffusions' width and space", self.period_um, stack)
             return
         if self.analyzer is None:
             raise ParameterError("analyzer = None: must be a metal for an amplitude pixel")
@@ -77,16 +78,16 @@ class PixelGeometry:
         """From the lower face of the upper lines to the upper face of the analyzer, or to the silicon."""
         stack = self.stack
         upper = stack.metal("diffraction", self.diffraction).bottom_um
-        return upper - (stack.metal("analyzer", self.analyzer).top_um if self.analyzer else 0.0)
+        return upper - (stack.metal("analyzer", self.analyzer).top_um if self.analyzer else stack.surface_um)
 
     def layers(self, wavelength_um: float) -> tuple[list[Slab], list[Slab]]:
         """Layers from the air down, cut above the analyzer; without one all are in the first. Raises ParameterError."""
         cut = _Cutter(self.stack, wavelength_um)
         upper = cut.grating("diffraction", self.diffraction, self.fill)
         if self.analyzer is None:
-            return upper + cut.down_to(0.0), []
+            return upper + cut.down_to(cut.stack.surface_um), []
         upper += cut.down_to(self.stack.metal("analyzer", self.analyzer).top_um)
-        return upper, cut.grating("analyzer", self.analyzer, self.analyzer_fill) + cut.down_to(0.0)
+        return upper, cut.grating("analyzer", self.analyzer, self.analyzer_fill) + cut.down_to(cut.stack.surface_um)
 
 
 class _Cutter:
@@ -129,14 +130,15 @@ class _Cutter:
 
 def _check_lines(field: str, metal: Metal, period_um: float, fill: float, stack: OpticalStack) -> None:
     check_real(field, fill, 0, 1)
-    least = metal.width_um + metal.space_um
-    if period_um < least - 1e-9:
-        raise ParameterError(
-            f"period_um = {period_um:g}: must be at least {least:g}, {metal.name}'s width and space in {stack.process}"
-        )
+    _check_period(metal.width_um + metal.space_um, f"{metal.name}'s width and space", period_um, stack)
     low, high = metal.width_um / period_um, 1 - metal.space_um / period_um
     if not low - 1e-9 <= fill <= high + 1e-9:
         raise ParameterError(
             f"{field} = {fill:g}: must be in [{low:.3f}, {high:.3f}], lines of {metal.width_um:g} and spaces of "
             f"{metal.space_um:g} um of {metal.name}"
         )
+
+
+def _check_period(least_um: float, of: str, period_um: float, stack: OpticalStack) -> None:
+    if period_um < least_um - 1e-9:
+        raise ParameterError(f"period_um = {period_um:g}: must be at least {least_um:g}, {of} in {stack.process}")

@@ -13,7 +13,7 @@ from functools import reduce
 import numpy as np
 import numpy.typing as npt
 
-Complexes = npt.NDArray[np.complex128]
+Complexes = npt.NDArray[np.complexfloating]
 TINY = 1e-12  # |q^2| below which an order counts as grazing (Rayleigh's anomaly) and is damped, lest H be infinite
 
 
@@ -73,10 +73,9 @@ def spread(each: Complexes) -> Complexes:
     return out.reshape(*batch, c * n, c * n)
 
 
-def normal_wave(square: npt.NDArray[np.complexfloating]) -> Complexes:
+def normal_wave(square: npt.NDArray[np.inexact]) -> Complexes:
     """Wave number q along z of a wave that falls or decays downwards, from its square."""
-    square = np.where(np.abs(square) < TINY, TINY * 1j, square.astype(complex))
-    q = np.sqrt(square)
+    q: Complexes = np.sqrt(np.where(np.abs(square) < TINY, TINY * 1j, square + 0j)).astype(np.complex128)
     return np.where(q.imag + q.real < 0, -q, q)
 
 
@@ -98,14 +97,16 @@ def films(media: Sequence[tuple[complex, float]], orders: Orders) -> Scattering:
     A thickness of the first and the last counts: how far from the next face its amplitudes are taken. Of one medium it
     is the way through it. Matrices of each order by itself: see `Scattering.spread`.
     """
-    parts, one = [], np.eye(orders.components)
+    parts: list[Scattering] = []
+    one = np.eye(orders.components, dtype=complex)
     before: Complexes | None = None
     for permittivity, thickness in media:
         q, y = admittance(permittivity, orders)
         if before is not None:
             r = np.linalg.solve(before + y, before - y)
             parts.append(Scattering(r, one + r, -r, one - r))
-        pass_ = np.exp(1j * q * thickness)[..., None, None] * one
-        parts.append(Scattering(np.zeros_like(pass_), pass_, np.zeros_like(pass_), pass_))
+        passed = np.exp(1j * q * thickness).astype(np.complex128)[..., None, None] * one
+        nothing = np.zeros(passed.shape, complex)
+        parts.append(Scattering(nothing, passed, nothing, passed))
         before = y
     return reduce(Scattering.over, parts)

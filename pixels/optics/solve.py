@@ -15,7 +15,7 @@ from .scattering import Complexes, Orders, Scattering, admittance, films
 ORDERS = 41  # kept, the even number of evanescent and travelling ones about order 0
 BATCH = 24  # angles at once: memory
 BALANCE = 1e-6  # by which reflected and transmitted light may exceed what came
-Floats = npt.NDArray[np.float64]
+Floats = npt.NDArray[np.floating]
 
 
 class SolverError(ArithmeticError):
@@ -92,7 +92,8 @@ def solve(
                 rows = {"te": [0], "tm": [1], "both": [0, 1]}[name]
                 found = _solve(upper, lower, period_um, part, shifts, orders, name)
                 for whole, piece in zip(out, found, strict=True):
-                    whole[np.ix_(rows, *map(range, whole.shape[1:-1]), at)] = piece
+                    for row, values in zip(rows, piece, strict=True):
+                        whole[row][..., at] = values
     _check(out[0], out[1])
     return Light(out[0], out[1], None if lower else out[2])
 

@@ -17,4 +17,6 @@ METALS = (
     Metal("TopMetal2", 11.23, 3.0, "aluminium", 2.0, 2.0),
 )
 FILMS = Film(0.40, "silica"), Film(0.45, "nitride"), Film(12.73, "silica"), Film(13.13, "nitride")
-STACKS = {"klayout-pex": OpticalStack("ihp-sg13g2", "klayout-pex", METALS, FILMS)}
+SURFACE_UM = 0.3976  # "diff" of the same table
+FINGER_UM = 0.15, 0.21  # rules Act.a and Act.b
+STACKS = {"klayout-pex": OpticalStack("ihp-sg13g2", "klayout-pex", METALS, FILMS, SURFACE_UM, FINGER_UM)}

@@ -19,6 +19,8 @@ METALS = (
     ("met5", 5.3711, 1.26, 1.6, 1.6),
 )
 RAISED_UM = 0.295
+SURFACE_UM = 0.323  # "diff" of the same table
+FINGER_UM = 0.15, 0.27  # rules difftap.1 and difftap.3
 
 
 def _stack(heights: str, raised_um: float) -> OpticalStack:
@@ -28,7 +30,7 @@ def _stack(heights: str, raised_um: float) -> OpticalStack:
     )
     oxide = metals[-1].bottom_um
     films = Film(0.9361, "silica"), Film(1.0111, "nitride"), Film(oxide, "silica"), Film(oxide + 0.4223, "nitride")
-    return OpticalStack("sky130", heights, metals, films)
+    return OpticalStack("sky130", heights, metals, films, SURFACE_UM, FINGER_UM)
 
 
 STACKS = {name: _stack(name, raised) for name, raised in (("met2-2.006", 0.0), ("met2-2.301", RAISED_UM))}

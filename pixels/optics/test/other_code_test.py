@@ -1,4 +1,8 @@
-"""The solver against another coupled-wave code, meent (MIT): two gratings of lossy metal over silicon."""
+"""The solver against another coupled-wave code, meent (MIT): two gratings of lossy metal over silicon.
+
+Silicon without loss: meent 0.13.2 turns the sign of loss of the half space below (of bare films, too, where
+`solve_test` has the closed form).
+"""
 
 import numpy as np
 import pytest
@@ -26,7 +30,7 @@ def test_transmission_is_that_of_another_code(metals, degrees):
     upper, lower = PixelGeometry(diffraction=metals[0], analyzer=metals[1], period_um=PERIOD, analyzer_fill=0.4).layers(
         WAVELENGTH
     )
-    silicon, angle = complex(refractive_index("silicon", WAVELENGTH)), np.deg2rad([degrees])
+    silicon, angle = float(refractive_index("silicon", WAVELENGTH).real), np.deg2rad([degrees])
     lit = Illumination(WAVELENGTH, angle, 0 * angle, bottom=silicon**2)
     ours = solve(upper, lower, PERIOD, lit, (SHIFT,), ORDERS).transmitted[:, 0, 0]
     layers = [(s, 0.0) for s in upper] + [(s, SHIFT) for s in lower]
@@ -35,7 +39,7 @@ def test_transmission_is_that_of_another_code(metals, degrees):
             backend=0,
             pol=field,
             n_top=1,
-            n_bot=silicon.conjugate(),
+            n_bot=silicon,
             theta=float(angle[0]),
             fto=[ORDERS // 2, 0],
             wavelength=WAVELENGTH,
@@ -43,4 +47,4 @@ def test_transmission_is_that_of_another_code(metals, degrees):
             ucell=np.array([[cell(*layer)] for layer in layers]),
             thickness=[slab.thickness_um for slab, _ in layers],
         )
-        assert ours[field] == pytest.approx(float(np.sum(theirs.conv_solve().de_ti).real), abs=5e-4)
+        assert ours[field] == pytest.approx(float(np.sum(theirs.conv_solve().de_ti).real), abs=2e-5)

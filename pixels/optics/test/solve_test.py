@@ -85,8 +85,8 @@ def test_mirrored_shift_is_mirrored_angle():
 
 
 def test_fingers_share_all_that_enters():
-    upper, lower = PixelGeometry(kind="interleaved", analyzer=None).layers(0.53)
-    got = solve(upper, lower, 0.7, light(bottom=17), (0.0, 0.5), 21)
+    upper, lower = PixelGeometry(kind="interleaved", analyzer=None, period_um=0.85).layers(0.53)
+    got = solve(upper, lower, 0.85, light(bottom=17), (0.0, 0.5), 21)
     assert got.fingers is not None
     np.testing.assert_allclose(got.fingers.sum(2), got.transmitted, atol=1e-12)
     np.testing.assert_allclose(got.fingers[:, 0], got.fingers[:, 1, ::-1], atol=1e-9)
