@@ -65,7 +65,16 @@ class OpticalStack:
 
 def optical_stack(pdk: str, heights: str | None = None) -> OpticalStack:
     """Optical stack of ``pdk``. heights: one of its published tables, None: the first. Raises ParameterError."""
-    stacks: dict[str, OpticalStack] = import_module(f"talbot.platforms.{package(pdk)}.optics").STACKS
+    stacks = _stacks(pdk)
     heights = next(iter(stacks)) if heights is None else heights
     check_choice("heights", heights, stacks)
     return stacks[heights]
+
+
+def tables(pdk: str) -> list[str]:
+    """Names of the published tables of heights of ``pdk``, the first is the default. Raises ParameterError."""
+    return [*_stacks(pdk)]
+
+
+def _stacks(pdk: str) -> dict[str, OpticalStack]:
+    return import_module(f"talbot.platforms.{package(pdk)}.optics").STACKS

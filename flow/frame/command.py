@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from talbot.base.cache import digest
-from talbot.base.progress import Steps
+from talbot.base.progress import Steps, line
 from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, STANDARD, CameraParameters, read_sensor
+from talbot.pixels.designs import IDEAL, PIXELS
 
 from . import arguments as text
 
@@ -55,6 +56,11 @@ def add_frame_arguments(parser: ArgumentParser) -> None:
     """Options of the sensor, its camera and a frame."""
     add = parser.add_argument
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
+    add(
+        "--pixel",
+        default=IDEAL,
+        help=f"angular response, one of {', '.join(PIXELS)}: Eq. 3.1, or what the gratings of a process do",
+    )
     for name, words in CAMERA.items():
         add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
     add(
@@ -135,9 +141,11 @@ def _arguments_of(folder: Path) -> dict[str, Any] | None:
 
 def request_of(a: Namespace) -> "FrameRequest":
     """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError."""
+    from talbot.pixels.tabled import tabled
+
     from .request import request
 
-    sensor = read_sensor(a.sensor) if a.sensor else STANDARD
+    sensor = tabled(read_sensor(a.sensor) if a.sensor else STANDARD, a.pixel, line)
     typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
     numbers: dict[str, Any] = {
         name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed

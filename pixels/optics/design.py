@@ -15,8 +15,8 @@ from .response import respond
 WAVELENGTHS_UM = 0.45, 0.50, 0.55, 0.60, 0.65, 0.70
 PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2
 SEARCH_ORDERS = 21  # transmission within 0.006 of that of 121 orders: flow/pixel/README.md
-SEARCH_DEGREES = np.arange(-20, 20.1, 2.0)
-STEPS = {"period_um": 0.03, "wavelength_um": 0.015, "fill": 0.07, "analyzer_fill": 0.07}
+SEARCH_DEGREES = np.arange(-20, 20.1, 1.0)  # resonances between the gratings are a degree wide
+STEPS = {"period_um": 0.04, "fill": 0.07, "analyzer_fill": 0.07}
 REACHED = 0.05  # of a beta
 
 
@@ -52,18 +52,19 @@ def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[Pi
                         yield made
 
 
-def neighbours(design: Design, step: float = 1.0) -> Iterator[tuple[PixelGeometry, float]]:
-    """Geometries and wavelengths a step beside ``design`` in one of `STEPS`, those that the rules allow."""
+def neighbours(design: Design, step: float = 1.0) -> Iterator[PixelGeometry]:
+    """Geometries a step beside ``design`` in one of `STEPS`, those that the rules allow."""
     grid = design.geometry.stack.grid_um
     for sign in (-step, step):
-        yield design.geometry, round(design.wavelength_um + sign * STEPS["wavelength_um"], 4)
-        for name in ("period_um", "fill", "analyzer_fill")[: 3 if design.geometry.analyzer else 2]:
-            value = getattr(design.geometry, name) + sign * STEPS[name]
+        for name, size in STEPS.items():
+            if name == "analyzer_fill" and not design.geometry.analyzer:
+                continue
+            value = getattr(design.geometry, name) + sign * size
             if name == "period_um":
                 value = round(round(value / grid) * grid, 6)
             made = _made(design.geometry, **{name: round(value, 6)})
             if made is not None:
-                yield made, design.wavelength_um
+                yield made
 
 
 def measure(geometry: PixelGeometry, wavelength_um: float, orders: int = SEARCH_ORDERS) -> Design:

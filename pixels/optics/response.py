@@ -7,8 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from talbot.platforms.materials import refractive_index
+from talbot.platforms.optics import OpticalStack
 
-from .geometry import QUADRATURE, PixelGeometry
+from .geometry import QUADRATURE, PixelGeometry, Slab
 from .solve import ORDERS, Floats, Illumination, solve
 
 
@@ -67,6 +68,17 @@ def respond(
         for out, found in ((shares, part), (reflected, back)):
             out.append(np.where(left, found[:, rows[1]][..., which], found[:, rows[0]][..., which]))
     return Response(geometry, angles, across, wavelengths, np.array(shares), np.array(reflected))
+
+
+def bare_share(stack: OpticalStack, wavelength_um: float) -> float:
+    """Share of the light on a pixel that each of two diodes gets on the axis, where there is no metal."""
+    slabs, below = [], stack.surface_um
+    for film in stack.films:
+        slabs.append(Slab(complex(refractive_index(film.material, wavelength_um) ** 2), film.top_um - below))
+        below = film.top_um
+    silicon = complex(refractive_index("silicon", wavelength_um)) ** 2
+    light = Illumination(wavelength_um, np.zeros(1), np.zeros(1), bottom=silicon)
+    return float(solve(slabs[::-1], [], 1.0, light, orders=1).transmitted.mean()) / 2
 
 
 def _solved(

@@ -1,31 +1,35 @@
-"""Tables of a design for the golden pixel model: both diodes over the angles of a lens."""
+"""Tables of a pixel's response for the golden pixel model: its diodes over the angles of a lens."""
 
 from collections.abc import Callable
 
 import numpy as np
 
-from .design import SEARCH_ORDERS, Design
+from .geometry import PixelGeometry
 from .response import respond
 from .solve import Floats
 
-ALONG_DEGREES = np.arange(0.0, 33.1, 1.5)  # f/1.2 has 22.6
-ACROSS_DEGREES = np.arange(0.0, 33.1, 5.5)
-BAND_UM = 0.02  # of a filter before the lens: three wavelengths over it
+ORDERS = 21
+ALONG_DEGREES = np.arange(0.0, 33.1, 1.0)  # f/1.2 has 22.6
+ACROSS_DEGREES = np.arange(0.0, 33.1, 8.25)
+BAND_UM = 0.02  # of the filter before the lens: three wavelengths over it
 
 
-def angle_table(design: Design, note: Callable[[str], None] = lambda text: None) -> Floats:
-    """Shares (4, along, across) of the light on the pixel without polarization, over the design's band.
+def along_degrees() -> Floats:
+    """Angles in the plane across the lines, of both signs."""
+    return np.concatenate([-ALONG_DEGREES[:0:-1], ALONG_DEGREES])
 
-    Of angles along the lines those of one sign: the other is the same. Diodes as in `Response`.
+
+def angle_table(
+    geometry: PixelGeometry, wavelength_um: float, note: Callable[[str], None] = lambda text: None
+) -> Floats:
+    """Shares (4, along, across) of the light on the pixel without polarization, the mean of `BAND_UM`.
+
+    Diodes as in `Response`. Angles along the lines are of one sign: the other's are the same.
     """
-    along, across = np.meshgrid(_mirrored(ALONG_DEGREES), ACROSS_DEGREES, indexing="ij")
+    along, across = np.meshgrid(along_degrees(), ACROSS_DEGREES, indexing="ij")
     rays = np.deg2rad(along.ravel()), np.deg2rad(across.ravel())
     shares = []
-    for wavelength in design.wavelength_um + BAND_UM / 2 * np.array([-1, 0, 1]):
-        note(f"{design.geometry.diffraction}, {design.geometry.period_um:g} um at {1e3 * wavelength:.0f} nm")
-        shares.append(respond(design.geometry, rays[0], wavelength, rays[1], SEARCH_ORDERS).unpolarized[0])
+    for wavelength in wavelength_um + BAND_UM / 2 * np.array([-1, 0, 1]):
+        note(f"{geometry.diffraction} at {geometry.period_um:g} um, {1e3 * wavelength:.0f} nm")
+        shares.append(respond(geometry, rays[0], wavelength, rays[1], ORDERS).unpolarized[0])
     return np.mean(shares, 0).reshape(4, *along.shape)
-
-
-def _mirrored(degrees: Floats) -> Floats:
-    return np.concatenate([-degrees[:0:-1], degrees])

@@ -81,7 +81,7 @@ def test_candidates_keep_the_rules(pdk):
     assert {g.kind for g in found} == {"amplitude", "interleaved"} and len(set(found)) == len(found) > 20
     for geometry in found[::7]:
         design = Design(geometry, 0.5, fit(formula(0.0, 12.0, 0.3, 0.5, 1)))
-        for other, _ in neighbours(design):
+        for other in neighbours(design):
             assert other.period_um >= sum((stack.metal("", other.diffraction).width_um,) * 2)
 
 
