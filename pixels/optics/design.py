@@ -12,7 +12,7 @@ from .fit import Fit, fit
 from .geometry import KINDS, PixelGeometry
 from .response import respond
 
-WAVELENGTHS_UM = 0.45, 0.50, 0.55, 0.60, 0.65, 0.70
+WAVELENGTHS_UM = tuple(round(0.45 + 0.025 * k, 3) for k in range(11))
 PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2
 SEARCH_ORDERS = 21  # transmission within 0.006 of that of 121 orders: flow/pixel/README.md
 SEARCH_DEGREES = np.arange(-20, 20.1, 1.0)  # resonances between the gratings are a degree wide

@@ -1,7 +1,6 @@
 """The solver against another coupled-wave code, meent (MIT): two gratings of lossy metal over silicon.
 
-Silicon without loss: meent 0.13.2 turns the sign of loss of the half space below (of bare films, too, where
-`solve_test` has the closed form).
+Silicon without loss: of an absorbing half space meent 0.13.2 says otherwise than the closed form in `solve_test`.
 """
 
 import numpy as np
