@@ -1,6 +1,6 @@
 """Gratings of each process for the tile's types: amplitude pixels that `make pixel` finds, at one wavelength each.
 
-`flow/pixel/test` measures them again. Fills are near half, periods on the process's grid.
+Its tests measure them again.
 """
 
 from dataclasses import dataclass
@@ -23,11 +23,11 @@ _sky = partial(PixelGeometry, process="sky130", diffraction="met4")
 _ihp = partial(PixelGeometry, process="ihp-sg13g2", diffraction="Metal5")
 DESIGNS = {
     "sky130": Gratings(
-        0.55,
+        0.575,
         {
-            12.0: _sky(analyzer="met2", period_um=0.78, shift=0.5),
-            18.0: _sky(analyzer="met1", period_um=0.74, analyzer_fill=0.535),
-            24.0: _sky(analyzer="met1", period_um=0.6, analyzer_fill=0.535, shift=0.5),
+            12.0: _sky(analyzer="met2", period_um=0.8, shift=0.5),
+            18.0: _sky(analyzer="met1", period_um=0.7, fill=0.43, analyzer_fill=0.535),
+            24.0: _sky(analyzer="met1", period_um=0.6, analyzer_fill=0.395, shift=0.5),
         },
     ),
     "ihp-sg13g2": Gratings(
