@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from talbot.base.cache import digest
-from talbot.base.progress import Steps, line
-from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, STANDARD, CameraParameters, read_sensor
-from talbot.pixels.designs import IDEAL, PIXELS
+from talbot.base.progress import Steps
+from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, CameraParameters
 
 from . import arguments as text
+from .sensor import add_pixel, asked_sensor
 
 if TYPE_CHECKING:
     from .request import FrameRequest
@@ -56,11 +56,7 @@ def add_frame_arguments(parser: ArgumentParser) -> None:
     """Options of the sensor, its camera and a frame."""
     add = parser.add_argument
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
-    add(
-        "--pixel",
-        default=IDEAL,
-        help=f"angular response, one of {', '.join(PIXELS)}: Eq. 3.1, or what the gratings of a process do",
-    )
+    add_pixel(parser)
     for name, words in CAMERA.items():
         add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
     add(
@@ -141,11 +137,9 @@ def _arguments_of(folder: Path) -> dict[str, Any] | None:
 
 def request_of(a: Namespace) -> "FrameRequest":
     """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError."""
-    from talbot.pixels.tabled import tabled
-
     from .request import request
 
-    sensor = tabled(read_sensor(a.sensor) if a.sensor else STANDARD, a.pixel, line)
+    sensor = asked_sensor(a)
     typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
     numbers: dict[str, Any] = {
         name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed

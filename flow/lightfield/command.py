@@ -6,7 +6,8 @@ from typing import Any
 
 from talbot.base.progress import Steps
 from talbot.flow.frame import arguments as text
-from talbot.models.parameters import STANDARD, read_sensor
+from talbot.flow.frame.sensor import add_pixel, asked_sensor
+from talbot.pixels.designs import IDEAL
 
 QUIET = 0.5  # of the default noise: what rounding to codes leaves without any other
 
@@ -17,6 +18,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--scene", default="motorcycle", help="name of a scene, an image, or a light field, as for talbot sim")
     add("--depth", help="depth file for --scene (models/scene/README.md)")
     add("--sensor", help="sensor file; talbot sensor prints one to start from")
+    add_pixel(parser)
     add("--rows", help="pixels, 1..1024 (default: of the sensor)")
     add("--cols", help="pixels, 1..1536 (default: of the sensor)")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
@@ -35,6 +37,7 @@ def run(options: Namespace) -> int:
 
     from .job import STEPS, run
 
+    suffix = "" if options.pixel == IDEAL else f"-pixel={options.pixel}"
     numbers: dict[str, Any] = {}
     for name, high in (("rows", 1024), ("cols", 1536)):
         if getattr(options, name) is not None:
@@ -50,12 +53,12 @@ def run(options: Namespace) -> int:
     asked = request(
         scene=options.scene,
         depth=options.depth,
-        sensor=read_sensor(options.sensor) if options.sensor else STANDARD,
+        sensor=asked_sensor(options),
         converter=None if options.sensor else "typical",
         mode="raw",
         noise=noise,
         seed=text.integer("seed", options.seed, 0, 2**32 - 1),
-        out=options.out or Path("build/lightfield") / Path(options.scene).stem,
+        out=options.out or Path("build/lightfield") / (Path(options.scene).stem + suffix),
         **numbers,
     )
     with Steps(STEPS, lines=True) as steps:
