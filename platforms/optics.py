@@ -42,7 +42,8 @@ class OpticalStack:
 
     metals: from the lowest. films: of the dielectrics, from the silicon below the field oxide up, which is height 0;
     metals lie inside them. surface_um: height of the silicon of active areas, where photodiodes are. finger_um: minimum
-    width of a diffusion, and space between two. grid_um: of what is drawn. heights: name of the table of heights.
+    width of a diffusion, and space between two. gate: polysilicon over active areas, where it lies inside
+    one film. grid_um: of what is drawn. heights: name of the table of heights.
     """
 
     process: str
@@ -51,11 +52,12 @@ class OpticalStack:
     films: tuple[Film, ...]
     surface_um: float
     finger_um: tuple[float, float]
+    gate: Metal | None = None
     grid_um: float = 0.005
 
     def metal(self, field: str, name: str) -> Metal:
         """The metal ``name``. Raises ParameterError, which calls it ``field``, for one that is not there."""
-        for metal in self.metals:
+        for metal in (*self.metals, *([self.gate] if self.gate else [])):
             if metal.name == name:
                 return metal
         raise ParameterError(

@@ -12,7 +12,7 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `talbot pixel`: texts, checked by `run`."""
     parser.add_argument("--pdk", default="sky130", help="process, sky130 or ihp-sg13g2")
     parser.add_argument("--heights", help="which published table of heights, where the process has several")
-    parser.add_argument("--kind", default="all", help="amplitude, interleaved, or all: the better one")
+    parser.add_argument("--kind", default="all", help="amplitude, interleaved, photogate, or all: the best one")
     parser.add_argument("--out", type=Path, help="folder for the results (default: build/pixel/<pdk>)")
 
 

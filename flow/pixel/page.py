@@ -21,7 +21,7 @@ from .search import Found, Plan
 from .types import CURVE_ORDERS, REFERENCE, Measured
 
 NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png")
-MATERIALS = {"silica": "#dfe6ee", "nitride": "#b9d3b0", "aluminium": "#8a8f99"}
+MATERIALS = {"silica": "#dfe6ee", "nitride": "#b9d3b0", "aluminium": "#8a8f99", "silicon": "#a8664f"}
 PERIODS = 4  # in the cross-section
 
 
@@ -176,13 +176,13 @@ def cross_section(plan: Plan) -> Figure:
             axes.add_patch(Rectangle((0, bottom), width, film.top_um - bottom, color=MATERIALS[film.material]))
             bottom = film.top_um
         axes.add_patch(Rectangle((0, 0), width, g.stack.surface_um, color="#6a5f7a"))
-        gratings = [("diffraction", g.diffraction, g.fill, 0.0)]
-        gratings += [("analyzer", g.analyzer, g.analyzer_fill, g.shift)] if g.analyzer else []
-        for field, name, fill, shift in gratings:
+        gratings = [("diffraction", g.diffraction, g.fill, 0.0, 1)]
+        gratings += [("analyzer", g.analyzer, g.analyzer_fill, g.shift, g.lines)] if g.analyzer else []
+        for field, name, fill, shift, lines in gratings:
             metal = g.stack.metal(field, name)
-            for k in range(-1, PERIODS + 1):
-                left = max(0.0, (k + 0.5 + shift - fill / 2) * g.period_um)
-                right = min(width, (k + 0.5 + shift + fill / 2) * g.period_um)
+            for k in range(-lines, (PERIODS + 1) * lines):
+                left = max(0.0, (k / lines + 0.5 + shift - fill / lines / 2) * g.period_um)
+                right = min(width, (k / lines + 0.5 + shift + fill / lines / 2) * g.period_um)
                 if right > left:
                     place = (left, metal.bottom_um)
                     axes.add_patch(Rectangle(place, right - left, metal.thickness_um, color=MATERIALS[metal.material]))

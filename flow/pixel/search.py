@@ -10,6 +10,7 @@ from pathlib import Path
 
 from talbot.base.jobs import Job, run
 from talbot.base.records import from_json
+from talbot.models.parameters import ParameterError
 from talbot.pixels.optics.design import REACHED, WAVELENGTHS_UM, Design, candidates, front, measure, neighbours, phased
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.solve import SolverError
@@ -70,7 +71,11 @@ def search(
 ) -> Found:
     """Search the metals of ``stack`` for ``betas``; solutions are kept in ``store``. Raises ParameterError."""
     note("candidates")
-    tried = _solve(((g, w) for g in candidates(stack, kinds) for w in WAVELENGTHS_UM), len(WAVELENGTHS_UM), store)
+    grid = [*candidates(stack, kinds)]
+    if not grid:
+        raise ParameterError(f"kind = {', '.join(kinds)}: must be one that {stack.process} can make")
+    kinds = [kind for kind in kinds if any(geometry.kind == kind for geometry in grid)]
+    tried = _solve(((geometry, w) for geometry in grid for w in WAVELENGTHS_UM), len(WAVELENGTHS_UM), store)
     note("refine")
     for turn in range(ROUNDS):
         starts = [start for kind in kinds for start in _starts(tried, kind, betas)]

@@ -17,6 +17,7 @@ PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2
 SEARCH_ORDERS = 21  # transmission within 0.006 of that of 121 orders: flow/pixel/README.md
 SEARCH_DEGREES = np.arange(-20, 20.1, 1.0)  # resonances between the gratings are a degree wide
 STEPS = {"period_um": 0.04, "fill": 0.07, "analyzer_fill": 0.07}
+GATES = 0.45  # share of gates: the space between two is wider than they must be
 REACHED = 0.05  # of a beta
 
 
@@ -36,9 +37,10 @@ class Design:
 def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[PixelGeometry]:
     """Geometries of the metals of ``stack`` that its rules allow, lines and spaces of one width."""
     names = [metal.name for metal in stack.metals]
+    below = {"interleaved": [None], "photogate": [stack.gate.name] if stack.gate else []}
     for kind in kinds:
         for k, upper in enumerate(names):
-            for lower in names[:k] if kind == "amplitude" else [None]:
+            for lower in below[kind] if kind != "amplitude" else names[:k]:
                 for period in PERIODS_UM:
                     made = _made(
                         process=stack.process,
@@ -47,6 +49,7 @@ def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[Pi
                         diffraction=upper,
                         analyzer=lower,
                         period_um=period,
+                        analyzer_fill=GATES if kind == "photogate" else 0.5,
                     )
                     if made is not None:
                         yield made

@@ -6,18 +6,19 @@ from talbot.models.parameters import ParameterError, check_choice, check_real
 from talbot.platforms.materials import refractive_index
 from talbot.platforms.optics import Metal, OpticalStack, optical_stack
 
-KINDS = "amplitude", "interleaved"
+KINDS = "amplitude", "interleaved", "photogate"
 QUADRATURE = 0.0, 0.25, 0.5, 0.75  # of a period: alpha = 0, pi/2, pi and 3 pi/2
 
 
 @dataclass(frozen=True)
 class Slab:
-    """A layer: its permittivity and thickness in um; with lines, these's permittivity and share of the period."""
+    """A layer: its permittivity and thickness in um; with lines, their permittivity, share and number in a period."""
 
     medium: complex
     thickness_um: float
     line: complex | None = None
     fill: float = 0.0
+    lines: int = 1
 
 
 @dataclass(frozen=True)
@@ -25,11 +26,12 @@ class PixelGeometry:
     """Two photodiodes under gratings of a process's metal.
 
     process, heights: see `platforms.optics.optical_stack`. kind: "amplitude", a grating over a second one of metal
-    (the analyzer) and half of the pixel for each diode, whose analyzers are half a period apart; or "interleaved",
-    where fingers of the two diodes, half a period wide, take turns under one grating. diffraction, analyzer: LEF names
-    of the upper and of the lower metal; an interleaved pixel has no analyzer (None). period_um: of both. fill,
-    analyzer_fill: share of metal. shift: of the analyzer, or of the first diode's fingers, against the lines above,
-    -1..1 periods. pitch_um: of pixels.
+    (the analyzer) and half of the pixel for each diode, whose analyzers are half a period apart; "interleaved", where
+    fingers of the two diodes, half a period wide, take turns under one grating; or "photogate", the same with a gate
+    of polysilicon over each finger (Angle Sensitive Photogate, [Jayasuriya2017], Sec. 5.4.2). diffraction, analyzer:
+    LEF names of the upper and of the lower metal, or of the gates; an interleaved pixel has no analyzer (None).
+    period_um: of both. fill, analyzer_fill: share of metal, or of gates. shift: of the analyzer and of the first
+    diode's fingers against the lines above, -1..1 periods. pitch_um: of pixels.
 
     Raises ParameterError for what the process cannot make.
     """
@@ -59,14 +61,26 @@ class PixelGeometry:
             _check_period(2 * sum(stack.finger_um), "two diffusions' width and space", self.period_um, stack)
             return
         if self.analyzer is None:
-            raise ParameterError("analyzer = None: must be a metal for an amplitude pixel")
-        lower = stack.metal("analyzer", self.analyzer)
-        _check_lines("analyzer_fill", lower, self.period_um, self.analyzer_fill, stack)
+            raise ParameterError(f"analyzer = None: must be a name for kind = {self.kind!r}")
+        lower, gate = stack.metal("analyzer", self.analyzer), stack.gate.name if stack.gate else None
+        if (self.analyzer == gate) != (self.kind == "photogate"):
+            raise ParameterError(f"analyzer = {self.analyzer!r}: must be {gate}, the gates, for a photogate alone")
+        _check_lines("analyzer_fill", lower, self.period_um / self.lines, self.analyzer_fill, stack)
         if self.gap_um <= 0:
             raise ParameterError(
                 f"analyzer = {self.analyzer!r}: must be below diffraction = {self.diffraction!r} "
                 f"(gap {self.gap_um:.3f} um)"
             )
+
+    @property
+    def lines(self) -> int:
+        """Lines of the analyzer, or gates, in a period."""
+        return 2 if self.kind == "photogate" else 1
+
+    @property
+    def shared(self) -> bool:
+        """Whether fingers of the two diodes share the light of the whole pixel."""
+        return self.kind != "amplitude"
 
     @property
     def stack(self) -> OpticalStack:
@@ -87,7 +101,9 @@ class PixelGeometry:
         if self.analyzer is None:
             return upper + cut.down_to(cut.stack.surface_um), []
         upper += cut.down_to(self.stack.metal("analyzer", self.analyzer).top_um)
-        return upper, cut.grating("analyzer", self.analyzer, self.analyzer_fill) + cut.down_to(cut.stack.surface_um)
+        return upper, cut.grating("analyzer", self.analyzer, self.analyzer_fill, self.lines) + cut.down_to(
+            cut.stack.surface_um
+        )
 
 
 class _Cutter:
@@ -108,7 +124,7 @@ class _Cutter:
         self.at = min(self.at, height_um)
         return out
 
-    def grating(self, field: str, name: str, fill: float) -> list[Slab]:
+    def grating(self, field: str, name: str, fill: float, lines: int = 1) -> list[Slab]:
         """Films above a metal, and its lines. Raises ParameterError for one that is not inside one film."""
         metal = self.stack.metal(field, name)
         bottoms = [0.0, *(film.top_um for film in self.stack.films[:-1])]
@@ -122,7 +138,7 @@ class _Cutter:
         out = self.down_to(metal.top_um)
         line, medium = self._permittivity(metal.material), self._permittivity(around[0])
         self.at = metal.bottom_um
-        return [*out, Slab(medium, metal.thickness_um, line, fill)]
+        return [*out, Slab(medium, metal.thickness_um, line, fill, lines)]
 
     def _permittivity(self, material: str) -> complex:
         return complex(refractive_index(material, self.wavelength_um) ** 2)

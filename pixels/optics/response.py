@@ -88,7 +88,8 @@ def _solved(
     upper, lower = geometry.layers(wavelength_um)
     silicon = complex(refractive_index("silicon", wavelength_um)) ** 2
     light = Illumination(wavelength_um, rays[0], rays[1], bottom=silicon)
-    found = solve(upper, lower, geometry.period_um, light, [*map(float, shifts)], orders)
+    listed = [*map(float, shifts)]
+    found = solve(upper, lower, geometry.period_um, light, listed, orders, geometry.shared)
     # Half of the pixel lies above each diode of an amplitude pixel; fingers share all of it.
     return (found.transmitted / 2 if found.fingers is None else found.fingers[:, :, 0]), found.reflected
 

@@ -55,8 +55,8 @@ class Illumination:
 class Light:
     """Shares of the light that falls in, (2, shifts, ..., A); polarization first: field along the lines, or across.
 
-    reflected: all. transmitted: all that enters the half space below. fingers: where the lower part is empty, of that
-    what enters through the half of each period around x = shift, and through the rest: (2, shifts, 2, A).
+    reflected: all. transmitted: all that enters the half space below. fingers: of that, what enters through the half
+    of each period around x = shift, and through the rest, where it was asked for: (2, shifts, 2, A).
     """
 
     reflected: Floats
@@ -71,17 +71,19 @@ def solve(
     light: Illumination,
     shifts: Sequence[float] = (0.0,),
     orders: int = ORDERS,
+    fingers: bool = False,
 ) -> Light:
     """Light through ``upper`` and then ``lower``, whose lines are moved by each of ``shifts`` periods.
 
-    Where ``lower`` is empty the fingers of the diodes move instead. orders: odd, 1..401. Raises SolverError.
+    fingers: divide what enters between fingers of two diodes, which move with the shift. orders: odd, 1..401. Raises
+    SolverError.
     """
     check_int("orders", orders, 1, 401)
     check_real("period_um", period_um, 1e-3, 1e3)
     if orders % 2 == 0:
         raise ParameterError(f"orders = {orders}: must be odd")
     oblique = np.abs(light.across) > 0
-    out = [np.zeros((2, len(shifts), *more, light.along.size)) for more in ([], [], [2])[: 2 if lower else 3]]
+    out = [np.zeros((2, len(shifts), *more, light.along.size)) for more in ([], [], [2])[: 3 if fingers else 2]]
     for across in (False, True):
         chosen = np.flatnonzero(oblique == across)
         for at in np.split(chosen, range(BATCH, chosen.size, BATCH)):
@@ -90,12 +92,12 @@ def solve(
             part = Illumination(light.wavelength_um, light.along[at], light.across[at], light.top, light.bottom)
             for name in ("both",) if across else ("te", "tm"):
                 rows = {"te": [0], "tm": [1], "both": [0, 1]}[name]
-                found = _solve(upper, lower, period_um, part, shifts, orders, name)
+                found = _solve(upper, lower, period_um, part, shifts, orders, name, fingers)
                 for whole, piece in zip(out, found, strict=True):
                     for row, values in zip(rows, piece, strict=True):
                         whole[row][..., at] = values
     _check(out[0], out[1])
-    return Light(out[0], out[1], None if lower else out[2])
+    return Light(out[0], out[1], out[2] if fingers else None)
 
 
 def _check(reflected: Floats, transmitted: Floats) -> None:
@@ -117,8 +119,9 @@ def _solve(
     shifts: Sequence[float],
     count: int,
     polarization: str,
+    fingers: bool,
 ) -> list[Floats]:
-    """Of one set of components: (P, shifts, A), (P, shifts, A), and where ``lower`` is empty (P, shifts, 2, A)."""
+    """Of one set of components: (P, shifts, A), (P, shifts, A), and with fingers (P, shifts, 2, A)."""
     wave = 2 * np.pi / light.wavelength_um
     x, y, _ = light.directions() * np.sqrt(light.top).real
     kx = x[:, None] + (np.arange(count) - count // 2) * light.wavelength_um / period_um
@@ -130,7 +133,7 @@ def _solve(
     _, y_top = admittance(light.top, orders)
     _, y_bottom = admittance(light.bottom, orders)
     came = _flux(falling[..., 0], y_top, orders).sum(-1)  # that of both fields is the same
-    shares: list[list[Floats]] = [[], []] if lower else [[], [], []]
+    shares: list[list[Floats]] = [[], [], []] if fingers else [[], []]
     for shift in shifts:
         if last is None:
             back, through = first.above @ falling, first.down @ falling
@@ -141,7 +144,7 @@ def _solve(
         for k in range(falling.shape[-1]):
             shares[0].append(_flux(back[..., k], y_top, orders).sum(-1) / came)
             shares[1].append(_flux(through[..., k], y_bottom, orders).sum(-1) / came)
-            if last is None:
+            if fingers:
                 shares[2].append(_fingers(through[..., k], y_bottom, orders, shift) / came)
     p = falling.shape[-1]
     return [np.stack(rows).reshape(len(shifts), p, *rows[0].shape).swapaxes(0, 1) for rows in shares]
@@ -165,7 +168,7 @@ def scatter(slabs: Sequence[Slab], above: complex, below: complex, orders: Order
             continue
         close(slab.medium)
         assert whole is not None
-        whole = whole.over(grating(slab.line, slab.medium, slab.fill, wave * slab.thickness_um, orders))
+        whole = whole.over(grating(slab.line, slab.medium, slab.fill, wave * slab.thickness_um, orders, slab.lines))
         run = [(slab.medium, 0.0)]
     close(below)
     assert whole is not None

@@ -20,6 +20,7 @@ METALS = (
 )
 RAISED_UM = 0.295
 SURFACE_UM = 0.323  # "diff" of the same table
+GATE = Metal("poly", SURFACE_UM, 0.18, "silicon", 0.15, 0.21)  # on an oxide of nm; without silicide, as silicon
 FINGER_UM = 0.15, 0.27  # rules difftap.1 and difftap.3
 
 
@@ -30,7 +31,7 @@ def _stack(heights: str, raised_um: float) -> OpticalStack:
     )
     oxide = metals[-1].bottom_um
     films = Film(0.9361, "silica"), Film(1.0111, "nitride"), Film(oxide, "silica"), Film(oxide + 0.4223, "nitride")
-    return OpticalStack("sky130", heights, metals, films, SURFACE_UM, FINGER_UM)
+    return OpticalStack("sky130", heights, metals, films, SURFACE_UM, FINGER_UM, GATE)
 
 
 STACKS = {name: _stack(name, raised) for name, raised in (("met2-2.006", 0.0), ("met2-2.301", RAISED_UM))}

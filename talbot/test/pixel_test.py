@@ -22,8 +22,9 @@ def test_a_solution_by_the_public_name():
     "words, said",
     [
         ("pixel --pdk tsmc", "pdk = 'tsmc': must be one of sky130, ihp-sg13g2"),
-        ("pixel --kind phase", "kind = 'phase': must be one of amplitude, interleaved, all"),
+        ("pixel --kind phase", "kind = 'phase': must be one of amplitude, interleaved, photogate, all"),
         ("pixel --heights high", "heights = 'high': must be one of met2-2.006, met2-2.301"),
+        ("pixel --pdk ihp-sg13g2 --kind photogate", "kind = photogate: must be one that ihp-sg13g2 can make"),
         ("sim --pixel gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
     ],
 )

@@ -78,7 +78,8 @@ def test_response_and_fit_of_a_pixel_of_sky130():
 def test_candidates_keep_the_rules(pdk):
     stack = optical_stack(pdk)
     found = [*candidates(stack)]
-    assert {g.kind for g in found} == {"amplitude", "interleaved"} and len(set(found)) == len(found) > 20
+    kinds = {"amplitude", "interleaved", *(["photogate"] if stack.gate else [])}
+    assert {g.kind for g in found} == kinds and len(set(found)) == len(found) > 20
     for geometry in found[::7]:
         design = Design(geometry, 0.5, fit(formula(0.0, 12.0, 0.3, 0.5, 1)))
         for other in neighbours(design):
@@ -100,11 +101,13 @@ def test_the_front_is_what_nothing_beats():
         ({"diffraction": "met9"}, "diffraction = 'met9': must be one of met1"),
         ({"analyzer": "gold"}, "analyzer = 'gold': must be one of met1"),
         ({"analyzer": "met4"}, r"analyzer = 'met4': must be below diffraction = 'met4' \(gap -0.845 um\)"),
-        ({"analyzer": None}, "analyzer = None: must be a metal"),
+        ({"analyzer": None}, "analyzer = None: must be a name for kind = 'amplitude'"),
+        ({"analyzer": "poly"}, "analyzer = 'poly': must be poly, the gates, for a photogate alone"),
+        ({"kind": "photogate"}, "analyzer = 'met1': must be poly, the gates, for a photogate alone"),
         ({"fill": 0.9}, r"fill = 0.9: must be in \[0.429, 0.571\], lines of 0.3 and spaces of 0.3 um of met4"),
         ({"shift": 2.0}, r"shift = 2.0: must be a number in \[-1, 1\]"),
         ({"process": "tsmc"}, "pdk = 'tsmc': must be one of sky130"),
-        ({"kind": "phase"}, "kind = 'phase': must be one of amplitude, interleaved"),
+        ({"kind": "phase"}, "kind = 'phase': must be one of amplitude, interleaved, photogate"),
         ({"kind": "interleaved"}, "analyzer = 'met1': must be None for an interleaved pixel"),
         ({"kind": "interleaved", "analyzer": None}, "period_um = 0.7: must be at least 0.84, two diffusions' width"),
     ],

@@ -86,7 +86,7 @@ def test_mirrored_shift_is_mirrored_angle():
 
 def test_fingers_share_all_that_enters():
     upper, lower = PixelGeometry(kind="interleaved", analyzer=None, period_um=0.85).layers(0.53)
-    got = solve(upper, lower, 0.85, light(bottom=17), (0.0, 0.5), 21)
+    got = solve(upper, lower, 0.85, light(bottom=17), (0.0, 0.5), 21, fingers=True)
     assert got.fingers is not None
     np.testing.assert_allclose(got.fingers.sum(2), got.transmitted, atol=1e-12)
     np.testing.assert_allclose(got.fingers[:, 0], got.fingers[:, 1, ::-1], atol=1e-9)
@@ -128,3 +128,13 @@ def test_what_is_refused(change, said):
         solve(**({"upper": [Slab(1.0, 1.0)], "lower": [], "period_um": 0.7, "light": light()} | change))
     with pytest.raises(ParameterError, match=r"along = 1.57\d*: must be an angle in rad below pi/2"):
         light([np.pi / 2])
+
+
+def test_two_lines_a_period_are_one_of_half_the_period():
+    once = [Slab(GLASS, 0.3, ALUMINIUM, 0.4)], 0.35
+    twice = [Slab(GLASS, 0.3, ALUMINIUM, 0.4, lines=2)], 0.7
+    for angle in (0.0, 0.3):
+        (a, period), (b, double) = once, twice
+        lit = light([angle], 0.1, bottom=GLASS)
+        single = solve(a, [], period, lit, orders=11).transmitted
+        np.testing.assert_allclose(solve(b, [], double, lit, orders=21).transmitted, single, atol=1e-9)
