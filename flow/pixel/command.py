@@ -20,14 +20,17 @@ def run(options: Namespace) -> int:
     """Search, write the page and print the figures; 1 where no beta of the tile can be made."""
     from talbot.base.paths import RESULTS
     from talbot.pixels.optics.geometry import KINDS
+    from talbot.platforms.optics import optical_stack
 
     from .job import STEPS, make
+    from .search import offered
 
     check_choice("kind", options.kind, (*KINDS, "all"))
-    kinds = KINDS if options.kind == "all" else (options.kind,)
+    stack = optical_stack(options.pdk, options.heights)
+    kinds = offered(stack, KINDS if options.kind == "all" else (options.kind,))
     out = options.out or RESULTS / "pixel" / options.pdk
     with Steps(STEPS, lines=True) as steps:
-        summary = make(options.pdk, options.heights, kinds, out, steps.note)
+        summary = make(stack, kinds, out, steps.note)
     _print(summary, out)
     return 0 if any(row["reached"] for row in summary["betas"]) else 1
 

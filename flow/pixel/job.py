@@ -15,7 +15,7 @@ from talbot.base.paths import BUILD
 from talbot.base.records import from_json
 from talbot.models.parameters import PixelType, TileParameters
 from talbot.pixels.optics.design import Design
-from talbot.platforms.optics import optical_stack, tables
+from talbot.platforms.optics import OpticalStack, tables
 
 from .search import Plan, search
 from .types import Measured, at_heights, convergence, measured, nearest, solve_one, stacked, wavelengths_of
@@ -25,14 +25,13 @@ STORE = BUILD / "pixel" / "solved"
 
 
 def make(
-    pdk: str, heights: str | None, kinds: Sequence[str], out: Path, note: Callable[[str], None] = lambda text: None
+    stack: OpticalStack, kinds: Sequence[str], out: Path, note: Callable[[str], None] = lambda text: None
 ) -> dict[str, Any]:
-    """Find a process's pixels and write all about them into ``out``; returns the summary. Raises ParameterError."""
+    """Find the pixels of ``stack``, write all about them into ``out``; returns the summary. Raises ParameterError."""
     from . import page  # Matplotlib: not before it is needed
 
     start = perf_counter()
     check_folder("out", out)
-    stack = optical_stack(pdk, heights)
     types = TileParameters().types
     betas = sorted({kind.beta for kind in types})
     found = search(stack, betas, kinds, STORE, note)
@@ -40,11 +39,11 @@ def make(
     curves = _curves(found.plans[0])
     plan = replace(found.plans[0], designs={beta: one.exact for beta, one in curves.items()})
     found = replace(found, plans=(plan, *found.plans[1:]))
-    others = [name for name in tables(pdk) if name != stack.heights]
+    others = [name for name in tables(stack.process) if name != stack.heights]
     orders, raised = _compared(plan, others)
     note("report")
     summary = {
-        "process": pdk,
+        "process": stack.process,
         "heights": stack.heights,
         "kind": plan.kind,
         "wavelength_um": plan.wavelength_um,

@@ -15,13 +15,15 @@ from talbot.base.page import TABLES, Section, Tile
 from talbot.pixels.optics.closed_form import angular_frequency, talbot_depth
 from talbot.pixels.optics.design import SEARCH_ORDERS, Design
 from talbot.pixels.optics.geometry import PixelGeometry
+from talbot.pixels.optics.scalar import crosstalk
 from talbot.platforms.materials import refractive_index
 
 from .search import Found, Plan
-from .types import CURVE_ORDERS, REFERENCE, Measured
+from .types import CURVE_ORDERS, REFERENCE, Measured, beside
 
 NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png")
 MATERIALS = {"silica": "#dfe6ee", "nitride": "#b9d3b0", "aluminium": "#8a8f99", "silicon": "#a8664f"}
+CROSSING = 0, 10, 20  # degrees
 PERIODS = 4  # in the cross-section
 
 
@@ -68,6 +70,7 @@ def write(
                 head=("beta", "closed form", "gap um", "gap in half Talbot depths"),
                 rows=[_closed(one) for one in measured.values()],
             ),
+            *([_finite(measured)] if plan.kind == "amplitude" else []),
             *[_heights(name, designs, measured) for name, designs in raised.items()],
             Section(
                 "Error against run time",
@@ -132,6 +135,19 @@ def _closed(one: Measured) -> tuple[str, ...]:
     half = talbot_depth(g.period_um, wavelength, index) / 2
     form = angular_frequency(between, g.period_um, index)
     return f"{one.fit.beta:.1f}", f"{form:.1f}", f"{g.gap_um:.3f}", f"{g.gap_um / half:.2f}"
+
+
+def _finite(measured: dict[float, Measured]) -> Section:
+    rows = []
+    for beta, one in measured.items():
+        coarse, off = beside(one)
+        leaving = crosstalk(one.design.geometry, np.deg2rad(CROSSING), one.design.wavelength_um)
+        figures = (f"{one.fit.beta:.1f}: {coarse.beta:.1f}", f"{one.fit.m:.2f}: {coarse.m:.2f}", f"{off:.2f}")
+        rows.append((f"{beta:g}", *figures, *(f"{100 * share:.0f} %" for share in leaving)))
+    head = ("beta", "beta, rigorous: scalar", "m", "rms difference", *(f"leaving at {angle} deg" for angle in CROSSING))
+    text = "Scalar waves through thin lines beside the rigorous solution, and the share of the light through a pixel's "
+    text += "gratings that reaches the silicon outside the pixel: by scalar waves, light on one pixel alone."
+    return Section("Scalar waves, and the pixel's edge", text, head=head, rows=rows)
 
 
 def _heights(name: str, designs: dict[float, Design], measured: dict[float, Measured]) -> Section:

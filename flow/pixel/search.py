@@ -66,15 +66,20 @@ class Found:
         return front([design for design in self.tried if design.fit.unexplained < CLEAR])
 
 
+def offered(stack: OpticalStack, kinds: Sequence[str]) -> list[str]:
+    """Those of ``kinds`` that the process can make. Raises ParameterError where there is none."""
+    found = [kind for kind in kinds if next(candidates(stack, [kind]), None)]
+    if not found:
+        raise ParameterError(f"kind = {', '.join(kinds)}: must be one that {stack.process} can make")
+    return found
+
+
 def search(
     stack: OpticalStack, betas: Sequence[float], kinds: Sequence[str], store: Path, note: Callable[[str], None]
 ) -> Found:
-    """Search the metals of ``stack`` for ``betas``; solutions are kept in ``store``. Raises ParameterError."""
+    """Search the metals of ``stack`` for ``betas``; solutions are kept in ``store``. kinds: `offered`."""
     note("candidates")
     grid = [*candidates(stack, kinds)]
-    if not grid:
-        raise ParameterError(f"kind = {', '.join(kinds)}: must be one that {stack.process} can make")
-    kinds = [kind for kind in kinds if any(geometry.kind == kind for geometry in grid)]
     tried = _solve(((geometry, w) for geometry in grid for w in WAVELENGTHS_UM), len(WAVELENGTHS_UM), store)
     note("refine")
     for turn in range(ROUNDS):

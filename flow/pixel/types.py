@@ -13,6 +13,7 @@ from talbot.pixels.optics.design import Design, measure
 from talbot.pixels.optics.fit import Fit, fit
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.response import Response, respond
+from talbot.pixels.optics.scalar import scalar_shares
 from talbot.pixels.tabled import rows
 
 from .search import Plan
@@ -112,6 +113,19 @@ def convergence(geometry: PixelGeometry, wavelength_um: float) -> list[list[floa
         found = respond(geometry, angles, wavelength_um, orders=orders).shares
         out.append([orders, float(np.abs(found - truth).max()), perf_counter() - start])
     return out
+
+
+def beside(one: Measured) -> tuple[Fit, float]:
+    """Eq. 3.1 fitted to scalar waves through an amplitude pixel, and their difference from the rigorous curves.
+
+    The difference is rms over the mean, both curves of one mean.
+    """
+    middle = at(one.response, len(one.fits) // 2)
+    truth = middle.unpolarized[0]
+    shares = scalar_shares(one.design.geometry, middle.angles, one.design.wavelength_um)
+    shares = shares * truth.mean() / shares.mean()
+    coarse = replace(middle, shares=np.broadcast_to(shares, middle.shares.shape))
+    return fit(coarse), float(np.sqrt(np.mean((shares - truth) ** 2)) / truth.mean())
 
 
 def at_heights(design: Design, heights: str) -> Design:
