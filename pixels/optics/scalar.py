@@ -13,6 +13,7 @@ import numpy.typing as npt
 from talbot.platforms.materials import refractive_index
 
 from .geometry import QUADRATURE, PixelGeometry
+from .scattering import normal_wave
 from .solve import Floats
 
 ORDERS = 41
@@ -30,7 +31,7 @@ def scalar_shares(
     wave, index = 2 * np.pi / wavelength_um, float(refractive_index("silica", wavelength_um).real)
     n = np.arange(ORDERS) - ORDERS // 2
     kx = wave * np.sin(np.atleast_1d(angles))[:, None] + 2 * np.pi * n / geometry.period_um
-    kz = np.sqrt((wave * index) ** 2 - kx**2 + 0j)
+    kz = normal_wave((wave * index) ** 2 - kx**2)
     field = _line(n, geometry.fill) * np.exp(1j * kz * _between(geometry))
     steps = np.subtract.outer(n, n)
     out = []
@@ -55,7 +56,7 @@ def crosstalk(geometry: PixelGeometry, angles: npt.ArrayLike, wavelength_um: flo
     out = []
     for angle in np.atleast_1d(angles):
         tilt = wave * np.sin(angle)
-        kz = np.sqrt((wave * index) ** 2 - (k + tilt) ** 2 + 0j)
+        kz = normal_wave((wave * index) ** 2 - (k + tilt) ** 2)
         field = np.where(inside, _spaces(x, geometry.period_um, geometry.fill, 0.0), 0) + 0j
         field = np.fft.ifft(np.fft.fft(field) * np.exp(1j * kz * _between(geometry)))
         if geometry.analyzer:

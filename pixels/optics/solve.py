@@ -14,6 +14,7 @@ from .scattering import Complexes, Orders, Scattering, admittance, films
 
 ORDERS = 41  # kept, the even number of evanescent and travelling ones about order 0
 BATCH = 24  # angles at once: memory
+THICKEST = 1e6  # um
 BALANCE = 1e-6  # by which reflected and transmitted light may exceed what came
 Floats = npt.NDArray[np.floating]
 
@@ -92,7 +93,10 @@ def solve(
             part = Illumination(light.wavelength_um, light.along[at], light.across[at], light.top, light.bottom)
             for name in ("both",) if across else ("te", "tm"):
                 rows = {"te": [0], "tm": [1], "both": [0, 1]}[name]
-                found = _solve(upper, lower, period_um, part, shifts, orders, name, fingers)
+                try:
+                    found = _solve(upper, lower, period_um, part, shifts, orders, name, fingers)
+                except np.linalg.LinAlgError as error:
+                    raise SolverError(f"modes = none: must be found ({error})") from None
                 for whole, piece in zip(out, found, strict=True):
                     for row, values in zip(rows, piece, strict=True):
                         whole[row][..., at] = values
@@ -161,8 +165,7 @@ def scatter(slabs: Sequence[Slab], above: complex, below: complex, orders: Order
         whole = part if whole is None else whole.over(part)
 
     for slab in slabs:
-        if slab.thickness_um < 0:
-            raise ParameterError(f"thickness_um = {slab.thickness_um:g}: must be 0 or more")
+        check_real("thickness_um", slab.thickness_um, 0, THICKEST)
         if slab.line is None:
             run.append((slab.medium, wave * slab.thickness_um))
             continue

@@ -5,7 +5,7 @@ import pytest
 
 from talbot.models.parameters import ParameterError
 from talbot.pixels.optics.geometry import PixelGeometry, Slab
-from talbot.pixels.optics.solve import Illumination, solve
+from talbot.pixels.optics.solve import Illumination, SolverError, solve
 from talbot.platforms.materials import refractive_index
 
 GLASS = 1.46**2
@@ -119,7 +119,7 @@ def test_a_bounded_answer(layers, period, angle, wavelength, across):
     [
         ({"orders": 20}, "orders = 20: must be odd"),
         ({"orders": 0}, "orders = 0: must be an integer in 1..401"),
-        ({"upper": [Slab(1.0, -0.1)]}, "thickness_um = -0.1: must be 0 or more"),
+        ({"upper": [Slab(1.0, -0.1)]}, r"thickness_um = -0.1: must be a number in \[0, 1000000.0\]"),
         ({"period_um": -1.0}, "period_um = -1.0: must be a number"),
     ],
 )
@@ -138,3 +138,10 @@ def test_two_lines_a_period_are_one_of_half_the_period():
         lit = light([angle], 0.1, bottom=GLASS)
         single = solve(a, [], period, lit, orders=11).transmitted
         np.testing.assert_allclose(solve(b, [], double, lit, orders=21).transmitted, single, atol=1e-9)
+
+
+def test_what_has_no_solution_is_a_named_error():
+    with pytest.raises(SolverError, match="modes = none|reflected \\+ transmitted = nan"):
+        solve([Slab(GLASS, 0.3, complex("nan"), 0.5)], [], 0.7, light(), orders=5)
+    with pytest.raises(SolverError, match="reflected \\+ transmitted = .*: must be in 0..1"):
+        solve([Slab(GLASS, 0.3, 4 - 3j, 0.5)], [], 0.7, light(), orders=5)  # lines that make light
