@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from PIL import Image
@@ -14,6 +15,7 @@ from talbot.base.charts import COLOURS, curves, save, svg
 from talbot.base.page import TABLES, Section, Tile
 from talbot.pixels.optics.closed_form import angular_frequency, talbot_depth
 from talbot.pixels.optics.design import SEARCH_ORDERS, Design
+from talbot.pixels.optics.field import field_between
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.scalar import crosstalk
 from talbot.platforms.materials import refractive_index
@@ -24,7 +26,7 @@ from .types import CURVE_ORDERS, REFERENCE, Measured, beside
 NAMES = ("pixel.html", "summary.json", "response.npz", "cross_section.png", "response.png")
 MATERIALS = {"silica": "#dfe6ee", "nitride": "#b9d3b0", "aluminium": "#8a8f99", "silicon": "#a8664f"}
 CROSSING = 0, 10, 20  # degrees
-PERIODS = 4  # in the cross-section
+WIDTH_UM = 2.4  # of the cross-section
 
 
 def write(
@@ -181,32 +183,50 @@ def responses(measured: dict[float, Measured]) -> Figure:
 
 
 def cross_section(plan: Plan) -> Figure:
-    """Lines, films and silicon of each design, to scale."""
-    figure = Figure(figsize=(2.4 * len(plan.designs), 4.4), layout="constrained")
-    all_axes = figure.subplots(1, len(plan.designs), sharey=True, squeeze=False)[0]
-    for axes, (beta, design) in zip(all_axes, plan.designs.items(), strict=True):
+    """Lines, films and silicon of each design, to scale; with an analyzer also the light between the gratings.
+
+    That of a wave on the axis, which the first diode passes, and at the angle at which the second has its place.
+    """
+    panels: list[tuple[Design, float, float]] = []
+    for beta, design in plan.designs.items():
+        angles = (0.0, np.pi / design.fit.beta) if plan.kind == "amplitude" else (0.0,)
+        panels += [(design, beta, angle) for angle in angles]
+    figure = Figure(figsize=(1.9 * len(panels), 4.2), layout="constrained")
+    for axes, (design, beta, angle) in zip(figure.subplots(1, len(panels), sharey=True, squeeze=False)[0], panels):
         g = design.geometry
-        width = PERIODS * g.period_um
         bottom = g.stack.surface_um
         for film in g.stack.films:
-            axes.add_patch(Rectangle((0, bottom), width, film.top_um - bottom, color=MATERIALS[film.material]))
+            axes.add_patch(Rectangle((0, bottom), WIDTH_UM, film.top_um - bottom, color=MATERIALS[film.material]))
             bottom = film.top_um
-        axes.add_patch(Rectangle((0, 0), width, g.stack.surface_um, color="#6a5f7a"))
+        axes.add_patch(Rectangle((0, 0), WIDTH_UM, g.stack.surface_um, color="#6a5f7a"))
+        if plan.kind == "amplitude":
+            _light(axes, design, angle)
         gratings = [("diffraction", g.diffraction, g.fill, 0.0, 1)]
         gratings += [("analyzer", g.analyzer, g.analyzer_fill, g.shift, g.lines)] if g.analyzer else []
         for field, name, fill, shift, lines in gratings:
             metal = g.stack.metal(field, name)
-            for k in range(-lines, (PERIODS + 1) * lines):
+            for k in range(-lines, int(lines * (WIDTH_UM / g.period_um + 1))):
                 left = max(0.0, (k / lines + 0.5 + shift - fill / lines / 2) * g.period_um)
-                right = min(width, (k / lines + 0.5 + shift + fill / lines / 2) * g.period_um)
+                right = min(WIDTH_UM, (k / lines + 0.5 + shift + fill / lines / 2) * g.period_um)
                 if right > left:
                     place = (left, metal.bottom_um)
                     axes.add_patch(Rectangle(place, right - left, metal.thickness_um, color=MATERIALS[metal.material]))
-        axes.set(xlim=(0, width), ylim=(0, g.stack.films[-1].top_um + 0.3), aspect="equal")
-        axes.set_title(f"beta {beta:g}", fontsize=9, loc="left")
+        axes.set(xlim=(0, WIDTH_UM), ylim=(0, g.stack.films[-1].top_um + 0.3), aspect="equal")
+        axes.set_title(f"beta {beta:g}, {np.rad2deg(angle):.1f}°", fontsize=9, loc="left")
         axes.set_xlabel("µm", fontsize=8)
         axes.tick_params(labelsize=7)
     return figure
+
+
+def _light(axes: Axes, design: Design, angle: float) -> None:
+    """Draw the field between the gratings."""
+    g = design.geometry
+    lower = g.stack.metal("analyzer", str(g.analyzer)).top_um
+    x, up = np.linspace(0, WIDTH_UM, 240), np.linspace(0, g.gap_um, 240)
+    # Lines of the picture stand half a period from its edge
+    field = field_between(g, angle, design.wavelength_um, x - g.period_um / 2, up)
+    place = (0, WIDTH_UM, lower, lower + g.gap_um)
+    axes.imshow(field, cmap="inferno", extent=place, origin="lower", vmin=0, vmax=np.quantile(field, 0.995), zorder=2)
 
 
 def _pareto(found: Found) -> Figure:

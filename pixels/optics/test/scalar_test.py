@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from talbot.pixels.optics.closed_form import angular_frequency
+from talbot.pixels.optics.field import field_between
 from talbot.pixels.optics.geometry import PixelGeometry
 from talbot.pixels.optics.scalar import crosstalk, scalar_shares
 from talbot.platforms.materials import refractive_index
@@ -42,3 +43,13 @@ def test_light_that_leaves_a_pixel():
 def test_mirrored_shift_is_mirrored_angle():
     shares = scalar_shares(PixelGeometry(), [-0.2, 0.2], 0.55)
     np.testing.assert_allclose(shares[1], shares[3, ::-1], atol=1e-12)
+
+
+def test_the_field_between_the_gratings():
+    """Mirrored with the angle; dark below the lines, where light has just passed between them."""
+    geometry = PixelGeometry(period_um=0.74)
+    x, up = np.linspace(-0.37, 0.37, 41), np.linspace(0, geometry.gap_um, 31)
+    left, right = (field_between(geometry, angle, 0.575, x, up) for angle in (-0.1, 0.1))
+    np.testing.assert_allclose(left, right[:, ::-1], rtol=1e-6, atol=1e-9)
+    below = field_between(geometry, 0.0, 0.575, x, up)[-1]
+    assert np.isfinite(below).all() and below[20] < below[0] / 5
