@@ -34,8 +34,8 @@ DESIGNS = {
         0.65,
         {
             12.0: _ihp(diffraction="Metal4", analyzer="Metal1", period_um=1.16, fill=0.465, shift=0.5),
-            18.0: _ihp(analyzer="Metal2", period_um=0.78),
-            24.0: _ihp(analyzer="Metal1", period_um=0.78, fill=0.43, shift=0.5),
+            18.0: _ihp(analyzer="Metal2", period_um=0.8, analyzer_fill=0.465),
+            24.0: _ihp(analyzer="Metal1", period_um=0.8, fill=0.43, analyzer_fill=0.535, shift=0.5),
         },
     ),
 }

@@ -226,7 +226,9 @@ def _light(axes: Axes, design: Design, angle: float) -> None:
     # Lines of the picture stand half a period from its edge
     field = field_between(g, angle, design.wavelength_um, x - g.period_um / 2, up)
     place = (0, WIDTH_UM, lower, lower + g.gap_um)
-    axes.imshow(field, cmap="inferno", extent=place, origin="lower", vmin=0, vmax=np.quantile(field, 0.995), zorder=2)
+    axes.imshow(
+        field, cmap="inferno", extent=place, origin="lower", vmin=0, vmax=float(np.quantile(field, 0.995)), zorder=2
+    )
 
 
 def _pareto(found: Found) -> Figure:

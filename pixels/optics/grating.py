@@ -81,5 +81,5 @@ def _modes(
     return np.concatenate([q1, q2], -1), electric, magnetic
 
 
-def _diagonal(values: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _diagonal(values: npt.NDArray[np.floating]) -> npt.NDArray[np.floating]:
     return values[..., None] * np.eye(values.shape[-1])

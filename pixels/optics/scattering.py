@@ -24,8 +24,8 @@ class Orders:
     polarization: "te", "tm" or "both". N is odd, and order 0 in the middle.
     """
 
-    kx: npt.NDArray[np.float64]
-    ky: npt.NDArray[np.float64]
+    kx: npt.NDArray[np.floating]
+    ky: npt.NDArray[np.floating]
     polarization: str
 
     @property
