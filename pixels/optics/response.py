@@ -35,11 +35,6 @@ class Response:
         """Shares (W, 4, A) of light without polarization."""
         return self.shares.mean(1)
 
-    @property
-    def diodes(self) -> Floats:
-        """Both diodes (W, 2, 2, A) of the type at hand: polarization, then diode."""
-        return self.shares[:, :, ::2]
-
 
 def respond(
     geometry: PixelGeometry,

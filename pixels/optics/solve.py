@@ -40,8 +40,10 @@ class Illumination:
 
     def __post_init__(self) -> None:
         check_real("wavelength_um", self.wavelength_um, 1e-3, 1e3)
+        if self.along.ndim != 1 or self.along.shape != self.across.shape or not self.along.size:
+            raise ParameterError(f"angles = array of shape {self.along.shape}: must be a list of one or more")
         for name in ("along", "across"):
-            worst = np.max(np.abs(getattr(self, name)), initial=0)
+            worst = np.max(np.abs(getattr(self, name)))
             if not worst < np.pi / 2:
                 raise ParameterError(f"{name} = {worst:g}: must be an angle in rad below pi/2")
 

@@ -16,6 +16,9 @@ def test_a_solution_by_the_public_name():
     for wavelength, said in ((550, "must be in m"), (2e-6, r"wavelength_um = 2: must be in \[0.35, 1\]")):
         with pytest.raises(ParameterError, match=said):
             talbot.pixel.solve(geometry, [0.0], wavelength)
+    for angles, said in (([], "must be a list of one or more"), ([np.pi / 2], "must be an angle in rad below pi/2")):
+        with pytest.raises(ParameterError, match=said):
+            talbot.pixel.solve(geometry, angles, 550e-9)
 
 
 @pytest.mark.parametrize(
