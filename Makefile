@@ -78,6 +78,10 @@ sensor: $(READY)  ## the standard sensor as a file to start from: make sensor OU
 lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth, beside free baselines: build/lightfield/<scene>/ (SCENE=)
 	@$(talbot) lightfield
 
+.PHONY: pixel
+pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
+	@$(talbot) pixel
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)

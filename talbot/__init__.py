@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from talbot.base.tools import ToolError
     from talbot.models.parameters import ParameterError, PixelType
 
+    from .api import pixel
     from .api.decode import DecodedFrame, decode
     from .api.image import Image
     from .api.light_field import LightField
@@ -33,6 +34,7 @@ __all__ = [
     "ToolError",
     "Tradeoff",
     "decode",
+    "pixel",
     "scenes",
     "tradeoff",
 ]
@@ -48,6 +50,7 @@ _MODULES = {
     "ToolError": "talbot.base.tools",
     "Tradeoff": "talbot.api.sweep",
     "decode": "talbot.api.decode",
+    "pixel": "talbot.api.pixel",
     "scenes": "talbot.api.sensor",
     "tradeoff": "talbot.api.sweep",
 }
@@ -56,7 +59,8 @@ _MODULES = {
 def __getattr__(name: str) -> Any:
     if name not in _MODULES:
         raise AttributeError(f"module 'talbot' has no attribute {name!r}")
-    value = globals()[name] = getattr(importlib.import_module(_MODULES[name]), name)
+    module = importlib.import_module(_MODULES[name])
+    value = globals()[name] = getattr(module, name, module)  # talbot.pixel is a module itself
     return value
 
 

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 from talbot.base.cache import digest
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
-from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, STANDARD, CameraParameters, read_sensor
+from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, CameraParameters
 
 from . import arguments as text
+from .sensor import add_pixel, asked_sensor
 
 if TYPE_CHECKING:
     from .request import FrameRequest
@@ -66,6 +67,7 @@ def add_frame_arguments(parser: ArgumentParser, fixed: Mapping[str, Any] | None 
             parser.add_argument(option, **rest)
 
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
+    add_pixel(parser)
     for name, words in CAMERA.items():
         add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
     add(
@@ -153,7 +155,7 @@ def request_of(a: Namespace) -> "FrameRequest":
     """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError."""
     from .request import request
 
-    sensor = read_sensor(a.sensor) if a.sensor else STANDARD
+    sensor = asked_sensor(a)
     typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
     numbers: dict[str, Any] = {
         name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed

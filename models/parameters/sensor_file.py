@@ -96,7 +96,7 @@ def sensor_text(sensor: SensorParameters = STANDARD) -> str:
     Raises
     ------
     ParameterError
-        For a pixel type with a response of its own: a function has no text.
+        For a pixel type with a response of its own that does not name its source: a function has no text.
     """
     return "# A sensor of Talbot. Any key may be left out: it has the value of `talbot sensor` then.\n" + "".join(
         line + "\n" for line in _lines(sensor, "")
@@ -241,7 +241,7 @@ def _lines(part: Any, where: str) -> Iterator[str]:
             yield f"# {text}"
             yield from (f"#   {name}: {meaning}" for name, meaning in _type_keys().items())
             yield "types = ["
-            yield from (f"    {_type_text(entry)}," for entry in value)
+            yield from (f"    {_type_text(entry)},{_response_text(entry)}" for entry in value)
             yield "]"
         else:
             source = item.metadata.get("source") if value == item.default else None
@@ -251,10 +251,18 @@ def _lines(part: Any, where: str) -> Iterator[str]:
         yield from _lines(value, name)
 
 
-def _type_text(kind: PixelType) -> str:
-    if kind.response is not None:
+def _response_text(kind: PixelType) -> str:
+    """A comment that names what made a type's response; it has no text itself."""
+    if kind.response is None:
+        return ""
+    source = getattr(kind.response, "source", None)
+    if source is None:
         raise ParameterError("tile.types.response = a function: must be None in a sensor file")
-    values = {item.name: getattr(kind, item.name) for item in fields(kind)}
+    return f"  # its response is that of {source}"
+
+
+def _type_text(kind: PixelType) -> str:
+    values = {name: getattr(kind, name) for name in _type_keys()}
     return "{ " + ", ".join(f"{name} = {_value(v)}" for name, v in values.items() if v is not None) + " }"
 
 

@@ -3,6 +3,7 @@
 from .polarization import transmission
 from .quadrature import Ripple, SamplingError, exact, sampling_error
 from .response import aperture, response, vignetting
+from .table import TableResponse
 from .time_of_flight import demodulate, depth_of, phase_of
 from .trim import gains, measured_gains, optical_gains, residual
 from .weights import view_weights
@@ -10,6 +11,7 @@ from .weights import view_weights
 __all__ = [
     "Ripple",
     "SamplingError",
+    "TableResponse",
     "aperture",
     "demodulate",
     "depth_of",

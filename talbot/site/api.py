@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import talbot
@@ -27,6 +28,9 @@ def write(source: Path) -> None:
         value = getattr(talbot, name)
         if isinstance(value, type):
             lines.append(f".. autoclass:: {name}\n   :members:\n")
+        elif isinstance(value, ModuleType):
+            options = ":members:\n   :imported-members:\n"
+            lines.append(f".. automodule:: {value.__name__}\n   {options}")
         elif callable(value):
             lines.append(f".. autofunction:: {name}\n")
         else:

@@ -42,6 +42,8 @@ def make(*words, **environment):
         ("sequence SCENES=x.gif", "did you mean SCENE?"),
         ("sequence SCENE=none.mp4", "scene = 'none.mp4': no such file"),
         ("sequence", "the following arguments are required: --scene"),
+        ("pixel PDKS=sky130", "PDKS = 'sky130': must be a variable of make pixel; did you mean PDK?"),
+        ("sim PIXEL=gf180", "pixel = 'gf180': must be one of ideal, sky130, ihp-sg13g2"),
         ("tradeoff SCENE=coins", "SCENE = 'coins': must be a variable of make tradeoff: ONLY, OUT, PYTHON"),
         ("mutate SEDE=2", "did you mean SEED?"),
         ("layout DESIGN=none UNTIMED=1", "DESIGN = 'none': must be one of "),

@@ -1,0 +1,1 @@
+"""A process's pixel: search, response, page."""

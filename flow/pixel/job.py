@@ -1,0 +1,116 @@
+"""Search, curves, comparison of orders and heights -> response.npz, page, pictures, summary.json."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from talbot.base.files import check_folder, staged
+from talbot.base.jobs import Job, run
+from talbot.base.paths import BUILD
+from talbot.base.records import from_json
+from talbot.models.parameters import PixelType, TileParameters
+from talbot.pixels.optics.design import Design
+from talbot.platforms.optics import OpticalStack, tables
+
+from .search import Plan, search
+from .types import Measured, at_heights, convergence, measured, nearest, solve_one, stacked, wavelengths_of
+
+STEPS = "candidates", "refine", "curves", "report"
+STORE = BUILD / "pixel" / "solved"
+
+
+def make(
+    stack: OpticalStack, kinds: Sequence[str], out: Path, note: Callable[[str], None] = lambda text: None
+) -> dict[str, Any]:
+    """Find the pixels of ``stack``, write all about them into ``out``; returns the summary. Raises ParameterError."""
+    from . import page  # Matplotlib: not before it is needed
+
+    start = perf_counter()
+    check_folder("out", out)
+    types = TileParameters().types
+    betas = sorted({kind.beta for kind in types})
+    found = search(stack, betas, kinds, STORE, note)
+    note("curves")
+    curves = _curves(found.plans[0])
+    plan = replace(found.plans[0], designs={beta: one.exact for beta, one in curves.items()})
+    found = replace(found, plans=(plan, *found.plans[1:]))
+    others = [name for name in tables(stack.process) if name != stack.heights]
+    orders, raised = _compared(plan, others)
+    note("report")
+    summary = {
+        "process": stack.process,
+        "heights": stack.heights,
+        "kind": plan.kind,
+        "wavelength_um": plan.wavelength_um,
+        "betas": [_beta(plan, beta, curves[beta]) for beta in betas],
+        "types": [_type(kind, plan, curves) for kind in types],
+        "tried": len(found.tried),
+        "orders": [dict(zip(("orders", "error", "seconds"), row, strict=True)) for row in orders],
+        "wall_s": perf_counter() - start,
+    }
+    with staged(out, page.NAMES) as folder:
+        page.write(folder, summary, found, curves, raised)
+        some = curves[betas[0]].response
+        np.savez_compressed(
+            folder / "response.npz",
+            response=stacked(types, plan, curves),
+            types=[name_of(kind) for kind in types],
+            angles=some.angles,
+            wavelengths=1e-6 * some.wavelengths_um,
+            polarizations=["along the lines", "across the lines"],
+        )
+        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    return summary
+
+
+def name_of(kind: PixelType) -> str:
+    """A type's name: beta, then gamma and alpha in degrees."""
+    return f"{kind.beta:g}/{kind.gamma_deg:g}/{np.rad2deg(kind.alpha):g}"
+
+
+def _curves(plan: Plan) -> dict[float, Measured]:
+    wavelengths = wavelengths_of(plan)
+    points = [(beta, d.geometry, float(w)) for beta, d in plan.designs.items() for w in wavelengths]
+    jobs = [Job(f"curve-{b:g}-{w:.4f}", solve_one, (g, w), (g, w)) for b, g, w in points]
+    solved = run(jobs, STORE, "curves")
+    count = len(wavelengths)
+    return {
+        beta: measured(design, wavelengths, solved[k * count : (k + 1) * count])
+        for k, (beta, design) in enumerate(plan.designs.items())
+    }
+
+
+def _compared(plan: Plan, others: Sequence[str]) -> tuple[list[list[float]], dict[str, dict[float, Design]]]:
+    """Convergence of the finest design, and every design with the other tables of heights."""
+    last = max(plan.designs)
+    points = [(name, beta, design) for name in others for beta, design in plan.designs.items()]
+    arguments = plan.designs[last].geometry, plan.wavelength_um
+    jobs = [Job(f"orders-{last:g}", convergence, arguments, arguments)]
+    jobs += [
+        Job(f"heights-{name}-{beta:g}", at_heights, (design, name), (design, name)) for name, beta, design in points
+    ]
+    orders, *raised = run(jobs, STORE, "orders and heights")
+    out: dict[str, dict[float, Design]] = {name: {} for name in others}
+    for (name, beta, _), result in zip(points, raised, strict=True):
+        out[name][beta] = from_json(Design, result)
+    return orders, out
+
+
+def _beta(plan: Plan, beta: float, one: Measured) -> dict[str, Any]:
+    geometry = plan.designs[beta].geometry
+    names = "diffraction", "analyzer", "period_um", "fill", "analyzer_fill", "shift"
+    fields = {name: getattr(geometry, name) for name in names}
+    figures = one.fit.as_dict()
+    return {"wanted": beta, "reached": plan.reached(beta), **fields, **figures, "bandwidth_um": one.bandwidth_um}
+
+
+def _type(kind: PixelType, plan: Plan, curves: dict[float, Measured]) -> dict[str, Any]:
+    found = curves[nearest(plan, kind.beta)].fit
+    names = "beta", "m", "quantum_efficiency", "extinction_ratio", "diattenuation", "residual_rms"
+    figures = {name: getattr(found, name) for name in names}
+    return {"name": name_of(kind), "alpha": kind.alpha, "gamma": kind.gamma, **figures}

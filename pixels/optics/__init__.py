@@ -1,0 +1,1 @@
+"""The optics of a pixel: gratings of metal, solved rigorously."""

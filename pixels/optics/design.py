@@ -1,0 +1,105 @@
+"""What a process can make: candidates under its rules, their neighbours, and what each of them measures."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from talbot.models.parameters import ParameterError
+from talbot.platforms.optics import OpticalStack
+
+from .fit import Fit, fit
+from .geometry import KINDS, PixelGeometry
+from .response import respond
+
+WAVELENGTHS_UM = tuple(round(0.45 + 0.025 * k, 3) for k in range(11))
+PERIODS_UM = 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2
+SEARCH_ORDERS = 21  # transmission within 0.006 of that of 121 orders: flow/pixel/README.md
+SEARCH_DEGREES = np.arange(-20, 20.1, 1.0)  # resonances between the gratings are a degree wide
+STEPS = {"period_um": 0.04, "fill": 0.07, "analyzer_fill": 0.07}
+GATES = 0.45  # share of gates: the space between two is wider than they must be
+REACHED = 0.05  # of a beta
+
+
+@dataclass(frozen=True)
+class Design:
+    """A geometry, the wavelength it is for, and Eq. 3.1 fitted to its response there."""
+
+    geometry: PixelGeometry
+    wavelength_um: float
+    fit: Fit
+
+    def off(self, beta: float) -> float:
+        """By how much of ``beta`` its own is beside it."""
+        return abs(self.fit.beta / beta - 1)
+
+
+def candidates(stack: OpticalStack, kinds: Sequence[str] = KINDS) -> Iterator[PixelGeometry]:
+    """Geometries of the metals of ``stack`` that its rules allow, lines and spaces of one width."""
+    names = [metal.name for metal in stack.metals]
+    below = {"interleaved": [None], "photogate": [stack.gate.name] if stack.gate else []}
+    for kind in kinds:
+        for k, upper in enumerate(names):
+            for lower in below[kind] if kind != "amplitude" else names[:k]:
+                for period in PERIODS_UM:
+                    made = _made(
+                        process=stack.process,
+                        heights=stack.heights,
+                        kind=kind,
+                        diffraction=upper,
+                        analyzer=lower,
+                        period_um=period,
+                        analyzer_fill=GATES if kind == "photogate" else 0.5,
+                    )
+                    if made is not None:
+                        yield made
+
+
+def neighbours(design: Design, step: float = 1.0) -> Iterator[PixelGeometry]:
+    """Geometries a step beside ``design`` in one of `STEPS`, those that the rules allow."""
+    grid = design.geometry.stack.grid_um
+    for sign in (-step, step):
+        for name, size in STEPS.items():
+            if name == "analyzer_fill" and not design.geometry.analyzer:
+                continue
+            value = getattr(design.geometry, name) + sign * size
+            if name == "period_um":
+                value = round(round(value / grid) * grid, 6)
+            made = _made(design.geometry, **{name: round(value, 6)})
+            if made is not None:
+                yield made
+
+
+def measure(geometry: PixelGeometry, wavelength_um: float, orders: int = SEARCH_ORDERS) -> Design:
+    """Solve a geometry and fit Eq. 3.1. Raises ParameterError, SolverError."""
+    response = respond(geometry, np.deg2rad(SEARCH_DEGREES), wavelength_um, orders=orders)
+    return Design(geometry, wavelength_um, fit(response))
+
+
+def phased(design: Design) -> Design:
+    """The design with its analyzer where alpha is nearest to 0: lines above one another, or half a period apart."""
+    if np.cos(design.fit.alpha) >= 0:
+        return design
+    shifted = replace(design.geometry, shift=(design.geometry.shift + 0.5) % 1.0)
+    alpha = (design.fit.alpha + 2 * np.pi) % (2 * np.pi) - np.pi
+    return Design(shifted, design.wavelength_um, replace(design.fit, alpha=float(alpha)))
+
+
+def front(designs: Sequence[Design]) -> list[Design]:
+    """Designs that no other beats in both modulation depth and quantum efficiency."""
+    ranked = sorted(designs, key=lambda d: (-d.fit.m, -d.fit.quantum_efficiency))
+    kept: list[Design] = []
+    for design in ranked:
+        if not kept or design.fit.quantum_efficiency > kept[-1].fit.quantum_efficiency:
+            kept.append(design)
+    return kept
+
+
+def _made(base: PixelGeometry | None = None, **changes: object) -> PixelGeometry | None:
+    """A geometry, or None where a rule forbids it."""
+    try:
+        made = PixelGeometry(**changes) if base is None else replace(base, **changes)  # pyright: ignore[reportArgumentType]
+        made.layers(WAVELENGTHS_UM[0])  # its metals lie inside one film
+    except ParameterError:
+        return None
+    return made

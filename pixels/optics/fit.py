@@ -1,0 +1,110 @@
+"""The formula on which the sensor rests, Eq. 3.1 [Jayasuriya2017], fitted to a response, and how wrong it is."""
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from .geometry import QUADRATURE
+from .response import Response
+from .solve import Floats
+
+BETA_MAX = 40.0
+BETAS = np.arange(2.0, BETA_MAX, 0.5)
+SIGMAS = 0.3, 5.0
+SIGMA_MAX = 10.0  # as of models.parameters.OpticsParameters
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Eq. 3.1 for a pixel: each diode has the share  q/2 A(theta) (1 + m cos(beta theta + alpha + turn 2 pi shift)).
+
+    alpha: rad, of the diode whose analyzer is at the geometry's shift. beta: rad per rad. sigma: of the aperture A, a
+    Gaussian, rad. m: 0..1. turn: 1 or -1, whether an analyzer farther on has the greater phase. quantum_efficiency:
+    share of the light on the pixel that both diodes get, over all angles. diattenuation: (along - across) / (along +
+    across) of that; extinction_ratio: the greater over the smaller. residual_rms: of all four curves against the
+    formula, relative to the mean response. unexplained: share of the variance of the differences that the formula
+    leaves.
+    """
+
+    alpha: float
+    beta: float
+    sigma: float
+    m: float
+    turn: int
+    quantum_efficiency: float
+    diattenuation: float
+    extinction_ratio: float
+    residual_rms: float
+    unexplained: float
+
+    def curve(self, angles: Floats) -> Floats:
+        """The formula, of mean 1 without aperture: (4, A)."""
+        aperture = np.exp(-0.5 * (angles / self.sigma) ** 2)
+        phase = self.beta * angles + self.alpha + self.turn * 2 * np.pi * np.array(QUADRATURE)[:, None]
+        return aperture * (1 + self.m * np.cos(phase))
+
+    @property
+    def figure(self) -> float:
+        """Signal to shot noise of a difference: m sqrt(quantum efficiency), times what the formula explains."""
+        return float(self.m * np.sqrt(self.quantum_efficiency) * max(0.0, 1 - self.unexplained))
+
+    def as_dict(self) -> dict[str, float]:
+        """All figures."""
+        return asdict(self)
+
+
+def fit(response: Response) -> Fit:
+    """Fit Eq. 3.1 to a response in the plane across the lines, the mean of its wavelengths, without polarization."""
+    angles, curves = response.angles, response.unpolarized.mean(0)
+    best = min((_start(angles, curves, turn) for turn in (1, -1)), key=lambda found: found[0])
+    _, turn, beta, sigma = best
+    done = least_squares(
+        lambda x: _linear(angles, curves, turn, x[0], x[1])[1].ravel(),
+        (beta, sigma),
+        bounds=([0.0, 0.02], [BETA_MAX + 10, SIGMA_MAX]),
+        x_scale=(1.0, 0.1),
+    )
+    beta, sigma = map(float, done.x)
+    (mean, cosine, sine), residual = _linear(angles, curves, turn, beta, sigma)
+    level = curves.mean()
+    difference = curves[:2] - curves[2:]
+    left = (residual[:2] - residual[2:]).var() / max(float(np.mean(difference**2)), np.finfo(float).tiny)
+    along, across = response.shares.mean((0, 2, 3))
+    return Fit(
+        alpha=float(np.arctan2(-sine, cosine)),
+        beta=beta,
+        sigma=sigma,
+        m=float(min(np.hypot(cosine, sine) / mean, 1.0)),
+        turn=turn,
+        quantum_efficiency=float(2 * level),
+        diattenuation=float((along - across) / (along + across)),
+        extinction_ratio=float(max(along, across) / min(along, across)),
+        residual_rms=float(np.sqrt(np.mean(residual**2)) / level),
+        unexplained=float(min(left, 1.0)),
+    )
+
+
+def phase_slope(response: Response) -> float:
+    """Angular frequency by another way: slope of the phase of the two differences, weighted by their power."""
+    curves = response.unpolarized.mean(0)
+    signal = (curves[0] - curves[2]) + 1j * (curves[1] - curves[3])
+    order = np.argsort(response.angles)
+    phase = np.unwrap(np.angle(signal[order]))
+    return abs(float(np.polyfit(response.angles[order], phase, 1, w=np.abs(signal[order]))[0]))
+
+
+def _linear(angles: Floats, curves: Floats, turn: int, beta: float, sigma: float) -> tuple[Floats, Floats]:
+    """Best mean, cosine and sine of the formula, and what remains (4, A)."""
+    aperture = np.exp(-0.5 * (angles / sigma) ** 2)
+    phase = beta * angles + turn * 2 * np.pi * np.array(QUADRATURE)[:, None]
+    basis = np.stack([np.broadcast_to(aperture, phase.shape), aperture * np.cos(phase), aperture * np.sin(phase)])
+    flat = basis.reshape(3, -1)
+    found = np.linalg.solve(flat @ flat.T, flat @ curves.ravel())
+    return found, curves - np.tensordot(found, basis, 1)
+
+
+def _start(angles: Floats, curves: Floats, turn: int) -> tuple[float, int, float, float]:
+    """Least squares over a grid: error, turn, beta, sigma."""
+    tried = ((float(b), s) for b in BETAS for s in SIGMAS)
+    return min((float(np.sum(_linear(angles, curves, turn, b, s)[1] ** 2)), turn, b, s) for b, s in tried)
