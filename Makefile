@@ -78,6 +78,10 @@ sensor: $(READY)  ## the standard sensor as a file to start from: make sensor OU
 lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth, beside free baselines: build/lightfield/<scene>/ (SCENE=)
 	@$(talbot) lightfield
 
+.PHONY: polar
+polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
+	@$(talbot) polar
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)

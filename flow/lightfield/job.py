@@ -1,11 +1,10 @@
 """Scene -> chip's Verilog in raw mode -> stream -> light field and depth -> page."""
 
-import json
 from collections.abc import Callable
 from typing import Any
 
-from talbot.base.files import check_folder, staged
 from talbot.flow.frame.job import golden_result, simulate_frame
+from talbot.flow.frame.reading import write
 from talbot.flow.frame.request import FrameRequest
 from talbot.models.reconstruct.bayes import FieldPrior
 
@@ -25,10 +24,5 @@ def run(
     """
     from . import page  # Matplotlib: not before it is needed
 
-    check_folder("out", request.folder)
-    fields = read_back((golden_result if golden else simulate_frame)(request, note), prior, note)
-    note("report")
-    with staged(request.folder, page.NAMES) as folder:
-        page.write(folder, fields)
-        (folder / "summary.json").write_text(json.dumps(fields.summary, indent=1, allow_nan=False) + "\n")
-    return fields.summary
+    read = golden_result if golden else simulate_frame
+    return write(request.folder, page.NAMES, lambda: read_back(read(request, note), prior, note), page, note)
