@@ -55,8 +55,7 @@ def add_frame_arguments(parser: ArgumentParser) -> None:
     """Options of the sensor, its camera and a frame."""
     add = parser.add_argument
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
-    for name, words in CAMERA.items():
-        add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
+    add_camera_arguments(parser)
     add(
         "--views",
         default="auto",
@@ -78,6 +77,12 @@ def add_frame_arguments(parser: ArgumentParser) -> None:
     add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
+
+
+def add_camera_arguments(parser: ArgumentParser, default: CameraParameters = CameraParameters()) -> None:
+    """Options of the lens; what is not given is the sensor's."""
+    for name, words in CAMERA.items():
+        parser.add_argument(f"--{name}", help=words.format(default=default))
 
 
 def run(options: Namespace) -> int:
@@ -156,7 +161,7 @@ def request_of(a: Namespace) -> "FrameRequest":
         sensor=sensor,
         window=window,
         mask=mask,
-        camera=_camera(a, sensor.optics.camera),
+        camera=camera_of(a, sensor.optics.camera),
         views=views,
         noise=noise,
         waves=waves,
@@ -165,7 +170,7 @@ def request_of(a: Namespace) -> "FrameRequest":
     )
 
 
-def _camera(a: Namespace, own: CameraParameters) -> CameraParameters:
+def camera_of(a: Namespace, own: CameraParameters) -> CameraParameters:
     """The sensor's ``own`` camera with what the options ``a`` change."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     given = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}

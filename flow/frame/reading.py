@@ -42,8 +42,8 @@ def add_arguments(parser: ArgumentParser, command: str, scene: str) -> None:
     add("--out", help=f"folder for the results (default: build/{command}/<scene>)")
 
 
-def asked(options: Namespace, command: str, mode: str, sensor: SensorParameters = STANDARD) -> FrameRequest:
-    """The request of `add_arguments`; sensor: where no file has one. Raises ParameterError."""
+def asked(options: Namespace, command: str, mode: str, sensor: SensorParameters | None = None) -> FrameRequest:
+    """The request of `add_arguments`; sensor: None is that of the options. Raises ParameterError."""
     numbers: dict[str, Any] = {}
     for name, high in (("rows", 1024), ("cols", 1536)):
         if getattr(options, name) is not None:
@@ -51,7 +51,7 @@ def asked(options: Namespace, command: str, mode: str, sensor: SensorParameters 
     return request(
         scene=options.scene,
         depth=options.depth,
-        sensor=read_sensor(options.sensor) if options.sensor else sensor,
+        sensor=sensor or sensor_of(options),
         converter=None if options.sensor else "typical",
         mode=mode,
         noise=text.real("noise", options.noise, 0, 100),
@@ -59,6 +59,11 @@ def asked(options: Namespace, command: str, mode: str, sensor: SensorParameters 
         out=Path(options.out or Path("build") / command / Path(options.scene).stem),
         **numbers,
     )
+
+
+def sensor_of(options: Namespace, default: SensorParameters = STANDARD) -> SensorParameters:
+    """The sensor of the file that ``options`` name, or ``default``. Raises ParameterError."""
+    return read_sensor(options.sensor) if options.sensor else default
 
 
 def write(

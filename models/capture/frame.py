@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.polarization import transmission
-from talbot.models.pixel.time_of_flight import TAPS, phase_of
+from talbot.models.pixel.time_of_flight import phase_of, tap_gains
 from talbot.models.plan import Plan
 from talbot.models.scene import Scene
 from talbot.models.scene.depth_field import depth_of_surface
@@ -160,16 +160,20 @@ def _taps(scene: Scene, sensor: SensorParameters, plan: Plan, region: Region, dt
         return integrate(scene, sensor, region, dtype=dtype)
     if scene.depth is None:
         raise ParameterError("depth = None: time of flight needs a scene with depth")
-    f_mod = sensor.electrical.f_mod
+    e = sensor.electrical
     if plan.captures == 1:
         pair = integrate(scene, sensor, region, dtype=dtype)[0]
-        phase = phase_of(scene.depth.flat[0], f_mod)
-        return np.stack([pair * pair.dtype.type((1 + np.cos(tap + phase)) / 2) for tap in TAPS])
+        gains = tap_gains(phase_of(scene.depth.flat[0], e.f_mod), e.contrast, e.ambient)
+        return np.stack([pair * pair.dtype.type(gain) for gain in gains])
     depth = depth_of_surface(scene.depth, scene.disparity)
     if plan.captures == 3:
-        waves = [None, *(lambda s, dv, du, w=wave: w(phase_of(depth(s), f_mod)) for wave in (np.cos, np.sin))]
-        mean, cosine, sine = integrate(scene, sensor, region, waves, dtype)
+        waves = [None, *(lambda s, dv, du, w=wave: w(phase_of(depth(s), e.f_mod)) for wave in (np.cos, np.sin))]
+        mean, *parts = integrate(scene, sensor, region, waves, dtype)
+        cosine, sine = (part * mean.dtype.type(e.contrast) for part in parts)
+        mean *= mean.dtype.type(1 + 2 * e.ambient)
         # A tap's current is never negative; mean and wave are rounded separately.
         return np.stack([np.maximum((mean + part) / 2, 0) for part in (cosine, -sine, -cosine, sine)])
-    waves = [lambda s, dv, du, t=tap: (1 + np.cos(t + phase_of(depth(s), f_mod))) / 2 for tap in TAPS]
+    waves = [
+        lambda s, dv, du, t=tap: tap_gains(phase_of(depth(s), e.f_mod), e.contrast, e.ambient)[t] for tap in range(4)
+    ]
     return integrate(scene, sensor, region, waves, dtype)

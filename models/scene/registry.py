@@ -6,7 +6,7 @@ from pathlib import Path
 
 from talbot.models.parameters import ParameterError
 
-from . import polarized, targets
+from . import polarized, solids, targets
 from .clip import VIDEOS
 from .light_field import LightField
 from .light_field_file import named
@@ -28,6 +28,8 @@ scenes: dict[str, Callable[..., Scene]] = {
     "polarized": polarized.polarized,
     "stress": polarized.stress,
     "specular": polarized.specular,
+    "cornell": solids.cornell,
+    "fence": solids.fence,
     **{name: partial(photograph, name) for name in PHOTOGRAPHS},
 }
 NUMBERS = {

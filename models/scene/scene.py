@@ -48,6 +48,8 @@ class Scene:
         S1/S0 and S2/S0 of the centre view, or of every view, of degree 0..1; None is unpolarized.
     specular : bool (rows, cols) or None
         Where the centre view shows a reflection brighter than half of the lamp that it is of; None if not known.
+    behind : array (rows, cols) or None
+        Distance from the camera of what stands behind an occluder, 0.001..1000 m.
     render : callable or None
         From the wanted pixels, bool (rows, cols), to a `View` of these, those of the light field and all between; None:
         there are no others.
@@ -72,6 +74,7 @@ class Scene:
     depth: npt.NDArray[np.floating] | None = None
     polarization: npt.NDArray[np.floating] | None = None
     specular: npt.NDArray[np.bool_] | None = None
+    behind: npt.NDArray[np.floating] | None = None
     render: Callable[[Bools], View] | None = None
     static: bool = True
     moved: Callable[[float], "Scene"] | None = None
@@ -89,6 +92,7 @@ class Scene:
             ("disparity", -1e4, 1e4, self.shape),
             ("depth", 1e-3, FOCUS_MAX, self.shape),
             ("specular", 0, 1, self.shape),
+            ("behind", 1e-3, FOCUS_MAX, self.shape),
             ("polarization", -1, 1, (2, *self.shape)),
         ):
             value = getattr(self, name)

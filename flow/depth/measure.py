@@ -1,0 +1,181 @@
+"""Depth from the frames of time of flight by every method, beside what costs nothing."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import binary_dilation
+
+from talbot.flow.frame.result import PHASE_TURN, GoldenResult
+from talbot.models.digital.phase import phase_samples
+from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
+from talbot.models.reconstruct import FULL, white_sum
+from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+from talbot.models.scene import Sampling, camera
+
+from .job import DepthFrames
+
+Values = npt.NDArray[np.floating]
+Bools = npt.NDArray[np.bool_]
+BEST = "field"
+FAINT = 3.0  # codes: what has a smaller amplitude has no phase
+HEADROOM = 5.0  # LSB below a full code: a diode above has no phase
+LOOSE = 0.2  # px per view step: no disparity is surer
+PUPIL = 7  # points across the pupil at which the estimator takes the scene
+CODES = 255
+
+
+@dataclass(frozen=True, eq=False)
+class Depth:
+    """What the frames give. depth: by method, in m, (rows, cols); sure: where its turns are known."""
+
+    frames: DepthFrames
+    field: DepthField
+    coarse: Values
+    depth: dict[str, Values]
+    sure: dict[str, Bools]
+    behind: Values | None
+    summary: dict[str, Any]
+
+    @property
+    def truth(self) -> Values:
+        """Depth of the scene in m."""
+        return np.asarray(self.frames.sums.exposed.scene.depth)
+
+
+def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], None] = lambda text: None) -> Depth:
+    """Depth by every method; that of `BEST` first in the summary."""
+    result = frames.sums
+    sensor, scene = result.sensor, result.exposed.scene
+    truth, ambiguity = np.asarray(scene.depth), SPEED_OF_LIGHT / (2 * sensor.electrical.f_mod)
+    note("field")
+    white = white_sum(result.request.lit, result.request.frame.exposing)
+    diodes = frames.diodes()
+    full = binary_dilation((diodes > FULL - HEADROOM).any((0, 1)), iterations=prior.margin)
+    start = perf_counter()
+    estimator = FieldEstimator(sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+    field = depth_field(estimator, diodes / white)
+    seconds = perf_counter() - start
+    ideal = depth_field(estimator, frames.diodes(noisy=False) / white)
+    note("unwrap")
+    coarse, doubt = _by_disparity(result, field, prior)
+    depth, sure = {}, {}
+    for name, phase in _phases(frames, field, ideal, white).items():
+        found = unwrap(np.where(full, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
+        depth[name], sure[name] = found.turns * ambiguity, found.sure
+    methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
+    once = sure[BEST]
+    baselines = {
+        "constant": figures(np.full_like(truth, truth.mean()), truth, once, ambiguity),
+        "light_field": figures(coarse, truth, once, ambiguity),
+        "wrapped": figures(depth[BEST] % ambiguity, truth, once, ambiguity),
+    }
+    behind, past = _behind(field, coarse, ambiguity, result)
+    summary = frames.about() | {
+        "range_m": float(np.ptp(truth)),
+        "ambiguity_m": ambiguity,
+        "depth_rms_m": methods[BEST]["rms_m"],
+        "depth_sure": methods[BEST]["sure"],
+        "methods": methods,
+        "baselines": baselines,
+        "behind": past,
+        "seconds": seconds,
+    }
+    return Depth(frames, field, coarse, depth, sure, behind, summary)
+
+
+def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: float) -> dict[str, Values]:
+    """Phase by every method in rad, NaN where the amplitude is too small for one.
+
+    divider: the chip's own, of the sums. sums: atan2 of the same sums. field: of the depth field's centre view, divider
+    and float; from samples without noise and converter.
+    """
+    chip = frames.sums.request.sensor.chip
+    centre = np.moveaxis(field.centre, 0, -1) * white
+    codes = np.rint(np.clip(centre, 0, CODES)).astype(int)
+    by_divider, strength = phase_samples(codes, chip)
+    sent = np.asarray(frames.phases.decoded.samples, float)
+    out = {
+        "divider": (sent[..., 0] * PHASE_TURN, sent[..., 1]),
+        "sums": demodulate(np.moveaxis(frames.sums.decoded.samples.astype(float), 2, 0)),
+        "field_divider": (by_divider * PHASE_TURN, strength),
+        "field": demodulate(np.moveaxis(centre, -1, 0)),
+        "field_float": demodulate(ideal.centre * white),
+    }
+    return {name: np.where(amplitude < FAINT, np.nan, phase) for name, (phase, amplitude) in out.items()}
+
+
+def _by_disparity(result: GoldenResult, field: DepthField, prior: FieldPrior) -> tuple[Values, Values]:
+    """Depth of the light field in m, and its standard deviation; infinite at the ends of what was tried.
+
+    What the prior knew is taken out of both, so that a disparity that no sample tells has no weight.
+    """
+    sampling = Sampling.of(result.sensor)
+    middle, width = (prior.near + prior.far) / 2, (prior.near - prior.far) / np.sqrt(12)
+    spread = np.hypot(field.spread, LOOSE)
+    told = np.maximum(1 / spread**2 - 1 / max(width, LOOSE) ** 2, 0)
+    known = told > 0
+    told = np.where(known, told, 1)
+    disparity = middle + (field.disparity - middle) / spread**2 / told
+    half = (prior.near - prior.far) / max(prior.disparities - 1, 1) / 2
+    ends = (field.disparity < prior.far + half) | (field.disparity > prior.near - half)
+    depth = camera.depth(np.clip(disparity, prior.far, prior.near), sampling)
+    doubt = depth**2 / camera.per_inverse_metre(sampling) / np.sqrt(told)
+    return depth, np.where(known & ~ends, doubt, np.inf)
+
+
+def figures(found: Values, truth: Values, sure: Bools, ambiguity: float) -> dict[str, float | None]:
+    """Errors of a depth in m: RMS where it is sure and everywhere, and modulo a turn; share of wrong turns."""
+    error = found - truth
+    modulo = (error + ambiguity / 2) % ambiguity - ambiguity / 2
+    return {
+        "rms_m": _rms(error[sure]),
+        "rms_all_m": _rms(error),
+        "rms_modulo_m": _rms(modulo[sure]),
+        "sure": float(sure.mean()),
+        "wrong_turns": float((np.abs(error[sure]) > ambiguity / 2).mean()) if sure.any() else None,
+    }
+
+
+def _rms(error: Values) -> float | None:
+    return float(np.sqrt(np.mean(error**2))) if error.size else None
+
+
+def _behind(
+    field: DepthField, coarse: Values, ambiguity: float, result: GoldenResult
+) -> tuple[Values | None, dict[str, Any] | None]:
+    """Depth of what an occluder hides in m, NaN where no ray passes, and its errors; of a scene that has one.
+
+    The whole turns are the fewest that put it behind the occluder: its own disparity is not seen through the gaps.
+    """
+    scene = result.exposed.scene
+    near = None if scene.behind is None else foreground(field, coarse / ambiguity)
+    if near is None or scene.behind is None:
+        return None, None
+    middle = scene.views // 2
+    limit = float(np.median(coarse[near[middle, middle]]))
+    phasors = field.phasors
+    rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
+    disparity = float(np.median(camera.disparity(rough, Sampling.of(result.sensor))))
+    passed, everything = refocused(phasors, disparity, ~near), refocused(phasors, disparity)
+    seen = np.abs(passed) > 0
+    depth, mixed = (_beyond(np.angle(p), limit, ambiguity) for p in (passed, everything))
+    past = {
+        "rms_m": _rms((depth - scene.behind)[seen]),
+        "rms_all_rays_m": _rms(mixed - scene.behind),
+        "rms_constant_m": float(np.std(scene.behind)),
+        "seen": float(seen.mean()),
+        "occluded": float(near[middle, middle].mean()),
+        "range_m": float(scene.behind.max() - np.min(np.asarray(scene.depth))),
+    }
+    return np.where(seen, depth, np.nan), past
+
+
+def _beyond(phase: Values, limit: float, ambiguity: float) -> Values:
+    """The least depth in m behind ``limit`` that has this phase."""
+    fine = phase / (2 * np.pi) % 1 * ambiguity
+    return fine + np.maximum(np.ceil((limit - fine) / ambiguity), 0) * ambiguity
