@@ -17,7 +17,7 @@ from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
 from talbot.models.scene import Sampling, camera
 
-from .job import DepthFrames
+from .capture import DepthFrames
 
 Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
@@ -25,6 +25,7 @@ BEST = "field"
 FAINT = 3.0  # codes: what has a smaller amplitude has no phase
 HEADROOM = 5.0  # LSB below a full code: a diode above has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
+EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
 PUPIL = 7  # points across the pupil at which the estimator takes the scene
 CODES = 255
 
@@ -121,8 +122,9 @@ def _by_disparity(result: GoldenResult, field: DepthField, prior: FieldPrior) ->
     known = told > 0
     told = np.where(known, told, 1)
     disparity = middle + (field.disparity - middle) / spread**2 / told
-    half = (prior.near - prior.far) / max(prior.disparities - 1, 1) / 2
-    ends = (field.disparity < prior.far + half) | (field.disparity > prior.near - half)
+    step = (prior.near - prior.far) / max(prior.disparities - 1, 1)
+    room = np.minimum(field.disparity - prior.far, prior.near - field.disparity)
+    ends = room < EDGE * step + field.spread
     depth = camera.depth(np.clip(disparity, prior.far, prior.near), sampling)
     doubt = depth**2 / camera.per_inverse_metre(sampling) / np.sqrt(told)
     return depth, np.where(known & ~ends, doubt, np.inf)
@@ -161,7 +163,11 @@ def _behind(
     phasors = field.phasors
     rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
     disparity = float(np.median(camera.disparity(rough, Sampling.of(result.sensor))))
-    passed, everything = refocused(phasors, disparity, ~near), refocused(phasors, disparity)
+    clear = ~binary_dilation(
+        near, np.ones((1, 1, 3, 3))
+    )  # rays beside the occluder's are mixtures: only where no other
+    passed, edge, everything = (refocused(phasors, disparity, rays) for rays in (clear, ~near, None))
+    passed = np.where(np.abs(passed) > 0, passed, edge)
     seen = np.abs(passed) > 0
     depth, mixed = (_beyond(np.angle(p), limit, ambiguity) for p in (passed, everything))
     past = {

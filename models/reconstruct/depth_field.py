@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import shift
 from scipy.sparse import csr_array, diags_array
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu
 
 from talbot.models.parameters import ParameterError
 from talbot.models.pixel.time_of_flight import quadrature
@@ -23,6 +23,8 @@ Bools = npt.NDArray[np.bool_]
 SMOOTH = 0.01  # turns: by this much neighbours may differ from what their phases say
 JUMP = 0.03  # turns between neighbours beyond which a depth edge is between them
 SURE = 0.3  # turns from a whole number beyond which the number of turns is not known
+IGNORANCE = 1e-3  # weight of no turns, 1 / turns**2: keeps the equation regular where nothing is known
+TOLD = 0.9  # of a number of turns must be from the coarse depth
 DOUBT_MIN = 0.02  # turns: no disparity is surer
 BINS = 128  # of the histogram of phases
 
@@ -129,7 +131,6 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     known = np.isfinite(phase)
     fine = np.where(known, phase, 0) / (2 * np.pi) % 1
     trust = np.where(known & np.isfinite(doubt), 1 / np.maximum(doubt, DOUBT_MIN) ** 2, 0)
-    trust = np.maximum(trust, 1e-6)  # keeps the equation regular where nothing is known
     number = np.arange(phase.size).reshape(phase.shape)
     parts = []
     for axis in (0, 1):
@@ -142,10 +143,10 @@ def unwrap(phase: Floats, coarse: Floats, doubt: Floats) -> Unwrapped:
     pull = np.bincount(last, link * step, size) - np.bincount(first, link * step, size)
     held = np.bincount(last, link, size) + np.bincount(first, link, size)
     between = csr_array((np.tile(link, 2), (np.r_[first, last], np.r_[last, first])), (size, size))
-    matrix = diags_array(trust.ravel() + held) - between
-    smooth = spsolve(matrix.tocsc(), (trust * np.where(np.isfinite(coarse), coarse, 0)).ravel() + pull)
-    smooth = np.reshape(smooth, phase.shape)
-    sure = known & (trust + np.reshape(held, phase.shape) > 1) & (np.abs(smooth - fine - np.rint(smooth - fine)) < SURE)
+    solve = splu((diags_array(trust.ravel() + held + IGNORANCE) - between).tocsc()).solve
+    smooth = np.reshape(solve((trust * np.where(np.isfinite(coarse), coarse, 0)).ravel() + pull), phase.shape)
+    told = np.reshape(solve(trust.ravel()), phase.shape)  # 1: all from the coarse depth, here or along the phase
+    sure = known & (told > TOLD) & (np.abs(smooth - fine - np.rint(smooth - fine)) < SURE)
     whole = np.maximum(np.rint(smooth - fine), 0)
     return Unwrapped(np.where(known, fine + whole, 0), sure)
 
