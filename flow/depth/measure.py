@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.ndimage import binary_dilation
+from scipy.ndimage import maximum_filter
 
+from talbot.flow.frame.reading import full, rms
 from talbot.flow.frame.result import PHASE_TURN, GoldenResult
 from talbot.models.digital.phase import phase_samples
 from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
-from talbot.models.reconstruct import FULL, white_sum
+from talbot.models.reconstruct import white_sum
 from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
 from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
 from talbot.models.scene import Sampling, camera
@@ -23,7 +24,6 @@ Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
 BEST = "field"
 FAINT = 3.0  # codes: what has a smaller amplitude has no phase
-HEADROOM = 5.0  # LSB below a full code: a diode above has no phase
 LOOSE = 0.2  # px per view step: no disparity is surer
 EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
 PUPIL = 7  # points across the pupil at which the estimator takes the scene
@@ -56,7 +56,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     note("field")
     white = white_sum(result.request.lit, result.request.frame.exposing)
     diodes = frames.diodes()
-    full = binary_dilation((diodes > FULL - HEADROOM).any((0, 1)), iterations=prior.margin)
+    over = _beside(full(diodes, (0, 1)), prior.margin)
     start = perf_counter()
     estimator = FieldEstimator(sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
     field = depth_field(estimator, diodes / white)
@@ -66,7 +66,7 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
     coarse, doubt = _by_disparity(result, field, prior)
     depth, sure = {}, {}
     for name, phase in _phases(frames, field, ideal, white).items():
-        found = unwrap(np.where(full, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
+        found = unwrap(np.where(over, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
         depth[name], sure[name] = found.turns * ambiguity, found.sure
     methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
     once = sure[BEST]
@@ -87,6 +87,12 @@ def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], Non
         "seconds": seconds,
     }
     return Depth(frames, field, coarse, depth, sure, behind, summary)
+
+
+def _beside(pixels: Bools, reach: int) -> Bools:
+    """Pixels (..., rows, cols) and those around them."""
+    size = 2 * reach + 1
+    return np.asarray(maximum_filter(pixels, (1,) * (pixels.ndim - 2) + (size, size)), bool)
 
 
 def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: float) -> dict[str, Values]:
@@ -135,16 +141,12 @@ def figures(found: Values, truth: Values, sure: Bools, ambiguity: float) -> dict
     error = found - truth
     modulo = (error + ambiguity / 2) % ambiguity - ambiguity / 2
     return {
-        "rms_m": _rms(error[sure]),
-        "rms_all_m": _rms(error),
-        "rms_modulo_m": _rms(modulo[sure]),
+        "rms_m": rms(error[sure]),
+        "rms_all_m": rms(error),
+        "rms_modulo_m": rms(modulo[sure]),
         "sure": float(sure.mean()),
         "wrong_turns": float((np.abs(error[sure]) > ambiguity / 2).mean()) if sure.any() else None,
     }
-
-
-def _rms(error: Values) -> float | None:
-    return float(np.sqrt(np.mean(error**2))) if error.size else None
 
 
 def _behind(
@@ -163,16 +165,14 @@ def _behind(
     phasors = field.phasors
     rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
     disparity = float(np.median(camera.disparity(rough, Sampling.of(result.sensor))))
-    clear = ~binary_dilation(
-        near, np.ones((1, 1, 3, 3))
-    )  # rays beside the occluder's are mixtures: only where no other
+    clear = ~_beside(near, 1)  # rays beside the occluder's are mixtures: only where no other
     passed, edge, everything = (refocused(phasors, disparity, rays) for rays in (clear, ~near, None))
     passed = np.where(np.abs(passed) > 0, passed, edge)
     seen = np.abs(passed) > 0
     depth, mixed = (_beyond(np.angle(p), limit, ambiguity) for p in (passed, everything))
     past = {
-        "rms_m": _rms((depth - scene.behind)[seen]),
-        "rms_all_rays_m": _rms(mixed - scene.behind),
+        "rms_m": rms((depth - scene.behind)[seen]),
+        "rms_all_rays_m": rms(mixed - scene.behind),
         "rms_constant_m": float(np.std(scene.behind)),
         "seen": float(seen.mean()),
         "occluded": float(near[middle, middle].mean()),

@@ -30,14 +30,11 @@ def write(folder: Path, found: Depth) -> None:
     """Write everything but summary.json into ``folder``, which exists."""
     s = found.summary
     best, sure = found.depth[BEST], found.sure[BEST]
-    np.savez(
-        folder / "depth.npz",
-        depth=best.astype(np.float32),
-        confidence=sure,
-        taps=found.field.taps.astype(np.float16),
-        disparity=found.field.disparity,
-        **({} if found.behind is None else {"behind": found.behind.astype(np.float32)}),
-    )
+    arrays = {"taps": found.field.taps.astype(np.float16), "disparity": found.field.disparity, "confidence": sure}
+    arrays |= {"depth": best.astype(np.float32)}
+    if found.behind is not None:
+        arrays["behind"] = found.behind.astype(np.float32)
+    np.savez(folder / "depth.npz", allow_pickle=False, **arrays)
     shown = _depths(found)
     groups = [
         Section("Every method beside what costs nothing", head=HEAD, rows=rows(s)),

@@ -7,15 +7,20 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Protocol
 
+import numpy as np
+import numpy.typing as npt
+
 from talbot.base.files import check_folder, staged
 from talbot.base.page import Tile
 from talbot.models.parameters import STANDARD, SensorParameters, read_sensor
+from talbot.models.reconstruct import FULL
 
 from . import arguments as text
 from .figures import mismatches
 from .request import FrameRequest, request
 from .result import FrameResult, GoldenResult
 
+HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: what is above counts as full
 Note = Callable[[str], None]
 
 
@@ -93,6 +98,16 @@ def about(result: GoldenResult) -> dict[str, Any]:
         "stream_mismatches": mismatches(result.stream, result.golden.stream),
         "decoded_mismatches": int((result.decoded.samples != result.golden.sent).sum()),
     }
+
+
+def full(samples: npt.NDArray[np.floating], axes: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """Where any of the samples along ``axes``, in LSB, is full: what else it holds is not known."""
+    return np.asarray((samples > FULL - HEADROOM).any(axes))
+
+
+def rms(error: npt.NDArray[np.floating]) -> float | None:
+    """Root of the mean square; None of nothing."""
+    return float(np.sqrt(np.mean(error**2))) if error.size else None
 
 
 def line(s: dict[str, Any]) -> str:

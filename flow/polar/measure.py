@@ -8,14 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.reading import about
+from talbot.flow.frame.reading import about, full, rms
 from talbot.flow.frame.result import GoldenResult
 from talbot.models.pixel.polarization import angle
-from talbot.models.reconstruct import FULL, Polarization, demosaiced, polarization, specular_tags, sum_image, sum_noise
+from talbot.models.reconstruct import Polarization, demosaiced, polarization, specular_tags, sum_image, sum_noise
 
 Values = npt.NDArray[np.floating]
 Bools = npt.NDArray[np.bool_]
-HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: a pixel above them counts as full
 QUIET = 0.3  # of the noise at noise 1: what rounding leaves without any other
 POLARIZED = 0.02  # degree below which the truth has no angle
 
@@ -44,12 +43,12 @@ def read_polarization(
     """The polarization of a raw frame of any part of the array. threshold: of a highlight's polarized light."""
     note("polarization")
     start = perf_counter()
-    found, sums, full = _estimate(result, result.decoded.samples.astype(float))
+    found, sums, over = _estimate(result, result.decoded.samples.astype(float))
     seconds = perf_counter() - start
     ideal, _, _ = _estimate(result, result.exposed.ideal)
     plain = demosaiced(sums, result.sensor.tile, result.sensor.optics.diattenuation)
     tags = specular_tags(found, threshold)
-    frame = PolarFrame(result, found, plain, full, tags, {})
+    frame = PolarFrame(result, found, plain, over, tags, {})
     psi, degree = frame.truth
     sure = found.confidence > 0
     shown = sure & (degree > POLARIZED)
@@ -65,17 +64,17 @@ def read_polarization(
             "psi_error_sure_deg": _angle_error(found.psi, psi, shown & (found.confidence > 0.5)),
             "psi_error_float_deg": _angle_error(ideal.psi, psi, shown),
             "psi_error_demosaiced_deg": _angle_error(angle(*plain), psi, shown),
-            "degree_rms": _rms(found.degree - degree, shown),
-            "degree_rms_float": _rms(ideal.degree - degree, shown),
-            "degree_rms_demosaiced": _rms(np.hypot(*plain) - degree, shown),
+            "degree_rms": rms((found.degree - degree)[shown]),
+            "degree_rms_float": rms((ideal.degree - degree)[shown]),
+            "degree_rms_demosaiced": rms((np.hypot(*plain) - degree)[shown]),
             "wrongly_polarized": float((sure & (degree <= POLARIZED)).mean()),
-            "full": int(full.sum()),
-            "full_tagged": int((tags & full & ~(np.zeros_like(tags) if shine is None else shine)).sum()),
+            "full": int(over.sum()),
+            "full_tagged": int((tags & over & ~(np.zeros_like(tags) if shine is None else shine)).sum()),
             "seconds": seconds,
             "f1": None if shine is None else _f1(tags, shine),
             "baselines": {
                 "psi_error_constant_deg": _angle_error(constant, psi, shown),
-                "degree_rms_none": _rms(degree, shown),
+                "degree_rms_none": rms((degree)[shown]),
                 "f1_bright": None if bright is None or shine is None else _f1(bright, shine),
             },
         }
@@ -88,11 +87,11 @@ def _estimate(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values
     request = result.request
     lit, timing = request.lit, request.frame.exposing
     sums = np.asarray(sum_image(pairs.sum(2) / 2, lit, timing=timing), float)
-    full = np.asarray((pairs > FULL - HEADROOM).any(2))
+    over = full(pairs, (2,))
     noise = max(request.noise, QUIET) * sum_noise(sums, lit, timing)
     optics = result.sensor.optics
-    used = result.decoded.read & ~full
-    return polarization(sums, result.sensor.tile, optics.diattenuation, noise, used), sums, full
+    used = result.decoded.read & ~over
+    return polarization(sums, result.sensor.tile, optics.diattenuation, noise, used), sums, over
 
 
 def _angle_error(found: Values, truth: Values, where: Bools) -> float | None:
@@ -103,10 +102,6 @@ def _angle_error(found: Values, truth: Values, where: Bools) -> float | None:
 
 def _mean_angle(psi: Values) -> float:
     return float(np.angle(np.exp(2j * psi).mean()) / 2)
-
-
-def _rms(error: Values, where: Bools) -> float | None:
-    return float(np.sqrt(np.mean(error[where] ** 2))) if where.any() else None
 
 
 def _f1(found: Bools, truth: Bools) -> float | None:
