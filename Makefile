@@ -82,6 +82,14 @@ lightfield: $(READY)  ## a raw frame's light field, refocused pictures and depth
 pixel: $(TESTS_READY)  ## the pixel in a process's metal: search, angular responses, Eq. 3.1 against them: build/pixel/<pdk>/pixel.html (PDK=)
 	@$(talbot) pixel
 
+.PHONY: polar
+polar: $(READY)  ## a raw frame's angle and degree of polarization, and its highlights: build/polar/<scene>/ (SCENE=)
+	@$(talbot) polar
+
+.PHONY: depth
+depth: $(READY)  ## depth by time of flight, unwrapped by the light field of its taps, and past an occluder: build/depth/<scene>/ (SCENE=)
+	@$(talbot) depth
+
 .PHONY: test
 test: $(TESTS_READY)  ## the fast tests of every block and model (under 10 minutes on 2 cores) [COMPLETE=1: fail where a test lacks a tool]
 	@$(PY) -m pytest -n auto --dist loadfile $(if $(filter-out 0 no false off,$(COMPLETE)),--complete)

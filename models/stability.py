@@ -26,9 +26,11 @@ from talbot.models.parameters import (
     TileParameters,
 )
 from talbot.models.pixel import Ripple, exact, gains, response
+from talbot.models.pixel.polarization import transmission
 from talbot.models.pixel.quadrature import sampled
 from talbot.models.plan import plan
-from talbot.models.reconstruct import EdgeOperator, image_from_edges
+from talbot.models.reconstruct import EdgeOperator, image_from_edges, polarization
+from talbot.models.reconstruct.depth_field import unwrap
 from talbot.models.scene import Sampling, load
 
 
@@ -83,6 +85,8 @@ def optical_cases() -> list[Case]:
         _one_view(),
         *_pictures(),
         _no_edges(),
+        *_polarizations(),
+        *_turns(),
     ]
 
 
@@ -285,3 +289,37 @@ def _no_edges() -> Case:
     operator = EdgeOperator(SensorParameters(array=ArrayParameters(8, 12)), np.zeros((8, 12)), np.ones(tile.n_types))
     image = image_from_edges(np.zeros((8, 12)), operator)
     return _within("image from no edges at all", "0", float(np.abs(image).max()), 0, 0)
+
+
+def _polarizations() -> list[Case]:
+    """Angle of polarization near its wrap, and what has none: darkness, full pixels, a missing orientation."""
+    tile, shape = TileParameters(), (16, 18)
+    gamma = np.array([t.gamma for t in tile.types])[tile.type_map(*shape)]
+    out = []
+    for degrees in (89.999, -89.999):
+        psi = np.deg2rad(degrees)
+        stokes = 0.25 * np.stack([np.full(shape, np.cos(2 * psi)), np.full(shape, np.sin(2 * psi))])
+        found = polarization(0.5 * transmission(stokes, gamma, 1 / 3), tile, 1 / 3, 0.003)
+        error = float(np.rad2deg(np.abs((found.psi - psi + np.pi / 2) % np.pi - np.pi / 2)).max())
+        out.append(_within(f"psi of {degrees:g} degrees", "error <= 0.001 degrees", error, 0, 1e-3))
+    some, all_ = np.abs(np.rad2deg(gamma)) < 1, np.ones(shape, bool)
+    for name, level, used in (("black", 0.0, all_), ("full", 1.25, ~all_), ("of 0 degrees alone", 0.5, some)):
+        found = polarization(np.full(shape, level), tile, 1 / 3, 0.003, used)
+        values = found.confidence + 0 * (found.light + found.psi + found.degree)
+        out.append(_within(f"polarization of pixels that are {name}", "confidence 0", float(values.max()), 0, 0))
+    return out
+
+
+def _turns() -> list[Case]:
+    """Phase near 2 pi, none at all, and a depth that nothing tells."""
+    shape, out = (12, 18), []
+    for turns in (1 - 1e-9, 1.0, 3 + 1e-9):
+        found = unwrap(np.full(shape, 2 * np.pi * (turns % 1)), np.full(shape, turns), np.full(shape, 0.2))
+        error = float(np.abs(found.turns - turns).max())
+        out.append(_within(f"turns of a phase, {turns:.9f}", "error <= 1e-6 turns", error, 0, 1e-6))
+    none, zero, unknown = np.full(shape, np.nan), np.zeros(shape), np.full(shape, np.inf)
+    for name, phase, doubt in (("no phase (zero albedo, full)", none, zero), ("depth beyond all tried", zero, unknown)):
+        found = unwrap(phase, zero, doubt)
+        measured = float(found.sure.mean() + np.abs(found.turns).max())
+        out.append(_within(f"turns where there is {name}", "0, not sure", measured, 0, 0))
+    return out

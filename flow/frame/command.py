@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from talbot.base.cache import digest
 from talbot.base.progress import Steps
 from talbot.flow.simulate.frame import WAVES
-from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, CameraParameters
+from talbot.models.parameters import EXPOSURE_MAX, LANES, MODES, CameraParameters, SensorParameters
 
 from . import arguments as text
 from .sensor import add_pixel, asked_sensor
@@ -54,10 +54,13 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--waves-format", default=WAVES[0], help="vcd, or fst: smaller, needs the headers of zlib and lz4 to compile")
 
 
-def add_frame_arguments(parser: ArgumentParser, fixed: Mapping[str, Any] | None = None) -> None:
+def add_frame_arguments(
+    parser: ArgumentParser, fixed: Mapping[str, Any] | None = None, camera: CameraParameters = CameraParameters()
+) -> None:
     """Options of the sensor, its camera and a frame.
 
-    fixed: value by name, of options of `talbot sim` that the command does not have.
+    fixed: value by name, of options of `talbot sim` that the command does not have. camera: of the sensor without a
+    file.
     """
     fixed = fixed or {}
     parser.set_defaults(**fixed)
@@ -68,8 +71,7 @@ def add_frame_arguments(parser: ArgumentParser, fixed: Mapping[str, Any] | None 
 
     add("--sensor", help="sensor file; talbot sensor prints one to start from. What is given here replaces what it has")
     add_pixel(parser)
-    for name, words in CAMERA.items():
-        add(f"--{name}", help=words.format(default=CameraParameters()))  # None: of the sensor
+    add_camera_arguments(parser, camera)
     add(
         "--views",
         default="auto",
@@ -91,6 +93,12 @@ def add_frame_arguments(parser: ArgumentParser, fixed: Mapping[str, Any] | None 
     add("--converter", default=Own("typical"), help="typical (INL, DNL, offset, noise as in the report) or ideal")
     add("--noise", default="1.0", help="times the physical noise, 0..100")
     add("--seed", default="1", help="of every random draw, 0..4294967295")
+
+
+def add_camera_arguments(parser: ArgumentParser, default: CameraParameters) -> None:
+    """Options of the lens; what is not given is the sensor's."""
+    for name, words in CAMERA.items():
+        parser.add_argument(f"--{name}", help=words.format(default=default))
 
 
 def run(options: Namespace) -> int:
@@ -151,11 +159,14 @@ def arguments_of(folder: Path) -> dict[str, Any] | None:
         return None
 
 
-def request_of(a: Namespace) -> "FrameRequest":
-    """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError."""
+def request_of(a: Namespace, sensor: SensorParameters | None = None) -> "FrameRequest":
+    """The FrameRequest of `add_frame_arguments`, scene, depth, waves and out. Raises ParameterError.
+
+    sensor: in place of that of the options, their camera included.
+    """
     from .request import request
 
-    sensor = asked_sensor(a)
+    sensor = sensor or asked_sensor(a)
     typed = {name: value for name, value in vars(a).items() if not isinstance(value, Own)}
     numbers: dict[str, Any] = {
         name: text.integer(name, typed[name], *ends) for name, ends in INTEGERS.items() if name in typed
@@ -175,7 +186,7 @@ def request_of(a: Namespace) -> "FrameRequest":
         sensor=sensor,
         window=window,
         mask=mask,
-        camera=_camera(a, sensor.optics.camera),
+        camera=camera_of(a, sensor.optics.camera),
         views=views,
         noise=noise,
         waves=waves,
@@ -184,7 +195,7 @@ def request_of(a: Namespace) -> "FrameRequest":
     )
 
 
-def _camera(a: Namespace, own: CameraParameters) -> CameraParameters:
+def camera_of(a: Namespace, own: CameraParameters) -> CameraParameters:
     """The sensor's ``own`` camera with what the options ``a`` change."""
     field = {"focal": "focal_length", "pupil": "exit_pupil"}
     given = {name: getattr(a, name) for name in (option.replace("-", "_") for option in CAMERA)}

@@ -82,7 +82,7 @@ def expose(
     noisy = samples(request.noise)
     clean = samples(0.0) if request.noise else noisy
     ideal = np.moveaxis(front_end.values(clean, frame.mode), 0, 2)
-    return Exposed(scene, todo, views, front_end, noisy, ideal)
+    return Exposed(scene, todo, views, front_end, noisy, clean, ideal)
 
 
 def trimmed(request: FrameRequest) -> FrontEnd:
@@ -145,8 +145,13 @@ def golden_result(request: FrameRequest, note: Callable[[str], None] = lambda te
     clock = Clock(note=note)
     exposed = _exposed(request, clock)
     with clock.step("decode"):
-        golden = golden_frame(exposed.samples, request.sensor, request.frame, exposed.front_end)
-        return GoldenResult(request, exposed, golden, decode_stream(golden.stream, request.sensor.tile)[0])
+        return read_golden(request, exposed)
+
+
+def read_golden(request: FrameRequest, exposed: Exposed) -> GoldenResult:
+    """Read one exposure out through the golden chip alone."""
+    golden = golden_frame(exposed.samples, request.sensor, request.frame, exposed.front_end)
+    return GoldenResult(request, exposed, golden, decode_stream(golden.stream, request.sensor.tile)[0])
 
 
 def _exposed(request: FrameRequest, clock: Clock) -> Exposed:

@@ -66,6 +66,26 @@ def depth_colours() -> npt.NDArray[np.uint8]:
     return np.round(255 * colormaps["viridis"](np.linspace(0, 1, 256))[:, :3]).astype(np.uint8)
 
 
+def angle(values: Values) -> Image:
+    """Angles modulo pi in rad (rows, cols) on the cyclic scale of `angle_colours`; NaN is gray."""
+    codes = np.nan_to_num(np.floor(256 * ((values / np.pi + 0.5) % 1))).astype(np.uint8)
+    rgb = np.where(np.isnan(values)[..., None], UNREAD, angle_colours()[codes])
+    return pillow.fromarray(rgb.astype(np.uint8), "RGB")
+
+
+def angle_colours() -> npt.NDArray[np.uint8]:
+    """The colours of `angle` from -pi/2 to pi/2, (256, 3)."""
+    from matplotlib import colormaps
+
+    return np.round(255 * colormaps["twilight"](np.linspace(0, 1, 256))[:, :3]).astype(np.uint8)
+
+
+def marked(values: Values, mask: npt.NDArray[np.bool_]) -> Image:
+    """`gray` of values (rows, cols), yellow where the mask is True."""
+    rgb = np.where(mask[..., None], CONVERTED, np.asarray(gray(values))[..., None])
+    return pillow.fromarray(rgb.astype(np.uint8), "RGB")
+
+
 def signed_scale(scale: float, unit: str) -> Scale:
     """The colours of `signed`."""
     return Scale(np.asarray(signed(np.linspace(-scale, scale, 511)[None], scale))[0], -scale, scale, unit)

@@ -29,8 +29,8 @@ class Exposed:
     """One exposure of a scene.
 
     views: how many views of which pixels.
-    samples: (taps, rows, cols, 2), what the front end samples. ideal: (rows, cols, subs), the values ahead of the
-    converters, in LSB, of the same exposure without noise.
+    samples: (taps, rows, cols, 2), what the front end samples. clean: the same without noise. ideal: (rows, cols,
+    subs), the values ahead of the converters, in LSB, of the clean ones.
     """
 
     scene: Scene
@@ -38,6 +38,7 @@ class Exposed:
     views: Views
     front_end: FrontEnd
     samples: npt.NDArray[np.float64]
+    clean: npt.NDArray[np.float64]
     ideal: npt.NDArray[np.float64]
 
 
@@ -82,8 +83,10 @@ class GoldenResult:
         if frame.mode == "edge":
             return self.rebuilt.image
         if frame.mode == "tof":
-            # Amplitude is half the difference of two taps that see a wave of half the light.
-            return np.asarray(sum_image(self.echo[1], sensor, self.decoded.read, frame.exposing), float)
+            # Amplitude is half the difference of two taps that see a wave of half the light, times the contrast.
+            return np.asarray(
+                sum_image(self.echo[1] / sensor.electrical.contrast, sensor, self.decoded.read, frame.exposing), float
+            )
         total = samples[..., 0] if frame.mode == "image" else samples.sum(2) / 2
         return np.asarray(sum_image(total, sensor, self.decoded.read, frame.exposing), float)
 

@@ -13,8 +13,8 @@ def add_pixel(parser: ArgumentParser) -> None:
     parser.add_argument("--pixel", default=IDEAL, help=words)
 
 
-def asked_sensor(options: Namespace) -> SensorParameters:
-    """The sensor of the options ``sensor`` and ``pixel``. Raises ParameterError."""
+def asked_sensor(options: Namespace, default: SensorParameters = STANDARD) -> SensorParameters:
+    """The sensor of the options ``sensor`` (``default`` without a file) and ``pixel``. Raises ParameterError."""
     from talbot.pixels.tabled import tabled
 
-    return tabled(read_sensor(options.sensor) if options.sensor else STANDARD, options.pixel, line)
+    return tabled(read_sensor(options.sensor) if options.sensor else default, options.pixel, line)

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.flow.frame.figures import mismatches
-from talbot.flow.frame.result import FrameResult, GoldenResult
+from talbot.flow.frame.reading import about
+from talbot.flow.frame.result import GoldenResult
 from talbot.models.capture import CaptureOperator, cells
 from talbot.models.parameters import ParameterError
 from talbot.models.reconstruct import psnr_db, white_sum
@@ -54,19 +54,7 @@ def read_back(result: GoldenResult, prior: FieldPrior, note: Callable[[str], Non
         found[name] = got._replace(light_field=got.light_field * reached)
         figured[name] = figures(got.light_field * reached, seen, free["sum_image_psnr_db"]) | seconds
         figured[name]["psnr_db_float"] = psnr_db(float_got.light_field * reached, seen)
-    summary = {
-        "scene": result.request.name,
-        "rows": truth.shape[2],
-        "cols": truth.shape[3],
-        "views": scene.views,
-        "noise": result.request.noise,
-        "seed": result.request.seed,
-        "chip": isinstance(result, FrameResult),
-        "stream_mismatches": mismatches(result.stream, result.golden.stream),
-        "decoded_mismatches": int((result.decoded.samples != result.golden.sent).sum()),
-        "methods": figured,
-        "baselines": free,
-    }
+    summary = about(result) | {"methods": figured, "baselines": free}
     field, disparity, spread = found[BEST]
     assert disparity is not None and spread is not None
     best = Estimate(field, disparity, spread)

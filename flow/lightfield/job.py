@@ -1,15 +1,14 @@
 """Scene -> chip's Verilog in raw mode -> stream -> light field and depth -> page."""
 
-import json
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from talbot.base.files import check_folder, staged
 from talbot.flow.frame.job import golden_result, simulate_frame
+from talbot.flow.frame.reading import write
 from talbot.flow.frame.request import FrameRequest
 from talbot.models.reconstruct.bayes import FieldPrior
 
-from .fields import read_back
+from .fields import Fields, read_back
 from .methods import METHODS
 
 STEPS = ("setup", "capture", "build", "rtl", "decode", *METHODS, "report")
@@ -20,7 +19,7 @@ def run(
     prior: FieldPrior,
     note: Callable[[str], None] = lambda text: None,
     golden: bool = False,
-    arguments: Mapping[str, object] | None = None,
+    arguments: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
     """Run everything and write the page and summary.json into ``request.folder``; returns the summary.
 
@@ -29,11 +28,7 @@ def run(
     """
     from . import page  # Matplotlib: not before it is needed
 
-    check_folder("out", request.folder)
-    fields = read_back((golden_result if golden else simulate_frame)(request, note), prior, note)
-    note("report")
-    with staged(request.folder, page.NAMES) as folder:
-        page.write(folder, fields)
-        summary = fields.summary | {"arguments": dict(arguments or {})}
-        (folder / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
-    return summary
+    def found() -> Fields:
+        return read_back((golden_result if golden else simulate_frame)(request, note), prior, note)
+
+    return write(request.folder, page.NAMES, found, page, note, arguments)

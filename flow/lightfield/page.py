@@ -9,7 +9,8 @@ import numpy.typing as npt
 from talbot.base import page
 from talbot.base.page import Picture, Scale, Tile
 from talbot.flow.frame import pictures
-from talbot.flow.frame.report import Views, agreement, decibels
+from talbot.flow.frame.reading import agreement, line, number
+from talbot.flow.frame.report import Views, decibels
 from talbot.models.reconstruct.refocus import refocus
 
 from .fields import BEST, SURE, Fields, depth_map
@@ -29,12 +30,11 @@ def write(folder: Path, fields: Fields) -> None:
     shown = [("the scene", fields.truth)] + [(name, found.light_field) for name, found in fields.found.items()]
     groups = [("Depth", _depth(fields)), ("Refocused, by the mixture", _refocused(fields, top))]
     s = fields.summary
-    by = "the chip's Verilog" if s["chip"] else "the golden model"
     text = page.render(
         Path(__file__).with_name("page.html"),
         f"{s['scene']}: the light field of a raw frame",
         picture=groups[1][1][0].image,
-        about=f"{s['rows']} x {s['cols']} pixels, {s['views']} x {s['views']} views, noise {s['noise']:g}, by {by}",
+        about=line(s),
         tiles=headline(s),
         head=("", "PSNR", "gain", "SSIM", "slope", "correlation", "PSNR, float", "seconds", "once"),
         rows=table(s),
@@ -46,16 +46,13 @@ def write(folder: Path, fields: Fields) -> None:
 
 def headline(s: dict[str, Any]) -> list[Tile]:
     """The figures of the summary ``s`` to see first."""
-    against = agreement(s["stream_mismatches"] or s["decoded_mismatches"])
-    if not s["chip"]:
-        against = Tile("not run", "the chip's Verilog", "none")
     linear, best = s["methods"]["linear"], s["methods"][BEST]
     free, constant = decibels(s["baselines"]["sum_image_psnr_db"]), number(s["disparity_rms_constant_px"])
     return [
         Tile(decibels(best["psnr_db"]), f"{BEST} (sum image copied: {free})"),
         Tile(decibels(linear["psnr_db"]), f"linear, {linear['seconds']:.2f} s a frame"),
         Tile(number(best["slope"]), f"slope of the parallax (linear {number(linear['slope'])})"),
-        against,
+        agreement(s),
         Tile(number(s["disparity_rms_px"]), f"px per view step, error of disparity RMS (one for all: {constant})"),
     ]
 
@@ -72,11 +69,6 @@ def table(s: dict[str, Any]) -> list[tuple[str, ...]]:
         figures = decibels(m["psnr_db"]), decibels(m["gain_db"]), *shape, decibels(m["psnr_db_float"]), *times
         rows.append((name + note, *figures))
     return rows
-
-
-def number(value: float | None) -> str:
-    """A figure of two decimals."""
-    return "-" if value is None else f"{value:.2f}"
 
 
 def _depth(fields: Fields) -> list[Picture]:

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from talbot.models.parameters import ParameterError, SensorParameters
 from talbot.models.pixel.polarization import transmission
-from talbot.models.pixel.time_of_flight import TAPS, phase_of
+from talbot.models.pixel.time_of_flight import phase_of, tap_gains
 from talbot.models.plan import Plan
 from talbot.models.scene import Scene
 from talbot.models.scene.depth_field import depth_of_surface
@@ -127,28 +127,53 @@ def currents(
         read = region.pixels & plan.read
         if read.any():
             out += _taps(scene, sensor, plan, Region(region.views, read), dtype)
-    if plan.polarized and scene.polarization is not None:
-        gamma = np.array([t.gamma for t in sensor.tile.types])[sensor.tile.type_map(*scene.shape)]
-        out *= transmission(scene.polarization, gamma, sensor.optics.diattenuation).astype(dtype)
+    if plan.polarized and not _by_view(scene, plan):
+        out *= transmission(scene.seen_polarization, _gratings(sensor), sensor.optics.diattenuation).astype(dtype)
     return out
+
+
+def _by_view(scene: Scene, plan: Plan) -> bool:
+    """Whether each view has a polarization of its own; the taps of time of flight take that of the centre view."""
+    return plan.polarized and plan.taps == 1 and scene.polarization is not None and scene.polarization.ndim == 5
+
+
+def _gratings(sensor: SensorParameters) -> Floats:
+    """Orientation of every pixel's grating in rad, (rows, cols)."""
+    return np.array([t.gamma for t in sensor.tile.types])[sensor.tile.type_map(*sensor.shape)]
+
+
+def _polarized(scene: Scene, sensor: SensorParameters, region: Region, dtype: str) -> Floats:
+    """Photocurrents of light whose polarization differs between the views, (1, 2, rows, cols)."""
+    stokes, middle = np.asarray(scene.polarization), scene.views // 2
+    waves = [None, *(lambda s, dv, du, p=part: p[round(dv) + middle, round(du) + middle] for part in stokes)]
+    total, s1, s2 = integrate(scene, sensor, region, waves, dtype)
+    turn = 2 * _gratings(sensor)
+    passed = total - sensor.optics.diattenuation * (np.cos(turn) * s1 + np.sin(turn) * s2)
+    return np.maximum(passed, 0).astype(dtype)[None]
 
 
 def _taps(scene: Scene, sensor: SensorParameters, plan: Plan, region: Region, dtype: str) -> Floats:
     """Photocurrents of every tap in one region, (taps, 2, rows, cols), 0 outside."""
+    if _by_view(scene, plan):
+        return _polarized(scene, sensor, region, dtype)
     if plan.taps == 1:
         return integrate(scene, sensor, region, dtype=dtype)
     if scene.depth is None:
         raise ParameterError("depth = None: time of flight needs a scene with depth")
-    f_mod = sensor.electrical.f_mod
+    e = sensor.electrical
     if plan.captures == 1:
         pair = integrate(scene, sensor, region, dtype=dtype)[0]
-        phase = phase_of(scene.depth.flat[0], f_mod)
-        return np.stack([pair * pair.dtype.type((1 + np.cos(tap + phase)) / 2) for tap in TAPS])
+        gains = tap_gains(phase_of(scene.depth.flat[0], e.f_mod), e.contrast, e.ambient)
+        return np.stack([pair * pair.dtype.type(gain) for gain in gains])
     depth = depth_of_surface(scene.depth, scene.disparity)
     if plan.captures == 3:
-        waves = [None, *(lambda s, w=wave: w(phase_of(depth(s), f_mod)) for wave in (np.cos, np.sin))]
-        mean, cosine, sine = integrate(scene, sensor, region, waves, dtype)
+        waves = [None, *(lambda s, dv, du, w=wave: w(phase_of(depth(s), e.f_mod)) for wave in (np.cos, np.sin))]
+        mean, *parts = integrate(scene, sensor, region, waves, dtype)
+        cosine, sine = (part * mean.dtype.type(e.contrast) for part in parts)
+        mean *= mean.dtype.type(1 + 2 * e.ambient)
         # A tap's current is never negative; mean and wave are rounded separately.
         return np.stack([np.maximum((mean + part) / 2, 0) for part in (cosine, -sine, -cosine, sine)])
-    waves = [lambda s, t=tap: (1 + np.cos(t + phase_of(depth(s), f_mod))) / 2 for tap in TAPS]
+    waves = [
+        lambda s, dv, du, t=tap: tap_gains(phase_of(depth(s), e.f_mod), e.contrast, e.ambient)[t] for tap in range(4)
+    ]
     return integrate(scene, sensor, region, waves, dtype)

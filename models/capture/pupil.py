@@ -18,7 +18,8 @@ from talbot.models.scene import Scene
 
 Floats = npt.NDArray[np.floating]
 Ints = npt.NDArray[np.int64]
-Wave = Callable[[Floats], Floats]  # from the disparity of what a view shows to a factor of its light
+# From the disparity of what a view shows, and the view's offset in steps (dv, du), to a factor of its light
+Wave = Callable[[Floats, float, float], Floats]
 CHUNKS = 4  # sums of views, added in their order: the result does not depend on the number of threads
 
 
@@ -92,10 +93,19 @@ def integrate(
     def _some(part: Ints) -> Floats:
         out = np.zeros((len(waves), 2, *scene.shape), dtype)
         for v, u in part:
-            light, surface = see((v - middle) * step, (u - middle) * step)
+            place = (v - middle) * step, (u - middle) * step
+            light, surface = see(*place)
             series = np.ascontiguousarray(field.series[:, :, v, u])
             for total, wave in zip(out, waves, strict=True):
-                _add(total, light if wave is None else light * wave(surface), series, order, field.y, field.x, rows)
+                _add(
+                    total,
+                    light if wave is None else light * wave(surface, *place),
+                    series,
+                    order,
+                    field.y,
+                    field.x,
+                    rows,
+                )
         return out
 
     with ThreadPoolExecutor(min(CHUNKS, cpu_count() or 1)) as pool:

@@ -35,6 +35,10 @@ class ElectricalParameters:
         RMS of the offset fixed-pattern noise, 0..1e5 electrons.
     f_mod : float
         Time-of-flight modulation frequency, 1e5..1e9 Hz.
+    contrast : float
+        Demodulation contrast of time of flight, 0.01..1.
+    ambient_current : float
+        Photocurrent of one diode in a flat white scene that is not modulated, in time of flight, 0..1e-3 A.
     swing : float
         Voltage of a full well on the integration capacitor, 0.01..10 V: makes the kT/C noise of a common-mode reset.
     column_fpn : float
@@ -51,6 +55,8 @@ class ElectricalParameters:
     gain_fpn: float = sourced(0.002, "assumed")
     offset_fpn: float = sourced(20.0, "assumed")
     f_mod: float = sourced(20e6, "our choice")
+    contrast: float = sourced(1.0, "ideal")
+    ambient_current: float = sourced(0.0, "none")
     swing: float = sourced(1.0, "assumed")
     column_fpn: float = sourced(10.0, "assumed")
     flicker_noise: float = sourced(10.0, "assumed")
@@ -64,6 +70,8 @@ class ElectricalParameters:
         check_real("gain_fpn", self.gain_fpn, 0, 0.5)
         check_real("offset_fpn", self.offset_fpn, 0, 1e5)
         check_real("f_mod", self.f_mod, 1e5, 1e9)
+        check_real("contrast", self.contrast, 0.01, 1)
+        check_real("ambient_current", self.ambient_current, 0, 1e-3)
         check_real("swing", self.swing, 0.01, 10)
         check_real("column_fpn", self.column_fpn, 0, 1e5)
         check_real("flicker_noise", self.flicker_noise, 0, 1e5)
@@ -72,6 +80,11 @@ class ElectricalParameters:
     def lsb_electrons(self) -> float:
         """Electrons per code of the sum of a pair (both wells full = code 255)."""
         return 2 * self.full_well / 255
+
+    @property
+    def ambient(self) -> float:
+        """Unmodulated light of time of flight, of its own light."""
+        return self.ambient_current / self.white_current
 
     @property
     def ktc_noise(self) -> float:

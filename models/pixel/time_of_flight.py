@@ -56,20 +56,24 @@ def depth_of(phase: npt.ArrayLike, f_mod: float) -> npt.NDArray[np.float64]:
     return SPEED_OF_LIGHT * np.mod(phase, 2 * np.pi) / (4 * np.pi * f_mod)
 
 
-def tap_gains(phase: npt.ArrayLike) -> npt.NDArray[np.floating]:
-    """Share of light of mean 1 that each tap collects: (1 + cos(tap + phase)) / 2.
+def tap_gains(phase: npt.ArrayLike, contrast: float = 1.0, ambient: float = 0.0) -> npt.NDArray[np.floating]:
+    """Share of light of mean 1 that each tap collects: (1 + contrast cos(tap + phase)) / 2 + ambient.
 
     Parameters
     ----------
     phase : array (...)
         In rad.
+    contrast : float
+        Of the demodulation, 0..1.
+    ambient : float
+        Light that is not modulated, 0 or more.
 
     Returns
     -------
     array (4, ...)
-        0..1.
+        0..1, and what is ambient.
     """
-    return np.stack([(1 + np.cos(tap + np.asarray(phase))) / 2 for tap in TAPS])
+    return np.stack([(1 + contrast * np.cos(tap + np.asarray(phase))) / 2 + ambient for tap in TAPS])
 
 
 def quadrature(taps: npt.NDArray[np.floating]) -> tuple[npt.NDArray[np.floating], npt.NDArray[np.floating]]:

@@ -33,6 +33,33 @@ def white_sum(sensor: SensorParameters, timing: AmpTiming = AmpTiming()) -> floa
     return 2 * e.white_current * seconds / ELEMENTARY_CHARGE / e.lsb_electrons
 
 
+def sum_noise(
+    image: npt.NDArray[np.floating], sensor: SensorParameters, timing: AmpTiming = AmpTiming()
+) -> npt.NDArray[np.floating]:
+    """Standard deviation of `sum_image` that physics and the converter leave at noise 1.
+
+    Parameters
+    ----------
+    image : array (rows, cols)
+        Relative radiance.
+    sensor : SensorParameters
+        The sensor.
+    timing : AmpTiming
+        Integration time.
+
+    Returns
+    -------
+    array (rows, cols)
+        Shot, read and fixed-pattern noise, and rounding to codes; 1 is white.
+    """
+    e = sensor.electrical
+    white = white_sum(sensor, timing) * e.lsb_electrons
+    still = 2 * (e.read_noise**2 + e.offset_fpn**2 + e.column_fpn**2 + e.flicker_noise**2)
+    light = np.maximum(image, 0) * white
+    pattern = (e.gain_fpn * light) ** 2 / 2
+    return np.sqrt(light + still + pattern + e.lsb_electrons**2 / 12) / white
+
+
 def sum_image(
     sums: npt.NDArray[Any],
     sensor: SensorParameters,

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from talbot.models.parameters import ParameterError, check_int
+from talbot.models.parameters import FOCUS_MAX, ParameterError, check_int
 
-from . import resample
+from . import camera, resample
 from .picture_file import decode16
 from .sampling import Sampling
 from .scene import RADIANCE_MAX, Scene, check_values
@@ -36,6 +36,12 @@ class LightField:
         (y, x) what the middle one shows at (y + dv d, x + du d). Without it no image is rebuilt from edges.
     name : str
         Name in reports.
+    stokes : array (2, views, views, height, width) or (2, height, width), or None
+        S1 and S2 of every view or of all alike, in the unit of ``values`` as linear radiance; None is unpolarized.
+    depth : array (height, width) or None
+        Of the middle view in m of the scene, 0.001..1000; for time of flight.
+    specular : bool (height, width) or None
+        Where the middle view shows a specular reflection, if that is known.
 
     Raises
     ------
@@ -46,6 +52,9 @@ class LightField:
     values: npt.NDArray[Any]
     disparity: npt.NDArray[Any] | None = None
     name: str = "light_field"
+    stokes: npt.NDArray[Any] | None = None
+    depth: npt.NDArray[Any] | None = None
+    specular: npt.NDArray[Any] | None = None
 
     def __post_init__(self) -> None:
         values = np.asarray(self.values)
@@ -60,14 +69,21 @@ class LightField:
             raise ParameterError(f"light field = {values.dtype} array: must be of {', '.join(CODES + FLOATS)}")
         if values.dtype.name in FLOATS:
             check_values("light field", values, 0, RADIANCE_MAX)
-        if self.disparity is not None:
-            disparity = np.asarray(self.disparity)
-            object.__setattr__(self, "disparity", disparity)
-            if disparity.shape != shape[2:4] or disparity.dtype.kind not in "iuf":
-                raise ParameterError(
-                    f"disparity = {disparity.dtype} array of shape {disparity.shape}: must be numbers, {shape[2:4]}"
-                )
-            check_values("disparity", disparity, -1e4, 1e4)
+        views = (2, *shape[:4]), (2, *shape[2:4])
+        for name, low, high, shapes in (
+            ("disparity", -1e4, 1e4, views[1:]),
+            ("depth", 1e-3, FOCUS_MAX, views[1:]),
+            ("specular", 0, 1, views[1:]),
+            ("stokes", -RADIANCE_MAX, RADIANCE_MAX, views),
+        ):
+            if getattr(self, name) is not None:
+                own = np.asarray(getattr(self, name))
+                object.__setattr__(self, name, own)
+                allowed = shapes if name == "stokes" else (shape[2:4],)
+                if own.shape not in allowed or own.dtype.kind not in "biuf":
+                    must = " or ".join(map(str, allowed))
+                    raise ParameterError(f"{name} = {own.dtype} array of shape {own.shape}: must be numbers, {must}")
+                check_values(name, own, low, high)
 
     @property
     def views(self) -> int:
@@ -109,7 +125,7 @@ class LightField:
         Returns
         -------
         Scene
-            Of the array's size: the largest centred part with its proportions. Depth is not known.
+            Of the array's size: the largest centred part with its proportions.
         """
         size, middle = sampling.shape, self.views // 2
         box = resample.centre_box(*self.shape, *size)
@@ -124,6 +140,29 @@ class LightField:
             zoom = sampling.cols / (box[2] - box[0])
             disparity = np.clip(resample.pick(self.disparity, *size, box) * zoom, -1e4, 1e4)
         image = field[middle, middle].copy()
-        if (field == image).all():
+        polarization = None if self.stokes is None else self._polarization(field, box)
+        depth, specular = (None if p is None else resample.pick(p, *size, box) for p in (self.depth, self.specular))
+        if (field == image).all() and (polarization is None or polarization.ndim == 3):
             field = field[:1, :1]
-        return Scene(self.name, self.views, field, image, disparity)
+        return Scene(
+            self.name,
+            self.views,
+            field,
+            image,
+            disparity,
+            None if depth is None else camera.scaled(depth, sampling.camera),
+            polarization,
+            None if specular is None else specular > 0.5,
+        )
+
+    def _polarization(
+        self, field: npt.NDArray[np.floating], box: tuple[float, float, float, float]
+    ) -> npt.NDArray[np.float64]:
+        """S1/S0 and S2/S0 of every view of ``field``, or of all alike; 0 where there is no light."""
+        stokes, rows, cols = np.asarray(self.stokes, float), *field.shape[2:]
+        own = stokes.reshape(-1, *self.shape)
+        scaled = own if own.shape[1:] == (rows, cols) else [resample.resize(part, rows, cols, box) for part in own]
+        parts = np.reshape(scaled, (*stokes.shape[:-2], rows, cols))
+        light = field if stokes.ndim == 5 else field[self.views // 2, self.views // 2]
+        ratio = np.where(light > 0, parts / np.where(light > 0, light, 1), 0)
+        return ratio / np.maximum(np.hypot(*ratio), 1)

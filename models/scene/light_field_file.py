@@ -1,7 +1,7 @@
 """Light fields in files, as the data sets and NumPy have them.
 
 x.npy               the array
-x.npz               `light_field` (or the only array), and perhaps `disparity`
+x.npz               `light_field` (or the only array), and perhaps `disparity`, `depth`, `s1` with `s2`, `specular`
 folder              input_Cam000.png ... row by row, as HCI's 4D data set [Honauer2016], and gt_disp_lowres.pfm if it is
                     there; or out_RR_CC_*.png, as the Stanford archive [Vaish2008]
 image, with views   one picture of views x views tiles of one size
@@ -30,6 +30,8 @@ PICTURES = "png|jpe?g|tiff?|webp|bmp|ppm|pgm"
 HCI = re.compile(rf"input_Cam(\d{{3}})\.(?:{PICTURES})", re.I)
 STANFORD = re.compile(rf"out_(\d+)_(\d+)(?:_.*)?\.(?:{PICTURES})", re.I)
 DISPARITY = "gt_disp_lowres.pfm"
+MAPS = "disparity", "depth", "specular"  # in an .npz, of the middle view
+STOKES = "s1", "s2"
 BYTES_MAX = 1 << 32  # of a light field in memory
 TILED = re.compile(rf"(.+\.(?:{PICTURES})):(.*)", re.I | re.S)  # on the command line: tiles.png:9
 
@@ -101,7 +103,8 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
         The light field. Pictures take its codes as they are; linear radiance becomes sRGB codes, gray of 16 bits,
         colours of 8.
     path : path
-        x.npy, x.npz, an image file, or a folder, which is created. Disparity goes into .npz and folders alone.
+        x.npy, x.npz, an image file, or a folder, which is created. Disparity goes into .npz and folders alone,
+        depth, Stokes parameters and highlights into .npz.
 
     Raises
     ------
@@ -114,10 +117,11 @@ def write_light_field(light_field: LightField, path: str | Path) -> None:
     if path.suffix.lower() == ".npy":
         np.save(path, values)
     elif path.suffix.lower() == ".npz":
-        if light_field.disparity is None:
-            np.savez_compressed(path, light_field=values)
-        else:
-            np.savez_compressed(path, light_field=values, disparity=light_field.disparity)
+        arrays = {name: getattr(light_field, name) for name in MAPS}
+        if light_field.stokes is not None:
+            arrays |= dict(zip(STOKES, light_field.stokes, strict=True))
+        given = {name: array for name, array in arrays.items() if array is not None}
+        np.savez_compressed(path, allow_pickle=False, light_field=values, **given)
     elif re.fullmatch(rf"\.(?:{PICTURES})", path.suffix, re.I):
         tiles = _codes(values).swapaxes(1, 2)
         side = light_field.views
@@ -183,7 +187,7 @@ def _folder(path: Path) -> LightField:
 def _numpy(path: Path) -> LightField:
     if not path.is_file():
         raise ParameterError(f"scene = {str(path)!r}: no such file; must be a readable file")
-    disparity = None
+    more: dict[str, npt.NDArray[Any]] = {}
     try:
         if path.suffix.lower() == ".npy":
             values = np.load(path, mmap_mode="r", allow_pickle=False)
@@ -195,9 +199,16 @@ def _numpy(path: Path) -> LightField:
                 if key not in archive:
                     raise ParameterError(f"scene = {str(path)!r}: must hold an array named light_field, or one alone")
                 values = archive[key]
-                disparity = archive["disparity"] if key == "light_field" and "disparity" in archive else None
+                if key == "light_field":
+                    more = {name: archive[name] for name in MAPS if name in archive}
+                    stokes = [archive[name] for name in STOKES if name in archive]
+                    if len(stokes) == 1 or len({part.shape for part in stokes}) > 1:
+                        raise ParameterError(
+                            f"scene = {str(path)!r}: must hold s1 and s2 of one shape, or none of them"
+                        )
+                    more |= {"stokes": np.stack(stokes)} if stokes else {}
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SyntaxError) as error:
         if isinstance(error, ParameterError):
             raise
         raise ParameterError(f"scene = {str(path)!r}: must be a NumPy array file ({type(error).__name__})") from None
-    return LightField(values, disparity, path.stem)
+    return LightField(values, name=path.stem, **more)

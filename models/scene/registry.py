@@ -6,7 +6,7 @@ from pathlib import Path
 
 from talbot.models.parameters import ParameterError
 
-from . import targets
+from . import polarized, solids, targets
 from .clip import VIDEOS
 from .light_field import LightField
 from .light_field_file import named
@@ -25,7 +25,11 @@ scenes: dict[str, Callable[..., Scene]] = {
     "flat": targets.flat,
     "saturated": targets.saturated,
     "black": targets.black,
-    "polarized": targets.polarized,
+    "polarized": polarized.polarized,
+    "stress": polarized.stress,
+    "specular": polarized.specular,
+    "cornell": solids.cornell,
+    "fence": solids.fence,
     **{name: partial(photograph, name) for name in PHOTOGRAPHS},
 }
 NUMBERS = {
@@ -33,6 +37,7 @@ NUMBERS = {
     "flat": ("percent", 0.0, 1600.0),
     "moving": ("px/s", 0.0, 1e6),
     "polarized": ("percent", 0.0, 100.0),
+    "stress": ("degrees", -360.0, 360.0),
 }
 
 

@@ -44,8 +44,12 @@ class Scene:
         the centre view shows at (y + dv * disparity, x + du * disparity).
     depth : array (rows, cols) or None
         Distance from the camera, 0.001..1000 m.
-    polarization : array (2, rows, cols) or None
-        S1/S0 and S2/S0, of degree 0..1; None is unpolarized.
+    polarization : array (2, rows, cols) or (2, views, views, rows, cols), or None
+        S1/S0 and S2/S0 of the centre view, or of every view, of degree 0..1; None is unpolarized.
+    specular : bool (rows, cols) or None
+        Where the centre view shows a reflection brighter than half of the lamp that it is of; None if not known.
+    behind : array (rows, cols) or None
+        Distance from the camera of what stands behind an occluder, 0.001..1000 m.
     render : callable or None
         From the wanted pixels, bool (rows, cols), to a `View` of these, those of the light field and all between; None:
         there are no others.
@@ -69,6 +73,8 @@ class Scene:
     disparity: npt.NDArray[np.floating] | None = None
     depth: npt.NDArray[np.floating] | None = None
     polarization: npt.NDArray[np.floating] | None = None
+    specular: npt.NDArray[np.bool_] | None = None
+    behind: npt.NDArray[np.floating] | None = None
     render: Callable[[Bools], View] | None = None
     static: bool = True
     moved: Callable[[float], "Scene"] | None = None
@@ -85,12 +91,17 @@ class Scene:
             ("image", 0, RADIANCE_MAX, self.shape),
             ("disparity", -1e4, 1e4, self.shape),
             ("depth", 1e-3, FOCUS_MAX, self.shape),
+            ("specular", 0, 1, self.shape),
+            ("behind", 1e-3, FOCUS_MAX, self.shape),
             ("polarization", -1, 1, (2, *self.shape)),
         ):
             value = getattr(self, name)
             if value is None:
                 continue
-            if value.shape != shape:
+            if value.shape not in (
+                shape,
+                (2, self.views, self.views, *self.shape) if name == "polarization" else shape,
+            ):
                 raise ParameterError(f"{name} shape = {value.shape}: must be {shape}")
             check_values(name, value, low, high)
         check_real("speed", self.speed, 0, SPEED_MAX)
@@ -122,6 +133,13 @@ class Scene:
         for (v, dv), (u, du) in product(enumerate(steps), enumerate(steps)):
             field[v, u] = see(dv, du)[0]
         return field
+
+    @property
+    def seen_polarization(self) -> npt.NDArray[np.floating]:
+        """S1/S0 and S2/S0 of the centre view, (2, rows, cols); 0 where the light is not polarized."""
+        if self.polarization is None:
+            return np.zeros((2, *self.shape))
+        return self.polarization[(slice(None), *(self.views // 2,) * (self.polarization.ndim - 3))]
 
     @property
     def angular(self) -> bool:

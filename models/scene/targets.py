@@ -38,7 +38,7 @@ def flat(sampling: Sampling, level: float = 50.0) -> Scene:
     Scene
         One view.
     """
-    return _uniform("flat", sampling, level / 100)
+    return uniform("flat", sampling, level / 100)
 
 
 def saturated(sampling: Sampling) -> Scene:
@@ -54,7 +54,7 @@ def saturated(sampling: Sampling) -> Scene:
     Scene
         One view.
     """
-    return _uniform("saturated", sampling, SATURATED)
+    return uniform("saturated", sampling, SATURATED)
 
 
 def black(sampling: Sampling) -> Scene:
@@ -70,7 +70,7 @@ def black(sampling: Sampling) -> Scene:
     Scene
         One view.
     """
-    return _uniform("black", sampling, 0.0)
+    return uniform("black", sampling, 0.0)
 
 
 def point(sampling: Sampling) -> Scene:
@@ -146,7 +146,7 @@ def tilted(sampling: Sampling) -> Scene:
     Scene
         All views, with disparity and depth.
     """
-    y, x = _places(sampling)
+    y, x = places(sampling)
     # The slope stays below that of the outermost rays.
     across = TILT * sampling.camera.scale * camera.per_inverse_metre(sampling)
     slope = min(across / max(sampling.cols - 1, 1), 0.5 / sampling.views)
@@ -170,27 +170,21 @@ def tilted(sampling: Sampling) -> Scene:
     return Scene("tilted", sampling.views, field, image, disparity, depth, render=lambda wanted: _view)
 
 
-def polarized(sampling: Sampling, degree: float = 25.0) -> Scene:
-    """Uniform scene of polarized light whose plane turns by pi from left to right.
+def places(sampling: Sampling) -> tuple[Floats, Floats]:
+    """Place of every pixel, px from the middle of the array.
 
     Parameters
     ----------
     sampling : Sampling
-        Array, views and camera.
-    degree : float
-        Degree of polarization in percent, 0..100.
+        The array.
 
     Returns
     -------
-    Scene
-        One view, with polarization.
+    y : float64 (rows, 1)
+        Down.
+    x : float64 (1, cols)
+        To the right.
     """
-    psi = np.broadcast_to(np.pi * (np.arange(sampling.cols) + 0.5) / sampling.cols, sampling.shape)
-    stokes = degree / 100 * np.stack([np.cos(2 * psi), np.sin(2 * psi)])
-    return _uniform("polarized", sampling, 0.5, stokes)
-
-
-def _places(sampling: Sampling) -> tuple[Floats, Floats]:
     rows, cols = sampling.shape
     return np.arange(rows, dtype=float)[:, None] - (rows - 1) / 2, np.arange(cols, dtype=float)[None, :] - (
         cols - 1
@@ -216,14 +210,32 @@ def plane(sampling: Sampling) -> tuple[Floats, Floats]:
     return camera.disparity(depth, sampling), depth
 
 
-def _uniform(name: str, sampling: Sampling, radiance: float, polarization: Floats | None = None) -> Scene:
+def uniform(name: str, sampling: Sampling, radiance: float, polarization: Floats | None = None) -> Scene:
+    """Scene of one radiance.
+
+    Parameters
+    ----------
+    name : str
+        Name in reports.
+    sampling : Sampling
+        Array, views and camera.
+    radiance : float
+        0..16.
+    polarization : float64 (2, rows, cols), optional
+        S1/S0 and S2/S0.
+
+    Returns
+    -------
+    Scene
+        One view.
+    """
     image = np.full(sampling.shape, radiance, sampling.dtype)
     return Scene(name, sampling.views, image[None, None], image, depth=plane(sampling)[1], polarization=polarization)
 
 
 def _on_plane(name: str, sampling: Sampling, radiance: Callable[[Floats, Floats], Floats]) -> Scene:
     """``radiance(y, x)`` on a plane; in focus all views are equal, and one is kept."""
-    y, x = _places(sampling)
+    y, x = places(sampling)
     disparity, depth = plane(sampling)
     d = disparity.flat[0]
     steps = sampling.steps if abs(d) * sampling.views > IN_FOCUS else np.zeros(1)

@@ -147,13 +147,15 @@ class FieldEstimator:
         """For each disparity, made once a sensor."""
         return [Component(*self._filters(self.covariances.of(float(d)))) for d in self.prior.grid]
 
-    def mixture(self, pair: Floats) -> Estimate:
+    def mixture(self, pair: Floats, evidence: Floats | None = None) -> Estimate:
         """Mean over the disparities, each as probable as the samples make it.
 
         Parameters
         ----------
         pair : array (2, rows, cols)
             As in `linear`.
+        evidence : array (2, rows, cols), optional
+            Samples of the same scene that tell its disparity; None is ``pair``. For the taps of time of flight.
 
         Returns
         -------
@@ -167,8 +169,12 @@ class FieldEstimator:
         """
         turned = self._turned(pair)
         groups = [(d, a, self._samples(turned, d, a)) for d, a in self._groups()]
-        grid, (level, plain) = self.prior.grid, self._uniform(groups)
-        chance = self._probability(np.stack([self._score(c, groups) for c in self.components]))
+        told = groups
+        if evidence is not None:
+            seen = self._turned(evidence)
+            told = [(d, a, self._samples(seen, d, a)) for d, a in self._groups()]
+        grid, level, plain = self.prior.grid, self._uniform(groups)[0], self._uniform(told)[1]
+        chance = self._probability(np.stack([self._score(c, told) for c in self.components]))
         chance[:, plain] = 1 / len(grid)
         mean = np.tensordot(grid, chance, 1)
         spread = np.sqrt(np.maximum(np.tensordot(grid**2, chance, 1) - mean**2, 0))

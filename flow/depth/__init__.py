@@ -1,0 +1,1 @@
+"""Depth field by time of flight through the chip: `talbot depth`."""

@@ -1,0 +1,81 @@
+"""Four taps through the chip's Verilog: as sums, as phases and as both diodes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.flow.frame import hardware
+from talbot.flow.frame.job import Clock, expose, read_golden, read_out, see
+from talbot.flow.frame.reading import about
+from talbot.flow.frame.request import FrameRequest
+from talbot.flow.frame.result import Exposed, GoldenResult
+from talbot.models.capture import Region, Views
+from talbot.models.parameters import ParameterError
+
+VIEWS = 9  # of the capture along the pupil's diameter
+TAPS = 4
+
+
+@dataclass(frozen=True, eq=False)
+class DepthFrames:
+    """The same four exposures, read out six times.
+
+    sums: the taps' sums, in tof mode. phases: phase and amplitude by the chip's divider. pairs: both diodes, a raw
+    frame for each tap, ahead of which the light's phase is set.
+    """
+
+    sums: GoldenResult
+    phases: GoldenResult
+    pairs: tuple[GoldenResult, ...]
+
+    @property
+    def all(self) -> tuple[GoldenResult, ...]:
+        """Every frame."""
+        return (self.sums, self.phases, *self.pairs)
+
+    def about(self) -> dict[str, Any]:
+        """Figures of what was read, differences of all frames together."""
+        every = [about(frame) for frame in self.all]
+        wrong = {name: sum(part[name] for part in every) for name in ("stream_mismatches", "decoded_mismatches")}
+        return every[0] | wrong
+
+    def diodes(self, noisy: bool = True) -> npt.NDArray[np.float64]:
+        """Both diodes of every tap in LSB, (4, 2, rows, cols); not noisy: ahead of the converters, without noise."""
+        frames = (frame.decoded.samples if noisy else frame.exposed.ideal for frame in self.pairs)
+        return np.stack([np.moveaxis(np.asarray(samples, float), 2, 0) for samples in frames])
+
+
+def capture(
+    request: FrameRequest, note: Callable[[str], None] = lambda text: None, golden: bool = False
+) -> DepthFrames:
+    """The frames of ``request``, which is in tof mode. Raises ParameterError, ToolError."""
+    clock = Clock(note=note)
+    with clock.step("setup"):
+        scene, todo = see(request)
+        if scene.depth is None:
+            raise ParameterError(f"scene = {request.name!r}: must have a depth, for time of flight")
+    with clock.step("capture"):
+        count = 1 if not scene.angular else scene.views if scene.render is None else VIEWS
+        views = Views((Region(count, np.ones(scene.shape, bool)),), count, None)
+        exposed = expose(request, scene, todo, views=views)
+    raw = replace(request, frame=replace(request.frame, mode="raw"))
+    asked = [(request, exposed), (replace(request, frame=replace(request.frame, phase=True)), exposed)]
+    asked += [(raw, _tap(exposed, tap)) for tap in range(TAPS)]
+    if golden:
+        with clock.step("decode"):
+            read = [read_golden(*each) for each in asked]
+    else:
+        with clock.step("build"):
+            programs = {taps: hardware.program(request.sensor, taps, note=note) for taps in (TAPS, 1)}
+        read = [read_out(each, part, programs[len(part.samples)], clock) for each, part in asked]
+    return DepthFrames(read[0], read[1], tuple(read[2:]))
+
+
+def _tap(exposed: Exposed, tap: int) -> Exposed:
+    """One tap of an exposure as a frame of its own, for raw mode."""
+    samples, clean = exposed.samples[tap : tap + 1], exposed.clean[tap : tap + 1]
+    ideal = np.moveaxis(exposed.front_end.values(clean, "raw"), 0, 2)
+    return replace(exposed, plan=replace(exposed.plan, taps=1), samples=samples, clean=clean, ideal=ideal)

@@ -1,0 +1,68 @@
+"""Depth by time of flight, four taps through the chip, unwrapped by the light field that the same taps show."""
+
+from argparse import ArgumentParser, Namespace
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from talbot.flow.frame import arguments as text
+from talbot.flow.frame import reading
+from talbot.flow.frame.command import camera_of
+from talbot.flow.frame.sensor import asked_sensor
+from talbot.flow.lightfield.command import add_prior_arguments, prior_asked
+from talbot.models.parameters import STANDARD, CameraParameters
+
+# Life size: disparities of more than a pixel from 2.2 to 4.6 m, in which the phase turns more than once
+CAMERA = CameraParameters(focal_length=25e-3, focus=3.0, scale=1.0)
+F_MOD, CONTRAST, AMBIENT = 100e6, 0.7, 0.2
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot depth`: texts, checked by `run`."""
+    reading.add_arguments(parser, "depth", "cornell", "tof", CAMERA)
+    add = parser.add_argument
+    add("--f-mod", help=f"modulation frequency, 1e5..1e9 Hz (default: {F_MOD:g}, or of the sensor file)")
+    add("--contrast", help=f"demodulation contrast, 0.01..1 (default: {CONTRAST:g}, or of the sensor file)")
+    add(
+        "--ambient",
+        help=f"light of white that is not modulated, of its own, 0..10 (default: {AMBIENT:g}, or of the file)",
+    )
+    add_prior_arguments(parser)
+
+
+def run(options: Namespace) -> int:
+    """Measure one depth field and print the figures; 1 where the chip and the golden model differ."""
+    from .job import STEPS, run
+
+    own = STANDARD.electrical
+    ours = replace(own, f_mod=F_MOD, contrast=CONTRAST, ambient_current=AMBIENT * own.white_current)
+    default = replace(STANDARD, optics=replace(STANDARD.optics, camera=CAMERA), electrical=ours)
+    sensor = asked_sensor(options, default)
+    e, given = sensor.electrical, {}
+    if options.f_mod is not None:
+        given["f_mod"] = text.real("f_mod", options.f_mod, 1e5, 1e9)
+    if options.contrast is not None:
+        given["contrast"] = text.real("contrast", options.contrast, 0.01, 1)
+    if options.ambient is not None:
+        given["ambient_current"] = text.real("ambient", options.ambient, 0, 10) * e.white_current
+    camera = camera_of(options, sensor.optics.camera)
+    sensor = replace(sensor, optics=replace(sensor.optics, camera=camera), electrical=replace(e, **given))
+    asked, typed = reading.asked(options, "depth", add_arguments, sensor)
+    job = partial(run, asked, prior_asked(options, asked.noise), golden=options.golden, arguments=typed)
+    return reading.told(asked, typed, STEPS, job, _print)
+
+
+def _print(s: dict[str, Any], folder: Path) -> None:
+    from .page import rows
+
+    size, span = f"{s['rows']} x {s['cols']} pixels", f"{s['range_m']:.3f} m, {s['ambiguity_m']:.3f} m a turn"
+    print(f"{s['scene']}: depth of {size} over {span}")
+    for name, error, share, known, whole in rows(s):
+        print(f"  {name:<50}{error:>9} {share:>8}  in {known:>7} of the pixels; in all {whole:>9}")
+    behind = s["behind"]
+    if behind:
+        error, mixed = (f"{behind[key]:.4f} m" for key in ("rms_m", "rms_all_rays_m"))
+        where = f"{behind['range_m']:.3f} m, in {100 * behind['seen']:.1f} % of the pixels"
+        print(f"  behind the occluder {error} RMS of {where}; by all rays {mixed}")
+    print(f"  look at {folder / 'depth.html'}")

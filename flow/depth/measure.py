@@ -1,0 +1,187 @@
+"""Depth from the frames of time of flight by every method, beside what costs nothing."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import maximum_filter
+
+from talbot.flow.frame.reading import full, rms
+from talbot.flow.frame.result import PHASE_TURN, GoldenResult
+from talbot.models.digital.phase import phase_samples
+from talbot.models.pixel.time_of_flight import SPEED_OF_LIGHT, demodulate
+from talbot.models.reconstruct import white_sum
+from talbot.models.reconstruct.bayes import FieldEstimator, FieldPrior
+from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+from talbot.models.scene import Sampling, camera
+
+from .capture import DepthFrames
+
+Values = npt.NDArray[np.floating]
+Bools = npt.NDArray[np.bool_]
+BEST = "field"
+FAINT = 3.0  # codes: what has a smaller amplitude has no phase
+LOOSE = 0.2  # px per view step: no disparity is surer
+EDGE = 2  # steps of the disparities that are tried from their ends: what is nearer may be beyond
+PUPIL = 7  # points across the pupil at which the estimator takes the scene
+CODES = 255
+
+
+@dataclass(frozen=True, eq=False)
+class Depth:
+    """What the frames give. depth: by method, in m, (rows, cols); sure: where its turns are known."""
+
+    frames: DepthFrames
+    field: DepthField
+    coarse: Values
+    depth: dict[str, Values]
+    sure: dict[str, Bools]
+    behind: Values | None
+    summary: dict[str, Any]
+
+    @property
+    def truth(self) -> Values:
+        """Depth of the scene in m."""
+        return np.asarray(self.frames.sums.exposed.scene.depth)
+
+
+def read_depth(frames: DepthFrames, prior: FieldPrior, note: Callable[[str], None] = lambda text: None) -> Depth:
+    """Depth by every method; that of `BEST` first in the summary."""
+    result = frames.sums
+    sensor, scene = result.sensor, result.exposed.scene
+    truth, ambiguity = np.asarray(scene.depth), SPEED_OF_LIGHT / (2 * sensor.electrical.f_mod)
+    note("field")
+    white = white_sum(result.request.lit, result.request.frame.exposing)
+    diodes = frames.diodes()
+    over = _beside(full(diodes, (0, 1)), prior.margin)
+    start = perf_counter()
+    estimator = FieldEstimator(sensor, scene.views, prior, scene.views if scene.render is None else PUPIL)
+    field = depth_field(estimator, diodes / white)
+    seconds = perf_counter() - start
+    ideal = depth_field(estimator, frames.diodes(noisy=False) / white)
+    note("unwrap")
+    coarse, doubt = _by_disparity(result, field, prior)
+    depth, sure = {}, {}
+    for name, phase in _phases(frames, field, ideal, white).items():
+        found = unwrap(np.where(over, np.nan, phase), coarse / ambiguity, doubt / ambiguity)
+        depth[name], sure[name] = found.turns * ambiguity, found.sure
+    methods = {name: figures(depth[name], truth, sure[name], ambiguity) for name in depth}
+    once = sure[BEST]
+    baselines = {
+        "constant": figures(np.full_like(truth, truth.mean()), truth, once, ambiguity),
+        "light_field": figures(coarse, truth, once, ambiguity),
+        "wrapped": figures(depth[BEST] % ambiguity, truth, once, ambiguity),
+    }
+    behind, past = _behind(field, coarse, ambiguity, result)
+    summary = frames.about() | {
+        "range_m": float(np.ptp(truth)),
+        "ambiguity_m": ambiguity,
+        "depth_rms_m": methods[BEST]["rms_m"],
+        "depth_sure": methods[BEST]["sure"],
+        "methods": methods,
+        "baselines": baselines,
+        "behind": past,
+        "seconds": seconds,
+    }
+    return Depth(frames, field, coarse, depth, sure, behind, summary)
+
+
+def _beside(pixels: Bools, reach: int) -> Bools:
+    """Pixels (..., rows, cols) and those around them."""
+    size = 2 * reach + 1
+    return np.asarray(maximum_filter(pixels, (1,) * (pixels.ndim - 2) + (size, size)), bool)
+
+
+def _phases(frames: DepthFrames, field: DepthField, ideal: DepthField, white: float) -> dict[str, Values]:
+    """Phase by every method in rad, NaN where the amplitude is too small for one.
+
+    divider: the chip's own, of the sums. sums: atan2 of the same sums. field: of the depth field's centre view, divider
+    and float; from samples without noise and converter.
+    """
+    chip = frames.sums.request.sensor.chip
+    centre = np.moveaxis(field.centre, 0, -1) * white
+    codes = np.rint(np.clip(centre, 0, CODES)).astype(int)
+    by_divider, strength = phase_samples(codes, chip)
+    sent = np.asarray(frames.phases.decoded.samples, float)
+    out = {
+        "divider": (sent[..., 0] * PHASE_TURN, sent[..., 1]),
+        "sums": demodulate(np.moveaxis(frames.sums.decoded.samples.astype(float), 2, 0)),
+        "field_divider": (by_divider * PHASE_TURN, strength),
+        "field": demodulate(np.moveaxis(centre, -1, 0)),
+        "field_float": demodulate(ideal.centre * white),
+    }
+    return {name: np.where(amplitude < FAINT, np.nan, phase) for name, (phase, amplitude) in out.items()}
+
+
+def _by_disparity(result: GoldenResult, field: DepthField, prior: FieldPrior) -> tuple[Values, Values]:
+    """Depth of the light field in m, and its standard deviation; infinite at the ends of what was tried.
+
+    What the prior knew is taken out of both, so that a disparity that no sample tells has no weight.
+    """
+    sampling = Sampling.of(result.sensor)
+    middle, width = (prior.near + prior.far) / 2, (prior.near - prior.far) / np.sqrt(12)
+    spread = np.hypot(field.spread, LOOSE)
+    told = np.maximum(1 / spread**2 - 1 / max(width, LOOSE) ** 2, 0)
+    known = told > 0
+    told = np.where(known, told, 1)
+    disparity = middle + (field.disparity - middle) / spread**2 / told
+    step = (prior.near - prior.far) / max(prior.disparities - 1, 1)
+    room = np.minimum(field.disparity - prior.far, prior.near - field.disparity)
+    ends = room < EDGE * step + field.spread
+    depth = camera.depth(np.clip(disparity, prior.far, prior.near), sampling)
+    doubt = depth**2 / camera.per_inverse_metre(sampling) / np.sqrt(told)
+    return depth, np.where(known & ~ends, doubt, np.inf)
+
+
+def figures(found: Values, truth: Values, sure: Bools, ambiguity: float) -> dict[str, float | None]:
+    """Errors of a depth in m: RMS where it is sure and everywhere, and modulo a turn; share of wrong turns."""
+    error = found - truth
+    modulo = (error + ambiguity / 2) % ambiguity - ambiguity / 2
+    return {
+        "rms_m": rms(error[sure]),
+        "rms_all_m": rms(error),
+        "rms_modulo_m": rms(modulo[sure]),
+        "sure": float(sure.mean()),
+        "wrong_turns": float((np.abs(error[sure]) > ambiguity / 2).mean()) if sure.any() else None,
+    }
+
+
+def _behind(
+    field: DepthField, coarse: Values, ambiguity: float, result: GoldenResult
+) -> tuple[Values | None, dict[str, Any] | None]:
+    """Depth of what an occluder hides in m, NaN where no ray passes, and its errors; of a scene that has one.
+
+    The whole turns are the fewest that put it behind the occluder: its own disparity is not seen through the gaps.
+    """
+    scene = result.exposed.scene
+    near = None if scene.behind is None else foreground(field, coarse / ambiguity)
+    if near is None or scene.behind is None:
+        return None, None
+    middle = scene.views // 2
+    limit = float(np.median(coarse[near[middle, middle]]))
+    phasors = field.phasors
+    rough = _beyond(np.angle(phasors[middle, middle]), limit, ambiguity)[~near[middle, middle]]
+    disparity = float(np.median(camera.disparity(rough, Sampling.of(result.sensor))))
+    clear = ~_beside(near, 1)  # rays beside the occluder's are mixtures: only where no other
+    passed, edge, everything = (refocused(phasors, disparity, rays) for rays in (clear, ~near, None))
+    passed = np.where(np.abs(passed) > 0, passed, edge)
+    seen = np.abs(passed) > 0
+    depth, mixed = (_beyond(np.angle(p), limit, ambiguity) for p in (passed, everything))
+    past = {
+        "rms_m": rms((depth - scene.behind)[seen]),
+        "rms_all_rays_m": rms(mixed - scene.behind),
+        "rms_constant_m": float(np.std(scene.behind)),
+        "seen": float(seen.mean()),
+        "occluded": float(near[middle, middle].mean()),
+        "range_m": float(scene.behind.max() - np.min(np.asarray(scene.depth))),
+    }
+    return np.where(seen, depth, np.nan), past
+
+
+def _beyond(phase: Values, limit: float, ambiguity: float) -> Values:
+    """The least depth in m behind ``limit`` that has this phase."""
+    fine = phase / (2 * np.pi) % 1 * ambiguity
+    return fine + np.maximum(np.ceil((limit - fine) / ambiguity), 0) * ambiguity

@@ -1,0 +1,133 @@
+"""The files of a depth field: page, arrays."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from talbot.base.page import TABLES, Picture, Scale, Section, Tile, render
+from talbot.flow.frame import pictures
+from talbot.flow.frame.reading import agreement, line, number
+from talbot.models.reconstruct.depth_field import refocused
+
+from .measure import BEST, Depth, Values
+
+NAMES = ("depth.html", "summary.json", "depth.npz")
+HEAD = ("", "RMS where sure", "of the range", "sure", "RMS everywhere")
+TEXTS = {
+    "constant": "one depth for all",
+    "light_field": "disparity alone",
+    "wrapped": "phase alone, modulo a turn",
+    "divider": "sums, the chip's divider",
+    "sums": "sums, float quadrature",
+    "field_divider": "depth field, the chip's divider (bit-true model)",
+    "field": "depth field, float quadrature",
+    "field_float": "depth field, samples without noise and converter",
+}
+
+
+def write(folder: Path, found: Depth) -> None:
+    """Write everything but summary.json into ``folder``, which exists."""
+    s = found.summary
+    best, sure = found.depth[BEST], found.sure[BEST]
+    arrays = {"taps": found.field.taps.astype(np.float16), "disparity": found.field.disparity, "confidence": sure}
+    arrays |= {"depth": best.astype(np.float32)}
+    if found.behind is not None:
+        arrays["behind"] = found.behind.astype(np.float32)
+    np.savez(folder / "depth.npz", allow_pickle=False, **arrays)
+    shown = _depths(found)
+    groups = [
+        Section("Every method beside what costs nothing", head=HEAD, rows=rows(s)),
+        Section("Depth", "Gray: the number of turns is not known, or there is no phase.", pictures=shown),
+        Section(
+            "Refocused", "Phase through the whole lens: sharp at one depth, mixed at others.", pictures=_focus(found)
+        ),
+    ]
+    if found.behind is not None:
+        groups.append(Section("Past the occluder", _past(s), pictures=_behind(found)))
+    text = render(
+        TABLES,
+        f"{s['scene']}: depth by time of flight",
+        picture=shown[1].image,
+        about=f"{line(s)}; {s['range_m']:.3g} m of range, {s['ambiguity_m']:.3g} m a turn of the phase",
+        tiles=_headline(s),
+        sections=groups,
+    )
+    (folder / "depth.html").write_text(text)
+
+
+def rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    """Rows of the table of the summary ``s``: baselines, then methods."""
+    return [(TEXTS[name], *_row(m, s["range_m"])) for name, m in (s["baselines"] | s["methods"]).items()]
+
+
+def _row(m: dict[str, Any], span: float) -> tuple[str, ...]:
+    share = "-" if m["rms_m"] is None or not span else f"{100 * m['rms_m'] / span:.2f} %"
+    return number(m["rms_m"], 4, " m"), share, f"{100 * m['sure']:.1f} %", number(m["rms_all_m"], 4, " m")
+
+
+def _headline(s: dict[str, Any]) -> list[Tile]:
+    free, best = s["baselines"], s["methods"][BEST]
+    _, share, sure, _ = _row(best, s["range_m"])
+    return [
+        Tile(
+            number(best["rms_m"], 4, " m"), f"{share} of the range (one depth: {number(free['constant']['rms_m'])} m)"
+        ),
+        Tile(sure, "of the pixels are sure"),
+        Tile(number(s["methods"]["divider"]["rms_m"], 4, " m"), "by the chip's divider"),
+        agreement(s),
+    ]
+
+
+def _past(s: dict[str, Any]) -> str:
+    past = s["behind"]
+    return (
+        f"{100 * past['occluded']:.0f} % of the picture is the occluder's. Behind it {past['rms_m']:.3g} m RMS of "
+        f"{past['range_m']:.3g} m, where rays pass it ({100 * past['seen']:.0f} %); by all rays, the occluder's among "
+        f"them, {past['rms_all_rays_m']:.3g} m; one depth for all {past['rms_constant_m']:.3g} m."
+    )
+
+
+def _ends(values: Values) -> tuple[float, float]:
+    return float(values.min()), float(values.max()) + 1e-3
+
+
+def _picture(name: str, caption: str, values: Values, ends: tuple[float, float]) -> Picture:
+    scale = Scale(pictures.depth_colours(), *ends, "m")
+    return Picture(name, "", caption, pictures.depth(values, *ends), scale)
+
+
+def _depths(found: Depth) -> list[Picture]:
+    truth, sure = found.truth, found.sure[BEST]
+    ends = _ends(truth)
+    wrapped = found.depth[BEST] % found.summary["ambiguity_m"]
+    return [
+        _picture("true", "depth of the scene", truth, ends),
+        _picture("depth", "depth field, unwrapped", np.where(sure, found.depth[BEST], np.nan), ends),
+        _picture("wrapped", "the same before: modulo a turn", wrapped, (0, found.summary["ambiguity_m"])),
+        _picture("coarse", "depth by disparity alone", found.coarse, ends),
+        _picture(
+            "divider", "by the chip's divider", np.where(found.sure["divider"], found.depth["divider"], np.nan), ends
+        ),
+    ]
+
+
+def _focus(found: Depth) -> list[Picture]:
+    scale = Scale(pictures.angle_colours(), 0, 360, "degrees")
+    out = []
+    for name, disparity in zip(
+        ("far", "middle", "near"), np.quantile(found.field.disparity, (0.05, 0.5, 0.95)), strict=True
+    ):
+        phase = np.angle(refocused(found.field.phasors, float(disparity)))
+        caption = f"phase, focused {name}: at {disparity:+.2f} px a view step"
+        out.append(Picture(name, "", caption, pictures.angle(phase / 2 % np.pi - np.pi / 2), scale))
+    return out
+
+
+def _behind(found: Depth) -> list[Picture]:
+    truth = np.asarray(found.frames.sums.exposed.scene.behind)
+    ends = _ends(truth)
+    return [
+        _picture("true-behind", "depth behind the occluder, of the scene", truth, ends),
+        _picture("behind", "found with the rays that pass it", np.asarray(found.behind), ends),
+    ]

@@ -1,0 +1,150 @@
+"""One frame of the chip for a reconstruction: `talbot lightfield`, `polar` and `depth` from their options to files."""
+
+import json
+from argparse import ArgumentParser, Namespace
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import ModuleType
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.base.files import check_folder, staged
+from talbot.base.page import Tile
+from talbot.base.progress import Steps
+from talbot.flow.simulate.frame import WAVES
+from talbot.models.parameters import CameraParameters, SensorParameters
+from talbot.models.reconstruct import FULL
+
+from . import report
+from .command import add_frame_arguments, arguments_of, name_of, request_of, tell_replaced, typed_of
+from .figures import mismatches
+from .request import FrameRequest
+from .result import FrameResult, GoldenResult
+
+HEADROOM = 5.0  # LSB below a full code, for noise and bow of the converters: what is above counts as full
+# All of a frame is read
+WHOLE = {"threshold": "0", "phase": False, "types": "all", "window": "full", "decimation": "0"}
+WHOLE |= {"waves": None, "waves_format": WAVES[0]}
+Note = Callable[[str], None]
+
+
+class Found(Protocol):
+    """What a reconstruction gives: its figures are ``summary``."""
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Of summary.json."""
+        ...
+
+
+def add_arguments(
+    parser: ArgumentParser, command: str, scene: str, mode: str, camera: CameraParameters = CameraParameters()
+) -> None:
+    """Options of the scene, the sensor and the frame: texts, checked by `asked`. camera: see `add_frame_arguments`."""
+    add = parser.add_argument
+    add("--scene", default=scene, help=f"name of a scene, an image, or a light field, as for talbot sim ({scene})")
+    add("--depth", help="depth file for --scene (models/scene/README.md)")
+    add_frame_arguments(parser, WHOLE | {"mode": mode}, camera)
+    add("--golden", action="store_true", help="by the golden chip alone, without its Verilog")
+    add("--out", help=f"folder for the results (default: build/{command}/<scene>, as of sim)")
+
+
+def asked(
+    options: Namespace,
+    command: str,
+    add_arguments: Callable[[ArgumentParser], None],
+    sensor: SensorParameters | None = None,
+) -> tuple[FrameRequest, dict[str, Any]]:
+    """The request, and the arguments that its folder tells. sensor: see `request_of`. Raises ParameterError."""
+    typed = typed_of(options, add_arguments)
+    options.out = options.out or Path("build") / command / name_of(typed)
+    return request_of(options, sensor), typed
+
+
+def told(
+    request: FrameRequest,
+    arguments: dict[str, Any],
+    steps: Sequence[str],
+    run: Callable[[Note], dict[str, Any]],
+    show: Callable[[dict[str, Any], Path], None],
+) -> int:
+    """Run with progress and show the figures; 1 where the chip and the golden model differ."""
+    before = arguments_of(request.folder)
+    with Steps(steps, lines=True) as progress:
+        summary = run(progress.note)
+    show(summary, request.folder)
+    tell_replaced(before, arguments)
+    return int(differs(summary))
+
+
+def write(
+    folder: Path,
+    names: Sequence[str],
+    found: Callable[[], Found],
+    page: ModuleType,
+    note: Note,
+    arguments: Mapping[str, Any] | None = None,
+) -> dict[str, Any]:
+    """Compute ``found`` and write its page and summary.json into ``folder``, all or nothing; returns the summary.
+
+    arguments: of the command line, kept in the summary.
+    """
+    check_folder("out", folder)
+    done = found()
+    note("report")
+    with staged(folder, names) as part:
+        page.write(part, done)
+        summary = done.summary | {"arguments": dict(arguments or {})}
+        (part / "summary.json").write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n")
+    return summary
+
+
+def about(result: GoldenResult) -> dict[str, Any]:
+    """Figures that every summary has: what was read, and whether chip and golden model agree."""
+    scene = result.exposed.scene
+    return {
+        "scene": result.request.name,
+        "rows": scene.shape[0],
+        "cols": scene.shape[1],
+        "views": scene.views,
+        "noise": result.request.noise,
+        "seed": result.request.seed,
+        "chip": isinstance(result, FrameResult),
+        "stream_mismatches": mismatches(result.stream, result.golden.stream),
+        "decoded_mismatches": int((result.decoded.samples != result.golden.sent).sum()),
+    }
+
+
+def full(samples: npt.NDArray[np.floating], axes: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """Where any of the samples along ``axes``, in LSB, is full: what else it holds is not known."""
+    return np.asarray((samples > FULL - HEADROOM).any(axes))
+
+
+def rms(error: npt.NDArray[np.floating]) -> float | None:
+    """Root of the mean square; None of nothing."""
+    return float(np.sqrt(np.mean(error**2))) if error.size else None
+
+
+def line(s: dict[str, Any]) -> str:
+    """What a page says below its title of the summary ``s``."""
+    by = "the chip's Verilog" if s["chip"] else "the golden model"
+    return f"{s['rows']} x {s['cols']} pixels, {s['views']} x {s['views']} views, noise {s['noise']:g}, by {by}"
+
+
+def differs(s: dict[str, Any]) -> bool:
+    """Whether chip and golden model differ in the summary ``s``."""
+    return bool(s["stream_mismatches"] or s["decoded_mismatches"])
+
+
+def agreement(s: dict[str, Any]) -> Tile:
+    """Whether chip and golden model agree, where the chip ran."""
+    if not s["chip"]:
+        return Tile("not run", "the chip's Verilog", "none")
+    return report.agreement(s["stream_mismatches"] or s["decoded_mismatches"])
+
+
+def number(value: float | None, digits: int = 2, unit: str = "") -> str:
+    """A figure, '-' where there is none."""
+    return "-" if value is None else f"{value:.{digits}f}{unit}"

@@ -1,0 +1,1 @@
+"""Angle and degree of polarization, and highlights, from a raw frame of the chip: `talbot polar`."""

@@ -1,0 +1,40 @@
+"""Polarization of a scene from a raw frame of the chip, and its highlights, beside what costs nothing."""
+
+from argparse import ArgumentParser, Namespace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from talbot.flow.frame import arguments as text
+from talbot.flow.frame import reading
+from talbot.flow.frame.reading import number
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `talbot polar`: texts, checked by `run`."""
+    reading.add_arguments(parser, "polar", "specular", "raw")
+    words = "polarized light of a highlight, of white: what has more is one, 0..16"
+    parser.add_argument("--highlight", default="0.1", help=words)
+
+
+def run(options: Namespace) -> int:
+    """Read one frame and print the figures; 1 where the chip and the golden model differ."""
+    from .job import STEPS, run
+
+    highlight = text.real("highlight", options.highlight, 0, 16)
+    asked, typed = reading.asked(options, "polar", add_arguments)
+    job = partial(run, asked, highlight, golden=options.golden, arguments=typed)
+    return reading.told(asked, typed, STEPS, job, _print)
+
+
+def _print(s: dict[str, Any], folder: Path) -> None:
+    print(f"{s['scene']}: polarization of {s['rows']} x {s['cols']} pixels, seen in {100 * s['sure']:.1f} %")
+    error, free = number(s["psi_error_deg"], 2, " degrees"), number(s["baselines"]["psi_error_constant_deg"], 2)
+    print(
+        f"  psi off by {error} on average (demosaiced alone {number(s['psi_error_demosaiced_deg'])}, constant {free})"
+    )
+    print(f"  degree off by {number(s['degree_rms'], 3)} RMS (none: {number(s['baselines']['degree_rms_none'], 3)})")
+    if s["f1"] is not None:
+        print(f"  highlights: F1 {s['f1']:.3f} (brightest pixels: {number(s['baselines']['f1_bright'], 3)})")
+    print(f"  {s['full_tagged']} of {s['full']} full pixels that are no highlight tagged")
+    print(f"  look at {folder / 'polar.html'}")

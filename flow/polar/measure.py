@@ -1,0 +1,110 @@
+"""Polarization and highlights from a raw frame, with their errors beside those of what costs nothing."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from talbot.flow.frame.reading import about, full, rms
+from talbot.flow.frame.result import GoldenResult
+from talbot.models.pixel.polarization import angle
+from talbot.models.reconstruct import Polarization, demosaiced, polarization, specular_tags, sum_image, sum_noise
+
+Values = npt.NDArray[np.floating]
+Bools = npt.NDArray[np.bool_]
+QUIET = 0.3  # of the noise at noise 1: what rounding leaves without any other
+POLARIZED = 0.02  # degree below which the truth has no angle
+
+
+@dataclass(frozen=True, eq=False)
+class PolarFrame:
+    """What a raw frame tells of polarization. tags: highlights. plain: by demosaicing alone, (s1, s2)."""
+
+    result: GoldenResult
+    found: Polarization
+    plain: tuple[Values, Values]
+    full: Bools
+    tags: Bools
+    summary: dict[str, Any]
+
+    @property
+    def truth(self) -> tuple[Values, Values]:
+        """Angle in rad and degree of the scene, (rows, cols)."""
+        s1, s2 = self.result.exposed.scene.seen_polarization
+        return angle(s1, s2), np.hypot(s1, s2)
+
+
+def read_polarization(
+    result: GoldenResult, highlight: float, note: Callable[[str], None] = lambda text: None
+) -> PolarFrame:
+    """The polarization of a raw frame of any part of the array. highlight: of a highlight's polarized light."""
+    note("polarization")
+    start = perf_counter()
+    found, sums, over = _estimate(result, result.decoded.samples.astype(float))
+    seconds = perf_counter() - start
+    ideal, _, _ = _estimate(result, result.exposed.ideal)
+    plain = demosaiced(sums, result.sensor.tile, result.sensor.optics.diattenuation)
+    tags = specular_tags(found, highlight)
+    frame = PolarFrame(result, found, plain, over, tags, {})
+    psi, degree = frame.truth
+    sure = found.confidence > 0
+    shown = sure & (degree > POLARIZED)
+    constant = np.full(psi.shape, _mean_angle(psi[shown])) if shown.any() else psi
+    shine = result.exposed.scene.specular
+    bright = sums > np.quantile(sums, 1 - shine.mean()) if shine is not None else None
+    frame.summary.update(
+        about(result)
+        | {
+            "highlight": highlight,
+            "sure": float(sure.mean()),
+            "psi_error_deg": _angle_error(found.psi, psi, shown),
+            "psi_error_sure_deg": _angle_error(found.psi, psi, shown & (found.confidence > 0.5)),
+            "psi_error_float_deg": _angle_error(ideal.psi, psi, shown),
+            "psi_error_demosaiced_deg": _angle_error(angle(*plain), psi, shown),
+            "degree_rms": rms((found.degree - degree)[shown]),
+            "degree_rms_float": rms((ideal.degree - degree)[shown]),
+            "degree_rms_demosaiced": rms((np.hypot(*plain) - degree)[shown]),
+            "wrongly_polarized": float((sure & (degree <= POLARIZED)).mean()),
+            "full": int(over.sum()),
+            "full_tagged": int((tags & over & ~(np.zeros_like(tags) if shine is None else shine)).sum()),
+            "seconds": seconds,
+            "f1": None if shine is None else _f1(tags, shine),
+            "baselines": {
+                "psi_error_constant_deg": _angle_error(constant, psi, shown),
+                "degree_rms_none": rms((degree)[shown]),
+                "f1_bright": None if bright is None or shine is None else _f1(bright, shine),
+            },
+        }
+    )
+    return frame
+
+
+def _estimate(result: GoldenResult, pairs: Values) -> tuple[Polarization, Values, Bools]:
+    """Polarization from diodes (rows, cols, 2) in LSB, the sums that it is from (1 = white), and the full pixels."""
+    request = result.request
+    lit, timing = request.lit, request.frame.exposing
+    sums = np.asarray(sum_image(pairs.sum(2) / 2, lit, timing=timing), float)
+    over = full(pairs, (2,))
+    noise = max(request.noise, QUIET) * sum_noise(sums, lit, timing)
+    optics = result.sensor.optics
+    used = result.decoded.read & ~over
+    return polarization(sums, result.sensor.tile, optics.diattenuation, noise, used), sums, over
+
+
+def _angle_error(found: Values, truth: Values, where: Bools) -> float | None:
+    """Mean distance of two angles modulo pi, in degrees; None where there are none."""
+    turned = np.abs((found - truth + np.pi / 2) % np.pi - np.pi / 2)[where]
+    return float(np.rad2deg(turned.mean())) if turned.size else None
+
+
+def _mean_angle(psi: Values) -> float:
+    return float(np.angle(np.exp(2j * psi).mean()) / 2)
+
+
+def _f1(found: Bools, truth: Bools) -> float | None:
+    """Harmonic mean of precision and recall; None where there is nothing to find and nothing found."""
+    total = int(found.sum()) + int(truth.sum())
+    return 2 * int((found & truth).sum()) / total if total else None

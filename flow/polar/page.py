@@ -1,0 +1,118 @@
+"""The files of a frame's polarization: page, arrays."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from talbot.base.page import TABLES, Picture, Scale, Section, Tile, render
+from talbot.flow.frame import pictures
+from talbot.flow.frame.reading import agreement, line, number
+from talbot.models.pixel.polarization import angle
+
+from .measure import PolarFrame, Values
+
+NAMES = ("polar.html", "summary.json", "polar.npz")
+METHOD = "each pixel's fit of light, gradient and polarization"
+
+
+def write(folder: Path, frame: PolarFrame) -> None:
+    """Write everything but summary.json into ``folder``, which exists."""
+    found, s = frame.found, frame.summary
+    np.savez(
+        folder / "polar.npz",
+        psi=found.psi.astype(np.float32),
+        degree=found.degree.astype(np.float32),
+        confidence=found.confidence.astype(np.float32),
+        light=found.light.astype(np.float32),
+        highlights=frame.tags,
+        full=frame.full,
+    )
+    angles = _angles(frame)
+    text = render(
+        TABLES,
+        f"{s['scene']}: the polarization of a raw frame",
+        picture=angles[1].image,
+        about=line(s),
+        tiles=_headline(s),
+        sections=[
+            Section("Every method beside what costs nothing", head=HEAD, rows=_rows(s)),
+            Section("Angle", "Gray: no polarization seen. The scale is cyclic.", pictures=angles),
+            Section("Degree", pictures=_degrees(frame)),
+            Section("Highlights", _tagged(s), pictures=_highlights(frame)),
+        ],
+    )
+    (folder / "polar.html").write_text(text)
+
+
+HEAD = ("", "psi, mean error", "psi, float samples", "degree, RMS error", "highlights, F1")
+
+
+def _rows(s: dict[str, Any]) -> list[tuple[str, ...]]:
+    free = s["baselines"]
+    return [
+        ("one angle, no polarization, brightest pixels", _deg(free["psi_error_constant_deg"]), "")
+        + (number(free["degree_rms_none"], 3), number(free["f1_bright"], 3)),
+        ("four orientations demosaiced", _deg(s["psi_error_demosaiced_deg"]), "")
+        + (number(s["degree_rms_demosaiced"], 3), ""),
+        (METHOD, _deg(s["psi_error_deg"]), _deg(s["psi_error_float_deg"]))
+        + (number(s["degree_rms"], 3), number(s["f1"], 3)),
+    ]
+
+
+def _deg(value: float | None) -> str:
+    return number(value, 2, "°")
+
+
+def _headline(s: dict[str, Any]) -> list[Tile]:
+    free = s["baselines"]
+    return [
+        Tile(_deg(s["psi_error_deg"]), f"psi, mean error (one angle for all: {_deg(free['psi_error_constant_deg'])})"),
+        Tile(number(s["f1"], 3), f"F1 of the highlights (brightest pixels: {number(free['f1_bright'], 3)})"),
+        Tile(str(s["full_tagged"]), f"of {s['full']:,} full pixels tagged", "bad" if s["full_tagged"] else "good"),
+        agreement(s),
+        Tile(f"{s['seconds']:.1f} s", "for the polarization"),
+    ]
+
+
+def _tagged(s: dict[str, Any]) -> str:
+    return f"Yellow: polarized light above {s['highlight']:g} of white. Full pixels have none that can be seen."
+
+
+def _angles(frame: PolarFrame) -> list[Picture]:
+    sure = frame.found.confidence > 0
+    psi, degree = frame.truth
+    scale = Scale(pictures.angle_colours(), -90, 90, "degrees")
+    return [
+        Picture("true", "", "angle of the scene", pictures.angle(np.where(degree > 0, psi, np.nan)), scale),
+        Picture("psi", "", "angle by the fit", pictures.angle(np.where(sure, frame.found.psi, np.nan)), scale),
+        Picture("demosaiced", "", "angle by demosaicing, everywhere: edges look polarized", _plain_angle(frame), scale),
+    ]
+
+
+def _plain_angle(frame: PolarFrame) -> pictures.Image:
+    return pictures.angle(angle(*frame.plain))
+
+
+def _degrees(frame: PolarFrame) -> list[Picture]:
+    named: list[tuple[str, str, Values]] = [
+        ("true-degree", "degree of the scene", frame.truth[1]),
+        ("degree", "degree by the fit, where it is sure", frame.found.degree * (frame.found.confidence > 0)),
+        ("confidence", "confidence: 0 where no polarization is seen", frame.found.confidence),
+    ]
+    scale = Scale(pictures.depth_colours(), 0, 1)
+    return [Picture(name, "", caption, pictures.depth(values, 0, 1), scale) for name, caption, values in named]
+
+
+def _highlights(frame: PolarFrame) -> list[Picture]:
+    light = pictures.gray(frame.result.image)
+    out = [Picture("image", "", "the sum image", light)]
+    shine = frame.result.exposed.scene.specular
+    for name, caption, mask in (
+        ("shine", "highlights of the scene", shine),
+        ("tags", "highlights tagged", frame.tags),
+        ("full", "full pixels", frame.full),
+    ):
+        if mask is not None:
+            out.append(Picture(name, "", caption, pictures.marked(frame.result.image, mask)))
+    return out

@@ -1,0 +1,97 @@
+"""Turns of a phase, refocused phasors and clusters of rays."""
+
+import numpy as np
+import pytest
+
+from talbot.models.parameters import ArrayParameters, ParameterError, SensorParameters
+from talbot.models.reconstruct.bayes import FieldEstimator
+from talbot.models.reconstruct.depth_field import DepthField, depth_field, foreground, refocused, unwrap
+
+SHAPE = 30, 40
+SLOPE = np.linspace(0.4, 2.7, SHAPE[1]) * np.ones(SHAPE)  # turns
+
+
+def phase_of(turns):
+    """What is left of turns."""
+    return 2 * np.pi * (turns % 1)
+
+
+def test_a_slope_through_several_turns():
+    coarse = SLOPE + np.random.default_rng(1).normal(0, 0.2, SHAPE)
+    found = unwrap(phase_of(SLOPE), coarse, np.full(SHAPE, 0.2))
+    np.testing.assert_allclose(found.turns, SLOPE, atol=1e-9)
+    assert found.sure.all()
+
+
+def test_one_sure_corner_tells_all_that_hangs_together():
+    doubt = np.full(SHAPE, np.inf)
+    doubt[:4, :4] = 0.1
+    found = unwrap(phase_of(SLOPE), np.where(np.isfinite(doubt), SLOPE, 9.0), doubt)
+    np.testing.assert_allclose(found.turns, SLOPE, atol=1e-9)
+
+
+def test_an_edge_of_more_than_a_turn_has_its_own_turns_on_both_sides():
+    turns = np.where(np.arange(SHAPE[1]) < 17, 0.7, 2.3) * np.ones(SHAPE)
+    found = unwrap(phase_of(turns), turns + 0.2, np.full(SHAPE, 0.2))
+    np.testing.assert_allclose(found.turns, turns, atol=1e-9)
+
+
+@pytest.mark.parametrize("turns", [0.0, 1e-12, 0.999999, 1.0, 2.000001])
+def test_a_phase_near_the_wrap(turns):
+    found = unwrap(np.full(SHAPE, 2 * np.pi * (turns % 1)), np.full(SHAPE, turns + 0.1), np.full(SHAPE, 0.1))
+    np.testing.assert_allclose(found.turns, turns, atol=1e-9)
+
+
+def test_no_phase_and_no_depth_are_not_sure():
+    phase = phase_of(SLOPE)
+    phase[5:9] = np.nan
+    found = unwrap(phase, SLOPE, np.full(SHAPE, 0.1))
+    assert np.isfinite(found.turns).all() and not found.sure[5:9].any() and found.sure[:5].all()
+    nothing = unwrap(np.full(SHAPE, np.nan), SLOPE, np.full(SHAPE, 0.1))
+    unknown = unwrap(np.random.default_rng(2).uniform(0, 6, SHAPE), np.full(SHAPE, np.nan), np.full(SHAPE, np.inf))
+    assert not nothing.sure.any() and np.isfinite(unknown.turns).all()
+
+
+def test_one_pixel():
+    found = unwrap(np.array([[1.0]]), np.array([[2.1]]), np.array([[0.1]]))
+    assert found.sure.all() and found.turns[0, 0] == pytest.approx(2 + 1 / (2 * np.pi))
+
+
+def bars():
+    """Depth field of bars in the focal plane before a wall at -1 px a view step, and what is a bar."""
+    bar = np.arange(SHAPE[1]) // 4 % 2 == 0
+    near = np.broadcast_to(bar, (5, 5, *SHAPE))
+    phase = np.where(near, 0.5, 2.0)
+    taps = np.stack([0.5 + 0.3 * np.cos(tap * np.pi / 2 + phase) for tap in range(4)])
+    return DepthField(taps, np.zeros(SHAPE), np.full(SHAPE, 0.1)), near
+
+
+def test_rays_of_the_occluder_are_those_of_its_phase():
+    field, near = bars()
+    np.testing.assert_array_equal(foreground(field, np.full(SHAPE, 0.5 / (2 * np.pi))), near)
+    np.testing.assert_array_equal(foreground(field, np.full(SHAPE, 2.0 / (2 * np.pi))), ~near)
+
+
+def test_the_rest_shows_the_wall_behind():
+    field, near = bars()
+    passed = refocused(field.phasors, -1.0, ~near)
+    seen = np.abs(passed) > 0
+    assert seen.mean() > 0.9
+    np.testing.assert_allclose(np.angle(passed[seen]), 2.0, atol=1e-6)
+    assert np.abs(np.angle(refocused(field.phasors, -1.0)) - 2.0).max() > 0.3
+
+
+def test_darkness_has_one_cluster():
+    dark = DepthField(np.zeros((4, 3, 3, 6, 8)), np.zeros((6, 8)), np.ones((6, 8)))
+    assert foreground(dark, np.zeros((6, 8))) is None and not refocused(dark.phasors, 0.5).any()
+
+
+def test_taps_keep_the_disparity_of_their_sum():
+    estimator = FieldEstimator(SensorParameters(array=ArrayParameters(12, 18)), 5)
+    pairs = np.random.default_rng(3).random((4, 2, 12, 18))
+    found = depth_field(estimator, pairs)
+    whole = estimator.mixture(pairs.sum(0) / 2)
+    np.testing.assert_array_equal(found.disparity, whole.disparity)
+    np.testing.assert_allclose(found.taps.sum(0) / 2, whole.light_field, atol=2e-3)
+    with pytest.raises(ParameterError, match="pairs = 3 taps"):
+        depth_field(estimator, pairs[:3])
