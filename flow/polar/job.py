@@ -22,7 +22,8 @@ def run(
     """Run everything and write the page and summary.json into ``request.folder``; returns the summary.
 
     highlight: its polarized light, of white. note: called with the name of each of `STEPS` as it starts. golden: by
-    the golden chip alone, without Verilog. arguments: of the command line, kept in the summary. Raises ParameterError, ToolError, OSError.
+    the golden chip alone, without Verilog. arguments: of the command line, kept in the summary.
+    Raises ParameterError, ToolError, OSError.
     """
     from . import page  # Matplotlib: not before it is needed
 
