@@ -40,7 +40,8 @@ def lay_out_smallest(
         found = runner.run(place)["metrics"]
         if found["stopped"] is not None:
             continue
-        runner.run(arrange)
+        if runner.run(arrange)["metrics"]["stopped"] is not None:
+            continue
         repair, route, *checks = routing_steps(design, options)
         runner.run(repair)
         attempt.open_nets = runner.run(route)["metrics"]["open_nets"]

@@ -12,6 +12,7 @@ from .repair import MORE, Plan, length
 
 FULL = 0.95  # of the rows, at most: cells, and what is kept free beside each
 SEED, TURNS = 1, 2  # the room beside a cell follows from the wires of the turn before
+GAP = 1  # site beside a cell, where there is room: a diode's
 BIN = 8  # rows: side of a square in which wires are counted
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -52,14 +53,15 @@ def arranged(plan: Plan, fixed: Collection[str], effort: int, spread: float) -> 
     parameters = ColoquinteParameters(effort, SEED)
     room = sum(end - begin for _, begin, end in spans)
     room = widths.sum() + spread * max(0.0, FULL * room - widths.sum())
+    least = widths + GAP if widths.sum() + GAP * len(widths) <= room else widths
     wires = np.bincount([end for ends in which for end in ends], minlength=len(middles))[: len(names)].astype(float)
     for _ in range(TURNS):
-        circuit.cell_width = [*filled(widths, wires, room).tolist(), *zeros]
+        circuit.cell_width = [*filled(least, wires, room).tolist(), *zeros]
         circuit.place_global(parameters)
         middle = (np.array(axis) + np.array(size) / 2 for axis, size in (
             (circuit.cell_x, circuit.cell_width), (circuit.cell_y, circuit.cell_height)))  # fmt: skip
         wires = crowding(np.stack(list(middle), axis=1), which, BIN * tall)[: len(names)]
-    circuit.cell_width = [*widths.tolist(), *zeros]
+    circuit.cell_width = [*least.tolist(), *zeros]
     circuit.legalize(parameters)
     circuit.place_detailed(parameters)
     for name, x, low in zip(names, circuit.cell_x, circuit.cell_y, strict=False):

@@ -21,7 +21,8 @@ OHM_UM, VIAS_OHM = 0.5, 30.0  # of a net: a um of wire, its vias
 NEAR, HALF = 0.1, 0.5  # of the way from a driver to the middle of its sinks: its only buffer, one of many
 FULL = 0.9  # of what the largest buffer drives, at most, in a group of sinks
 MORE = 0.06  # of a net's length for each pin beyond two: the chip's capacitances as estimated, and as extracted
-OWN = "_repair"  # ends the name of a buffer that is inserted here
+OWN, HALFWAY = "_repair", "_halfway"  # end the names of buffers that are inserted here
+FAR_UM = 250.0
 Point = tuple[float, float]  # um
 End = tuple[str, str]  # instance and pin
 Sinks = list[End]
@@ -169,6 +170,32 @@ def repaired(plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks |
         if counts == before:
             break
     return counts
+
+
+def shortened(plan: Plan, drives: Drives, kept: Collection[str]) -> int:
+    """Put a buffer halfway to the sinks that are farther than FAR_UM from their driver; how many.
+
+    A longer wire of one layer charges a small gate by more than a diode takes. kept: nets that stay as they are.
+    """
+    count = 0
+    for net, (driver, pin, sinks) in connected(plan.instances).items():
+        if net in kept or (plan.instances[driver].cell, pin) not in drives.limits:
+            continue
+        x, y = plan.point(driver)
+        groups: dict[bool, Sinks] = {}  # to the west and to the east
+        for end in sinks:
+            right, up = plan.point(end[0])
+            if abs(right - x) + abs(up - y) > FAR_UM:
+                groups.setdefault(right > x, []).append(end)
+        for side, group in groups.items():
+            right, up = np.mean([plan.point(name) for name, _ in group], axis=0)
+            middle, far = ((x + float(right)) / 2, (y + float(up)) / 2), f"{net}_{('west', 'east')[side]}"
+            cell = drives.best(BUFFER.cell, BUFFER.output, plan.load(drives, "", [middle], group))
+            buffer = Instance(f"{far}{HALFWAY}", cell, {BUFFER.input: net, BUFFER.output: far})
+            if plan.put(buffer, middle):
+                plan.connect(group, far)
+                count += 1
+    return count
 
 
 def late(plan: Plan, drives: Drives, net: str, driver: End, sinks: Sinks, slacks: Slacks | None) -> Sinks:

@@ -35,7 +35,10 @@ class ArrangeParameters:
 
 
 class Arrange(Step[ArrangeParameters]):
-    """All cells but macros and the clock tree's are placed again. before_um, wire_um: estimated length of all nets."""
+    """All cells but macros and the clock tree's are placed again.
+
+    stopped: why the placer gave up. before_um, wire_um: estimated length of all nets.
+    """
 
     name = "arrange"
     inputs = {
@@ -46,7 +49,7 @@ class Arrange(Step[ArrangeParameters]):
         "synthesized": "synthesis.netlist",
     }
     outputs = {"netlist": "netlist.json", "placement": "placement.json", "log": "coloquinte.log"}
-    metrics = {"before_um": "um", "wire_um": "um"}
+    metrics = {"stopped": "", "before_um": "um", "wire_um": "um"}
     tools = ("python coloquinte",)
 
     def run(self, inputs: Files, outputs: Files) -> dict[str, Any]:
@@ -60,12 +63,17 @@ class Arrange(Step[ArrangeParameters]):
         plan = planned(netlist, placement, floorplan, areas, tech)
         before = wire_um(plan)
         own = {instance.name for instance in Netlist.read(inputs["synthesized"]).instances}
-        with printed_to(outputs["log"]):
-            arranged(plan, plan.instances.keys() - own, p.effort, p.spread)
+        try:
+            with printed_to(outputs["log"]):
+                arranged(plan, plan.instances.keys() - own, p.effort, p.spread)
+        except RuntimeError as error:  # the rows are too full
+            for name in ("netlist", "placement"):
+                outputs[name].write_text("")
+            return dict.fromkeys(self.metrics) | {"stopped": str(error)}
         made, placement["instances"] = plan.listed(netlist, placement["instances"], tech.fill_cells)
         made.write(outputs["netlist"])
         outputs["placement"].write_text(json.dumps(placement, indent=0) + "\n")
-        return {"before_um": round(before, 1), "wire_um": round(wire_um(plan), 1)}
+        return {"stopped": None, "before_um": round(before, 1), "wire_um": round(wire_um(plan), 1)}
 
 
 @contextmanager

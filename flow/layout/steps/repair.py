@@ -18,7 +18,7 @@ from ..geometry.instances import insert
 from ..netlist.netlist import Netlist
 from ..repair.clock import regrouped
 from ..repair.drive import Drives
-from ..repair.repair import OWN, Plan, clock_nets, planned, repaired
+from ..repair.repair import OWN, Plan, clock_nets, planned, repaired, shortened
 from ..repair.speed import Delays, quickened
 from ..repair.wires import femtofarad_um
 from ..timing.estimate import setup_slacks
@@ -66,6 +66,7 @@ class Repair(Step[RepairParameters]):
     outputs = {"gds": "repaired.gds", "netlist": "netlist.json", "placement": "placement.json"}
     metrics = {
         "clock_drivers": "",
+        "halfway": "",
         "sized": "",
         "buffers": "",
         "cells": "",
@@ -84,7 +85,10 @@ class Repair(Step[RepairParameters]):
         p, tech = self.parameters, coriolis_platform(self.parameters.pdk)
         netlist, placement = Netlist.read(inputs["netlist"]), json.loads(inputs["placement"].read_text())
         areas = json.loads(inputs["areas"].read_text())
-        layout, counts = read_gds(inputs["gds"]), {"clock_drivers": 0, "sized": 0, "buffers": 0, "estimate_ns": None}
+        layout, counts = (
+            read_gds(inputs["gds"]),
+            {"clock_drivers": 0, "halfway": 0, "sized": 0, "buffers": 0, "estimate_ns": None},
+        )
         if p.corner:
             begin = planned(netlist, placement, json.loads(inputs["floorplan"].read_text()), areas, tech)
             begin.femtofarad_um = femtofarad_um(tech, wire_corner(p.corner))
@@ -110,6 +114,7 @@ class Repair(Step[RepairParameters]):
         if CLOCK_GATE.cell in plan.widths:
             added = regrouped(plan, Drives.of(liberty, CLOCK_NS), CLOCK_CELLS, REGISTERS)
         kept = clock_nets(plan.instances.values())
+        halfway = shortened(plan, limits, kept)
         for _ in range(ROUNDS):
             repaired(plan, limits, kept, slacks)
             now = replace(netlist, instances=tuple(plan.instances.values()))
@@ -125,7 +130,7 @@ class Repair(Step[RepairParameters]):
         worst, plan, _ = best
         cells = {instance.name: instance.cell for instance in netlist.instances}
         sized = sum(instance.cell != cells.get(name, instance.cell) for name, instance in plan.instances.items())
-        counts = {"sized": sized, "buffers": sum(name.endswith(OWN) for name in plan.instances)}
+        counts = {"sized": sized, "halfway": halfway, "buffers": sum(name.endswith(OWN) for name in plan.instances)}
         return plan, {"clock_drivers": added, "estimate_ns": round(worst, 3), **counts}
 
 

@@ -11,7 +11,17 @@ from talbot.base.liberty.read import read
 from talbot.flow.layout.geometry.rows import Rows, free_rows
 from talbot.flow.layout.netlist.netlist import Instance, Netlist, Port
 from talbot.flow.layout.repair.drive import Drives
-from talbot.flow.layout.repair.repair import OWN, Plan, clock_nets, connected, length, repaired, swap
+from talbot.flow.layout.repair.repair import (
+    HALFWAY,
+    OWN,
+    Plan,
+    clock_nets,
+    connected,
+    length,
+    repaired,
+    shortened,
+    swap,
+)
 from talbot.flow.layout.timing.constraints import sdc
 from talbot.flow.layout.timing.estimate import setup_slack, setup_slacks
 
@@ -215,3 +225,21 @@ def test_slacks_are_those_of_the_tables(tmp_path):
     found = setup_slacks(netlist, nets, library, constraints)
     assert set(found) == {("one[3]", "i"), ("one[3]", "nq"), ("two", "i"), ("two", "nq")}
     assert len({round(slack, 3) for slack in found.values()}) == 1  # one path
+
+
+def test_a_far_sink_has_a_buffer_halfway():
+    plan = chain([110.0, 112.0, 390.0, 388.0, 120.0])
+    assert shortened(plan, drives(), set()) == 1
+    (buffer,) = (name for name in plan.instances if name.endswith(HALFWAY))
+    assert 235 < plan.point(buffer)[0] < 265
+    assert {name for name, i in plan.instances.items() if i.pins["i"] == plan.instances[buffer].pins["q"]} == {
+        "u1",
+        "u2",
+    }
+    assert shortened(plan, drives(), set()) == 0
+    check_places(plan)
+
+
+def test_a_far_sink_of_a_net_that_is_kept_stays():
+    plan = chain([10.0, 390.0])
+    assert shortened(plan, drives(), {"n"}) == 0
