@@ -87,12 +87,12 @@ def test_a_folder_tells_its_settings_and_what_it_replaced(tmp_path, monkeypatch,
     monkeypatch.chdir(tmp_path)
     words = ["lightfield", "--scene=flat", "--rows=8", "--cols=12", "--disparities=3", "--golden"]
     assert main([*words, "--lux=400"]) == 0
-    page_of = tmp_path / "build/lightfield/flat-rows=8-cols=12-lux=400-disparities=3-golden/lightfield.html"
+    page_of = tmp_path / "build/lightfield/flat-rows=8-cols=12-lux=400-golden-disparities=3/lightfield.html"
     text = page_of.read_text()
     assert "not run" in text and "byte for byte" not in text  # of the chip nothing is known
     for lux in (400, 300):
         assert main([*words, f"--lux={lux}", "--out=same"]) == 0
-    assert "replaced there: flat-rows=8-cols=12-lux=400-disparities=3-golden" in capsys.readouterr().out
+    assert "replaced there: flat-rows=8-cols=12-lux=400-golden-disparities=3" in capsys.readouterr().out
 
 
 def test_an_estimate_alone_is_that_of_the_page():

@@ -81,10 +81,11 @@ def test_connections_are_those_of_the_rtl():
     top = build_top("AspChip", SensorParameters())
     top.elaborate()
     blocks, bits = architecture.connections(top)
-    assert blocks["amp"] == "AmpCtrl" and blocks["encoder"] == "RunLength" and len(blocks) == 14
+    assert blocks["amp"] == "AmpCtrl" and blocks["encoder"] == "RunLength" and len(blocks) == 15
     assert bits["seq", "amp"] == 3 + len(SLOT)  # start, four_tap, hold_free and a slot's
-    assert bits["phase", "encoder"] == 1 + top.phase.send.msg._dsl.Type.nbits  # a stream: val and msg forth
-    assert bits["encoder", "phase"] == 1  # rdy back
+    stream = 1 + top.phase.send.msg._dsl.Type.nbits  # val and msg forth
+    assert bits["phase", "scan"] == bits["scan", "encoder"] == stream
+    assert bits["encoder", "scan"] == bits["scan", "phase"] == 1  # rdy back
     assert ("amp", "encoder") not in bits
 
 
@@ -104,7 +105,7 @@ def test_the_page_of_the_api_has_every_name(tmp_path):
 
     api.write(tmp_path)
     text = (tmp_path / "api.md").read_text()
-    assert sorted(re.findall(r"\.\. (?:auto\w+|py:data):: (\w+)", text)) == sorted(talbot.__all__)
+    assert sorted(re.findall(r"\.\. (?:auto\w+|py:data):: (?:[\w.]+\.)?(\w+)", text)) == sorted(talbot.__all__)
 
 
 def test_docstrings_are_prose():
