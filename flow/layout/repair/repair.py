@@ -173,15 +173,19 @@ def repaired(plan: Plan, drives: Drives, kept: Collection[str], slacks: Slacks |
 
 
 def shortened(plan: Plan, drives: Drives, kept: Collection[str]) -> int:
-    """Put a buffer halfway to the sinks that are farther than FAR_UM from their driver; how many.
+    """Put a buffer halfway to the sinks that are farther than FAR_UM from their driver or port; how many.
 
     A longer wire of one layer charges a small gate by more than a diode takes. kept: nets that stay as they are.
     """
-    count = 0
-    for net, (driver, pin, sinks) in connected(plan.instances).items():
-        if net in kept or (plan.instances[driver].cell, pin) not in drives.limits:
+    count, driven = 0, connected(plan.instances)
+    ends = [(name, pin, net) for name, i in plan.instances.items() for pin, net in i.pins.items() if net not in driven]
+    begins = {net: (plan.point(name), sinks) for net, (name, pin, sinks) in driven.items()
+              if (plan.instances[name].cell, pin) in drives.limits}  # fmt: skip
+    begins |= {net: (at, [(name, pin) for name, pin, to in ends if to == net]) for net, at in plan.ports.items()
+               if net not in driven}  # fmt: skip
+    for net, ((x, y), sinks) in begins.items():
+        if net in kept:
             continue
-        x, y = plan.point(driver)
         groups: dict[bool, Sinks] = {}  # to the west and to the east
         for end in sinks:
             right, up = plan.point(end[0])

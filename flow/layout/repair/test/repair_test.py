@@ -243,3 +243,10 @@ def test_a_far_sink_has_a_buffer_halfway():
 def test_a_far_sink_of_a_net_that_is_kept_stays():
     plan = chain([10.0, 390.0])
     assert shortened(plan, drives(), {"n"}) == 0
+
+
+def test_a_sink_far_from_its_port_has_a_buffer_halfway():
+    plan = chain([300.0, 310.0])
+    assert shortened(plan, drives(), set()) == 1
+    assert plan.instances["first"].pins["i"] == "a_east" and 140 < plan.point(f"a_east{HALFWAY}")[0] < 160
+    check_places(plan)
