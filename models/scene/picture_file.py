@@ -234,7 +234,27 @@ def loaded(picture: Image.Image, path: str | Path, field: str) -> Image.Image:
 
 @contextmanager
 def undamaged(field: str, path: str | Path, part: str = "the image") -> Iterator[None]:
-    """Decode within: a damaged file, which may raise nearly anything in a decoder, is a ParameterError."""
+    """Decode within: a damaged file may raise nearly anything in a decoder.
+
+    Parameters
+    ----------
+    field : str
+        Name in the message.
+    path : path
+        The file.
+    part : str
+        What is decoded.
+
+    Yields
+    ------
+    None
+        To what decodes.
+
+    Raises
+    ------
+    ParameterError
+        In place of any exception.
+    """
     try:
         yield
     except Exception as error:
