@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 from hypothesis import Phase, settings
 
-settings.register_profile("first", phases=[Phase.explicit, Phase.reuse, Phase.generate])
+settings.register_profile("first", deadline=None, phases=[Phase.explicit, Phase.reuse, Phase.generate])
 settings.register_profile("seeded", settings.get_profile("first"), derandomize=False)
-settings.register_profile("smallest", phases=list(Phase))
+settings.register_profile("smallest", deadline=None, phases=list(Phase))
 settings.load_profile("first")
 
 # These draw and read layouts: KLayout's Python module comes with the environment of cells and layouts
